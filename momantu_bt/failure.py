@@ -1,0 +1,107 @@
+"""A failure is a value: a code, a sentence, data and a cause."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any
+
+CODE = re.compile(r"[A-Z][A-Z0-9]*(_[A-Z0-9]+)*")
+
+SKILL_ERROR = "SKILL_ERROR"
+"""A skill raised something it did not declare; `data["traceback"]` holds the traceback."""
+TIMEOUT = "TIMEOUT"
+"""A time limit ended what was running, which is the cause."""
+ACTUATOR_BUSY = "ACTUATOR_BUSY"
+"""Another skill owns the actuator; `data["owner"]` names it."""
+FRAME_UNKNOWN = "FRAME_UNKNOWN"
+"""The frame buffer cannot answer a lookup."""
+SERVICE_MISSING = "SERVICE_MISSING"
+"""A skill needs a service that this run does not have."""
+INPUT_MISSING = "INPUT_MISSING"
+"""A node started while a key that one of its inputs reads held no value."""
+WRONG_TYPE = "WRONG_TYPE"
+"""A value at a port is not of the port's type."""
+FAILED = "FAILED"
+"""A node failed without saying more (AlwaysFailure, a false condition, a guard)."""
+
+ENGINE_CODES: Mapping[str, str] = MappingProxyType(
+    {
+        SKILL_ERROR: "the skill raised an exception that it does not declare",
+        TIMEOUT: "a time limit ended what was running",
+        ACTUATOR_BUSY: "another skill owns the actuator",
+        FRAME_UNKNOWN: "the frame buffer cannot answer a lookup",
+        SERVICE_MISSING: "the skill needs a service that this run does not have",
+        INPUT_MISSING: "an input reads a key that holds no value",
+        WRONG_TYPE: "a value at a port is not of the port's type",
+        FAILED: "the node failed without saying more",
+    }
+)
+"""Codes that any node can fail with, beside those its skill declares."""
+
+
+@dataclass(frozen=True, slots=True)
+class FailureValue:
+    """What a failed node hands to its parent, the record and the terminal.
+
+    code: upper-case words joined by underscores, from the skill's `failures`.
+    message: one sentence for a person.
+    data: plain values (numbers, text, lists) that explain the numbers behind the sentence.
+    node: name of the node that failed; place: `file:line` of it in the tree file.
+    cause: the failure that led to this one.
+    beside: failures of siblings that were tried before (a fallback's earlier children).
+    tries: how often a retry or recover node tried.
+    """
+
+    code: str
+    message: str
+    data: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
+    node: str = ""
+    place: str = ""
+    cause: FailureValue | None = None
+    beside: tuple[FailureValue, ...] = ()
+    tries: int = 1
+
+    def chain(self) -> Iterator[FailureValue]:
+        """This failure, then its causes, outermost first."""
+        link: FailureValue | None = self
+        while link is not None:
+            yield link
+            link = link.cause
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data for JSON: code, message, node, place, tries, data, cause, beside."""
+        return {
+            "code": self.code,
+            "message": self.message,
+            "node": self.node,
+            "place": self.place,
+            "tries": self.tries,
+            "data": dict(self.data),
+            "cause": None if self.cause is None else self.cause.as_dict(),
+            "beside": [other.as_dict() for other in self.beside],
+        }
+
+    def __str__(self) -> str:
+        """`CODE, a sentence`."""
+        return f"{self.code}, {self.message}" if self.message else self.code
+
+
+class Failure(Exception):
+    """Raised by a skill to fail: `raise Failure("OBJECT_NOT_FOUND", "no can on table_a", seen=3)`."""
+
+    def __init__(self, code: str, message: str = "", /, **data: Any) -> None:
+        if not CODE.fullmatch(code):
+            raise ValueError(
+                f"failure code {code!r} is not upper-case words joined by underscores, "
+                "such as 'OBJECT_NOT_FOUND'"
+            )
+        super().__init__(f"{code}, {message}" if message else code)
+        self.value = FailureValue(code, message, MappingProxyType(dict(data)))
+
+    @property
+    def code(self) -> str:
+        """The failure's code."""
+        return self.value.code

@@ -1,0 +1,235 @@
+"""Where every frame was at every recent instant: joints, odometry and localization in one buffer."""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from collections import deque
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from lxml import etree
+
+from momantu_bt.failure import FRAME_UNKNOWN, Failure
+from momantu_bt.geometry import (
+    Array,
+    Transform,
+    matrix_from_quaternion,
+    quaternion_from_axis_angle,
+)
+from momantu_bt.messages import RobotState
+
+MAP = "map"
+ODOM = "odom"
+HISTORY = 10.0
+"""Seconds of joints and odometry that a buffer remembers: longer than any sensor's delay."""
+AHEAD = 1e-6
+"""Seconds by which a stamp may lie after the newest state and still be taken as the newest."""
+
+
+@dataclass(frozen=True, slots=True)
+class Joint:
+    """One joint of a URDF file. `parent_from_joint` is its origin; kind is URDF's type."""
+
+    name: str
+    kind: str
+    parent: str
+    child: str
+    parent_from_joint: Transform
+    axis: tuple[float, float, float]
+
+    def transform(self, position: float) -> Array:
+        """`parent_from_child` as a matrix (4, 4) at `position`, rad or m."""
+        matrix = self.parent_from_joint.matrix
+        if self.kind in ("revolute", "continuous"):
+            turn = np.eye(4)
+            turn[:3, :3] = matrix_from_quaternion(quaternion_from_axis_angle(self.axis, position))
+            return np.asarray(matrix @ turn)
+        if self.kind == "prismatic":
+            matrix[:3, 3] += matrix[:3, :3] @ (np.array(self.axis) * position)
+        return matrix
+
+
+class KinematicTree:
+    """Forward kinematics of a URDF file, below the link that serves as the base."""
+
+    def __init__(self, joints: Iterable[Joint], base_frame: str) -> None:
+        self.base_frame = base_frame
+        self._joint_above = {joint.child: joint for joint in joints}
+
+    @classmethod
+    def from_urdf(cls, path: Path, base_frame: str) -> KinematicTree:
+        """Read joints from a URDF file.
+
+        Raises:
+            FileNotFoundError: there is no such file.
+            ValueError: it is no URDF, or has no link `base_frame`.
+        """
+        try:
+            root = etree.fromstring(path.read_bytes(), _parser())
+        except etree.XMLSyntaxError as error:
+            raise ValueError(f"{path} is not a URDF file: {error}") from None
+        links = [link.get("name", "") for link in root.findall("link")]
+        if base_frame not in links:
+            raise ValueError(f"{path} has no link {base_frame!r}; links: {', '.join(links)}")
+        return cls([_joint(element) for element in root.findall("joint")], base_frame)
+
+    def frames(self) -> tuple[str, ...]:
+        """Every frame below the base, and the base itself."""
+        below = [name for name in self._joint_above if self._chain(name) is not None]
+        return (self.base_frame, *below)
+
+    def base_from_frame(self, frame: str, positions: Mapping[str, float]) -> Transform:
+        """Pose of a link in the base; joints that `positions` does not name stand at 0.
+
+        Raises:
+            Failure: FRAME_UNKNOWN, with the known frames.
+        """
+        chain = self._chain(frame)
+        if chain is None:
+            raise Failure(
+                FRAME_UNKNOWN,
+                f"the robot has no frame {frame!r}; frames: {', '.join(self.frames())}",
+                frame=frame,
+            )
+        matrix = np.eye(4)
+        for joint in chain:
+            matrix = matrix @ joint.transform(positions.get(joint.name, 0.0))
+        return Transform.from_matrix(matrix)
+
+    def _chain(self, frame: str) -> list[Joint] | None:
+        chain: list[Joint] = []
+        while frame != self.base_frame:
+            joint = self._joint_above.get(frame)
+            if joint is None:
+                return None
+            chain.append(joint)
+            frame = joint.parent
+        chain.reverse()
+        return chain
+
+
+def _parser() -> etree.XMLParser:
+    return etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False)
+
+
+def _joint(element: etree._Element) -> Joint:
+    def attribute(tag: str, name: str, default: str) -> str:
+        child = element.find(tag)
+        return default if child is None else str(child.get(name, default))
+
+    def numbers(text: str) -> tuple[float, float, float]:
+        a, b, c = (float(part) for part in text.split())
+        return a, b, c
+
+    return Joint(
+        name=str(element.get("name")),
+        kind=str(element.get("type")),
+        parent=attribute("parent", "link", ""),
+        child=attribute("child", "link", ""),
+        parent_from_joint=Transform.from_rpy(
+            numbers(attribute("origin", "xyz", "0 0 0")),
+            numbers(attribute("origin", "rpy", "0 0 0")),
+        ),
+        axis=numbers(attribute("axis", "xyz", "1 0 0")),
+    )
+
+
+class FrameBuffer:
+    """Answers `lookup(target, source, stamp)` from recent joints, odometry and localization.
+
+    Frames are `map`, `odom`, the robot's base and every link below it.
+    """
+
+    def __init__(self, kinematics: KinematicTree) -> None:
+        self.kinematics = kinematics
+        self._states: deque[RobotState] = deque()
+        self._map_from_odom: deque[tuple[float, Transform]] = deque()
+
+    def add_state(self, state: RobotState) -> None:
+        """Remember a state; its stamp must not lie before the newest one's."""
+        if self._states and state.stamp < self._states[-1].stamp:
+            raise ValueError(f"state of {state.stamp} s after one of {self._states[-1].stamp} s")
+        self._states.append(state)
+        while self._states[0].stamp < state.stamp - HISTORY:
+            self._states.popleft()
+
+    def set_map_from_odom(self, transform: Transform, stamp: float) -> None:
+        """Remember what localization believes from `stamp` on."""
+        self._map_from_odom.append((stamp, transform))
+        while len(self._map_from_odom) > 1 and self._map_from_odom[1][0] < stamp - HISTORY:
+            self._map_from_odom.popleft()
+
+    @property
+    def newest(self) -> float:
+        """Stamp of the newest state, s.
+
+        Raises:
+            Failure: FRAME_UNKNOWN when nothing was ever added.
+        """
+        if not self._states:
+            raise Failure(FRAME_UNKNOWN, "the robot has not reported a state yet")
+        return self._states[-1].stamp
+
+    def lookup(self, target: str, source: str, stamp: float | None = None) -> Transform:
+        """`target_from_source` at `stamp` (the newest state when None).
+
+        Raises:
+            Failure: FRAME_UNKNOWN at once: no such frame, a time outside what is remembered, or
+                `map` before localization has spoken. Nothing ever waits.
+        """
+        if target == source:
+            return Transform()
+        at = self.newest if stamp is None else stamp
+        return self._odom_from(target, at).inverse() @ self._odom_from(source, at)
+
+    def _odom_from(self, frame: str, stamp: float) -> Transform:
+        if frame == ODOM:
+            return Transform()
+        if frame == MAP:
+            return self._map_at(stamp).inverse()
+        positions, odom_from_base = self._state_at(stamp)
+        return odom_from_base @ self.kinematics.base_from_frame(frame, positions)
+
+    def _map_at(self, stamp: float) -> Transform:
+        known = [transform for at, transform in self._map_from_odom if at <= stamp + AHEAD]
+        if not known:
+            raise Failure(
+                FRAME_UNKNOWN,
+                f"nobody has said where odom lies in the map at {stamp:.3f} s: "
+                "is a localization service running?",
+                stamp=stamp,
+            )
+        return known[-1]
+
+    def _state_at(self, stamp: float) -> tuple[dict[str, float], Transform]:
+        newest, oldest = self.newest, self._states[0].stamp
+        if not oldest - AHEAD <= stamp <= newest + AHEAD:
+            raise Failure(
+                FRAME_UNKNOWN,
+                f"{stamp:.3f} s lies outside the remembered {oldest:.3f} to {newest:.3f} s",
+                stamp=stamp,
+            )
+        after = bisect_right(self._states, stamp, key=lambda state: state.stamp)
+        if after == len(self._states) or after == 0:
+            state = self._states[min(after, len(self._states) - 1)]
+            return state.joints(), state.odom_from_base
+        return _between(self._states[after - 1], self._states[after], stamp)
+
+
+def _between(
+    before: RobotState, after: RobotState, stamp: float
+) -> tuple[dict[str, float], Transform]:
+    share = (stamp - before.stamp) / (after.stamp - before.stamp)
+    if share == 0.0:
+        return before.joints(), before.odom_from_base
+    positions = before.positions + share * (after.positions - before.positions)
+    a, b = before.odom_from_base, after.odom_from_base
+    sign = math.copysign(1.0, float(a.quaternion @ b.quaternion))
+    blended = Transform(
+        a.position + share * (b.position - a.position),
+        a.quaternion + share * (sign * b.quaternion - a.quaternion),
+    )
+    return dict(zip(before.names, (float(p) for p in positions), strict=True)), blended

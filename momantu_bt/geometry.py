@@ -1,0 +1,241 @@
+"""Rigid transforms, planar poses and the few rotations that everything shares.
+
+Quaternions are `(w, x, y, z)`, unit length, of a right-handed rotation. Arrays of points are
+`(..., 3)`. A transform named `map_from_base` takes coordinates in base and gives them in map.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array: TypeAlias = NDArray[np.float64]
+
+
+def wrap_angle(angle: float) -> float:
+    """The same angle in (-pi, pi]."""
+    wrapped = math.fmod(angle + math.pi, 2.0 * math.pi)
+    if wrapped <= 0.0:
+        wrapped += 2.0 * math.pi
+    return wrapped - math.pi
+
+
+def _read_only(values: ArrayLike, size: int) -> Array:
+    array = np.array(values, dtype=np.float64).reshape(size)
+    array.setflags(write=False)
+    return array
+
+
+def matrix_from_quaternion(quaternion: ArrayLike) -> Array:
+    """Rotation matrix (3, 3) of a unit quaternion (w, x, y, z)."""
+    w, x, y, z = (float(v) for v in np.asarray(quaternion, dtype=np.float64))
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def quaternion_from_matrix(rotation: ArrayLike) -> Array:
+    """Unit quaternion (w, x, y, z), w >= 0, of a rotation matrix (3, 3) (Shepperd's method)."""
+    m = np.asarray(rotation, dtype=np.float64)
+    trace = float(m[0, 0] + m[1, 1] + m[2, 2])
+    choices = (trace, float(m[0, 0]), float(m[1, 1]), float(m[2, 2]))
+    best = choices.index(max(choices))
+    if best == 0:
+        q = (1 + trace, m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1])
+    elif best == 1:
+        q = (m[2, 1] - m[1, 2], 1 + 2 * m[0, 0] - trace, m[0, 1] + m[1, 0], m[0, 2] + m[2, 0])
+    elif best == 2:
+        q = (m[0, 2] - m[2, 0], m[0, 1] + m[1, 0], 1 + 2 * m[1, 1] - trace, m[1, 2] + m[2, 1])
+    else:
+        q = (m[1, 0] - m[0, 1], m[0, 2] + m[2, 0], m[1, 2] + m[2, 1], 1 + 2 * m[2, 2] - trace)
+    array = np.array([float(v) for v in q])
+    array /= math.sqrt(float(array @ array))
+    return array if array[0] >= 0 else -array
+
+
+def quaternion_from_axis_angle(axis: ArrayLike, angle: float) -> Array:
+    """Unit quaternion of a turn by `angle` rad about `axis` (3,), which need not be unit length."""
+    unit = np.asarray(axis, dtype=np.float64)
+    unit = unit / math.sqrt(float(unit @ unit))
+    return np.concatenate([[math.cos(angle / 2)], math.sin(angle / 2) * unit])
+
+
+def quaternion_from_rpy(roll: float, pitch: float, yaw: float) -> Array:
+    """Unit quaternion of fixed-axis roll, pitch, yaw in rad, URDF's convention."""
+    cr, sr = math.cos(roll / 2), math.sin(roll / 2)
+    cp, sp = math.cos(pitch / 2), math.sin(pitch / 2)
+    cy, sy = math.cos(yaw / 2), math.sin(yaw / 2)
+    return np.array(
+        [
+            cr * cp * cy + sr * sp * sy,
+            sr * cp * cy - cr * sp * sy,
+            cr * sp * cy + sr * cp * sy,
+            cr * cp * sy - sr * sp * cy,
+        ]
+    )
+
+
+def quaternion_product(left: ArrayLike, right: ArrayLike) -> Array:
+    """Hamilton product: the rotation `right`, then `left`."""
+    w1, x1, y1, z1 = (float(v) for v in np.asarray(left))
+    w2, x2, y2, z2 = (float(v) for v in np.asarray(right))
+    return np.array(
+        [
+            w1 * w2 - x1 * x2 - y1 * y2 - z1 * z2,
+            w1 * x2 + x1 * w2 + y1 * z2 - z1 * y2,
+            w1 * y2 - x1 * z2 + y1 * w2 + z1 * x2,
+            w1 * z2 + x1 * y2 - y1 * x2 + z1 * w2,
+        ]
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Transform:
+    """A rigid transform: position (3,) in metres and unit quaternion (4,), both read-only."""
+
+    position: Array
+    quaternion: Array
+
+    def __init__(
+        self, position: ArrayLike = (0.0, 0.0, 0.0), quaternion: ArrayLike = (1.0, 0.0, 0.0, 0.0)
+    ) -> None:
+        q = np.array(quaternion, dtype=np.float64).reshape(4)
+        norm = math.sqrt(float(q @ q))
+        if not norm > 1e-9:
+            raise ValueError(f"quaternion {quaternion!r} has no length, expected unit (w, x, y, z)")
+        object.__setattr__(self, "position", _read_only(position, 3))
+        object.__setattr__(self, "quaternion", _read_only(q / norm, 4))
+
+    @classmethod
+    def from_matrix(cls, matrix: ArrayLike) -> Transform:
+        """From a homogeneous matrix (4, 4)."""
+        m = np.asarray(matrix, dtype=np.float64)
+        return cls(m[:3, 3], quaternion_from_matrix(m[:3, :3]))
+
+    @classmethod
+    def from_rotation(cls, rotation: ArrayLike, position: ArrayLike = (0.0, 0.0, 0.0)) -> Transform:
+        """From a rotation matrix (3, 3) and a position (3,)."""
+        return cls(position, quaternion_from_matrix(rotation))
+
+    @classmethod
+    def from_rpy(cls, xyz: Sequence[float], rpy: Sequence[float]) -> Transform:
+        """From URDF's `xyz` in metres and `rpy` in rad."""
+        return cls(xyz, quaternion_from_rpy(rpy[0], rpy[1], rpy[2]))
+
+    @property
+    def rotation(self) -> Array:
+        """Rotation matrix (3, 3)."""
+        return matrix_from_quaternion(self.quaternion)
+
+    @property
+    def matrix(self) -> Array:
+        """Homogeneous matrix (4, 4)."""
+        m = np.eye(4)
+        m[:3, :3] = self.rotation
+        m[:3, 3] = self.position
+        return m
+
+    @property
+    def yaw(self) -> float:
+        """Heading of the x axis in the xy plane, rad."""
+        r = self.rotation
+        return math.atan2(float(r[1, 0]), float(r[0, 0]))
+
+    def inverse(self) -> Transform:
+        """The transform that undoes this one."""
+        w, x, y, z = (float(v) for v in self.quaternion)
+        return Transform(-(self.rotation.T @ self.position), (w, -x, -y, -z))
+
+    def apply(self, points: ArrayLike) -> Array:
+        """Points (..., 3) of the source frame, in the target frame."""
+        return np.asarray(np.asarray(points, dtype=np.float64) @ self.rotation.T + self.position)
+
+    def __matmul__(self, other: Transform) -> Transform:
+        """`a_from_b @ b_from_c` is `a_from_c`."""
+        return Transform(
+            self.rotation @ other.position + self.position,
+            quaternion_product(self.quaternion, other.quaternion),
+        )
+
+    def angle_to(self, other: Transform) -> float:
+        """Angle between the two rotations, rad in [0, pi]."""
+        return 2.0 * math.acos(min(1.0, abs(float(self.quaternion @ other.quaternion))))
+
+    def __eq__(self, other: object) -> bool:
+        """Equal to the last bit."""
+        if not isinstance(other, Transform):
+            return NotImplemented
+        return bool(
+            np.array_equal(self.position, other.position)
+            and np.array_equal(self.quaternion, other.quaternion)
+        )
+
+    def __hash__(self) -> int:
+        return hash((self.position.tobytes(), self.quaternion.tobytes()))
+
+
+@dataclass(frozen=True, slots=True)
+class Pose2D:
+    """A place on the floor: x, y in metres and yaw in rad, in the frame that the context names."""
+
+    x: float = field(metadata={"unit": "m"})
+    y: float = field(metadata={"unit": "m"})
+    yaw: float = field(default=0.0, metadata={"unit": "rad"})
+
+    def transform(self, z: float = 0.0) -> Transform:
+        """The same as a rigid transform, at height z."""
+        return Transform(
+            (self.x, self.y, z), (math.cos(self.yaw / 2), 0.0, 0.0, math.sin(self.yaw / 2))
+        )
+
+    @classmethod
+    def from_transform(cls, transform: Transform) -> Pose2D:
+        """The projection of a transform onto the floor."""
+        return cls(float(transform.position[0]), float(transform.position[1]), transform.yaw)
+
+    def __matmul__(self, other: Pose2D) -> Pose2D:
+        """`a_from_b @ b_from_c` is `a_from_c`."""
+        c, s = math.cos(self.yaw), math.sin(self.yaw)
+        return Pose2D(
+            self.x + c * other.x - s * other.y,
+            self.y + s * other.x + c * other.y,
+            wrap_angle(self.yaw + other.yaw),
+        )
+
+    def inverse(self) -> Pose2D:
+        """The planar transform that undoes this one."""
+        c, s = math.cos(self.yaw), math.sin(self.yaw)
+        return Pose2D(
+            -(c * self.x + s * self.y), -(-s * self.x + c * self.y), wrap_angle(-self.yaw)
+        )
+
+    def distance_to(self, other: Pose2D) -> float:
+        """Distance between the two positions, m."""
+        return math.hypot(self.x - other.x, self.y - other.y)
+
+
+@dataclass(frozen=True, slots=True)
+class Pose:
+    """A transform `frame_from_object` with the frame's name and the time it was true.
+
+    frame: "odom" for what will be touched, "map" for places.
+    stamp: seconds of the world's clock.
+    """
+
+    transform: Transform
+    frame: str
+    stamp: float
+
+    @property
+    def position(self) -> Array:
+        """Position (3,) in `frame`, m."""
+        return self.transform.position

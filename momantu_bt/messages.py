@@ -1,0 +1,238 @@
+"""What sensors, actuators and skills exchange: immutable values in SI units.
+
+Arrays inside are read-only. Optical frames are OpenCV's: x right, y down, z forward; pixel
+centres have integer coordinates.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from momantu_bt.geometry import Array, Pose, Pose2D, Transform
+
+
+def frozen(array: NDArray[Any]) -> NDArray[Any]:
+    """The same array, marked read-only."""
+    array.setflags(write=False)
+    return array
+
+
+# what a robot reports
+
+
+@dataclass(frozen=True, slots=True)
+class RobotState:
+    """Joints and odometry of one instant, as measured.
+
+    names: joint names in a fixed order, the gripper's fingers left out.
+    positions, velocities, efforts: (n,) in rad or m, rad/s or m/s, Nm or N.
+    odom_from_base: where wheel odometry believes the base to be (drifts).
+    linear, angular: the base's measured speed, m/s along x and rad/s about z.
+    gripper_width: opening between the finger pads, m. gripper_effort: closing force, N.
+    """
+
+    stamp: float
+    names: tuple[str, ...]
+    positions: Array
+    velocities: Array
+    efforts: Array
+    odom_from_base: Transform
+    linear: float
+    angular: float
+    gripper_width: float
+    gripper_effort: float
+
+    def position(self, joint: str) -> float:
+        """Position of one joint; KeyError with the known names when there is none."""
+        try:
+            return float(self.positions[self.names.index(joint)])
+        except ValueError:
+            raise KeyError(f"no joint {joint!r}; joints: {', '.join(self.names)}") from None
+
+    def joints(self) -> dict[str, float]:
+        """All joint positions by name."""
+        return dict(zip(self.names, (float(p) for p in self.positions), strict=True))
+
+
+@dataclass(frozen=True, slots=True)
+class CameraImage:
+    """One RGB-D picture.
+
+    frame: name of the optical frame. color: (h, w, 3) uint8 RGB. depth: (h, w) float32, metres
+    along the optical axis, 0 where nothing was measured. intrinsics: (3, 3) pinhole matrix.
+    """
+
+    stamp: float
+    frame: str
+    color: NDArray[np.uint8]
+    depth: NDArray[np.float32]
+    intrinsics: Array
+
+
+@dataclass(frozen=True, slots=True)
+class LaserScan:
+    """One planar scan: beam i points to `angle_min + i * angle_increment` rad in `frame`.
+
+    ranges: (n,) float64 in metres; `range_max` or more where nothing was hit.
+    """
+
+    stamp: float
+    frame: str
+    angle_min: float
+    angle_increment: float
+    range_min: float
+    range_max: float
+    ranges: Array
+
+
+@dataclass(frozen=True, slots=True)
+class WrenchReading:
+    """Force (3,) in N and torque (3,) in Nm that the hand's load puts on the wrist, in `frame`."""
+
+    stamp: float
+    frame: str
+    force: Array
+    torque: Array
+
+
+# what a robot is told
+
+
+@dataclass(frozen=True, slots=True)
+class BaseVelocity:
+    """Goal of a base: m/s along x and rad/s about z."""
+
+    linear: float
+    angular: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class JointTrajectory:
+    """Goal of an arm or head: positions over time, from where the joints are now.
+
+    names: the joints. times: (k,) seconds from the first command, times[0] = 0, rising.
+    positions, velocities: (k, n). Commanding the same object again keeps it going: a driver
+    stops along the path 0.25 s after the last command.
+    """
+
+    names: tuple[str, ...]
+    times: Array
+    positions: Array
+    velocities: Array
+
+    @property
+    def duration(self) -> float:
+        """Seconds from start to end."""
+        return float(self.times[-1])
+
+
+@dataclass(frozen=True, slots=True)
+class JointPositions:
+    """Goal of a head (or any small joint group): the driver goes there within its limits."""
+
+    names: tuple[str, ...]
+    positions: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class GripperCommand:
+    """Goal of a gripper: opening between the pads in m, and the force it may use, in N."""
+
+    width: float
+    max_force: float
+
+
+ActuatorGoal: TypeAlias = BaseVelocity | JointTrajectory | JointPositions | GripperCommand
+
+
+# what skills exchange over the blackboard
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectClass:
+    """What to look for. A size that is None is not known; sizes in metres."""
+
+    category: str
+    diameter: float | None = field(default=None, metadata={"unit": "m"})
+    height: float | None = field(default=None, metadata={"unit": "m"})
+    width: float | None = field(default=None, metadata={"unit": "m"})
+    depth: float | None = field(default=None, metadata={"unit": "m"})
+
+
+@dataclass(frozen=True, slots=True)
+class DetectedObject:
+    """What was seen on a surface.
+
+    pose: `odom_from_object`; origin at the centre of the object's bounding box, z up along its
+    axis. size: extent (3,) along its own x, y, z in m. shape: "cylinder" or "box".
+    score: 0..1, how well it matches what was asked. support_height: height of the surface that
+    it stands on, z in the pose's frame, m.
+    """
+
+    category: str
+    pose: Pose
+    size: tuple[float, float, float]
+    shape: str
+    score: float
+    support_height: float
+
+
+@dataclass(frozen=True, slots=True)
+class SupportPlane:
+    """A horizontal surface. pose: `odom_from_plane`, z up, origin on the surface.
+
+    outline: (k, 2) convex polygon in the plane's own x, y, m, counter-clockwise.
+    obstacles: things that stand on it, as (x, y, radius, height) in the plane's frame, m.
+    """
+
+    pose: Pose
+    outline: tuple[tuple[float, float], ...]
+    obstacles: tuple[tuple[float, float, float, float], ...] = ()
+
+
+VALUE_TYPES: dict[str, type] = {
+    "any": object,
+    "text": str,
+    "int": int,
+    "number": float,
+    "bool": bool,
+    "pose": Pose,
+    "pose2d": Pose2D,
+    "object_class": ObjectClass,
+    "detected_object": DetectedObject,
+    "plane": SupportPlane,
+}
+"""Names that tree files use for the types of inputs and outputs; `list of X` is a tuple of X.
+
+A plug-in adds its own with `register_value_type`.
+"""
+
+
+def register_value_type(name: str, python_type: type) -> None:
+    """Add a type name for tree files; ValueError when the name is taken by another type."""
+    taken = VALUE_TYPES.get(name)
+    if taken is not None and taken is not python_type:
+        raise ValueError(f"the value type {name!r} is already {taken.__qualname__}")
+    VALUE_TYPES[name] = python_type
+
+
+def plain(value: Any) -> Any:
+    """A value as JSON data: dataclasses become mappings, arrays lists, tuples lists."""
+    if isinstance(value, Transform):
+        return {"position": value.position.tolist(), "quaternion": value.quaternion.tolist()}
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if isinstance(value, np.generic):
+        return value.item()
+    if isinstance(value, Mapping):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    if hasattr(value, "__dataclass_fields__"):
+        return {name: plain(getattr(value, name)) for name in value.__dataclass_fields__}
+    return value

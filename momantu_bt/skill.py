@@ -1,0 +1,239 @@
+"""What a skill is: typed ports and one generator.
+
+class Nod(Skill):
+    \"\"\"Tilt the camera down and up again.\"\"\"
+
+    angle: float = In(0.3, unit="rad", doc="how far")
+    failures = {"NO_HEAD": "the camera does not tilt"}
+    uses = {CAMERA_CARRIER}
+
+    def run(self, robot: Robot) -> Run:
+        ...
+        yield "down"
+"""
+
+from __future__ import annotations
+
+import inspect
+import sys
+from collections.abc import Callable, Generator, Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar, Protocol, TypeAlias, TypeVar
+
+import numpy as np
+
+from momantu_bt.failure import CODE, Failure
+from momantu_bt.frames import FrameBuffer
+from momantu_bt.robot import Robot
+from momantu_bt.world import Site
+
+__all__ = ["Clock", "Compute", "Failure", "In", "Needs", "Out", "Port", "Run", "Skill", "compute"]
+
+
+class _Missing:
+    def __repr__(self) -> str:
+        return "MISSING"
+
+
+MISSING: Any = _Missing()
+"""The default of an input that a tree must give."""
+
+NAMES = ("place", "surface", "named_pose")
+"""What a text input may name, so that the checker knows the valid values."""
+
+
+class Clock(Protocol):
+    """The world's clock."""
+
+    def now(self) -> float:
+        """Seconds since the run began."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Compute:
+    """Work that takes time: the run's clock advances by `budget` seconds while it is done."""
+
+    function: Callable[[], Any]
+    budget: float
+
+
+Run: TypeAlias = Generator[str | Compute, Any, None]
+"""What `Skill.run` returns: `yield "phase"` ends the tick, RUNNING."""
+
+T = TypeVar("T")
+
+
+def compute(function: Callable[[], T], budget: float) -> Generator[Compute, Any, T]:
+    """`plan = yield from compute(lambda: search(...), budget=0.2)`.
+
+    In lock-step the function runs in place and the clock then advances by `budget` seconds, so
+    thinking is never free. What it raises is raised here.
+    """
+    result: T = yield Compute(function, budget)
+    return result
+
+
+@dataclass(frozen=True, slots=True)
+class Port:
+    """One port as declared. type: the resolved annotation. names: see `NAMES`, or None."""
+
+    name: str
+    direction: str
+    type: Any
+    doc: str
+    default: Any = MISSING
+    unit: str | None = None
+    live: bool = False
+    names: str | None = None
+
+    @property
+    def required(self) -> bool:
+        """Whether a tree must give it."""
+        return self.direction == "in" and self.default is MISSING
+
+
+class _PortDescriptor:
+    direction = ""
+
+    def __init__(
+        self,
+        default: Any = MISSING,
+        *,
+        doc: str,
+        unit: str | None = None,
+        live: bool = False,
+        names: str | None = None,
+    ) -> None:
+        if names is not None and names not in NAMES:
+            raise TypeError(f"names={names!r}; valid: {', '.join(NAMES)}")
+        self.default, self.doc, self.unit, self.live = default, doc, unit, live
+        self.names = names
+        self.name = ""
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name = name
+
+    def __get__(self, instance: Any, owner: type) -> Any:
+        if instance is None:
+            return self
+        value = instance.port_values.get(self.name, self.default)
+        if value is MISSING:
+            raise AttributeError(f"port {self.name!r} of {owner.__name__} has no value yet")
+        return value
+
+    def __set__(self, instance: Any, value: Any) -> None:
+        instance.port_values[self.name] = value
+
+
+class _InDescriptor(_PortDescriptor):
+    direction = "in"
+
+
+class _OutDescriptor(_PortDescriptor):
+    direction = "out"
+
+
+class _NeedsDescriptor:
+    def __init__(self, service: str | None) -> None:
+        self.service = service or ""
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.service = self.service or name
+
+    def __get__(self, instance: Any, owner: type) -> Any:
+        if instance is None:
+            return self
+        return instance.services[self.service]
+
+
+def In(
+    default: Any = MISSING,
+    *,
+    doc: str,
+    unit: str | None = None,
+    live: bool = False,
+    names: str | None = None,
+) -> Any:
+    """Declare an input. Without a default it is required. live: read again on each tick.
+
+    unit: SI unit that numbers in trees are converted to. names: see `NAMES`.
+    """
+    return _InDescriptor(default, doc=doc, unit=unit, live=live, names=names)
+
+
+def Out(*, doc: str, unit: str | None = None, live: bool = False) -> Any:
+    """Declare an output; written with SUCCESS, or (live) whenever it is assigned."""
+    return _OutDescriptor(doc=doc, unit=unit, live=live)
+
+
+def Needs(service: str | None = None) -> Any:
+    """Declare a service; its name is the attribute's unless given."""
+    return _NeedsDescriptor(service)
+
+
+class Skill:
+    """What a robot can do. Subclass it, declare ports and codes, write `run`.
+
+    failures: each code this skill raises, with the sentence that explains it.
+    uses: actuators it commands, or CAMERA_CARRIER.
+    A fresh instance is made for each start; the engine sets what stands below `run`.
+    """
+
+    failures: ClassVar[Mapping[str, str]] = {}
+    uses: ClassVar[frozenset[str] | set[str]] = frozenset()
+
+    ports: ClassVar[Mapping[str, Port]] = {}
+    needs: ClassVar[tuple[str, ...]] = ()
+
+    def __init_subclass__(cls, **kwargs: Any) -> None:
+        super().__init_subclass__(**kwargs)
+        cls.ports = {**cls.ports, **_declared_ports(cls)}
+        mine = [v.service for v in vars(cls).values() if isinstance(v, _NeedsDescriptor)]
+        cls.needs = tuple(dict.fromkeys((*cls.needs, *mine)))
+        wrong = [code for code in cls.failures if not CODE.fullmatch(code)]
+        if wrong:
+            raise TypeError(f"{cls.__name__}.failures: {', '.join(wrong)}: not UPPER_CASE words")
+
+    def __init__(self) -> None:
+        self.port_values: dict[str, Any] = {}
+        self.services: Mapping[str, Any] = {}
+        self.clock: Clock
+        self.random: np.random.Generator
+        self.frames: FrameBuffer
+        self.site: Site
+
+    def run(self, robot: Robot) -> Run:
+        """The skill's work: `yield "phase"` is RUNNING, return SUCCESS, raise Failure FAILURE."""
+        raise NotImplementedError(f"{type(self).__name__} has no run(self, robot)")
+        yield ""
+
+
+def _declared_ports(cls: type) -> dict[str, Port]:
+    scope = vars(sys.modules[cls.__module__])
+    annotations = inspect.get_annotations(cls)
+    ports: dict[str, Port] = {}
+    for name, value in vars(cls).items():
+        if not isinstance(value, _PortDescriptor):
+            continue
+        if name not in annotations:
+            raise TypeError(f"port {cls.__name__}.{name} has no type; write `{name}: text = …`")
+        annotation = annotations[name]
+        if isinstance(annotation, str):
+            try:
+                annotation = eval(annotation, dict(scope))
+            except NameError as error:
+                raise TypeError(
+                    f"port {cls.__name__}.{name}: {error}; its type must be imported at run time"
+                ) from None
+        ports[name] = Port(
+            name,
+            value.direction,
+            annotation,
+            value.doc,
+            value.default,
+            value.unit,
+            value.live,
+            value.names,
+        )
+    return ports

@@ -1,0 +1,1 @@
+"""Text to checked model: reading, checking, converting and showing tree files."""

@@ -1,0 +1,146 @@
+"""The one model of a tree file, whichever spelling it was written in."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import Any, TypeAlias
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A stretch of one line in a file; line and column count from 1."""
+
+    file: str
+    line: int
+    column: int
+    length: int = 1
+
+    def __str__(self) -> str:
+        """`file:line:column`, as editors understand it."""
+        return f"{self.file}:{self.line}:{self.column}"
+
+
+class Scope(Enum):
+    """Which board a reference means."""
+
+    LOCAL = "local"
+    ROOT = "root"
+    """`$@key`, `{@key}`"""
+
+
+@dataclass(frozen=True, slots=True)
+class Literal:
+    """A value written out. value: text, bool, int, float, list or mapping, as the file says.
+
+    Units stay in the text ("66 mm"); the checker turns it into the port's type and unit.
+    """
+
+    value: Any
+
+
+@dataclass(frozen=True, slots=True)
+class Reference:
+    """A wire to a blackboard key: `$key.field`, `$@key`. `fields` are parts of a value."""
+
+    key: str
+    fields: tuple[str, ...] = ()
+    scope: Scope = Scope.LOCAL
+
+
+@dataclass(frozen=True, slots=True)
+class Template:
+    """Text with keys inside: parts in order, `"at ${n} of ${total}"`."""
+
+    parts: tuple[str | Reference, ...]
+
+
+PortValue: TypeAlias = Literal | Reference | Template
+
+
+@dataclass(slots=True)
+class Handler:
+    """One entry of `catch:`. codes: `("any",)` is the rest; a code may read `pick.SLIPPED`.
+
+    node: what to do, None for `again`.
+    """
+
+    codes: tuple[str, ...]
+    node: Node | None
+    place: Place
+
+
+@dataclass(slots=True)
+class Node:
+    """One node. `type` is the canonical name: BehaviorTree.CPP's for what it has ("Sequence",
+    "RetryUntilSuccessful", "SubTree"), ours otherwise ("Recover"), or a skill's ("navigate").
+
+    Modifiers that are decorators are nodes of their own around the node they were written on;
+    `written_as_modifier` keeps the spelling. conditions: modifier name ("skip_if", "while",
+    "on_success", …) to a script in canonical form (`&& || !`).
+    For a SubTree, `ports` are the wires to its inputs and outputs and `target` is its name.
+    """
+
+    type: str
+    place: Place
+    ports: dict[str, PortValue] = field(default_factory=dict)
+    children: list[Node] = field(default_factory=list)
+    handlers: list[Handler] = field(default_factory=list)
+    conditions: dict[str, str] = field(default_factory=dict)
+    name: str | None = None
+    note: str | None = None
+    disabled: bool = False
+    target: str | None = None
+    written_as_modifier: bool = False
+    port_places: dict[str, Place] = field(default_factory=dict)
+    condition_places: dict[str, Place] = field(default_factory=dict)
+
+    def walk(self) -> Iterator[Node]:
+        """This node and everything below it, in the order of the file, without recursion."""
+        stack = [self]
+        while stack:
+            node = stack.pop()
+            yield node
+            below = [*node.children, *(h.node for h in node.handlers if h.node is not None)]
+            stack.extend(reversed(below))
+
+
+@dataclass(frozen=True, slots=True)
+class PortDeclaration:
+    """An input or output of a subtree. type_name: "text", "list of pose2d", … or "any"."""
+
+    name: str
+    direction: str
+    type_name: str
+    place: Place
+    default: Literal | None = None
+    doc: str = ""
+
+
+@dataclass(slots=True)
+class Tree:
+    """One named tree of a document."""
+
+    name: str
+    root: Node
+    place: Place
+    ports: dict[str, PortDeclaration] = field(default_factory=dict)
+    doc: str = ""
+
+
+@dataclass(slots=True)
+class Document:
+    """A tree file with everything it includes.
+
+    values: initial keys of the root's board. source: the text, by file, for error displays.
+    """
+
+    file: str
+    main: str
+    trees: dict[str, Tree]
+    world: str | None = None
+    values: dict[str, Literal] = field(default_factory=dict)
+    value_places: dict[str, Place] = field(default_factory=dict)
+    world_place: Place | None = None
+    source: dict[str, str] = field(default_factory=dict)
