@@ -102,7 +102,10 @@ class Node:
         while stack:
             node = stack.pop()
             yield node
-            below = [*node.children, *(h.node for h in node.handlers if h.node is not None)]
+            below = [
+                *node.children,
+                *(h.node for h in node.handlers if h.node is not None),
+            ]
             stack.extend(reversed(below))
 
 
