@@ -1,0 +1,1 @@
+"""Where robots act: robots, scenes and the simulator."""

@@ -1,0 +1,19 @@
+"""The robots that this package brings; cheap to import, no simulator is loaded."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from momantu_bt.robot import RobotDescription
+from momantu_worlds.robots.loading import read_description
+
+FOLDER = Path(__file__).parent
+
+
+def fetch() -> RobotDescription:
+    """Fetch Robotics' Fetch, with the geometry that the mani_skill package carries.
+
+    Raises:
+        WorldError: the mani_skill package, or its Fetch, is not installed.
+    """
+    return read_description(FOLDER / "fetch")
