@@ -1,0 +1,127 @@
+"""Who owns which actuator, and the robot as a skill sees it.
+
+A skill owns an actuator from its first command until its generator ends, however it ends; then
+the actuator is stopped. Every command and stop of a tick is kept for the run's fingerprint.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from momantu_bt.failure import ACTUATOR_BUSY, Failure
+from momantu_bt.messages import ActuatorGoal, RobotState
+from momantu_bt.robot import Robot, RobotDescription, SensorReading
+
+
+@dataclass(frozen=True, slots=True)
+class Issued:
+    """One thing told to the robot: a goal for an actuator, or (None) to stop it."""
+
+    actuator: str
+    goal: ActuatorGoal | None
+
+
+class Actuators:
+    """The ownership book of one run."""
+
+    def __init__(self, robot: Robot) -> None:
+        self.robot = robot
+        self.issued: list[Issued] = []
+        """What was told to the robot since the list was last emptied."""
+        self._owners: dict[str, Lease] = {}
+
+    def lease(self, owner: str, uses: Iterable[str]) -> Lease:
+        """The robot for a skill called `owner` that declares `uses`.
+
+        Raises:
+            KeyError: this robot lacks one of them, with the actuators it has.
+        """
+        resolve = self.robot.description.resolve_use
+        return Lease(self, owner, frozenset(resolve(use) for use in sorted(uses)))
+
+    def owner(self, actuator: str) -> str | None:
+        """Name of the node that owns an actuator, if any."""
+        lease = self._owners.get(actuator)
+        return None if lease is None else lease.owner
+
+    def stop_all(self) -> None:
+        """Stop every actuator of the robot, owned or not."""
+        self._owners.clear()
+        for actuator in self.robot.description.actuators:
+            self._stop(actuator)
+
+    def _claim(self, actuator: str, lease: Lease) -> None:
+        holder = self._owners.setdefault(actuator, lease)
+        if holder is not lease:
+            raise Failure(
+                ACTUATOR_BUSY,
+                f"{actuator} belongs to {holder.owner} until that ends",
+                actuator=actuator,
+                owner=holder.owner,
+            )
+
+    def _release(self, lease: Lease) -> None:
+        mine = [name for name, holder in self._owners.items() if holder is lease]
+        for actuator in mine:
+            del self._owners[actuator]
+            self._stop(actuator)
+
+    def _stop(self, actuator: str) -> None:
+        self.robot.stop(actuator)
+        self.issued.append(Issued(actuator, None))
+
+
+class Lease:
+    """A `Robot` that lets its skill command what it declares, while nobody else owns it."""
+
+    def __init__(self, book: Actuators, owner: str, allowed: frozenset[str]) -> None:
+        self.owner = owner
+        self._book = book
+        self._robot = book.robot
+        self._allowed = allowed
+
+    @property
+    def description(self) -> RobotDescription:
+        """What the robot is."""
+        return self._robot.description
+
+    def state(self) -> RobotState:
+        """Joints and odometry of now."""
+        return self._robot.state()
+
+    def read(self, sensor: str) -> SensorReading:
+        """The newest reading of a sensor."""
+        return self._robot.read(sensor)
+
+    def command(self, actuator: str, goal: ActuatorGoal) -> None:
+        """Give an actuator its goal and own it from now on.
+
+        Raises:
+            Failure: ACTUATOR_BUSY, naming the owner.
+            PermissionError: the skill does not declare the actuator in `uses`.
+        """
+        self._enter(actuator)
+        self._robot.command(actuator, goal)
+        self._book.issued.append(Issued(actuator, goal))
+
+    def stop(self, actuator: str) -> None:
+        """Brake an actuator; the skill owns it from now on."""
+        self._enter(actuator)
+        self._book._stop(actuator)
+
+    def end(self) -> None:
+        """Stop and give back all that is owned; safe to call twice."""
+        self._book._release(self)
+
+    def _enter(self, actuator: str) -> None:
+        if (
+            actuator in self._robot.description.actuators
+            and actuator not in self._allowed
+        ):
+            declared = ", ".join(sorted(self._allowed)) or "nothing"
+            raise PermissionError(
+                f"{self.owner} commands {actuator!r} but its `uses` declares {declared}: "
+                f"add {actuator!r} to `uses`, so that the checker can see it"
+            )
+        self._book._claim(actuator, self)

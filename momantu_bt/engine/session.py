@@ -1,0 +1,283 @@
+"""One start of one skill: from its inputs to its outputs or its failure, a step a tick."""
+
+from __future__ import annotations
+
+import time
+import traceback
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from momantu_bt.engine.actuators import Lease
+from momantu_bt.engine.admit import admit, freeze
+from momantu_bt.engine.status import FAILURE, RUNNING, SUCCESS, Status
+from momantu_bt.failure import (
+    ENGINE_CODES,
+    INPUT_MISSING,
+    SERVICE_MISSING,
+    SKILL_ERROR,
+    Failure,
+    FailureValue,
+)
+from momantu_bt.frames import FrameBuffer
+from momantu_bt.skill import MISSING, Clock, Compute, Run, Skill
+from momantu_bt.world import Site
+
+SLOW_STEP = 0.020
+"""Seconds of wall time that a skill may use in one tick without declaring them as `compute`."""
+CLOCK_SLACK = 1e-9
+"""Seconds by which the clock may fall short of a deadline and still have reached it: rounding."""
+
+
+@dataclass(frozen=True, slots=True)
+class SkillContext:
+    """What a skill instance has besides the robot."""
+
+    clock: Clock
+    random: np.random.Generator
+    frames: FrameBuffer
+    site: Site
+    services: Mapping[str, Any]
+
+
+class Session:
+    """Runs one skill instance. Call `step` once a tick until it no longer returns RUNNING.
+
+    status: of the newest step. phase: what the skill last yielded. failure: set with FAILURE.
+    outputs: what has been written so far; all of them with SUCCESS.
+    """
+
+    def __init__(
+        self,
+        kind: type[Skill],
+        inputs: Mapping[str, Any],
+        lease: Lease,
+        context: SkillContext,
+    ) -> None:
+        self.kind = kind
+        self.lease = lease
+        self.status = Status.IDLE
+        self.phase = ""
+        self.failure: FailureValue | None = None
+        self.slowest = 0.0
+        self._context = context
+        self._inputs = dict(inputs)
+        self._generator: Run | None = None
+        self._waiting: _Pending | None = None
+        self.skill: Skill | None = None
+
+    @property
+    def outputs(self) -> dict[str, Any]:
+        """Values of the output ports that hold one."""
+        if self.skill is None:
+            return {}
+        values = self.skill.port_values
+        outs = (p.name for p in self.kind.ports.values() if p.direction == "out")
+        return {name: values[name] for name in outs if name in values}
+
+    def step(self, live_inputs: Mapping[str, Any] | None = None) -> Status:
+        """Run to the skill's next `yield`, or to its end."""
+        try:
+            if self._generator is None:
+                self._generator = self._begin()
+            elif live_inputs and self.skill is not None:
+                self.skill.port_values.update(self._admitted(live_inputs))
+            self._advance(self._generator)
+        except StopIteration:
+            self._finish()
+        except Failure as failure:
+            self._fail(self._declared(failure))
+        except Exception as error:
+            self._fail(_skill_error(self.kind, error))
+        return self.status
+
+    def halt(self) -> None:
+        """End it wherever it is and stop what it owns; safe to call twice and at any time."""
+        generator, self._generator = self._generator, None
+        self._waiting = None
+        if generator is not None:
+            try:
+                generator.close()
+            except Exception as error:
+                self.failure = _skill_error(self.kind, error)
+        self.lease.end()
+        if self.status is RUNNING:
+            self.status = Status.IDLE
+
+    def _begin(self) -> Run:
+        missing = [
+            name for name in self.kind.needs if name not in self._context.services
+        ]
+        if missing:
+            having = ", ".join(self._context.services) or "none"
+            raise Failure(
+                SERVICE_MISSING,
+                f"{self.kind.__name__} needs {', '.join(missing)}; running services: {having}",
+                services=missing,
+            )
+        skill = self.kind()
+        skill.port_values.update(self._admitted(self._inputs))
+        absent = [
+            p.name
+            for p in self.kind.ports.values()
+            if p.required and p.name not in self._inputs
+        ]
+        if absent:
+            raise Failure(
+                INPUT_MISSING,
+                f"{self.kind.__name__} was started without {', '.join(absent)}",
+                ports=absent,
+            )
+        context = self._context
+        skill.services, skill.clock, skill.random = (
+            context.services,
+            context.clock,
+            context.random,
+        )
+        skill.frames, skill.site = context.frames, context.site
+        self.skill = skill
+        generator = skill.run(self.lease)
+        if not hasattr(generator, "send"):
+            raise TypeError(
+                f"{self.kind.__name__}.run returned {type(generator).__name__}, expected a "
+                "generator: write at least one `yield` in it"
+            )
+        return generator
+
+    def _admitted(self, values: Mapping[str, Any]) -> dict[str, Any]:
+        ports = self.kind.ports
+        unknown = [
+            name
+            for name in values
+            if name not in ports or ports[name].direction != "in"
+        ]
+        if unknown:
+            inputs = (
+                ", ".join(p.name for p in ports.values() if p.direction == "in")
+                or "none"
+            )
+            raise TypeError(
+                f"{self.kind.__name__} has no input {', '.join(unknown)}; inputs: {inputs}"
+            )
+        return {
+            name: admit(freeze(value), ports[name]) for name, value in values.items()
+        }
+
+    def _advance(self, generator: Run) -> None:
+        now = self._context.clock.now()
+        pending = self._waiting
+        if pending is not None and now < pending.ready_at - CLOCK_SLACK:
+            return
+        self._waiting = None
+        started = time.perf_counter()
+        try:
+            said = _resume(generator, pending)
+            while isinstance(said, Compute) and not said.budget > 0.0:
+                said = generator.throw(
+                    ValueError(
+                        f"compute with a budget of {said.budget} s; thinking is never free"
+                    )
+                )
+        finally:
+            self.slowest = time.perf_counter() - started
+        self.status = RUNNING
+        if isinstance(said, Compute):
+            self._waiting = _compute(said, now)
+        elif isinstance(said, str):
+            self.phase = said
+        else:
+            raise TypeError(
+                f"{self.kind.__name__}.run yielded {said!r}; it may yield a phase's name, or "
+                "`yield from compute(...)`"
+            )
+
+    def _finish(self) -> None:
+        self._generator = None
+        try:
+            self._check_outputs()
+        except Failure as failure:
+            self._fail(failure.value)
+            return
+        except TypeError as error:
+            self._fail(_skill_error(self.kind, error))
+            return
+        self.lease.end()
+        self.status = SUCCESS
+
+    def _check_outputs(self) -> None:
+        assert self.skill is not None
+        values = self.skill.port_values
+        for port in self.kind.ports.values():
+            if port.direction != "out":
+                continue
+            value = values.get(port.name, MISSING)
+            if value is MISSING:
+                raise TypeError(
+                    f"{self.kind.__name__} ended without giving output {port.name!r}"
+                )
+            values[port.name] = freeze(admit(value, port))
+
+    def _fail(self, failure: FailureValue) -> None:
+        generator, self._generator = self._generator, None
+        if generator is not None:
+            generator.close()
+        self._waiting = None
+        self.lease.end()
+        self.failure = failure
+        self.status = FAILURE
+
+    def _declared(self, failure: Failure) -> FailureValue:
+        cause = _cause(failure)
+        if failure.code in self.kind.failures or failure.code in ENGINE_CODES:
+            return _with_cause(failure.value, cause)
+        declared = ", ".join(self.kind.failures) or "none"
+        return _skill_error(
+            self.kind,
+            failure,
+            f"raised {failure.code}, which it does not declare ({declared})",
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class _Pending:
+    ready_at: float
+    result: Any
+    error: Exception | None
+
+
+def _compute(work: Compute, now: float) -> _Pending:
+    try:
+        return _Pending(now + work.budget, work.function(), None)
+    except Exception as error:
+        return _Pending(now + work.budget, None, error)
+
+
+def _resume(generator: Run, pending: _Pending | None) -> str | Compute:
+    if pending is None:
+        return next(generator)
+    if pending.error is not None:
+        return generator.throw(pending.error)
+    return generator.send(pending.result)
+
+
+def _cause(failure: Failure) -> FailureValue | None:
+    before = failure.__cause__
+    return before.value if isinstance(before, Failure) else None
+
+
+def _with_cause(value: FailureValue, cause: FailureValue | None) -> FailureValue:
+    if cause is None or value.cause is not None:
+        return value
+    return FailureValue(value.code, value.message, value.data, cause=cause)
+
+
+def _skill_error(
+    kind: type[Skill], error: Exception, sentence: str = ""
+) -> FailureValue:
+    text = "".join(traceback.format_exception(error))
+    said = sentence or f"raised {type(error).__name__}: {error}"
+    cause = error.value if isinstance(error, Failure) else None
+    data = {"traceback": text, "exception": type(error).__name__}
+    return FailureValue(SKILL_ERROR, f"{kind.__name__} {said}", data, cause=cause)

@@ -1,0 +1,88 @@
+"""A small robot of a few joints, for tests that need one and care little which."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from momantu_bt.robot import (
+    Actuator,
+    ActuatorKind,
+    BaseLimits,
+    CameraSensor,
+    EndEffector,
+    JointLimit,
+    LaserSensor,
+    PlanningGroup,
+    RobotDescription,
+    WristWrench,
+)
+
+URDF = Path(__file__).parent / "small_robot.urdf"
+_ARM = ("lift", "shoulder", "elbow")
+_HEAD = ("pan", "tilt")
+
+
+def small_robot() -> RobotDescription:
+    """A base, a lift with a two-joint arm, a pan-tilt head with a camera, a laser, a wrench."""
+    return RobotDescription(
+        name="small",
+        urdf=URDF,
+        footprint=((0.25, 0.2), (-0.25, 0.2), (-0.25, -0.2), (0.25, -0.2)),
+        base=BaseLimits(
+            linear=1.0, angular=1.5, linear_acceleration=1.0, angular_acceleration=3.0
+        ),
+        actuators={
+            "base": Actuator(kind=ActuatorKind.BASE),
+            "arm": Actuator(kind=ActuatorKind.JOINTS, joints=_ARM),
+            "head": Actuator(kind=ActuatorKind.JOINTS, joints=_HEAD),
+            "gripper": Actuator(kind=ActuatorKind.GRIPPER),
+        },
+        joint_limits={
+            "lift": JointLimit(lower=0.0, upper=0.4, velocity=0.1, acceleration=0.3),
+            "shoulder": JointLimit(
+                lower=-1.6, upper=1.6, velocity=1.2, acceleration=1.5
+            ),
+            "elbow": JointLimit(lower=-2.2, upper=2.2, velocity=1.5, acceleration=1.5),
+            "pan": JointLimit(lower=-1.5, upper=1.5, velocity=1.5, acceleration=3.0),
+            "tilt": JointLimit(lower=-0.7, upper=1.4, velocity=1.5, acceleration=3.0),
+        },
+        sensors={
+            "camera": CameraSensor(
+                frame="camera_optical_frame",
+                carrier="head",
+                width=64,
+                height=48,
+                horizontal_fov=1.05,
+                min_depth=0.35,
+                max_depth=4.5,
+            ),
+            "laser": LaserSensor(
+                frame="laser_link",
+                angle_min=-1.9,
+                angle_max=1.9,
+                beams=181,
+                range_min=0.05,
+                range_max=25.0,
+            ),
+            "wrench": WristWrench(frame="gripper_link"),
+        },
+        groups={"arm": PlanningGroup(joints=_ARM, tip="gripper_link")},
+        end_effector=EndEffector(
+            frame="gripper_link",
+            max_width=0.1,
+            max_force=60.0,
+            pad_length=0.06,
+            pad_height=0.02,
+            hand_clearance=0.04,
+            touch_links=("gripper_link",),
+        ),
+        named_poses={
+            name: {"lift": lift, "shoulder": turn, "elbow": -turn}
+            for name, lift, turn in (
+                ("home", 0.0, 1.3),
+                ("ready", 0.2, 0.5),
+                ("carry", 0.1, 1.2),
+                ("look_around", 0.1, 1.0),
+            )
+        },
+    )

@@ -1,0 +1,163 @@
+"""Run one skill without a tree, in a scripted or a real world."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from momantu_bt.engine.actuators import Actuators
+from momantu_bt.engine.session import Session, SkillContext
+from momantu_bt.engine.status import FAILURE, RUNNING
+from momantu_bt.failure import FailureValue
+from momantu_bt.frames import FrameBuffer
+from momantu_bt.geometry import Transform
+from momantu_bt.robot import Robot
+from momantu_bt.service import Service, ServiceContext
+from momantu_bt.skill import Skill
+from momantu_bt.testing.robot import ScriptedRobot
+from momantu_bt.testing.world import ScriptedWorld
+from momantu_bt.world import TICK, Site, World, seeded
+
+
+@dataclass(frozen=True, slots=True)
+class SkillResult:
+    """How a run ended.
+
+    status: SUCCESS, FAILURE, or HALTED when `max_time` passed first. phases: each phase once per
+    change, in order. duration: seconds of the world's clock. ticks: how often it was stepped.
+    skill: the instance, None when it never came to exist.
+    """
+
+    status: str
+    outputs: Mapping[str, Any]
+    failure: FailureValue | None
+    phases: tuple[str, ...]
+    duration: float
+    ticks: int
+    skill: Skill | None
+    robot: Robot
+
+    @property
+    def code(self) -> str | None:
+        """The failure's code, if it failed."""
+        return None if self.failure is None else self.failure.code
+
+    def explain(self) -> str:
+        """Everything about a failure, the traceback included, for an assertion's message."""
+        if self.failure is None:
+            return f"{self.status} after {self.duration:.2f} s in {' > '.join(self.phases)}"
+        trace = self.failure.data.get("traceback", "")
+        chain = " <- ".join(str(link) for link in self.failure.chain())
+        return f"{chain} {dict(self.failure.data) if not trace else ''}\n{trace}"
+
+
+def run_skill(
+    skill: type[Skill],
+    *,
+    robot: ScriptedRobot | None = None,
+    inputs: Mapping[str, Any] | None = None,
+    services: Mapping[str, Any] | None = None,
+    site: Site | None = None,
+    world: World | None = None,
+    frames: FrameBuffer | None = None,
+    map_from_odom: Transform | None = None,
+    seed: int = 0,
+    max_time: float = 60.0,
+    on_tick: Callable[[Session, World], None] | None = None,
+) -> SkillResult:
+    """Start a skill and tick it to its end, as the engine does.
+
+    robot, site: a ScriptedRobot at the origin and a scripted site unless given; or give `world`,
+    which has both and is stepped. services: by name; those that subclass `Service` are started
+    and updated at their rate (unless `frames` is given, in which case they were started with it),
+    others are used as they are. map_from_odom: told to the frame buffer at the start; the
+    identity when no service called localization runs. frames: the buffer of an earlier run on
+    the same world, so that skills can be run one after the other. on_tick: called after each
+    step of the skill, to script events. After `max_time` simulated seconds the skill is halted.
+    """
+    place = world if world is not None else ScriptedWorld(robot, site)
+    running = _Services(place, dict(services or {}), frames, seed)
+    if map_from_odom is not None or (
+        frames is None and "localization" not in running.services
+    ):
+        running.frames.set_map_from_odom(map_from_odom or Transform(), place.now())
+    context = SkillContext(
+        clock=place,
+        random=seeded(seed, skill.__name__, 1),
+        frames=running.frames,
+        site=place.site,
+        services=running.services,
+    )
+    lease = Actuators(place.robot).lease(skill.__name__, skill.uses)
+    session = Session(skill, inputs or {}, lease, context)
+    began, phases, ticks = place.now(), [""], 0
+    try:
+        while place.now() - began < max_time - TICK / 2:
+            running.update()
+            session.step()
+            ticks += 1
+            if session.phase != phases[-1]:
+                phases.append(session.phase)
+            if on_tick is not None:
+                on_tick(session, place)
+            if session.status is not RUNNING:
+                break
+            place.step()
+    finally:
+        halted = session.status is RUNNING
+        session.halt()
+    status = "HALTED" if halted else session.status.value
+    return SkillResult(
+        status=status,
+        outputs={} if session.status is FAILURE else session.outputs,
+        failure=session.failure,
+        phases=tuple(phases[1:]),
+        duration=place.now() - began,
+        ticks=ticks,
+        skill=session.skill,
+        robot=place.robot,
+    )
+
+
+class _Services:
+    """The services of a run without a tree, and the frame buffer they share."""
+
+    def __init__(
+        self,
+        world: World,
+        services: dict[str, Any],
+        frames: FrameBuffer | None,
+        seed: int,
+    ) -> None:
+        self.services = services
+        self._world = world
+        self.frames = frames or FrameBuffer(world.robot.description.kinematics())
+        self._due = dict.fromkeys(self._ticking(), world.now())
+        if frames is not None:
+            return
+        self.frames.add_state(world.robot.state())
+        for name, service in self._ticking().items():
+            service.start(
+                ServiceContext(
+                    site=world.site,
+                    description=world.robot.description,
+                    frames=self.frames,
+                    clock=world,
+                    random=seeded(seed, name),
+                    parameters=world.site.services.get(name, {}),
+                    other=self.services.__getitem__,
+                )
+            )
+
+    def _ticking(self) -> dict[str, Service]:
+        return {n: s for n, s in self.services.items() if isinstance(s, Service)}
+
+    def update(self) -> None:
+        """Remember the robot's state and update the services that are due."""
+        now = self._world.now()
+        self.frames.add_state(self._world.robot.state())
+        for name, service in self._ticking().items():
+            if now >= self._due[name] - 1e-9:
+                self._due[name] += 1.0 / service.rate
+                service.update(self._world.robot, now)

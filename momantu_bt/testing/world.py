@@ -1,0 +1,100 @@
+"""A world without physics: it lets a scripted robot's time pass, and has a site."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+from momantu_bt.geometry import Pose2D
+from momantu_bt.messages import ObjectClass
+from momantu_bt.testing.robot import ScriptedRobot
+from momantu_bt.world import TICK, Site, Surface, TreeLine, Verdict, Video, View
+
+
+def scripted_site(
+    *,
+    places: Mapping[str, Pose2D] | None = None,
+    surfaces: Mapping[str, Surface] | None = None,
+    map_file: Path | None = None,
+    start: Pose2D | None = None,
+) -> Site:
+    """A site with two tables 0.7 m high at (2, 0) and (-2, 0), unless other surfaces are given."""
+    tables = {
+        "table_a": Surface(
+            Pose2D(2.0, 0.0, 0.0), (0.8, 1.2), 0.7, (3.141592653589793, 0.0)
+        ),
+        "table_b": Surface(
+            Pose2D(-2.0, 0.0, 0.0), (0.8, 1.2), 0.5, (0.0, 3.141592653589793)
+        ),
+    }
+    return Site(
+        name="scripted",
+        map_file=map_file,
+        start=start or Pose2D(0.0, 0.0, 0.0),
+        places=places or {"start": Pose2D(0.0, 0.0, 0.0)},
+        surfaces=tables if surfaces is None else surfaces,
+        objects={"can": ObjectClass("can", diameter=0.07, height=0.13)},
+    )
+
+
+class ScriptedWorld:
+    """Implements `World`. on_step: called after each step, to script what happens in it.
+
+    verdict_of: what the referee says; without one there is no referee. pictures: how many frames
+    an open video got.
+    """
+
+    def __init__(
+        self,
+        robot: ScriptedRobot | None = None,
+        site: Site | None = None,
+        *,
+        on_step: Callable[[ScriptedRobot], None] | None = None,
+        verdict_of: Callable[[ScriptedRobot], Verdict] | None = None,
+    ) -> None:
+        self.name = "scripted"
+        self.robot = robot or ScriptedRobot()
+        self.site = site or scripted_site()
+        self.closed = False
+        self._on_step = on_step
+        self._verdict_of = verdict_of
+        self._start = self.robot.now()
+
+    def now(self) -> float:
+        """Seconds since the episode began."""
+        return self.robot.now() - self._start
+
+    def step(self) -> None:
+        """Advance by one tick."""
+        self.robot.advance(TICK)
+        if self._on_step is not None:
+            self._on_step(self.robot)
+
+    def verdict(self) -> Verdict | None:
+        """The scripted referee's word."""
+        return None if self._verdict_of is None else self._verdict_of(self.robot)
+
+    def open_video(self, path: Path, title: str) -> Video:
+        """A text file with one line per frame in the place of a film."""
+        return _TextVideo(path, title)
+
+    def open_view(self, port: int) -> View:
+        """There is nothing to see."""
+        raise NotImplementedError("a scripted world has no view")
+
+    def close(self) -> None:
+        """Nothing to free."""
+        self.closed = True
+
+
+class _TextVideo:
+    def __init__(self, path: Path, title: str) -> None:
+        self._file = path.open("w", encoding="utf-8")
+        self._file.write(f"{title}\n")
+
+    def add(self, lines: Sequence[TreeLine], headline: str) -> None:
+        shown = "; ".join(f"{line.text} {line.status}" for line in lines)
+        self._file.write(f"{headline}: {shown}\n")
+
+    def close(self) -> None:
+        self._file.close()
