@@ -62,9 +62,7 @@ def _ports(*ports: Port) -> dict[str, Port]:
     return {port.name: port for port in ports}
 
 
-def _in(
-    name: str, type_: Any, doc: str, default: Any = MISSING, unit: str | None = None
-) -> Port:
+def _in(name: str, type_: Any, doc: str, default: Any = MISSING, unit: str | None = None) -> Port:
     return Port(name, "in", type_, doc, default, unit)
 
 
@@ -293,9 +291,7 @@ def _leaf(
     xml: Mapping[str, str] | None = None,
 ) -> NodeSpec:
     first = ports[0].name if ports else None
-    return NodeSpec(
-        type_, yaml, Kind.LEAF, doc, _ports(*ports), first=first, xml=xml or {}
-    )
+    return NodeSpec(type_, yaml, Kind.LEAF, doc, _ports(*ports), first=first, xml=xml or {})
 
 
 _LEAVES = (
@@ -308,9 +304,7 @@ _LEAVES = (
         _in("code", CodeText, "upper-case words joined by underscores"),
         _in("message", str, "one sentence for a person", ""),
     ),
-    _leaf(
-        "Script", ("script",), "Runs a script.", _in("code", ScriptText, "the script")
-    ),
+    _leaf("Script", ("script",), "Runs a script.", _in("code", ScriptText, "the script")),
     _leaf(
         "ScriptCondition",
         ("condition",),
@@ -356,9 +350,7 @@ BUILT_IN: Mapping[str, NodeSpec] = {
 }
 """Built-in nodes by canonical type."""
 
-SPELLED: Mapping[str, NodeSpec] = {
-    name: spec for spec in BUILT_IN.values() for name in spec.yaml
-}
+SPELLED: Mapping[str, NodeSpec] = {name: spec for spec in BUILT_IN.values() for name in spec.yaml}
 """Built-in nodes by YAML spelling."""
 
 FORCED: Mapping[str, str] = {"success": "ForceSuccess", "failure": "ForceFailure"}

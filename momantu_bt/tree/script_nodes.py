@@ -1,0 +1,263 @@
+"""What a script is once it is read: expressions that evaluate themselves on a board.
+
+The meaning is BehaviorTree.CPP 4's: both sides of `&&` and `||` are evaluated, comparisons
+chain (`1 < n < 3`), numbers are equal within `EPSILON`, types are never mixed silently.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields, is_dataclass
+from typing import Any, Protocol, TypeAlias
+
+EPSILON = 1.1920929e-07
+"""Numbers nearer than this are equal: a single-precision ulp, BehaviorTree.CPP's choice."""
+
+
+class ScriptError(RuntimeError):
+    """A script that cannot be evaluated: an unknown variable, an operation on wrong types."""
+
+
+class Board(Protocol):
+    """The keys that a script sees; `@key` is a key of the root's board."""
+
+    def get(self, key: str) -> Any:
+        """The key's value; KeyError when it has none."""
+        ...
+
+    def set(self, key: str, value: Any) -> None:
+        """Write a key."""
+        ...
+
+    def has(self, key: str) -> bool:
+        """Whether the key has a value."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Constant:
+    """A number, a text, true or false."""
+
+    value: Any
+
+    def evaluate(self, board: Board) -> Any:
+        """Its value."""
+        return self.value
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """A key of the board, or a part of its value: `found.pose`."""
+
+    key: str
+    parts: tuple[str, ...]
+    offset: int
+    length: int
+
+    def evaluate(self, board: Board) -> Any:
+        """The key's value; ScriptError when it has none."""
+        if not board.has(self.key):
+            raise ScriptError(f"${self.key} has no value")
+        return part(board.get(self.key), self.parts)
+
+
+@dataclass(frozen=True, slots=True)
+class Unary:
+    """`-x`, `~x`, `!x`."""
+
+    operator: str
+    operand: Expression
+
+    def evaluate(self, board: Board) -> Any:
+        """The result; ScriptError when the operand is no number."""
+        value = _number(self.operand.evaluate(board), self.operator)
+        if self.operator == "!":
+            return not value
+        if self.operator == "~":
+            return ~_integer(value, "~")
+        return -value
+
+
+@dataclass(frozen=True, slots=True)
+class Chain:
+    """Operands joined from the left by operators of one rank: `a - b + c`, `a && b`."""
+
+    first: Expression
+    rest: tuple[tuple[str, Expression], ...]
+
+    def evaluate(self, board: Board) -> Any:
+        """The result; ScriptError when the operands do not go together."""
+        value = self.first.evaluate(board)
+        for operator, operand in self.rest:
+            value = apply(operator, value, operand.evaluate(board))
+        return value
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """`a < b`, `a <= b < c`: true when each neighbouring pair is."""
+
+    operands: tuple[Expression, ...]
+    operators: tuple[str, ...]
+
+    def evaluate(self, board: Board) -> bool:
+        """Whether it holds; ScriptError when a number is compared with a text."""
+        left = self.operands[0].evaluate(board)
+        for operator, operand in zip(self.operators, self.operands[1:], strict=True):
+            right = operand.evaluate(board)
+            if not _compare(operator, left, right):
+                return False
+            left = right
+        return True
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """`condition ? yes : no`."""
+
+    condition: Expression
+    yes: Expression
+    no: Expression
+
+    def evaluate(self, board: Board) -> Any:
+        """The chosen side."""
+        chosen = self.yes if truth(self.condition.evaluate(board)) else self.no
+        return chosen.evaluate(board)
+
+
+@dataclass(frozen=True, slots=True)
+class Assignment:
+    """`key := value` creates or overwrites; `=`, `+=`, `-=`, `*=`, `/=` need an existing key."""
+
+    target: Variable
+    operator: str
+    value: Expression
+
+    def evaluate(self, board: Board) -> Any:
+        """Write the key and return its new value."""
+        key = self.target.key
+        if self.operator != ":=" and not board.has(key):
+            raise ScriptError(f"${key} does not exist; `:=` creates it")
+        value = self.value.evaluate(board)
+        if self.operator not in (":=", "="):
+            value = apply(self.operator[0], board.get(key), value)
+        board.set(key, value)
+        return value
+
+
+Expression: TypeAlias = Constant | Variable | Unary | Chain | Comparison | Choice | Assignment
+
+
+def part(value: Any, parts: tuple[str, ...]) -> Any:
+    """A part of a value, by the names of its fields.
+
+    Raises:
+        ScriptError: there is no such part, with those there are.
+    """
+    for name in parts:
+        if isinstance(value, Mapping) and name in value:
+            value = value[name]
+        elif not name.startswith("_") and name in _names(value):
+            value = getattr(value, name)
+        else:
+            having = ", ".join(_names(value)) or "none"
+            raise ScriptError(f"{type(value).__name__} has no part {name!r}; parts: {having}")
+    return value
+
+
+def _names(value: Any) -> tuple[str, ...]:
+    if isinstance(value, Mapping):
+        return tuple(str(key) for key in value)
+    if not is_dataclass(value) or isinstance(value, type):
+        return ()
+    computed = [n for n, v in vars(type(value)).items() if isinstance(v, property)]
+    return (*(item.name for item in fields(value)), *computed)
+
+
+def truth(value: Any) -> bool:
+    """What a condition's value means: a number other than 0, a text that is not empty.
+
+    Raises:
+        ScriptError: the value is neither.
+    """
+    if isinstance(value, str):
+        return value != ""
+    return _number(value, "a condition") != 0
+
+
+def _number(value: Any, operator: str) -> Any:
+    if isinstance(value, bool | int | float):
+        return value
+    raise ScriptError(f"{operator} needs a number, not {_describe(value)}")
+
+
+def _integer(value: Any, operator: str) -> int:
+    number = _number(value, operator)
+    if float(number) != int(number):
+        raise ScriptError(f"{operator} needs whole numbers, not {number}")
+    return int(number)
+
+
+def _describe(value: Any) -> str:
+    return f"the text {value!r}" if isinstance(value, str) else f"{type(value).__name__} {value!r}"
+
+
+def apply(operator: str, left: Any, right: Any) -> Any:
+    """`left operator right`.
+
+    Raises:
+        ScriptError: the two do not go together, or a division by zero.
+    """
+    if isinstance(left, str) and isinstance(right, str):
+        if operator in ("+", ".."):
+            return left + right
+        raise ScriptError(f"{operator} does not work on texts")
+    if operator == "..":
+        raise ScriptError(f".. joins texts, not {_describe(left)} and {_describe(right)}")
+    _number(left, operator)
+    _number(right, operator)
+    if operator == "/" and right == 0:
+        raise ScriptError("a division by zero")
+    return _OPERATIONS[operator](left, right)
+
+
+_OPERATIONS: dict[str, Callable[[Any, Any], Any]] = {
+    "+": lambda a, b: a + b,
+    "-": lambda a, b: a - b,
+    "*": lambda a, b: a * b,
+    "/": lambda a, b: a / b,
+    "&": lambda a, b: _integer(a, "&") & _integer(b, "&"),
+    "|": lambda a, b: _integer(a, "|") | _integer(b, "|"),
+    "^": lambda a, b: _integer(a, "^") ^ _integer(b, "^"),
+    "&&": lambda a, b: bool(a) and bool(b),
+    "||": lambda a, b: bool(a) or bool(b),
+}
+
+
+def _compare(operator: str, left: Any, right: Any) -> bool:
+    texts = isinstance(left, str), isinstance(right, str)
+    if texts[0] != texts[1]:
+        raise ScriptError(
+            f"{operator} compares alike with alike, not {_describe(left)} with {_describe(right)}"
+        )
+    if operator in ("==", "!="):
+        same = left == right if texts[0] else _same(left, right)
+        return same if operator == "==" else not same
+    if not texts[0]:
+        _number(left, operator)
+        _number(right, operator)
+    return bool(_ORDER[operator](left, right))
+
+
+def _same(left: Any, right: Any) -> bool:
+    if isinstance(left, bool | int | float) and isinstance(right, bool | int | float):
+        return abs(left - right) <= EPSILON
+    return bool(left == right)
+
+
+_ORDER: dict[str, Callable[[Any, Any], Any]] = {
+    "<": lambda a, b: a < b,
+    ">": lambda a, b: a > b,
+    "<=": lambda a, b: a <= b,
+    ">=": lambda a, b: a >= b,
+}
