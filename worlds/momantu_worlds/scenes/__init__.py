@@ -1,0 +1,1 @@
+"""Scenes: world files, what fills them, what varies, maps, and the referee."""

@@ -1,0 +1,162 @@
+"""What a simulator is asked to build: bodies made of parts, lights, and the whole episode.
+
+Plain values without a simulator in them. Lengths in m, masses in kg, colours linear-looking sRGB
+in 0..1. Every transform is named `target_from_source`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from momantu_bt.geometry import Array, Pose2D, Transform
+from momantu_bt.world import Site
+
+Color: TypeAlias = tuple[float, float, float]
+
+GREY: Color = (0.6, 0.6, 0.6)
+
+
+@dataclass(frozen=True, slots=True)
+class Box:
+    """A cuboid around the part's origin; size: full edge lengths along x, y, z, m."""
+
+    size: tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Cylinder:
+    """A cylinder around the part's origin, its axis along z; radius and full height, m."""
+
+    radius: float
+    height: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Mesh:
+    """A triangle mesh to look at. vertices: (n, 3) m. triangles: (m, 3), outside is
+    counter-clockwise. colors: (n, 3) 0..1 per vertex, or None for the part's colour.
+    """
+
+    vertices: Array
+    triangles: NDArray[np.int32]
+    colors: Array | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Hull:
+    """The convex hull of some points (n, 3) m, to collide with; at most 64 of them."""
+
+    vertices: Array
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Picture:
+    """A flat picture in the part's xy plane, seen from +z, to look at.
+
+    size: full extent along x and y, m. pixels: (h, w, 3) uint8; row 0 lies at +y, column 0 at -x.
+    """
+
+    size: tuple[float, float]
+    pixels: NDArray[np.uint8]
+
+
+Geometry: TypeAlias = Box | Cylinder | Mesh | Hull | Picture
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """One geometry of a body. visual: cameras see it; collision: it touches and stops lasers."""
+
+    geometry: Geometry
+    body_from_part: Transform = field(default_factory=Transform)
+    color: Color = GREY
+    visual: bool = True
+    collision: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """A rigid body.
+
+    name: unique in the episode. category: "can", "bottle", "table", "wall" … static: it never
+    moves. mass: kg, ignored when static; its density is uniform over the colliding parts.
+    friction: coefficient, static and dynamic alike. known_to_map: drawn on the site's floor plan
+    at this very place, or nearly there.
+    """
+
+    name: str
+    category: str
+    map_from_body: Transform
+    parts: tuple[Part, ...]
+    static: bool = True
+    mass: float = 0.0
+    friction: float = 0.6
+    known_to_map: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class SunLight:
+    """Parallel light. direction: (3,) where it shines to, map frame. color: intensity per channel."""
+
+    direction: tuple[float, float, float]
+    color: Color
+
+
+@dataclass(frozen=True, slots=True)
+class PointLight:
+    """A lamp. position: (3,) m, map frame. color: intensity per channel at 1 m."""
+
+    position: tuple[float, float, float]
+    color: Color
+
+
+@dataclass(frozen=True, slots=True)
+class Goal:
+    """What the referee demands: `item` stands on `support` beside `marker` (names of bodies).
+
+    max_tilt: rad from upright. max_distance: m between item and marker, along the floor.
+    still_for: s without moving. min_gripper_distance: m from the item. max_others_tilt: rad and
+    max_others_shift: m that any other loose body may have moved. max_force: N of any contact
+    of the robot with anything but the item.
+    """
+
+    item: str
+    support: str
+    marker: str
+    max_tilt: float
+    max_distance: float
+    still_for: float
+    min_gripper_distance: float
+    max_others_tilt: float
+    max_others_shift: float
+    max_force: float
+
+
+@dataclass(frozen=True, slots=True)
+class Episode:
+    """Everything of one episode. The frame of all bodies is the map's; the floor is z = 0.
+
+    start: where the robot's base truly stands at first. ambient: light from everywhere.
+    site: what the robot is told. goal: what the referee wants.
+    """
+
+    name: str
+    seed: int
+    bodies: tuple[Body, ...]
+    start: Pose2D
+    ambient: Color
+    suns: tuple[SunLight, ...]
+    lamps: tuple[PointLight, ...]
+    site: Site
+    goal: Goal | None = None
+
+    def body(self, name: str) -> Body:
+        """The body of that name; KeyError with the known names when there is none."""
+        for body in self.bodies:
+            if body.name == name:
+                return body
+        raise KeyError(f"no body {name!r}; bodies: {', '.join(b.name for b in self.bodies)}")
