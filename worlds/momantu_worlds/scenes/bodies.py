@@ -37,13 +37,12 @@ class Cylinder:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Mesh:
-    """A triangle mesh to look at. vertices: (n, 3) m. triangles: (m, 3), outside is
-    counter-clockwise. colors: (n, 3) 0..1 per vertex, or None for the part's colour.
+    """A triangle mesh to look at. vertices: (n, 3) m. triangles: (m, 3), counter-clockwise seen
+    from outside; vertices that faces share are shaded smoothly.
     """
 
     vertices: Array
     triangles: NDArray[np.int32]
-    colors: Array | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
