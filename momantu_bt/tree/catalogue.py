@@ -369,8 +369,8 @@ NODE_KEYS = ("name", "note", "disabled")
 """Modifiers that are neither decorators nor conditions."""
 
 MODIFIERS: Mapping[str, str] = {
-    **{key: "key" for key in NODE_KEYS},
-    **{key: "condition" for key in CONDITIONS},
+    **dict.fromkeys(NODE_KEYS, "key"),
+    **dict.fromkeys(CONDITIONS, "condition"),
     **{spec.yaml[0]: "decorator" for spec in BUILT_IN.values() if spec.modifier},
     "force": "decorator",
 }

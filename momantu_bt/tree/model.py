@@ -58,6 +58,12 @@ class Template:
 
 PortValue: TypeAlias = Literal | Reference | Template
 
+FIRST_INPUT = ""
+"""Key of a port value written without a name (`reset_pose: home`); the checker names it."""
+
+BROKEN = ""
+"""Type of a node that could not be read; the problem is reported, the place kept."""
+
 
 @dataclass(slots=True)
 class Handler:
@@ -80,6 +86,7 @@ class Node:
     `written_as_modifier` keeps the spelling. conditions: modifier name ("skip_if", "while",
     "on_success", …) to a script in canonical form (`&& || !`).
     For a SubTree, `ports` are the wires to its inputs and outputs and `target` is its name.
+    port_places: of the ports' values; port_name_places: of their names.
     """
 
     type: str
@@ -94,6 +101,7 @@ class Node:
     target: str | None = None
     written_as_modifier: bool = False
     port_places: dict[str, Place] = field(default_factory=dict)
+    port_name_places: dict[str, Place] = field(default_factory=dict)
     condition_places: dict[str, Place] = field(default_factory=dict)
 
     def walk(self) -> Iterator[Node]:

@@ -100,7 +100,7 @@ class Comparison:
     operands: tuple[Expression, ...]
     operators: tuple[str, ...]
 
-    def evaluate(self, board: Board) -> bool:
+    def evaluate(self, board: Board) -> Any:
         """Whether it holds; ScriptError when a number is compared with a text."""
         left = self.operands[0].evaluate(board)
         for operator, operand in zip(self.operators, self.operands[1:], strict=True):
@@ -241,7 +241,7 @@ def _compare(operator: str, left: Any, right: Any) -> bool:
             f"{operator} compares alike with alike, not {_describe(left)} with {_describe(right)}"
         )
     if operator in ("==", "!="):
-        same = left == right if texts[0] else _same(left, right)
+        same = bool(left == right) if texts[0] else _same(left, right)
         return same if operator == "==" else not same
     if not texts[0]:
         _number(left, operator)

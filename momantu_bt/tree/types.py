@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import types
 from enum import Enum
-from typing import Any, Literal, TypeAlias, Union, get_args, get_origin
+from typing import Any, Literal, TypeAlias, Union, get_args
+from typing import get_origin as _get_origin
 
 from momantu_bt.messages import VALUE_TYPES
 
@@ -12,6 +13,11 @@ ValueType: TypeAlias = Any
 """A Python type as ports declare it: a class, `X | None`, `tuple[X, ...]`, `Literal[...]`."""
 
 _LIST_OF = "list of "
+
+
+def origin(type_: ValueType) -> Any:
+    """`Literal`, `tuple`, `Union` … of a type with parameters; None of a plain class."""
+    return _get_origin(type_)
 
 
 def parse_type(text: str) -> ValueType:
@@ -36,11 +42,11 @@ def label(type_: ValueType) -> str:
     """A type in the words of tree files: "list of pose", "text or pose2d", "'a' or 'b'"."""
     if type_ in (object, Any):
         return "any"
-    if get_origin(type_) is Literal:
+    if origin(type_) is Literal:
         return " or ".join(repr(value) for value in get_args(type_))
     if is_union(type_):
         return " or ".join(label(m) for m in members(type_) if m is not type(None))
-    if get_origin(type_) is tuple:
+    if origin(type_) is tuple:
         return _tuple_label(get_args(type_))
     for name, known in VALUE_TYPES.items():
         if known is type_:
@@ -62,7 +68,7 @@ def _tuple_label(items: tuple[Any, ...]) -> str:
 
 def is_union(type_: ValueType) -> bool:
     """Whether it is `A | B` or `Optional[A]`."""
-    return get_origin(type_) in (Union, types.UnionType)
+    return origin(type_) in (Union, types.UnionType)
 
 
 def members(type_: ValueType) -> tuple[ValueType, ...]:
@@ -86,11 +92,11 @@ def assignable(source: ValueType, target: ValueType) -> bool:
         return any(assignable(member, target) for member in members(source))
     if is_union(target):
         return any(assignable(source, member) for member in members(target))
-    if get_origin(source) is Literal:
+    if origin(source) is Literal:
         return any(assignable(type(value), target) for value in get_args(source))
-    if get_origin(target) is Literal:
+    if origin(target) is Literal:
         return any(source is type(value) for value in get_args(target))
-    if get_origin(target) is tuple or get_origin(source) is tuple:
+    if origin(target) is tuple or origin(source) is tuple:
         return _tuples(source, target)
     if target is float:
         return source in (int, float)
@@ -103,8 +109,8 @@ def assignable(source: ValueType, target: ValueType) -> bool:
 
 def _tuples(source: ValueType, target: ValueType) -> bool:
     if source is tuple or target is tuple:
-        return (get_origin(source) or source) is (get_origin(target) or target)
-    if get_origin(source) is not tuple or get_origin(target) is not tuple:
+        return (origin(source) or source) is (origin(target) or target)
+    if origin(source) is not tuple or origin(target) is not tuple:
         return False
     left, right = get_args(source), get_args(target)
     open_left, open_right = left[-1:] == (Ellipsis,), right[-1:] == (Ellipsis,)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import math
 import re
 from dataclasses import dataclass
@@ -113,6 +114,7 @@ def _parts(text: str) -> list[tuple[float, str]]:
 def _unknown(name: str) -> str:
     folded = {known.lower(): known for known in _SCALE}
     near = folded.get(name.lower()) or _SPELLED_OUT.get(name.lower().rstrip("s"))
+    near = near or next(iter(difflib.get_close_matches(name, _SCALE, n=1)), None)
     hint = f", did you mean {near!r}?" if near else "."
     return f"unknown unit {name!r}{hint} Units: {', '.join(_SCALE)}"
 

@@ -8,16 +8,17 @@ from __future__ import annotations
 
 import dataclasses
 import difflib
+import math
 from collections.abc import Mapping, Sequence
 from enum import Enum
 from types import MappingProxyType
-from typing import Any, Literal, get_args, get_origin, get_type_hints
+from typing import Any, Literal, get_args, get_type_hints
 
 from momantu_bt.skill import MISSING, Port
 from momantu_bt.tree.catalogue import CodeText
-from momantu_bt.tree.model import PortDeclaration, Reference
+from momantu_bt.tree.model import PortDeclaration
 from momantu_bt.tree.script_nodes import part
-from momantu_bt.tree.types import ValueType, is_union, label, members, parse_type
+from momantu_bt.tree.types import ValueType, is_union, label, members, origin, parse_type
 from momantu_bt.tree.units import UnitError, in_unit, quantity, units_of
 
 __all__ = ["ConversionError", "convert", "natural", "part", "port_of", "render"]
@@ -75,13 +76,9 @@ def port_of(declaration: PortDeclaration) -> Port:
     )
 
 
-def render(parts: Sequence[str | Any]) -> str:
-    """Text from its parts; numbers as people write them, dataclasses by their own words."""
-    return "".join(
-        piece if isinstance(piece, str) else _in_words(piece)
-        for piece in parts
-        if not isinstance(piece, Reference)
-    )
+def render(parts: Sequence[Any]) -> str:
+    """Text from its parts, references replaced by their values."""
+    return "".join(piece if isinstance(piece, str) else _in_words(piece) for piece in parts)
 
 
 def _in_words(value: Any) -> str:
@@ -95,9 +92,9 @@ def _convert(value: Any, type_: ValueType, unit: str | None) -> Any:
         return natural(value)
     if is_union(type_):
         return _to_union(value, type_, unit)
-    if get_origin(type_) is Literal:
+    if origin(type_) is Literal:
         return _to_choice(value, get_args(type_))
-    if type_ is tuple or get_origin(type_) is tuple:
+    if type_ is tuple or origin(type_) is tuple:
         return _to_tuple(value, type_, unit)
     if type_ is bool:
         return _to_bool(value)
@@ -119,9 +116,8 @@ def _to_union(value: Any, type_: ValueType, unit: str | None) -> Any:
     if value is None and type(None) in choices:
         return None
     choices = tuple(choice for choice in choices if choice is not type(None))
-    if any(isinstance(choice, type) and type(value) is choice for choice in choices):
-        if not isinstance(value, str) or str in choices:
-            return value
+    if type(value) in choices:
+        return value
     errors: list[ConversionError] = []
     for choice in sorted(choices, key=lambda choice: choice is str):
         try:
@@ -192,7 +188,7 @@ def _to_number(value: Any, type_: type, unit: str | None) -> int | float:
         raise _unfit(value, type_, unit)
     if type_ is float:
         return float(number)
-    if number != number or number != int(number):
+    if not math.isfinite(number) or number != int(number):
         raise ConversionError(f"{_shown(value)} is not a whole number")
     return int(number)
 

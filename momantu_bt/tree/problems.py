@@ -1,0 +1,142 @@
+"""What is wrong with a tree file: where, what was expected, and what would have been valid."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Any
+
+from momantu_bt.tree.model import Place
+
+
+class Severity(IntEnum):
+    """An error keeps the tree from starting; a warning and a hint do not."""
+
+    ERROR = 0
+    WARNING = 1
+    HINT = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """One thing that is wrong. code: stable, lower-case words joined by dashes.
+
+    message: what is there and what was expected. hint: what would be valid, or what to do.
+    """
+
+    code: str
+    message: str
+    place: Place
+    hint: str = ""
+    severity: Severity = Severity.ERROR
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data for JSON."""
+        return {
+            "code": self.code,
+            "severity": self.severity.name.lower(),
+            "file": self.place.file,
+            "line": self.place.line,
+            "column": self.place.column,
+            "length": self.place.length,
+            "message": self.message,
+            "hint": self.hint,
+        }
+
+
+class TreeError(Exception):
+    """A tree file with errors. problems: all of them, in the order of the file."""
+
+    def __init__(self, problems: Iterable[Problem], source: Mapping[str, str]) -> None:
+        self.problems = sort(problems)
+        self.source = dict(source)
+        super().__init__("\n".join(f"{p.place}: {p.message}" for p in self.problems))
+
+
+class Problems:
+    """A growing list of problems; the same one is kept once."""
+
+    def __init__(self) -> None:
+        self._found: dict[Problem, None] = {}
+
+    def error(self, code: str, place: Place, message: str, hint: str = "") -> None:
+        """Add an error."""
+        self._found[Problem(code, message, place, hint)] = None
+
+    def warning(self, code: str, place: Place, message: str, hint: str = "") -> None:
+        """Add a warning."""
+        self._found[Problem(code, message, place, hint, Severity.WARNING)] = None
+
+    def hint(self, code: str, place: Place, message: str, hint: str = "") -> None:
+        """Add a hint."""
+        self._found[Problem(code, message, place, hint, Severity.HINT)] = None
+
+    def sorted(self) -> list[Problem]:
+        """All of them, in the order of the file."""
+        return sort(self._found)
+
+
+def sort(problems: Iterable[Problem]) -> list[Problem]:
+    """By file, line and column; errors first within one place."""
+    return sorted(
+        problems,
+        key=lambda p: (p.place.file, p.place.line, p.place.column, p.severity, p.code, p.message),
+    )
+
+
+def errors(problems: Iterable[Problem]) -> list[Problem]:
+    """Those that keep a tree from starting."""
+    return [problem for problem in problems if problem.severity is Severity.ERROR]
+
+
+def nearest(word: str, candidates: Iterable[str]) -> str | None:
+    """The known name that a mistyped one most likely means."""
+    names = list(candidates)
+    folded = {name.lower().replace("-", "_"): name for name in names}
+    exact = folded.get(word.lower().replace("-", "_"))
+    if exact is not None:
+        return exact
+    close = difflib.get_close_matches(word.lower(), folded, n=1, cutoff=0.6)
+    return folded[close[0]] if close else None
+
+
+def valid_names(word: str, candidates: Iterable[str], what: str) -> str:
+    """A hint: the nearest name when there is one, else all of them ("Places: a, b")."""
+    names = list(dict.fromkeys(candidates))
+    near = nearest(word, names)
+    if near is not None:
+        return f"did you mean {near}?"
+    return f"{what}: {', '.join(names)}" if names else f"there are no {what}"
+
+
+def show(problem: Problem, source: Mapping[str, str]) -> str:
+    """The problem with its line and a caret under the place.
+
+    tree.yaml:3:7: error: no node is called 'pik' [unknown-node]
+      3 |     - pik: $can
+        |       ^^^ did you mean pick?
+    """
+    place = problem.place
+    word = problem.severity.name.lower()
+    head = f"{place}: {word}: {problem.message} [{problem.code}]"
+    lines = source.get(place.file, "").splitlines()
+    if not 0 < place.line <= len(lines):
+        return head + (f"\n  {problem.hint}" if problem.hint else "")
+    text = lines[place.line - 1]
+    number = str(place.line)
+    shown, column = _window(text, place.column - 1)
+    length = max(1, min(place.length, len(shown) - column))
+    gap = "".join("\t" if c == "\t" else " " for c in shown[:column])
+    caret = f"  {' ' * len(number)} | {gap}{'^' * length}"
+    return f"{head}\n  {number} | {shown}\n{caret}{' ' + problem.hint if problem.hint else ''}"
+
+
+def _window(text: str, column: int) -> tuple[str, int]:
+    """A stretch of a long line around a column, and the column in it."""
+    widest = 120
+    if len(text) <= widest:
+        return text, column
+    start = max(0, column - widest // 2)
+    return text[start : start + widest], column - start

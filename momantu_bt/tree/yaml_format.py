@@ -1,0 +1,259 @@
+"""A YAML tree file as a Document: the header, values, and the trees with their inputs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from momantu_bt.tree.catalogue import MODIFIERS, SPELLED
+from momantu_bt.tree.model import Document, Literal, Node, Place, PortDeclaration, Tree
+from momantu_bt.tree.problems import Problems, TreeError, errors, nearest, valid_names
+from momantu_bt.tree.yaml_nodes import AGAIN, NodeReader
+from momantu_bt.tree.yaml_source import (
+    Entries,
+    Items,
+    Raw,
+    Scalar,
+    YamlSyntaxError,
+    compose,
+    plain_value,
+)
+from momantu_bt.tree.yaml_values import KEY, duplicate_keys, port_value
+
+VERSION = 1
+"""What `momantu_bt:` says; a later one may read differently."""
+
+_TOP = ("momantu_bt", "world", "main", "values", "trees")
+_HEADER = ("inputs", "outputs", "doc")
+_DECLARATION = ("type", "default", "doc")
+
+
+def read(text: str, file: str) -> tuple[Document, Problems]:
+    """Read a tree file. The document holds BROKEN nodes where problems were found.
+
+    file: the name that places carry.
+
+    Raises:
+        TreeError: the text is not YAML, or has no trees; nothing else can be said then.
+    """
+    source = {file: text}
+    try:
+        raw = compose(text, file)
+    except YamlSyntaxError as error:
+        raise TreeError([error.problem], source) from None
+    problems = Problems()
+    document = _Reader(file, problems).document(raw)
+    if document is None:
+        raise TreeError(errors(problems.sorted()), source)
+    document.source = source
+    return document, problems
+
+
+@dataclass(slots=True)
+class _Reader:
+    file: str
+    problems: Problems
+
+    def document(self, raw: Raw) -> Document | None:
+        if not isinstance(raw, Entries):
+            self.problems.error(
+                "not-a-tree", raw.place, "a tree file is a mapping", "begin with `momantu_bt: 1`"
+            )
+            return None
+        duplicate_keys(raw, self.problems)
+        having = {key.text: (key, value) for key, value in raw.entries}
+        for key, _ in raw.entries:
+            if key.text not in _TOP:
+                hint = valid_names(key.text, _TOP, "keys of a tree file")
+                self.problems.error(
+                    "unknown-key", key.place, f"a tree file has no {key.text!r}", hint
+                )
+        self.version(having.get("momantu_bt"), raw.place)
+        trees = self.trees(having.get("trees"), raw.place)
+        if trees is None:
+            return None
+        document = Document(self.file, self.main(having.get("main"), trees), trees)
+        self.world(document, having.get("world"))
+        self.values(document, having.get("values"))
+        return document
+
+    def version(self, entry: tuple[Scalar, Raw] | None, place: Place) -> None:
+        if entry is None:
+            self.problems.error(
+                "no-version",
+                Place(place.file, place.line, 1),
+                "the file does not say which language it is in",
+                f"begin with `momantu_bt: {VERSION}`",
+            )
+        elif not isinstance(entry[1], Scalar) or entry[1].value != VERSION:
+            self.problems.error(
+                "wrong-version",
+                entry[1].place,
+                "this version of the language is not known",
+                f"known: {VERSION}",
+            )
+
+    def main(self, entry: tuple[Scalar, Raw] | None, trees: dict[str, Tree]) -> str:
+        if entry is None:
+            if len(trees) > 1:
+                self.problems.error(
+                    "no-main",
+                    next(iter(trees.values())).place,
+                    "the file does not say which tree to run",
+                    f"write `main: {next(iter(trees))}`",
+                )
+            return next(iter(trees))
+        raw = entry[1]
+        name = raw.text if isinstance(raw, Scalar) else ""
+        if name not in trees:
+            hint = valid_names(name, trees, "trees")
+            self.problems.error("unknown-tree", raw.place, f"no tree is called {name!r}", hint)
+            return next(iter(trees))
+        return name
+
+    def world(self, document: Document, entry: tuple[Scalar, Raw] | None) -> None:
+        if entry is None:
+            return
+        raw = entry[1]
+        if isinstance(raw, Scalar) and isinstance(raw.value, str):
+            document.world, document.world_place = raw.value, raw.place
+        else:
+            self.problems.error("wrong-value", raw.place, "`world` is the name of a world")
+
+    def values(self, document: Document, entry: tuple[Scalar, Raw] | None) -> None:
+        if entry is None:
+            return
+        for key, raw in self.mapping(entry[1], "values", "key: value"):
+            if not self.is_key(key):
+                continue
+            found = port_value(raw, key.text, self.problems)
+            if isinstance(found, Literal):
+                document.values[key.text] = found
+                document.value_places[key.text] = raw.place
+            elif found is not None:
+                self.problems.error(
+                    "wire-inside", raw.place, "`values` are written out; a wire has no place here"
+                )
+
+    def is_key(self, key: Scalar) -> bool:
+        if isinstance(key.value, str) and KEY.fullmatch(key.text):
+            return True
+        hint = "letters, digits and underscores, no digit first"
+        if key.text.startswith("$"):
+            hint = f"did you mean {key.text[1:]}?"
+        self.problems.error(
+            "bad-name", key.place, f"{key.text!r} cannot be the name of a key", hint
+        )
+        return False
+
+    def mapping(self, raw: Raw, name: str, example: str) -> list[tuple[Scalar, Raw]]:
+        if isinstance(raw, Entries):
+            duplicate_keys(raw, self.problems)
+            return raw.entries
+        if not (isinstance(raw, Scalar) and raw.value is None):
+            self.problems.error(
+                "wrong-value", raw.place, f"`{name}` is a mapping", f"write {{{example}}}"
+            )
+        return []
+
+    # trees
+
+    def trees(self, entry: tuple[Scalar, Raw] | None, place: Place) -> dict[str, Tree] | None:
+        having: list[tuple[Scalar, Raw]] = []
+        if entry is not None:
+            having = self.mapping(entry[1], "trees", "Name: [node, node]")
+        if not having:
+            where = entry[0].place if entry is not None else Place(place.file, place.line, 1)
+            self.problems.error(
+                "no-trees", where, "the file has no tree", "write `trees:` and under it `Name:`"
+            )
+            return None
+        names = {key.text for key, _ in having}
+        reader = NodeReader(names, self.problems)
+        trees: dict[str, Tree] = {}
+        for key, raw in having:
+            self.tree_name(key)
+            if key.text not in trees:
+                trees[key.text] = self.tree(key, raw, reader)
+        return trees
+
+    def tree_name(self, key: Scalar) -> None:
+        if not isinstance(key.value, str) or not KEY.fullmatch(key.text):
+            hint = "letters, digits and underscores, no digit first"
+            message = f"{key.text!r} cannot be the name of a tree"
+            self.problems.error("bad-name", key.place, message, hint)
+        elif key.text in SPELLED or key.text in MODIFIERS or key.text == AGAIN:
+            message = f"{key.text!r} is a word of the language"
+            self.problems.error("bad-name", key.place, message, "give the tree another name")
+
+    def tree(self, key: Scalar, raw: Raw, reader: NodeReader) -> Tree:
+        tree = Tree(key.text, Node("", key.place), key.place)
+        body = raw
+        if isinstance(raw, Entries):
+            header = {k.text: v for k, v in raw.entries if k.text in _HEADER}
+            body = Entries(
+                [(k, v) for k, v in raw.entries if k.text not in _HEADER], raw.place, raw.flow
+            )
+            duplicate_keys(raw, self.problems)
+            for name, direction in (("inputs", "in"), ("outputs", "out")):
+                if name in header:
+                    self.declarations(tree, header[name], direction)
+            if "doc" in header:
+                tree.doc = str(plain_value(header["doc"]))
+            if not body.entries:
+                self.problems.error("no-node", key.place, f"the tree {key.text!r} has no node")
+                return tree
+        reader.read(body, _root_setter(tree))
+        return tree
+
+    def declarations(self, tree: Tree, raw: Raw, direction: str) -> None:
+        if isinstance(raw, Items):
+            bare = [item for item in raw.items if isinstance(item, Scalar)]
+            entries: list[tuple[Scalar, Raw]] = [
+                (item, Scalar("any", "any", False, item.place)) for item in bare
+            ]
+        else:
+            entries = self.mapping(raw, f"{direction}puts", "name: type")
+        for key, value in entries:
+            if not self.is_key(key):
+                continue
+            if key.text in tree.ports and tree.ports[key.text].direction != direction:
+                self.problems.error(
+                    "duplicate-key", key.place, f"{key.text!r} is an input and an output"
+                )
+            found = self.declaration(key, value, direction)
+            if found is not None:
+                tree.ports[key.text] = found
+
+    def declaration(self, key: Scalar, raw: Raw, direction: str) -> PortDeclaration | None:
+        if isinstance(raw, Scalar) and isinstance(raw.value, str):
+            return PortDeclaration(key.text, direction, raw.value, raw.place)
+        if not isinstance(raw, Entries):
+            hint = "write `name: text` or `name: {type: text, default: …}`"
+            self.problems.error("wrong-value", raw.place, f"{key.text!r} needs a type", hint)
+            return None
+        duplicate_keys(raw, self.problems)
+        having = {k.text: v for k, v in raw.entries}
+        for name, _ in raw.entries:
+            if name.text not in _DECLARATION:
+                near = nearest(name.text, _DECLARATION)
+                hint = f"did you mean {near}?" if near else f"keys: {', '.join(_DECLARATION)}"
+                message = f"an input or output has no {name.text!r}"
+                self.problems.error("unknown-key", name.place, message, hint)
+        type_ = having.get("type")
+        default = having.get("default")
+        return PortDeclaration(
+            key.text,
+            direction,
+            type_.text if isinstance(type_, Scalar) else "any",
+            type_.place if type_ is not None else raw.place,
+            None if default is None else Literal(plain_value(default)),
+            str(plain_value(having["doc"])) if "doc" in having else "",
+        )
+
+
+def _root_setter(tree: Tree) -> Callable[[Node], None]:
+    def put(node: Node) -> None:
+        tree.root = node
+
+    return put

@@ -1,0 +1,317 @@
+"""YAML 1.2 text as values that know their place, read without recursion and within bounds.
+
+Every key of a mapping is kept, so that all duplicates can be reported; booleans are `true` and
+`false` alone, numbers are YAML 1.2's.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from typing import Any, TypeAlias
+
+from ruamel.yaml import YAML
+from ruamel.yaml import events as yaml_events
+from ruamel.yaml.error import MarkedYAMLError, StringMark
+from ruamel.yaml.reader import ReaderError
+
+from momantu_bt.tree.model import Place
+from momantu_bt.tree.problems import Problem
+
+MAX_BYTES = 1_000_000
+MAX_DEPTH = 100
+MAX_NODES = 20_000
+"""Values in a file, those behind aliases counted each time they are used."""
+MAX_ALIASES = 500
+
+
+class YamlSyntaxError(Exception):
+    """A file that is not YAML, or out of bounds."""
+
+    def __init__(self, problem: Problem) -> None:
+        super().__init__(f"{problem.place}: {problem.message}")
+        self.problem = problem
+
+
+@dataclass(slots=True)
+class Scalar:
+    """A text, number, true, false or nothing (None). text: as written; quoted: in quotes.
+
+    size, depth: how many values it holds and how deep they are nested, aliases counted.
+    """
+
+    value: Any
+    text: str
+    quoted: bool
+    place: Place
+    size: int = 1
+    depth: int = 1
+
+
+@dataclass(slots=True)
+class Items:
+    """A list."""
+
+    items: list[Raw]
+    place: Place
+    size: int = 1
+    depth: int = 1
+
+
+@dataclass(slots=True)
+class Entries:
+    """A mapping: its keys and values in the order of the file. flow: written with braces."""
+
+    entries: list[tuple[Scalar, Raw]]
+    place: Place
+    flow: bool = False
+    size: int = 1
+    depth: int = 1
+
+
+Raw: TypeAlias = Scalar | Items | Entries
+
+
+def plain_value(raw: Raw) -> Any:
+    """The value alone; mappings keep the last of several equal keys."""
+    # as deep as the file, which MAX_DEPTH bounds
+    if isinstance(raw, Scalar):
+        return raw.value
+    if isinstance(raw, Items):
+        return [plain_value(item) for item in raw.items]
+    return {key.text: plain_value(value) for key, value in raw.entries}
+
+
+def compose(text: str, file: str) -> Raw:
+    """Read a text.
+
+    Raises:
+        YamlSyntaxError: with the one problem, in our words.
+    """
+    size = len(text.encode("utf-8", "surrogatepass"))
+    if size > MAX_BYTES:
+        raise _bound(Place(file, 1, 1), f"{size} bytes; a tree file has at most {MAX_BYTES}")
+    builder = _Builder(file)
+    reader = YAML()
+    try:
+        for event in reader.parse(text):
+            builder.take(event)
+    except MarkedYAMLError as error:
+        raise YamlSyntaxError(_in_our_words(error, text, file)) from None
+    except ReaderError as error:
+        line = text.count("\n", 0, error.position) + 1
+        column = error.position - (text.rfind("\n", 0, error.position) + 1) + 1
+        message = f"the character U+{ord(text[error.position]):04X} cannot stand in a tree file"
+        raise YamlSyntaxError(
+            Problem("syntax", message, Place(file, line, column), "remove it")
+        ) from None
+    if builder.root is None:
+        place = Place(file, 1, 1)
+        raise YamlSyntaxError(
+            Problem("syntax", "the file is empty", place, "begin with `momantu_bt: 1`")
+        )
+    return builder.root
+
+
+@dataclass(slots=True)
+class _Open:
+    """A list or mapping that is being read. key: waiting for its value."""
+
+    raw: Items | Entries
+    anchor: str | None
+    key: Scalar | None = None
+
+
+@dataclass(slots=True)
+class _Builder:
+    file: str
+    root: Raw | None = None
+    stack: list[_Open] = field(default_factory=list)
+    anchors: dict[str, Raw] = field(default_factory=dict)
+    nodes: int = 0
+    aliases: int = 0
+    documents: int = 0
+
+    def take(self, event: Any) -> None:
+        if isinstance(event, yaml_events.DocumentStartEvent):
+            self.documents += 1
+            if self.documents > 1:
+                message = "a second document; a tree file is one"
+                raise self.error("syntax", event, message, "remove the line `---`")
+        elif isinstance(event, yaml_events.ScalarEvent):
+            self.refuse_tag(event)
+            self.put(self.scalar(event), event.anchor)
+        elif isinstance(event, yaml_events.SequenceStartEvent):
+            self.refuse_tag(event)
+            self.open(Items([], self.place(event)), event)
+        elif isinstance(event, yaml_events.MappingStartEvent):
+            self.refuse_tag(event)
+            self.open(Entries([], self.place(event), bool(event.flow_style)), event)
+        elif isinstance(event, yaml_events.AliasEvent):
+            self.put_alias(event)
+        elif isinstance(event, yaml_events.CollectionEndEvent):
+            closed = self.stack.pop()
+            self.put(closed.raw, closed.anchor)
+
+    def place(self, event: Any) -> Place:
+        start, end = event.start_mark, event.end_mark
+        length = end.column - start.column if end.line == start.line else 1
+        return Place(self.file, start.line + 1, start.column + 1, max(1, length))
+
+    def error(self, code: str, event: Any, message: str, hint: str = "") -> YamlSyntaxError:
+        return YamlSyntaxError(Problem(code, message, self.place(event), hint))
+
+    def refuse_tag(self, event: Any) -> None:
+        tag = getattr(event, "tag", None)
+        if tag:
+            message = "`!` begins a YAML tag, which tree files do not use"
+            hint = 'write `not`, or put the whole value in quotes: "!$key"'
+            raise self.error("syntax", event, message, hint)
+
+    def scalar(self, event: Any) -> Scalar:
+        quoted = event.style is not None
+        value = event.value if quoted else resolve(event.value)
+        return Scalar(value, str(event.value), quoted, self.place(event))
+
+    def open(self, raw: Items | Entries, event: Any) -> None:
+        if len(self.stack) >= MAX_DEPTH:
+            raise _bound(self.place(event), f"nested more than {MAX_DEPTH} levels deep")
+        self.stack.append(_Open(raw, event.anchor))
+
+    def put_alias(self, event: Any) -> None:
+        self.aliases += 1
+        if self.aliases > MAX_ALIASES:
+            raise _bound(self.place(event), f"more than {MAX_ALIASES} aliases")
+        if event.anchor not in self.anchors:
+            inside = any(opened.anchor == event.anchor for opened in self.stack)
+            message = f"`*{event.anchor}` stands for nothing"
+            if inside:
+                message = f"`*{event.anchor}` stands for something that contains it"
+            hint = f'name it with `&{event.anchor}` before, or put "*{event.anchor}" in quotes'
+            raise self.error("syntax", event, message, hint)
+        self.put(self.anchors[event.anchor], None)
+
+    def put(self, raw: Raw, anchor: str | None) -> None:
+        self.nodes += raw.size if anchor is None and isinstance(raw, Scalar) else 1
+        if anchor is not None:
+            self.anchors[anchor] = raw
+        if not self.stack:
+            self.root = raw
+            return
+        top = self.stack[-1]
+        top.raw.size += raw.size
+        top.raw.depth = max(top.raw.depth, raw.depth + 1)
+        if top.raw.depth > MAX_DEPTH:
+            raise _bound(raw.place, f"nested more than {MAX_DEPTH} levels deep, aliases included")
+        if top.raw.size > MAX_NODES or self.nodes > MAX_NODES:
+            raise _bound(raw.place, f"more than {MAX_NODES} values, aliases included")
+        if isinstance(top.raw, Items):
+            top.raw.items.append(raw)
+        elif top.key is None:
+            top.key = self.key(raw)
+        else:
+            top.raw.entries.append((top.key, raw))
+            top.key = None
+
+    def key(self, raw: Raw) -> Scalar:
+        if isinstance(raw, Scalar):
+            return raw
+        hint = "did you mean $key?" if isinstance(raw, Entries) else ""
+        raise YamlSyntaxError(
+            Problem("syntax", "a list or mapping cannot be a key", raw.place, hint)
+        )
+
+
+_NULL = re.compile(r"|~|null|Null|NULL")
+_INT = re.compile(r"[-+]?[0-9]+|0o[0-7]+|0x[0-9a-fA-F]+")
+_FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
+_LARGEST_NUMBER = 40
+"""Digits; longer ones stay text, as no port takes them."""
+
+
+def resolve(text: str) -> Any:
+    """A plain scalar's value by YAML 1.2's core schema, without .inf and .nan."""
+    if _NULL.fullmatch(text):
+        return None
+    if text in ("true", "false"):
+        return text == "true"
+    if len(text) > _LARGEST_NUMBER:
+        return text
+    if _INT.fullmatch(text):
+        return int(text, 0) if text[:2] in ("0x", "0o") else int(text)
+    return float(text) if _FLOAT.fullmatch(text) else text
+
+
+def _bound(place: Place, message: str) -> YamlSyntaxError:
+    return YamlSyntaxError(Problem("too-large", message, place))
+
+
+def _in_our_words(error: MarkedYAMLError, text: str, file: str) -> Problem:
+    problem = str(error.problem or "")
+    context = str(error.context or "")
+    at = error.problem_mark or error.context_mark
+    for known, where, message, hint in _WORDS:
+        if known in problem or known in context:
+            mark = error.context_mark if where == "start" and error.context_mark else at
+            return Problem("syntax", message, _mark(mark, file), hint)
+    if "cannot start any token" in problem:
+        return _bad_start(problem, _mark(at, file))
+    return Problem("syntax", f"this is not YAML: {problem or context}", _mark(at, file))
+
+
+def _bad_start(problem: str, place: Place) -> Problem:
+    if r"'\t'" in problem:
+        return Problem("syntax", "a tab", place, "indent with spaces")
+    character = problem.split("'")[1] if "'" in problem else "this"
+    return Problem(
+        "syntax", f"a value cannot begin with {character}", place, "put the whole value in quotes"
+    )
+
+
+_WORDS = (
+    (
+        "mapping values are not allowed",
+        "here",
+        "a `:` that does not belong here",
+        "check the indentation, or put the whole value in quotes",
+    ),
+    ("a quoted scalar", "start", "a quote that is never closed", "close it on the same line"),
+    ("a flow sequence", "start", "a `[` that is never closed, or a `,` that is missing", ""),
+    ("a flow mapping", "start", "a `{` that is never closed, or a `,` that is missing", ""),
+    (
+        "a block collection",
+        "here",
+        "this line is neither the list's next item nor further in",
+        "items of one list begin with `- ` in one column",
+    ),
+    (
+        "a block mapping",
+        "here",
+        "this line does not continue the mapping above",
+        "keys of one mapping begin in one column",
+    ),
+    (
+        "could not find expected ':'",
+        "start",
+        "a key without `:`",
+        "write `key: value`, or indent the line",
+    ),
+    (
+        "sequence entries are not allowed",
+        "here",
+        "a list cannot begin here",
+        "put it on a line of its own",
+    ),
+    (
+        "unknown escape character",
+        "here",
+        "a backslash that means nothing here",
+        "write it twice, or use 'single quotes'",
+    ),
+    ("scanning an directive", "start", "a line cannot begin with `%`", "put it in quotes"),
+    ("scanning a directive", "start", "a line cannot begin with `%`", "put it in quotes"),
+)
+
+
+def _mark(mark: StringMark | None, file: str) -> Place:
+    return Place(file, 1, 1) if mark is None else Place(file, mark.line + 1, mark.column + 1)

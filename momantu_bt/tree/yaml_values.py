@@ -1,0 +1,137 @@
+"""Port values in YAML: literals, wires (`$key`) and text with keys inside (`"${key} cans"`)."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from momantu_bt.tree.model import Literal, Place, PortValue, Reference, Scope, Template
+from momantu_bt.tree.problems import Problems
+from momantu_bt.tree.yaml_source import Entries, Items, Raw, Scalar
+
+_NAME = r"[^\W\d]\w*"
+KEY = re.compile(_NAME)
+"""A blackboard key: letters, digits and underscores, no digit first."""
+_WIRE = re.compile(rf"\$(@?)({_NAME})((?:\.{_NAME})*)")
+_INSIDE = re.compile(rf"\$\$|\$\{{(@?)({_NAME})((?:\.{_NAME})*)\}}|\$")
+
+
+def port_value(raw: Raw, same_name: str, problems: Problems) -> PortValue | None:
+    """A port's value; None where a problem was reported.
+
+    same_name: what `$=` stands for.
+    """
+    if isinstance(raw, Scalar):
+        return _scalar(raw, same_name, problems)
+    if reported_braces(raw, problems):
+        return None
+    value = _nested(raw, problems)
+    return None if value is _BROKEN else Literal(value)
+
+
+def reference(raw: Raw, problems: Problems, what: str) -> Reference | None:
+    """A value that must be a wire; None where a problem was reported."""
+    value = port_value(raw, "", problems)
+    if isinstance(value, Reference):
+        return value
+    if value is not None:
+        text = raw.text if isinstance(raw, Scalar) else "key"
+        hint = f"did you mean ${text}?" if KEY.fullmatch(text) else "write $key"
+        problems.error("not-a-key", raw.place, f"{what} is a key", hint)
+    return None
+
+
+def _scalar(raw: Scalar, same_name: str, problems: Problems) -> PortValue | None:
+    if not isinstance(raw.value, str) or "$" not in raw.value:
+        return Literal(raw.value)
+    text = raw.value
+    if text == "$=":
+        return Reference(same_name)
+    wire = _WIRE.fullmatch(text)
+    if wire is not None:
+        return _reference(wire)
+    parts = _parts(text, raw.place, problems)
+    if parts is None:
+        return None
+    if all(isinstance(part, str) for part in parts):
+        return Literal("".join(str(part) for part in parts))
+    return Template(tuple(parts))
+
+
+def _reference(match: re.Match[str]) -> Reference:
+    scope = Scope.ROOT if match[1] else Scope.LOCAL
+    fields = tuple(match[3].split(".")[1:]) if match[3] else ()
+    return Reference(match[2], fields, scope)
+
+
+def _parts(text: str, place: Place, problems: Problems) -> list[str | Reference] | None:
+    parts: list[str | Reference] = []
+    position = 0
+    for match in _INSIDE.finditer(text):
+        if match.start() > position:
+            parts.append(text[position : match.start()])
+        position = match.end()
+        if match[0] == "$$":
+            parts.append("$")
+        elif match[2]:
+            parts.append(_reference(match))
+        else:
+            problems.error(
+                "dollar", place, "`$` here is no wire", "write ${key} inside text, $$ for a dollar"
+            )
+            return None
+    if position < len(text):
+        parts.append(text[position:])
+    return parts
+
+
+def reported_braces(raw: Raw, problems: Problems) -> bool:
+    """Whether `{key}` stands where `$key` was meant; reports it."""
+    if not isinstance(raw, Entries) or not raw.flow or len(raw.entries) != 1:
+        return False
+    key, value = raw.entries[0]
+    if not isinstance(value, Scalar) or value.value is not None or value.text:
+        return False
+    message = f"{{{key.text}}} is a mapping in YAML"
+    problems.error("braces", raw.place, message, f"did you mean ${key.text}?")
+    return True
+
+
+_BROKEN = object()
+
+
+def _nested(raw: Raw, problems: Problems) -> Any:
+    # as deep as the file, which yaml_source bounds
+    if isinstance(raw, Items):
+        items = [_nested(item, problems) for item in raw.items]
+        return _BROKEN if any(item is _BROKEN for item in items) else items
+    if isinstance(raw, Entries):
+        values = {key.text: _nested(value, problems) for key, value in raw.entries}
+        duplicate_keys(raw, problems)
+        return _BROKEN if any(value is _BROKEN for value in values.values()) else values
+    value = _scalar(raw, "", problems)
+    if isinstance(value, Literal):
+        return value.value
+    if value is not None:
+        problems.error(
+            "wire-inside",
+            raw.place,
+            "a wire cannot stand inside a list or mapping",
+            "give the whole value by one key, set under `values:`",
+        )
+    return _BROKEN
+
+
+def duplicate_keys(raw: Entries, problems: Problems) -> None:
+    """Report every key of a mapping that stands there before."""
+    first: dict[str, Place] = {}
+    for key, _ in raw.entries:
+        if key.text in first:
+            problems.error(
+                "duplicate-key",
+                key.place,
+                f"the key {key.text!r} stands here twice",
+                f"the first is in line {first[key.text].line}",
+            )
+        else:
+            first[key.text] = key.place
