@@ -182,7 +182,7 @@ def truth(value: Any) -> bool:
     """
     if isinstance(value, str):
         return value != ""
-    return _number(value, "a condition") != 0
+    return bool(_number(value, "a condition") != 0)
 
 
 def _number(value: Any, operator: str) -> Any:

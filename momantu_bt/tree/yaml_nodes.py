@@ -30,7 +30,7 @@ from momantu_bt.tree.model import (
 from momantu_bt.tree.problems import Problems, nearest
 from momantu_bt.tree.script import ScriptSyntaxError, canonical
 from momantu_bt.tree.yaml_source import Entries, Items, Raw, Scalar
-from momantu_bt.tree.yaml_values import duplicate_keys, port_value
+from momantu_bt.tree.yaml_values import duplicate_keys, port_value, reported_braces
 
 AGAIN = "again"
 ANY = "any"
@@ -225,16 +225,8 @@ class NodeReader:
 
     def _leaf(self, node: Node, value: Raw, spec: NodeSpec | None) -> None:
         if isinstance(value, Entries):
-            if _is_braced(value):
-                key = value.entries[0][0].text
-                self._error(
-                    "braces",
-                    value.place,
-                    f"{{{key}}} is a mapping in YAML",
-                    f"did you mean ${key}?",
-                )
-                return
-            self._ports(node, value, spec)
+            if not reported_braces(value, self.problems):
+                self._ports(node, value, spec)
         elif isinstance(value, Items):
             hint = f"write `{_said(node)}: {{port: value}}`, or begin with `sequence:`"
             self._error("wrong-value", value.place, f"{_said(node)} takes ports, no list", hint)
