@@ -1,0 +1,1 @@
+"""Episodes in SAPIEN: physics, drives, sensors and ground truth."""

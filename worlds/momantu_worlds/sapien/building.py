@@ -1,0 +1,131 @@
+"""Bodies and lights of an episode, built in SAPIEN."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+import sapien
+
+from momantu_bt.geometry import Array, Transform, quaternion_from_axis_angle
+from momantu_worlds.sapien.looks import render_shape
+from momantu_worlds.sapien.meshes import body_mesh, map_triangles, volume
+from momantu_worlds.sapien.moving import MovingBody
+from momantu_worlds.sapien.poses import pose_of
+from momantu_worlds.sapien.robot_model import FLOOR_BIT
+from momantu_worlds.sapien.truth import Truth
+from momantu_worlds.scenes.bodies import Body, Box, Cylinder, Episode, Hull, Part
+
+FLOOR = "floor"
+"""Category of bodies that the robot's base rolls on, and the name of the plane at z = 0."""
+FLOOR_FRICTION = 0.8
+Z_FROM_X = Transform((0, 0, 0), quaternion_from_axis_angle((0, 1, 0), -math.pi / 2))
+"""SAPIEN's cylinders lie along x and its planes face x; ours stand along z."""
+
+
+def add_bodies(
+    scene: Any, bodies: Iterable[Body], truth: Truth, *, visuals: bool
+) -> tuple[Array, list[MovingBody]]:
+    """Build every body and the floor, and tell `truth` of them.
+
+    Returns:
+        Triangles (k, 3, 3) in the map of all that stands still, and the loose bodies.
+    """
+    _add_floor(scene)
+    still, moving = [], []
+    for body in bodies:
+        entity = _build(body, visuals)
+        scene.add_entity(entity)
+        truth.add(body.name, entity)
+        if body.static:
+            still.append(body)
+            continue
+        mesh = body_mesh(body)
+        if mesh is not None:
+            moving.append(MovingBody(entity, mesh))
+    return map_triangles(still), moving
+
+
+def add_lights(scene: Any, episode: Episode) -> None:
+    """Ambient light, suns and lamps; none casts a shadow."""
+    scene.set_ambient_light(list(episode.ambient))
+    for sun in episode.suns:
+        scene.add_directional_light(list(sun.direction), list(sun.color), shadow=False)
+    for lamp in episode.lamps:
+        scene.add_point_light(list(lamp.position), list(lamp.color), shadow=False)
+
+
+def _add_floor(scene: Any) -> None:
+    material = sapien.physx.PhysxMaterial(FLOOR_FRICTION, FLOOR_FRICTION, 0.0)
+    shape = sapien.physx.PhysxCollisionShapePlane(material)
+    shape.set_collision_groups([1, 1, FLOOR_BIT, 0])
+    component = sapien.physx.PhysxRigidStaticComponent()
+    component.attach(shape)
+    component.name = FLOOR
+    entity = sapien.Entity()
+    entity.add_component(component)
+    entity.name = FLOOR
+    entity.set_pose(pose_of(Z_FROM_X))
+    scene.add_entity(entity)
+
+
+def _build(body: Body, visuals: bool) -> Any:
+    entity = sapien.Entity()
+    entity.name = body.name
+    if visuals and any(part.visual for part in body.parts):
+        look = sapien.render.RenderBodyComponent()
+        for part in body.parts:
+            if part.visual:
+                shape = render_shape(part)
+                shape.local_pose = pose_of(_sapien_pose(part))
+                look.attach(shape)
+        look.name = body.name
+        entity.add_component(look)
+    entity.add_component(_physics(body))
+    entity.set_pose(pose_of(body.map_from_body))
+    return entity
+
+
+def _physics(body: Body) -> Any:
+    physx = sapien.physx
+    component = (
+        physx.PhysxRigidStaticComponent() if body.static else physx.PhysxRigidDynamicComponent()
+    )
+    material = physx.PhysxMaterial(body.friction, body.friction, 0.0)
+    colliding = [part for part in body.parts if part.collision]
+    total = sum(volume(part.geometry) for part in colliding)
+    for part in colliding:
+        shape = _collision_shape(part, material)
+        shape.local_pose = pose_of(_sapien_pose(part))
+        shape.set_collision_groups([1, 1, FLOOR_BIT if body.category == FLOOR else 0, 0])
+        if not body.static:
+            shape.set_density(body.mass / total)
+        component.attach(shape)
+    component.name = body.name
+    return component
+
+
+def _collision_shape(part: Part, material: Any) -> Any:
+    geometry, physx = part.geometry, sapien.physx
+    if isinstance(geometry, Box):
+        half = [edge / 2 for edge in geometry.size]
+        return physx.PhysxCollisionShapeBox(half_size=half, material=material)
+    if isinstance(geometry, Cylinder):
+        return physx.PhysxCollisionShapeCylinder(
+            radius=geometry.radius, half_length=geometry.height / 2, material=material
+        )
+    if isinstance(geometry, Hull):
+        vertices = np.asarray(geometry.vertices, dtype=np.float32)
+        return physx.PhysxCollisionShapeConvexMesh(
+            vertices=vertices, scale=[1, 1, 1], material=material
+        )
+    raise TypeError(f"a {type(geometry).__name__} cannot collide; use Box, Cylinder or Hull")
+
+
+def _sapien_pose(part: Part) -> Transform:
+    """Where SAPIEN's own shape must lie so that the part lies where it is described."""
+    if isinstance(part.geometry, Cylinder):
+        return part.body_from_part @ Z_FROM_X
+    return part.body_from_part

@@ -1,0 +1,103 @@
+"""What parts look like: SAPIEN's render shapes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import sapien
+from numpy.typing import NDArray
+
+from momantu_bt.geometry import Array
+from momantu_worlds.scenes.bodies import Box, Cylinder, Hull, Mesh, Part, Picture
+
+GAMMA = 2.2
+"""Colours are given as a screen shows them; the shader computes with light."""
+
+
+def render_shape(part: Part) -> Any:
+    """The render shape of a part, around its own origin."""
+    geometry = part.geometry
+    if isinstance(geometry, Box):
+        half = [edge / 2 for edge in geometry.size]
+        return sapien.render.RenderShapeBox(half, _plain(part))
+    if isinstance(geometry, Cylinder):
+        return sapien.render.RenderShapeCylinder(
+            geometry.radius, geometry.height / 2, _plain(part)
+        )
+    if isinstance(geometry, Picture):
+        return _picture(geometry)
+    if isinstance(geometry, Mesh):
+        return _mesh(geometry, part)
+    if isinstance(geometry, Hull):
+        from momantu_worlds.sapien.meshes import collision_mesh
+
+        hull = collision_mesh(geometry)
+        return _mesh(Mesh(hull.vertices, hull.faces), part)
+    raise TypeError(f"a {type(geometry).__name__} cannot be shown")
+
+
+def _plain(part: Part) -> Any:
+    color = [channel**GAMMA for channel in part.color]
+    return sapien.render.RenderMaterial(base_color=[*color, 1.0])
+
+
+def _textured(pixels: NDArray[np.uint8]) -> Any:
+    """A material with a texture (h, w, 3) of screen colours."""
+    alpha = np.full((*pixels.shape[:2], 1), 255, dtype=np.uint8)
+    texture = sapien.render.RenderTexture2D(
+        np.ascontiguousarray(np.concatenate([pixels, alpha], axis=2)),
+        "r8g8b8a8unorm",
+        mipmap_levels=1,
+        filter_mode="linear",
+        address_mode="edge",
+        srgb=True,
+    )
+    material = sapien.render.RenderMaterial()
+    material.set_base_color_texture(texture)
+    return material
+
+
+def _picture(picture: Picture) -> Any:
+    """Two triangles that carry a texture; the picture's first row lies at +y."""
+    x, y = picture.size[0] / 2, picture.size[1] / 2
+    vertices = np.array([[-x, -y, 0], [x, -y, 0], [x, y, 0], [-x, y, 0]], dtype=np.float32)
+    normals = np.tile(np.array([0, 0, 1], dtype=np.float32), (4, 1))
+    uvs = np.array([[0, 1], [1, 1], [1, 0], [0, 0]], dtype=np.float32)
+    triangles = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.uint32)
+    return sapien.render.RenderShapeTriangleMesh(
+        vertices, triangles, normals, uvs, _textured(picture.pixels)
+    )
+
+
+def _mesh(mesh: Mesh, part: Part) -> Any:
+    """A mesh with smooth normals; each triangle has the colour of its first corner."""
+    vertices = np.asarray(mesh.vertices, dtype=np.float64)
+    triangles = np.asarray(mesh.triangles)
+    corners = triangles.reshape(-1)
+    uvs = np.zeros((len(corners), 2))
+    material = _plain(part)
+    if mesh.colors is not None:
+        firsts = np.round(255.0 * mesh.colors[triangles[:, 0]]).astype(np.uint8)
+        palette, cell = np.unique(firsts, axis=0, return_inverse=True)
+        uvs[:, 0] = np.repeat((cell.reshape(-1) + 0.5) / len(palette), 3)
+        uvs[:, 1] = 0.5
+        material = _textured(palette[None])
+    return sapien.render.RenderShapeTriangleMesh(
+        vertices[corners].astype(np.float32),
+        np.arange(len(corners), dtype=np.uint32).reshape(-1, 3),
+        _smooth_normals(vertices, triangles)[corners].astype(np.float32),
+        uvs.astype(np.float32),
+        material,
+    )
+
+
+def _smooth_normals(vertices: Array, triangles: NDArray[Any]) -> Array:
+    """Unit normal of each vertex: the area-weighted mean of its triangles' normals."""
+    a, b, c = (vertices[triangles[:, i]] for i in range(3))
+    faces = np.cross(b - a, c - a)
+    normals = np.zeros_like(vertices)
+    for i in range(3):
+        np.add.at(normals, triangles[:, i], faces)
+    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    return np.asarray(normals / np.maximum(lengths, 1e-12))

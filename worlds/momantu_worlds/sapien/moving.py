@@ -1,0 +1,35 @@
+"""Bodies that can move, as the laser meets them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import trimesh
+
+from momantu_bt.geometry import Array
+from momantu_worlds.sapien.poses import transform_of
+
+
+class MovingBody:
+    """A loose body and the outline that a horizontal plane cuts out of it."""
+
+    def __init__(self, entity: Any, mesh: trimesh.Trimesh) -> None:
+        self._entity, self._mesh = entity, mesh
+        self._radius = float(np.linalg.norm(mesh.vertices, axis=1).max())
+
+    def cut(self, origin: Array, reach: float) -> Array:
+        """Segments (k, 2, 2) in the map where the plane z = origin[2] cuts the body.
+
+        None when it lies wholly above or below, or farther away than `reach` from `origin`, m.
+        """
+        pose = self._entity.pose
+        position = np.asarray(pose.p, dtype=np.float64)
+        far = float(np.hypot(*(position[:2] - origin[:2]))) > reach + self._radius
+        if far or abs(position[2] - origin[2]) > self._radius:
+            return np.zeros((0, 2, 2))
+        map_from_body = transform_of(pose)
+        height = map_from_body.inverse().apply(np.array([0.0, 0.0, origin[2]]))
+        normal = map_from_body.rotation.T[:, 2]
+        lines = trimesh.intersections.mesh_plane(self._mesh, normal, height)
+        return np.asarray(map_from_body.apply(lines)[..., :2])

@@ -1,0 +1,44 @@
+"""Wheel odometry: what the wheels believe, which drifts with distance and turning."""
+
+from __future__ import annotations
+
+import math
+
+from momantu_bt.geometry import Pose2D, wrap_angle
+from momantu_bt.world import seeded
+from momantu_worlds.sapien.config import OdometryErrors
+
+
+class Odometry:
+    """Integrates the base's true motion with scale errors and a random walk."""
+
+    def __init__(self, start: Pose2D, seed: int, errors: OdometryErrors) -> None:
+        self._seed, self._errors = seed, errors
+        random = seeded(seed, "odometry scale")
+        self._linear_scale = 1.0 + errors.linear_scale * float(random.standard_normal())
+        self._angular_scale = 1.0 + errors.angular_scale * float(random.standard_normal())
+        self._true = start
+        self.odom_from_base = Pose2D(0.0, 0.0, 0.0)
+
+    def update(self, map_from_base: Pose2D, stamp: float) -> None:
+        """Take the base's true pose of a new instant."""
+        moved = self._true.inverse() @ map_from_base
+        self._true = map_from_base
+        distance, turn = math.hypot(moved.x, moved.y), abs(moved.yaw)
+        if distance < 1e-7 and turn < 1e-7:
+            return
+        e, noise = self._errors, seeded(self._seed, "odometry", stamp).standard_normal(2)
+        along = moved.x * self._linear_scale + float(noise[0]) * e.slip * math.sqrt(distance)
+        across = moved.y * self._linear_scale
+        yaw_sigma = math.hypot(e.yaw_per_metre * math.sqrt(distance), e.yaw_per_turn * math.sqrt(turn))
+        yaw = wrap_angle(moved.yaw * self._angular_scale + float(noise[1]) * yaw_sigma)
+        self.odom_from_base = self.odom_from_base @ Pose2D(along, across, yaw)
+
+    def speeds(self, linear: float, angular: float, stamp: float) -> tuple[float, float]:
+        """Speeds as the wheels report them, m/s and rad/s."""
+        noise = seeded(self._seed, "odometry speed", stamp).standard_normal(2)
+        sigma = self._errors.speed_noise
+        return (
+            linear * self._linear_scale + sigma * float(noise[0]),
+            angular * self._angular_scale + sigma * float(noise[1]),
+        )

@@ -1,0 +1,215 @@
+"""The robot's driver in simulation: what a real robot's driver would offer, and no more."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, Protocol
+
+import numpy as np
+
+from momantu_bt.geometry import Array, Pose2D
+from momantu_bt.messages import ActuatorGoal, RobotState, frozen
+from momantu_bt.robot import Actuator, ActuatorKind, RobotDescription, SensorReading
+from momantu_worlds.robots.loading import SimulationModel
+from momantu_worlds.sapien.base_drive import BaseDrive
+from momantu_worlds.sapien.config import SimulatorConfig
+from momantu_worlds.sapien.encoders import Encoders, prismatic_joints
+from momantu_worlds.sapien.gripper_drive import GripperDrive
+from momantu_worlds.sapien.joint_drive import JointDrive
+from momantu_worlds.sapien.odometry import Odometry
+from momantu_worlds.sapien.robot_model import RobotModel
+
+
+class Sensor(Protocol):
+    """Something that gives a reading of now."""
+
+    def read(self, stamp: float) -> SensorReading:
+        """The reading of `stamp`, which is now."""
+        ...
+
+
+class SimulatedRobot:
+    """Implements `momantu_bt.robot.Robot`.
+
+    sensors: by the description's names; read at most once per instant.
+    """
+
+    def __init__(
+        self,
+        description: RobotDescription,
+        simulation: SimulationModel,
+        model: RobotModel,
+        start: Pose2D,
+        pose: Mapping[str, float],
+        seed: int,
+        config: SimulatorConfig,
+        now: Callable[[], float],
+    ) -> None:
+        self._description, self._model, self._now = description, model, now
+        self.sensors: dict[str, Sensor] = {}
+        self._readings: dict[str, SensorReading] = {}
+        self._state: RobotState | None = None
+        fingers = {j for a in description.actuators.values() for j in _fingers(a)}
+        self._names = tuple(
+            name
+            for actuator in description.actuators.values()
+            if actuator.kind is ActuatorKind.JOINTS
+            for name in actuator.joints
+        )
+        self._columns = [model.index[name] for name in self._names]
+        self._fingers = [model.index[name] for name in model.index if name in fingers]
+        prismatic = prismatic_joints(description, self._names)
+        self._encoders = Encoders(self._names, prismatic, seed, config.joints)
+        self._odometry = Odometry(start, seed, config.odometry)
+        base = simulation.base_joints
+        self._base_columns = [model.index[n] for n in (base.x, base.y, base.yaw)]
+        self._efforts = np.array([model.efforts.get(name, np.inf) for name in self._names])
+        self._physics = config.physics
+        self.base = BaseDrive(*(model.joints[n] for n in (base.x, base.y, base.yaw)), description.base)
+        self.joint_drives = {
+            name: self._joint_drive(actuator)
+            for name, actuator in description.actuators.items()
+            if actuator.kind is ActuatorKind.JOINTS
+        }
+        self.gripper = self._gripper_drive(config)
+        self._place(start, pose)
+
+    @property
+    def description(self) -> RobotDescription:
+        """What the robot is."""
+        return self._description
+
+    def state(self) -> RobotState:
+        """Joints and odometry of now, as measured."""
+        stamp = self._now()
+        if self._state is None or self._state.stamp != stamp:
+            self._state = self._measure(stamp)
+        return self._state
+
+    def read(self, sensor: str) -> SensorReading:
+        """The reading of now; KeyError with the sensors there are when there is none."""
+        if sensor not in self.sensors:
+            names = ", ".join(self.sensors)
+            raise KeyError(f"the robot has no sensor {sensor!r}; it has: {names}")
+        stamp = self._now()
+        known = self._readings.get(sensor)
+        if known is None or known.stamp != stamp:
+            known = self._readings[sensor] = self.sensors[sensor].read(stamp)
+        return known
+
+    def command(self, actuator: str, goal: ActuatorGoal) -> None:
+        """Give an actuator its goal; see `momantu_bt.robot.Robot.command`."""
+        kind = self._actuator(actuator).kind
+        if kind is ActuatorKind.BASE:
+            self.base.command(goal, self._now())
+        elif kind is ActuatorKind.JOINTS:
+            self.joint_drives[actuator].command(goal, self._now())
+        else:
+            self.gripper.command(goal)
+
+    def stop(self, actuator: str) -> None:
+        """Brake at the limits; the gripper keeps its last force."""
+        kind = self._actuator(actuator).kind
+        if kind is ActuatorKind.BASE:
+            self.base.stop()
+        elif kind is ActuatorKind.JOINTS:
+            self.joint_drives[actuator].stop()
+
+    def begin_tick(self) -> None:
+        """Prepare the drives for the physics steps of the coming tick."""
+        now = self._now()
+        self.base.begin_tick(now)
+        for drive in self.joint_drives.values():
+            drive.begin_tick(now)
+
+    def apply(self, index: int) -> None:
+        """Set every drive's target for physics step `index` of this tick."""
+        yaw = float(self._model.articulation.get_qpos()[self._base_columns[2]])
+        self.base.apply(yaw)
+        for drive in self.joint_drives.values():
+            drive.apply(index)
+        self.gripper.apply()
+
+    def end_tick(self) -> None:
+        """Let odometry take in the tick's motion; the clock stands at its end already."""
+        self._odometry.update(self._true_base(self._model.positions()), self._now())
+
+    def _actuator(self, name: str) -> Actuator:
+        actuators = self._description.actuators
+        if name not in actuators:
+            raise KeyError(f"the robot has no actuator {name!r}; it has: {', '.join(actuators)}")
+        return actuators[name]
+
+    def _measure(self, stamp: float) -> RobotState:
+        true, speeds = self._model.positions(), self._model.velocities()
+        positions, velocities, efforts = self._encoders.joints(
+            true[self._columns], speeds[self._columns], self._drive_efforts(true, speeds), stamp
+        )
+        travels = (float(true[self._fingers[0]]), float(true[self._fingers[-1]]))
+        width, grip = self._encoders.gripper(sum(travels), self.gripper.effort(travels), stamp)
+        base = self._true_base(true)
+        vx, vy, wz = (float(speeds[i]) for i in self._base_columns)
+        forward = vx * np.cos(base.yaw) + vy * np.sin(base.yaw)
+        linear, angular = self._odometry.speeds(float(forward), wz, stamp)
+        return RobotState(
+            stamp,
+            self._names,
+            np.asarray(frozen(positions)),
+            np.asarray(frozen(velocities)),
+            np.asarray(frozen(efforts)),
+            self._odometry.odom_from_base.transform(),
+            linear,
+            angular,
+            width,
+            grip,
+        )
+
+    def _drive_efforts(self, true: Array, speeds: Array) -> Array:
+        """What the drives push with, Nm or N: their control law, within the effort limits."""
+        drives = self.joint_drives.values()
+        target = np.concatenate([d.position for d in drives])
+        speed = np.concatenate([d.velocity for d in drives])
+        push = self._physics.arm_stiffness * (target - true[self._columns])
+        push += self._physics.arm_damping * (speed - speeds[self._columns])
+        return np.clip(push, -self._efforts, self._efforts)
+
+    def _true_base(self, positions: Array) -> Pose2D:
+        x, y, yaw = (float(positions[i]) for i in self._base_columns)
+        return Pose2D(x, y, yaw)
+
+    def _joint_drive(self, actuator: Actuator) -> JointDrive:
+        places = [self._names.index(name) for name in actuator.joints]
+        return JointDrive(
+            actuator.joints,
+            [self._model.joints[name] for name in actuator.joints],
+            [self._description.joint_limits[name] for name in actuator.joints],
+            self._encoders.offsets[places],
+        )
+
+    def _gripper_drive(self, config: SimulatorConfig) -> GripperDrive:
+        effector = self._description.end_effector
+        names = self._description.actuators[effector.actuator].joints
+        return GripperDrive(
+            [self._model.joints[name] for name in names],
+            effector,
+            self._description.joint_limits[names[0]].velocity,
+            config.physics,
+        )
+
+    def _place(self, start: Pose2D, pose: Mapping[str, float]) -> None:
+        """Stand at `start` with the joints at `pose` and the gripper open; nothing moves."""
+        positions = self._model.positions()
+        positions[self._base_columns] = (start.x, start.y, start.yaw)
+        for name, value in pose.items():
+            positions[self._model.index[name]] = value
+        width = self._description.end_effector.max_width
+        positions[self._fingers] = width / len(self._fingers)
+        self._model.articulation.set_qpos(positions.astype(np.float32))
+        self._model.articulation.set_qvel(np.zeros(len(positions), dtype=np.float32))
+        for drive in self.joint_drives.values():
+            drive.place(np.array([positions[self._model.index[n]] for n in drive.names]))
+        self.gripper.place(width)
+
+
+def _fingers(actuator: Actuator) -> tuple[str, ...]:
+    return actuator.joints if actuator.kind is ActuatorKind.GRIPPER else ()

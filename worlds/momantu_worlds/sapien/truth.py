@@ -1,0 +1,106 @@
+"""Ground truth, for the referee and for tests alone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from momantu_bt.geometry import Array, Pose2D, Transform
+from momantu_bt.world import TICK
+from momantu_worlds.sapien.poses import transform_of
+from momantu_worlds.sapien.robot_model import RobotModel
+
+
+@dataclass(frozen=True, slots=True)
+class Contact:
+    """Two things that touched during the last tick.
+
+    first, second: names of bodies, or of the robot's links (which come first).
+    force: length of the contact force, averaged over the tick, N.
+    """
+
+    first: str
+    second: str
+    force: float
+
+
+class Truth:
+    """Where everything really is, and what touches what."""
+
+    def __init__(self, system: Any, model: RobotModel, base_link: str) -> None:
+        self._system, self._model, self._base_link = system, model, base_link
+        self._entities: dict[str, Any] = {}
+        self._impulses: dict[tuple[str, str], Array] = {}
+        self.watching = False
+        self.robot_links = frozenset(model.links)
+
+    def add(self, name: str, entity: Any) -> None:
+        """Make a body known by name."""
+        self._entities[name] = entity
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        """Names of all bodies, robot excluded."""
+        return tuple(self._entities)
+
+    def pose(self, body: str) -> Transform:
+        """`map_from_body`; KeyError with the names there are when there is none."""
+        return transform_of(self._entity(body).pose)
+
+    def speed(self, body: str) -> tuple[float, float]:
+        """Speed of a moving body, m/s and rad/s; (0, 0) for what never moves."""
+        import sapien
+
+        part = self._entity(body).find_component_by_type(sapien.physx.PhysxRigidDynamicComponent)
+        if part is None:
+            return 0.0, 0.0
+        linear, angular = part.get_linear_velocity(), part.get_angular_velocity()
+        return float(np.linalg.norm(linear)), float(np.linalg.norm(angular))
+
+    def link(self, name: str) -> Transform:
+        """`map_from_link` of one of the robot's links; KeyError when there is none."""
+        return transform_of(self._model.links[name].entity_pose)
+
+    def base(self) -> Pose2D:
+        """`map_from_base` on the floor."""
+        return Pose2D.from_transform(self.link(self._base_link))
+
+    def watch_contacts(self) -> None:
+        """Collect contact forces from the next tick on; costs time, changes nothing."""
+        self.watching = True
+
+    def contacts(self) -> tuple[Contact, ...]:
+        """What touched during the last tick; `watch_contacts` must have been called.
+
+        Raises:
+            RuntimeError: nobody asked to watch contacts.
+        """
+        if not self.watching:
+            raise RuntimeError("contacts are not collected; call watch_contacts() before stepping")
+        return tuple(
+            Contact(first, second, float(np.linalg.norm(impulse)) / TICK)
+            for (first, second), impulse in self._impulses.items()
+        )
+
+    def begin_tick(self) -> None:
+        """Forget the contacts of the tick before."""
+        self._impulses.clear()
+
+    def collect(self) -> None:
+        """Add the contact impulses of the physics step just made."""
+        for contact in self._system.get_contacts():
+            impulse = sum(point.impulse for point in contact.points)
+            if not np.any(impulse):
+                continue
+            a, b = contact.bodies[0].name, contact.bodies[1].name
+            sign = 1.0
+            if (a not in self.robot_links, a) > (b not in self.robot_links, b):
+                a, b, sign = b, a, -1.0
+            self._impulses[a, b] = self._impulses.get((a, b), 0.0) + sign * np.asarray(impulse)
+
+    def _entity(self, name: str) -> Any:
+        if name not in self._entities:
+            raise KeyError(f"no body {name!r}; bodies: {', '.join(self._entities)}")
+        return self._entities[name]

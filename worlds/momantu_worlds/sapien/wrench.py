@@ -1,0 +1,53 @@
+"""Force and torque at the wrist, as a sensor between arm and hand feels them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from momantu_bt.geometry import Array, matrix_from_quaternion
+from momantu_bt.messages import WrenchReading, frozen
+from momantu_bt.robot import WristWrench
+from momantu_bt.world import seeded
+from momantu_worlds.sapien.config import WrenchErrors
+
+
+class Wrench:
+    """What the load of the hand puts on the wrist; the hand's own weight is compensated."""
+
+    def __init__(
+        self,
+        articulation: Any,
+        link: Any,
+        name: str,
+        sensor: WristWrench,
+        seed: int,
+        errors: WrenchErrors,
+    ) -> None:
+        self._articulation, self._index = articulation, link.get_index()
+        self._link_from_joint = matrix_from_quaternion(link.get_joint().get_pose_in_child().q)
+        self._name, self._sensor, self._seed, self._errors = name, sensor, seed, errors
+        random = seeded(seed, name, "bias")
+        self._force_bias = errors.force_bias * random.standard_normal(3)
+        self._torque_bias = errors.torque_bias * random.standard_normal(3)
+
+    def read(self, stamp: float) -> WrenchReading:
+        """The wrench of now, in the sensor's frame."""
+        force, torque = self.exact()
+        random, errors = seeded(self._seed, self._name, stamp), self._errors
+        force = force + self._force_bias + errors.force_noise * random.standard_normal(3)
+        torque = torque + self._torque_bias + errors.torque_noise * random.standard_normal(3)
+        return WrenchReading(
+            stamp, self._sensor.frame, np.asarray(frozen(force)), np.asarray(frozen(torque))
+        )
+
+    def exact(self) -> tuple[Array, Array]:
+        """Force (3,) N and torque (3,) Nm without errors.
+
+        The joint carries the hand, so what the load puts on it is the reaction's opposite.
+        """
+        incoming = np.asarray(
+            self._articulation.get_link_incoming_joint_forces()[self._index], dtype=np.float64
+        )
+        return -(self._link_from_joint @ incoming[:3]), -(self._link_from_joint @ incoming[3:])
