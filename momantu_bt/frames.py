@@ -153,7 +153,7 @@ class FrameBuffer:
         if self._states and state.stamp < self._states[-1].stamp:
             raise ValueError(f"state of {state.stamp} s after one of {self._states[-1].stamp} s")
         self._states.append(state)
-        while self._states[0].stamp < state.stamp - HISTORY:
+        while self._states[0].stamp < state.stamp - HISTORY - AHEAD:
             self._states.popleft()
 
     def set_map_from_odom(self, transform: Transform, stamp: float) -> None:
