@@ -1,0 +1,32 @@
+"""Taking a driver into use in this process: environment and preloaded libraries."""
+
+from __future__ import annotations
+
+import os
+
+from momantu_bt.vulkan.private import ICD_VARIABLE, installed_driver, is_ours, preload
+from momantu_bt.vulkan.probe import Way
+
+SOFTWARE_THREADS_VARIABLE = "LP_NUM_THREADS"
+
+
+def apply(way: Way) -> None:
+    """Make this process render the given way; must come before the first `import sapien`.
+
+    Raises:
+        FileNotFoundError: the way needs the private driver and there is none.
+        OSError: a library of the private driver cannot be loaded.
+    """
+    # One rasteriser thread: two runs side by side are faster, and none disturbs the other's time.
+    os.environ.setdefault(SOFTWARE_THREADS_VARIABLE, "1")
+    if way is not Way.PRIVATE and is_ours(os.environ.get(ICD_VARIABLE)):
+        del os.environ[ICD_VARIABLE]
+    if way is Way.SYSTEM:
+        return
+    driver = installed_driver()
+    if driver is None:
+        raise FileNotFoundError("the private Vulkan driver is not installed")
+    preload(driver.window_libraries)
+    if way is Way.PRIVATE:
+        preload(driver.driver_libraries)
+        os.environ[ICD_VARIABLE] = str(driver.icd)
