@@ -26,6 +26,12 @@ WRONG_TYPE = "WRONG_TYPE"
 """A value at a port is not of the port's type."""
 FAILED = "FAILED"
 """A node failed without saying more (AlwaysFailure, a false condition, a guard)."""
+HALTED = "HALTED"
+"""Not a failure of its own: what was running when a time limit ended it."""
+SENSOR_DEAD = "SENSOR_DEAD"
+"""A sensor does not answer; `data["sensor"]` names it."""
+SCRIPT_ERROR = "SCRIPT_ERROR"
+"""A script or a condition could not be evaluated."""
 
 ENGINE_CODES: Mapping[str, str] = MappingProxyType(
     {
@@ -37,6 +43,9 @@ ENGINE_CODES: Mapping[str, str] = MappingProxyType(
         INPUT_MISSING: "an input reads a key that holds no value",
         WRONG_TYPE: "a value at a port is not of the port's type",
         FAILED: "the node failed without saying more",
+        HALTED: "the node was running when a time limit ended it",
+        SENSOR_DEAD: "a sensor does not answer",
+        SCRIPT_ERROR: "a script or a condition could not be evaluated",
     }
 )
 """Codes that any node can fail with, beside those its skill declares."""
@@ -50,9 +59,10 @@ class FailureValue:
     message: one sentence for a person.
     data: plain values (numbers, text, lists) that explain the numbers behind the sentence.
     node: name of the node that failed; place: `file:line` of it in the tree file.
-    cause: the failure that led to this one.
+    cause: the failure that led to this one; through a subtree, the same one further inside.
     beside: failures of siblings that were tried before (a fallback's earlier children).
-    tries: how often a retry or recover node tried.
+    tries: how often a retry or recover node tried; most_tries: how often it may (0: no such node).
+    node_type: canonical type of the node, or name of its skill.
     """
 
     code: str
@@ -63,6 +73,8 @@ class FailureValue:
     cause: FailureValue | None = None
     beside: tuple[FailureValue, ...] = ()
     tries: int = 1
+    most_tries: int = 0
+    node_type: str = ""
 
     def chain(self) -> Iterator[FailureValue]:
         """This failure, then its causes, outermost first."""
@@ -79,6 +91,7 @@ class FailureValue:
             "node": self.node,
             "place": self.place,
             "tries": self.tries,
+            "most_tries": self.most_tries,
             "data": dict(self.data),
             "cause": None if self.cause is None else self.cause.as_dict(),
             "beside": [other.as_dict() for other in self.beside],

@@ -115,10 +115,7 @@ class Lease:
         self._book._release(self)
 
     def _enter(self, actuator: str) -> None:
-        if (
-            actuator in self._robot.description.actuators
-            and actuator not in self._allowed
-        ):
+        if actuator in self._robot.description.actuators and actuator not in self._allowed:
             declared = ", ".join(sorted(self._allowed)) or "nothing"
             raise PermissionError(
                 f"{self.owner} commands {actuator!r} but its `uses` declares {declared}: "

@@ -48,15 +48,11 @@ def fits(value: Any, annotation: Any) -> bool:
     if origin is Union or origin is types.UnionType:
         return any(fits(value, option) for option in arguments)
     if origin is Literal:
-        return any(
-            type(value) is type(option) and value == option for option in arguments
-        )
+        return any(type(value) is type(option) and value == option for option in arguments)
     if origin is tuple:
         return isinstance(value, tuple) and _tuple_fits(value, arguments)
     if origin is list:
-        return isinstance(value, list | tuple) and all(
-            fits(v, arguments[0]) for v in value
-        )
+        return isinstance(value, list | tuple) and all(fits(v, arguments[0]) for v in value)
     return _is_instance(value, origin)
 
 
@@ -97,7 +93,5 @@ def freeze(value: Any) -> Any:
             value.setflags(write=False)
         return value
     if isinstance(value, dict):
-        return types.MappingProxyType(
-            {key: freeze(item) for key, item in value.items()}
-        )
+        return types.MappingProxyType({key: freeze(item) for key, item in value.items()})
     return value

@@ -107,9 +107,7 @@ class Session:
             self.status = Status.IDLE
 
     def _begin(self) -> Run:
-        missing = [
-            name for name in self.kind.needs if name not in self._context.services
-        ]
+        missing = [name for name in self.kind.needs if name not in self._context.services]
         if missing:
             having = ", ".join(self._context.services) or "none"
             raise Failure(
@@ -120,9 +118,7 @@ class Session:
         skill = self.kind()
         skill.port_values.update(self._admitted(self._inputs))
         absent = [
-            p.name
-            for p in self.kind.ports.values()
-            if p.required and p.name not in self._inputs
+            p.name for p in self.kind.ports.values() if p.required and p.name not in self._inputs
         ]
         if absent:
             raise Failure(
@@ -148,22 +144,13 @@ class Session:
 
     def _admitted(self, values: Mapping[str, Any]) -> dict[str, Any]:
         ports = self.kind.ports
-        unknown = [
-            name
-            for name in values
-            if name not in ports or ports[name].direction != "in"
-        ]
+        unknown = [name for name in values if name not in ports or ports[name].direction != "in"]
         if unknown:
-            inputs = (
-                ", ".join(p.name for p in ports.values() if p.direction == "in")
-                or "none"
-            )
+            inputs = ", ".join(p.name for p in ports.values() if p.direction == "in") or "none"
             raise TypeError(
                 f"{self.kind.__name__} has no input {', '.join(unknown)}; inputs: {inputs}"
             )
-        return {
-            name: admit(freeze(value), ports[name]) for name, value in values.items()
-        }
+        return {name: admit(freeze(value), ports[name]) for name, value in values.items()}
 
     def _advance(self, generator: Run) -> None:
         now = self._context.clock.now()
@@ -176,9 +163,7 @@ class Session:
             said = _resume(generator, pending)
             while isinstance(said, Compute) and not said.budget > 0.0:
                 said = generator.throw(
-                    ValueError(
-                        f"compute with a budget of {said.budget} s; thinking is never free"
-                    )
+                    ValueError(f"compute with a budget of {said.budget} s; thinking is never free")
                 )
         finally:
             self.slowest = time.perf_counter() - started
@@ -214,9 +199,7 @@ class Session:
                 continue
             value = values.get(port.name, MISSING)
             if value is MISSING:
-                raise TypeError(
-                    f"{self.kind.__name__} ended without giving output {port.name!r}"
-                )
+                raise TypeError(f"{self.kind.__name__} ended without giving output {port.name!r}")
             values[port.name] = freeze(admit(value, port))
 
     def _fail(self, failure: FailureValue) -> None:
@@ -273,9 +256,7 @@ def _with_cause(value: FailureValue, cause: FailureValue | None) -> FailureValue
     return FailureValue(value.code, value.message, value.data, cause=cause)
 
 
-def _skill_error(
-    kind: type[Skill], error: Exception, sentence: str = ""
-) -> FailureValue:
+def _skill_error(kind: type[Skill], error: Exception, sentence: str = "") -> FailureValue:
     text = "".join(traceback.format_exception(error))
     said = sentence or f"raised {type(error).__name__}: {error}"
     cause = error.value if isinstance(error, Failure) else None

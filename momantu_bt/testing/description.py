@@ -28,9 +28,7 @@ def small_robot() -> RobotDescription:
         name="small",
         urdf=URDF,
         footprint=((0.25, 0.2), (-0.25, 0.2), (-0.25, -0.2), (0.25, -0.2)),
-        base=BaseLimits(
-            linear=1.0, angular=1.5, linear_acceleration=1.0, angular_acceleration=3.0
-        ),
+        base=BaseLimits(linear=1.0, angular=1.5, linear_acceleration=1.0, angular_acceleration=3.0),
         actuators={
             "base": Actuator(kind=ActuatorKind.BASE),
             "arm": Actuator(kind=ActuatorKind.JOINTS, joints=_ARM),
@@ -39,9 +37,7 @@ def small_robot() -> RobotDescription:
         },
         joint_limits={
             "lift": JointLimit(lower=0.0, upper=0.4, velocity=0.1, acceleration=0.3),
-            "shoulder": JointLimit(
-                lower=-1.6, upper=1.6, velocity=1.2, acceleration=1.5
-            ),
+            "shoulder": JointLimit(lower=-1.6, upper=1.6, velocity=1.2, acceleration=1.5),
             "elbow": JointLimit(lower=-2.2, upper=2.2, velocity=1.5, acceleration=1.5),
             "pan": JointLimit(lower=-1.5, upper=1.5, velocity=1.5, acceleration=3.0),
             "tilt": JointLimit(lower=-0.7, upper=1.4, velocity=1.5, acceleration=3.0),

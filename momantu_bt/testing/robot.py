@@ -106,9 +106,7 @@ class ScriptedRobot:
         if sensor in self.dead:
             raise Failure("SENSOR_DEAD", f"{sensor} does not answer", sensor=sensor)
         if sensor not in self.readings:
-            raise KeyError(
-                f"this test scripted no reading of {sensor!r}: set readings[{sensor!r}]"
-            )
+            raise KeyError(f"this test scripted no reading of {sensor!r}: set readings[{sensor!r}]")
         scripted = self.readings[sensor]
         return scripted(self) if callable(scripted) else scripted
 
@@ -124,9 +122,7 @@ class ScriptedRobot:
     def stop(self, actuator: str) -> None:
         """Drop the goal; a gripper keeps its own, as a driver keeps the last force."""
         if actuator not in self._description.actuators:
-            raise KeyError(
-                f"no actuator {actuator!r}; {', '.join(self._description.actuators)}"
-            )
+            raise KeyError(f"no actuator {actuator!r}; {', '.join(self._description.actuators)}")
         self.commands.append((self.time, actuator, None))
         if self._description.actuators[actuator].kind is not ActuatorKind.GRIPPER:
             self._goals.pop(actuator, None)
@@ -171,9 +167,7 @@ class ScriptedRobot:
         full = self._description.end_effector.max_width
         floor = 0.0 if self.object_width is None else self.object_width
         target = min(full, max(wanted.width, floor))
-        self.gripper_width += _clamp(
-            target - self.gripper_width, GRIPPER_SPEED * seconds
-        )
+        self.gripper_width += _clamp(target - self.gripper_width, GRIPPER_SPEED * seconds)
         squeezing = wanted.width < floor and self.gripper_width <= floor + 1e-9
         self.gripper_effort = wanted.max_force if squeezing else 0.0
 
@@ -197,9 +191,7 @@ class ScriptedRobot:
     def _check(self, actuator: str, goal: ActuatorGoal) -> None:
         actuators = self._description.actuators
         if actuator not in actuators:
-            raise KeyError(
-                f"no actuator {actuator!r}; actuators: {', '.join(actuators)}"
-            )
+            raise KeyError(f"no actuator {actuator!r}; actuators: {', '.join(actuators)}")
         takes = _TAKES[actuators[actuator].kind]
         if not isinstance(goal, takes):
             names = " or ".join(kind.__name__ for kind in takes)
@@ -211,16 +203,11 @@ class ScriptedRobot:
             self._check_limits(goal)
 
     def _check_limits(self, goal: JointTrajectory | JointPositions) -> None:
-        for name, row in zip(
-            goal.names, np.atleast_2d(np.asarray(goal.positions)).T, strict=True
-        ):
+        for name, row in zip(goal.names, np.atleast_2d(np.asarray(goal.positions)).T, strict=True):
             limit = self._description.joint_limits[name]
             low = -math.inf if limit.lower is None else limit.lower
             high = math.inf if limit.upper is None else limit.upper
-            if (
-                float(row.min()) < low - LIMIT_SLACK
-                or float(row.max()) > high + LIMIT_SLACK
-            ):
+            if float(row.min()) < low - LIMIT_SLACK or float(row.max()) > high + LIMIT_SLACK:
                 raise ValueError(
                     f"{name} is asked to {float(row.min()):.4f} … {float(row.max()):.4f}, "
                     f"its limits are {low} … {high}"
@@ -257,9 +244,7 @@ def _interpolated(trajectory: JointTrajectory, column: int, at: float) -> float:
     span = float(times[after] - times[after - 1])
     s = (at - float(times[after - 1])) / span
     p0, p1 = (float(trajectory.positions[i, column]) for i in (after - 1, after))
-    v0, v1 = (
-        float(trajectory.velocities[i, column]) * span for i in (after - 1, after)
-    )
+    v0, v1 = (float(trajectory.velocities[i, column]) * span for i in (after - 1, after))
     return (
         p0 * (1 + 2 * s) * (1 - s) ** 2
         + v0 * s * (1 - s) ** 2

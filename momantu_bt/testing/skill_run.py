@@ -78,9 +78,7 @@ def run_skill(
     """
     place = world if world is not None else ScriptedWorld(robot, site)
     running = _Services(place, dict(services or {}), frames, seed)
-    if map_from_odom is not None or (
-        frames is None and "localization" not in running.services
-    ):
+    if map_from_odom is not None or (frames is None and "localization" not in running.services):
         running.frames.set_map_from_odom(map_from_odom or Transform(), place.now())
     context = SkillContext(
         clock=place,

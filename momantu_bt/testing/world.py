@@ -20,12 +20,8 @@ def scripted_site(
 ) -> Site:
     """A site with two tables 0.7 m high at (2, 0) and (-2, 0), unless other surfaces are given."""
     tables = {
-        "table_a": Surface(
-            Pose2D(2.0, 0.0, 0.0), (0.8, 1.2), 0.7, (3.141592653589793, 0.0)
-        ),
-        "table_b": Surface(
-            Pose2D(-2.0, 0.0, 0.0), (0.8, 1.2), 0.5, (0.0, 3.141592653589793)
-        ),
+        "table_a": Surface(Pose2D(2.0, 0.0, 0.0), (0.8, 1.2), 0.7, (3.141592653589793, 0.0)),
+        "table_b": Surface(Pose2D(-2.0, 0.0, 0.0), (0.8, 1.2), 0.5, (0.0, 3.141592653589793)),
     }
     return Site(
         name="scripted",

@@ -1,0 +1,144 @@
+"""The blackboard of one run: cells that hold values, boards that name them.
+
+A board belongs to one use of a subtree. A key that a wire connects to a key outside is the same
+cell, so what a node reads costs one attribute at run time however deep it sits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, TypeAlias
+
+from momantu_bt.engine.admit import freeze
+from momantu_bt.failure import SCRIPT_ERROR, Failure
+from momantu_bt.skill import MISSING
+
+ROOT_MARK = "@"
+"""Before a key in a script: the key of the root's board."""
+PRIVATE_MARK = "_"
+"""A key that starts so is never connected by an automatic remapping (BehaviorTree.CPP's rule)."""
+
+
+Journal: TypeAlias = "list[tuple[Cell, Any]]"
+"""Cells in the order they were written, each with the value it held before."""
+
+
+class Cell:
+    """One value, or MISSING. Values are immutable; each write is noted in the run's journal."""
+
+    __slots__ = ("_journal", "name", "value")
+
+    def __init__(self, name: str, journal: Journal) -> None:
+        self.name = name
+        self.value: Any = MISSING
+        self._journal = journal
+
+    def write(self, value: Any) -> None:
+        """Replace the value; MISSING clears it."""
+        self._journal.append((self, self.value))
+        self.value = freeze(value)
+
+
+class ReadOnlyCell(Cell):
+    """A key that the engine publishes, such as `@localization`: its value is asked when read."""
+
+    __slots__ = ("_ask",)
+
+    def __init__(self, name: str, ask: Callable[[], Any]) -> None:
+        self.name = name
+        self._ask = ask
+
+    @property
+    def value(self) -> Any:
+        """What it is now."""
+        return self._ask()
+
+    @value.setter
+    def value(self, value: Any) -> None:
+        raise Failure(SCRIPT_ERROR, f"@{self.name} is published by the engine and is read-only")
+
+    def write(self, value: Any) -> None:
+        """Never possible: raises Failure SCRIPT_ERROR."""
+        self.value = value
+
+
+class Board:
+    """The keys that one use of a tree sees. Implements what scripts need: get, set, has.
+
+    outer: the board of the tree that holds this subtree; None for the root's.
+    wires: keys of this board that are keys of the outer one. autoremap: so are all others.
+    """
+
+    def __init__(
+        self,
+        journal: Journal,
+        outer: Board | None = None,
+        wires: Mapping[str, Cell] | None = None,
+        *,
+        path: str = "",
+        autoremap: bool = False,
+    ) -> None:
+        self.cells: dict[str, Cell] = dict(wires or {})
+        self.root: Board = self if outer is None else outer.root
+        self.path = path
+        self._journal = journal
+        self._outer = outer if autoremap else None
+
+    def cell(self, key: str) -> Cell:
+        """The cell of a key, made when there is none; `@key` is the root's."""
+        if key.startswith(ROOT_MARK):
+            return self.root.cell(key[1:])
+        found = self.cells.get(key)
+        if found is None:
+            if self._outer is not None and not key.startswith(PRIVATE_MARK):
+                found = self._outer.cell(key)
+            else:
+                found = Cell(f"{self.path}{key}", self._journal)
+            self.cells[key] = found
+        return found
+
+    def with_cells(self, cells: Mapping[str, Cell]) -> Board:
+        """The same keys, except that some names mean other cells (`failure` in a handler)."""
+        return _Overlay(self, cells)
+
+    def get(self, key: str) -> Any:
+        """A key's value; KeyError when it has none."""
+        value = self.cell(key).value
+        if value is MISSING:
+            raise KeyError(key)
+        return value
+
+    def set(self, key: str, value: Any) -> None:
+        """Write a key; Failure SCRIPT_ERROR for one that is read-only."""
+        self.cell(key).write(value)
+
+    def has(self, key: str) -> bool:
+        """Whether a key has a value."""
+        return self.cell(key).value is not MISSING
+
+    def values(self) -> dict[str, Any]:
+        """Every key that has a value, in the order of the names; read-only ones left out."""
+        found = {key: self.cells[key] for key in sorted(self.cells)}
+        return {
+            key: cell.value
+            for key, cell in found.items()
+            if not isinstance(cell, ReadOnlyCell) and cell.value is not MISSING
+        }
+
+
+class _Overlay(Board):
+    def __init__(self, under: Board, cells: Mapping[str, Cell]) -> None:
+        super().__init__(under._journal, path=under.path)
+        self.root = under.root
+        self._under = under
+        self.cells = dict(cells)
+
+    def cell(self, key: str) -> Cell:
+        return self.cells.get(key) or self._under.cell(key)
+
+
+def rollback(before: Iterable[tuple[Cell, Any]]) -> None:
+    """Give cells back the values they had; MISSING clears them."""
+    for cell, value in before:
+        if cell.value is not value:
+            cell.write(value)

@@ -1,0 +1,269 @@
+"""From the checked model of a tree file to nodes that can be ticked."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any, TypeAlias, TypeGuard
+
+from momantu_bt.engine.blackboard import Board, Cell
+from momantu_bt.engine.conditions import Conditions
+from momantu_bt.engine.context import RunContext
+from momantu_bt.engine.node import TreeNode
+from momantu_bt.engine.nodes import (
+    branches,
+    fallbacks,
+    forcing,
+    guards,
+    leaves,
+    loops,
+    parallel,
+    reactive,
+    recovery,
+    scripts,
+    sequences,
+    timing,
+)
+from momantu_bt.engine.nodes.skill import SkillLeaf
+from momantu_bt.engine.nodes.subtree import SubTree
+from momantu_bt.engine.ports import Inputs, Reader, cell_of, inputs_of, outputs_of, reader
+from momantu_bt.skill import Port, Skill
+from momantu_bt.tree.catalogue import BUILT_IN, SUBTREE
+from momantu_bt.tree.model import Document, Literal, Node, PortValue, Reference, Tree
+from momantu_bt.tree.values import ConversionError, port_of
+
+MAX_DEPTH = 250
+"""Nodes within nodes, subtrees counted; each costs two of Python's 1000 frames when ticked."""
+
+SkillFinder: TypeAlias = Callable[[str], type[Skill]]
+
+PLAIN: Mapping[str, Callable[..., TreeNode]] = MappingProxyType(
+    {
+        "Sequence": sequences.Sequence,
+        "AsyncSequence": sequences.AsyncSequence,
+        "SequenceWithMemory": sequences.SequenceWithMemory,
+        "ReactiveSequence": reactive.ReactiveSequence,
+        "Fallback": fallbacks.Fallback,
+        "AsyncFallback": fallbacks.AsyncFallback,
+        "ReactiveFallback": reactive.ReactiveFallback,
+        "RoundRobin": fallbacks.RoundRobin,
+        "IfThenElse": branches.IfThenElse,
+        "WhileDoElse": branches.WhileDoElse,
+        "Inverter": forcing.Inverter,
+        "ForceSuccess": forcing.ForceSuccess,
+        "ForceFailure": forcing.ForceFailure,
+        "KeepRunningUntilFailure": loops.KeepRunningUntilFailure,
+        "AlwaysSuccess": leaves.AlwaysSuccess,
+        "AlwaysFailure": leaves.AlwaysFailure,
+    }
+)
+"""Nodes without ports."""
+
+WITH_INPUTS: Mapping[str, Callable[..., TreeNode]] = MappingProxyType(
+    {
+        "Parallel": parallel.Parallel,
+        "ParallelAll": parallel.ParallelAll,
+        "RetryUntilSuccessful": loops.RetryUntilSuccessful,
+        "Repeat": loops.Repeat,
+        "RunOnce": loops.RunOnce,
+        "Timeout": timing.Timeout,
+        "Delay": timing.Delay,
+        "Sleep": timing.Sleep,
+        "Fail": leaves.Fail,
+    }
+)
+"""Nodes whose ports are inputs only."""
+
+
+class BuildError(Exception):
+    """The model cannot become nodes: the checker would have said so."""
+
+
+@dataclass(frozen=True, slots=True)
+class Built:
+    """A tree ready to be ticked. nodes: in the order of the file. board: the root's."""
+
+    root: TreeNode
+    nodes: tuple[TreeNode, ...]
+    board: Board
+
+
+def build(document: Document, context: RunContext, skill_of: SkillFinder) -> Built:
+    """Make the nodes of a document's main tree, subtrees included.
+
+    skill_of: a skill's class by name; PluginError passes through.
+
+    Raises:
+        BuildError: an unknown node, a literal that does not fit, nesting beyond MAX_DEPTH.
+    """
+    board = Board(context.writes)
+    tree = _tree(document, document.main)
+    root = _Builder(document, context, skill_of).node(tree.root, board, "0")
+    nodes = (root, *root.below)
+    for index, node in enumerate(nodes):
+        node.index = index
+        node.depth = 0 if node.parent is None else _depth(node)
+    return Built(root, nodes, board)
+
+
+def _depth(node: TreeNode) -> int:
+    parent = node.parent
+    assert isinstance(parent, TreeNode)
+    return parent.depth + 1
+
+
+def _tree(document: Document, name: str) -> Tree:
+    if name not in document.trees:
+        raise BuildError(f"no tree is called {name!r}; trees: {', '.join(document.trees)}")
+    return document.trees[name]
+
+
+class _Builder:
+    def __init__(self, document: Document, context: RunContext, skill_of: SkillFinder) -> None:
+        self.document = document
+        self.context = context
+        self.skill_of = skill_of
+
+    def node(self, model: Node, board: Board, path: str) -> TreeNode:
+        """One node and what is below it. path: positions from the root, such as `0.2.1`."""
+        if path.count(".") > MAX_DEPTH:
+            raise BuildError(f"{model.place}: nodes are nested more than {MAX_DEPTH} deep")
+        try:
+            return self._made(model, board, path)
+        except ConversionError as error:
+            raise BuildError(f"{model.place}: {model.type}: {error}") from None
+
+    def _made(self, model: Node, board: Board, path: str) -> TreeNode:
+        conditions = Conditions(model.conditions, board) if model.conditions else None
+        if model.disabled:
+            return guards.Disabled(model, self.context)
+        if model.type == SUBTREE:
+            return self._subtree(model, board, path, conditions)
+        if model.type in ("Recover", "Handle"):
+            return self._catching(model, board, path, conditions)
+        spec = BUILT_IN.get(model.type)
+        if spec is None:
+            return self._skill(model, board, path, conditions)
+        kids = [self.node(m, board, f"{path}.{i}") for i, m in enumerate(model.children)]
+        made = (model, self.context, kids, conditions)
+        if model.type in PLAIN:
+            return PLAIN[model.type](*made)
+        inputs = inputs_of(spec.ports, model.ports, board)
+        if model.type in WITH_INPUTS:
+            return WITH_INPUTS[model.type](*made, inputs=inputs)
+        return self._special(made, inputs, board)
+
+    def _special(self, made: Any, inputs: Inputs, board: Board) -> TreeNode:
+        model: Node = made[0]
+        if model.type == "ForEach":
+            return loops.ForEach(*made, inputs=inputs, item=self._key(model, "as", board))
+        if model.type == "SetBlackboard":
+            return leaves.SetBlackboard(*made, inputs=inputs, key=self._key(model, "key", board))
+        if model.type == "UnsetBlackboard":
+            return leaves.UnsetBlackboard(*made, key=self._key(model, "key", board))
+        if model.type == "Precondition":
+            code = scripts.Code(inputs.readers["if"], board)
+            return guards.Precondition(*made, inputs=inputs, code=code)
+        kinds = {"Script": scripts.ScriptNode, "ScriptCondition": scripts.ScriptCondition}
+        if model.type in kinds:
+            return kinds[model.type](*made, code=scripts.Code(inputs.readers["code"], board))
+        raise BuildError(f"{model.place}: the engine has no node {model.type!r}")
+
+    def _key(self, model: Node, port: str, board: Board) -> Cell:
+        value = model.ports.get(port)
+        if not isinstance(value, Reference):
+            raise BuildError(f"{model.place}: {model.type} needs `{port}: $key`")
+        return cell_of(value, board)
+
+    def _skill(
+        self, model: Node, board: Board, path: str, conditions: Conditions | None
+    ) -> SkillLeaf:
+        kind = self.skill_of(model.type)
+        if self.context.body is None:
+            raise BuildError(f"{model.place}: {model.type} is a skill and needs a world")
+        return SkillLeaf(
+            model,
+            self.context,
+            (),
+            conditions,
+            kind=kind,
+            body=self.context.body,
+            inputs=inputs_of(kind.ports, model.ports, board),
+            outputs=outputs_of(kind.ports, model.ports, board),
+            path=f"{path}:{model.type}",
+        )
+
+    def _catching(
+        self, model: Node, board: Board, path: str, conditions: Conditions | None
+    ) -> TreeNode:
+        caught = Cell(f"{path}/failure", self.context.writes)
+        inside = board.with_cells({"failure": caught})
+        kids = [self.node(model.children[0], board, f"{path}.0")]
+        catches = []
+        for number, handler in enumerate(model.handlers, start=1):
+            answer = None
+            if handler.node is not None:
+                answer = self.node(handler.node, inside, f"{path}.{number}")
+                kids.append(answer)
+            catches.append(recovery.Catch(handler.codes, answer))
+        made: Any = (model, self.context, kids, conditions)
+        if model.type == "Handle":
+            return recovery.Handle(*made, catches=catches, caught=caught)
+        inputs = inputs_of(BUILT_IN["Recover"].ports, model.ports, board)
+        return recovery.Recover(*made, catches=catches, caught=caught, inputs=inputs)
+
+    def _subtree(
+        self, model: Node, board: Board, path: str, conditions: Conditions | None
+    ) -> SubTree:
+        tree = _tree(self.document, model.target or "")
+        values = dict(model.ports)
+        autoremap = values.pop("_autoremap", Literal(False)) == Literal(True)
+        wires = {k: cell_of(v, board) for k, v in values.items() if _is_wire(v)}
+        inner = Board(
+            self.context.writes, board, wires, path=f"{path}/{tree.name}/", autoremap=autoremap
+        )
+        given = self._given(tree, values, board, inner)
+        child = self.node(tree.root, inner, f"{path}.0")
+        return SubTree(model, self.context, (child,), conditions, given=given)
+
+    def _given(
+        self, tree: Tree, values: Mapping[str, PortValue], outer: Board, inner: Board
+    ) -> dict[str, tuple[Cell, Reader]]:
+        """What is written to inner keys at each start: all that is no plain wire, and defaults."""
+        given: dict[str, tuple[Cell, Reader]] = {}
+        for name, value in values.items():
+            if not _is_wire(value):
+                port = _declared(tree, name)
+                given[name] = (inner.cell(name), reader(port, value, outer))
+        for name, declaration in tree.ports.items():
+            if name not in values and declaration.default is not None:
+                constant = reader(port_of(declaration), declaration.default, outer)
+                given[name] = (inner.cell(name), constant)
+        return given
+
+
+def _is_wire(value: PortValue) -> TypeGuard[Reference]:
+    return isinstance(value, Reference) and not value.fields
+
+
+def _declared(tree: Tree, name: str) -> Port:
+    declaration = tree.ports.get(name)
+    return Port(name, "in", object, "") if declaration is None else port_of(declaration)
+
+
+def skills_in(document: Document) -> tuple[str, ...]:
+    """Names of the skills that the main tree can reach, in the order of the file."""
+    found: dict[str, None] = {}
+    waiting, seen = [document.main], {document.main}
+    while waiting:
+        for node in _tree(document, waiting.pop(0)).root.walk():
+            if node.disabled:
+                continue
+            if node.type == SUBTREE and node.target is not None:
+                if node.target not in seen:
+                    seen.add(node.target)
+                    waiting.append(node.target)
+            elif node.type not in BUILT_IN:
+                found[node.type] = None
+    return tuple(found)

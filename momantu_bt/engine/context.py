@@ -1,0 +1,53 @@
+"""What every node of a run shares: the clock's reading, the journals, the robot."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from momantu_bt.engine.actuators import Actuators
+from momantu_bt.engine.blackboard import Journal
+from momantu_bt.engine.status import Status
+from momantu_bt.frames import FrameBuffer
+from momantu_bt.skill import Clock
+from momantu_bt.world import Site
+
+if TYPE_CHECKING:
+    from momantu_bt.engine.node import TreeNode
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """What skills need beside their inputs; a run without a world has none."""
+
+    actuators: Actuators
+    frames: FrameBuffer
+    site: Site
+    services: Mapping[str, Any]
+
+
+@dataclass(slots=True)
+class RunContext:
+    """Shared by the nodes of one run.
+
+    now: seconds of the world's clock at this tick. tick: its number, from 1.
+    writes: cells written in this tick, with what they held before. changes: nodes whose status changed, with the new status.
+    remark: tells a person something that never influences the run.
+    """
+
+    clock: Clock
+    seed: int = 0
+    body: Body | None = None
+    now: float = 0.0
+    tick: int = 0
+    writes: Journal = field(default_factory=list)
+    changes: list[tuple[TreeNode, Status]] = field(default_factory=list)
+    remark: Callable[[str], None] = print
+
+    def begin_tick(self) -> None:
+        """Take the clock's reading and start empty journals."""
+        self.now = self.clock.now()
+        self.tick += 1
+        self.writes.clear()
+        self.changes.clear()

@@ -1,0 +1,266 @@
+"""The node that every other node is: status, conditions, halting and bookkeeping.
+
+Nodes are py_trees behaviours, so that its displays and visitors work on them, but tick and stop
+after BehaviorTree.CPP 4: `execute` asks the conditions, then `step`, then runs the scripts that
+follow an end. `state` is what a parent decides by (IDLE, RUNNING, or an end not yet collected);
+`shown` is the newest result, for people.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TypeAlias
+
+import py_trees
+from py_trees.behaviour import Behaviour
+
+from momantu_bt.engine.conditions import Conditions
+from momantu_bt.engine.context import RunContext
+from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Status
+from momantu_bt.failure import FAILED, SCRIPT_ERROR, Failure, FailureValue
+from momantu_bt.tree.model import Node
+from momantu_bt.tree.script import ScriptError
+
+PyTreesStatus: TypeAlias = py_trees.common.Status
+
+_AS_PY_TREES: Mapping[Status, PyTreesStatus] = {
+    IDLE: PyTreesStatus.INVALID,
+    SKIPPED: PyTreesStatus.INVALID,
+    RUNNING: PyTreesStatus.RUNNING,
+    SUCCESS: PyTreesStatus.SUCCESS,
+    FAILURE: PyTreesStatus.FAILURE,
+}
+
+
+class TreeNode(Behaviour):
+    """One node of a running tree. Subclasses write `step`, and `clear` for what they remember.
+
+    model: what the tree file says. index: its number in the order of the file.
+    runs, failures, ticks, seconds: how often it started, failed, was ticked, and for how long
+    it was active by the world's clock.
+    """
+
+    def __init__(
+        self,
+        model: Node,
+        context: RunContext,
+        children: Sequence[TreeNode] = (),
+        conditions: Conditions | None = None,
+    ) -> None:
+        self.state = IDLE
+        self.shown = IDLE
+        super().__init__(model.name or model.target or model.type)
+        self.model = model
+        self.context = context
+        self.kids = tuple(children)
+        self.children = list(children)
+        self.conditions = conditions
+        self.failure: FailureValue | None = None
+        self.index = 0
+        self.depth = 0
+        self.runs = self.failures = self.ticks = 0
+        self.seconds = 0.0
+        self.started_at: float | None = None
+        self.ticked_at = 0
+        for child in self.kids:
+            child.parent = self
+        self.below: tuple[TreeNode, ...] = tuple(
+            node for child in self.kids for node in (child, *child.below)
+        )
+
+    # what subclasses write
+
+    def step(self) -> Status:
+        """One tick of the node itself; its conditions have been asked."""
+        raise NotImplementedError(f"{type(self).__name__} has no step()")
+
+    def clear(self) -> None:
+        """Forget progress (indices, counts, timers): the node is being halted."""
+
+    def renew(self) -> None:
+        """Forget what outlasts an end (RoundRobin's place): a recovery starts from scratch."""
+
+    # what parents call
+
+    def execute(self) -> Status:
+        """Tick the node and return its status, SKIPPED included."""
+        self.ticks += 1
+        self.ticked_at = self.context.tick
+        try:
+            new = None if self.conditions is None else self._asked(self.conditions)
+            if new is None:
+                if self.state is not RUNNING:
+                    self._start()
+                new = self.step()
+            if self.conditions is not None and new.completed:
+                self.conditions.after(new)
+        except (Failure, ScriptError) as error:
+            new = self._broken(error)
+        if new is not SKIPPED:
+            self.state = new
+        if new is not RUNNING:
+            self._end(new)
+        if new is not self.shown:
+            self.show(new)
+        return new
+
+    def halt(self) -> None:
+        """End whatever is running here and below; safe to call in any state."""
+        self.reset_children()
+        self.clear()
+        self._count_seconds()
+        self.state = IDLE
+        if self.shown is RUNNING:
+            self.show(IDLE)
+
+    def halt_node(self) -> None:
+        """Halt, then run `on_halt`; a script that fails there is remarked on and passed over."""
+        self.halt()
+        if self.conditions is not None:
+            try:
+                self.conditions.halted()
+            except ScriptError as error:
+                self.context.remark(f"{self.where}: on_halt: {error}")
+
+    def reset(self) -> None:
+        """Back to IDLE, halting it when it is running."""
+        if self.state is RUNNING:
+            self.halt_node()
+        self.state = IDLE
+
+    def reset_children(self) -> None:
+        """Reset every child."""
+        for child in self.kids:
+            if child.state is not IDLE:
+                child.reset()
+
+    def show(self, status: Status) -> None:
+        """Change what people see, and note it in the journal."""
+        self.shown = status
+        self.context.changes.append((self, status))
+
+    # names and failures
+
+    @property
+    def where(self) -> str:
+        """`name (file:line)`, for messages."""
+        return f"{self.name} ({self.place})"
+
+    @property
+    def place(self) -> str:
+        """`file:line` in the tree file."""
+        return f"{self.model.place.file}:{self.model.place.line}"
+
+    def fail_with(self, value: FailureValue) -> Status:
+        """Fail with a failure, usually a child's."""
+        self.failure = value
+        return FAILURE
+
+    def fail(self, code: str, message: str, cause: FailureValue | None = None) -> Status:
+        """Fail with a failure of this node's own."""
+        return self.fail_with(self.own(FailureValue(code, message, cause=cause)))
+
+    def own(self, value: FailureValue) -> FailureValue:
+        """The failure as one of this node: with its name, type and place."""
+        kind = self.model.target or self.model.type
+        return FailureValue(
+            value.code,
+            value.message,
+            value.data,
+            self.name,
+            self.place,
+            value.cause,
+            value.beside,
+            value.tries,
+            value.most_tries,
+            kind,
+        )
+
+    def failure_of(self, child: TreeNode) -> FailureValue:
+        """Why a child that returned FAILURE did so."""
+        return child.failure or child.own(FailureValue(FAILED, "failed without a reason"))
+
+    # py_trees
+
+    @property
+    def status(self) -> PyTreesStatus:
+        """The newest result in py_trees' words; IDLE and SKIPPED are its INVALID."""
+        return _AS_PY_TREES[self.shown]
+
+    @status.setter
+    def status(self, value: PyTreesStatus) -> None:
+        """Ignored: py_trees' constructor sets it, `execute` and `halt` decide it."""
+
+    def update(self) -> PyTreesStatus:
+        """Demanded by py_trees, called by nobody: `step` does the work."""
+        return self.status
+
+    def tick(self) -> Iterator[Behaviour]:
+        """Tick, then yield every node that was ticked, children first, for py_trees' visitors."""
+        self.execute()
+        for node in self.iterate():
+            if isinstance(node, TreeNode) and node.ticked_at == self.context.tick:
+                yield node
+
+    def stop(self, new_status: PyTreesStatus = PyTreesStatus.INVALID) -> None:
+        """Halt, whatever py_trees would have it become."""
+        self.reset()
+
+    # bookkeeping
+
+    def _asked(self, conditions: Conditions) -> Status | None:
+        new = conditions.before(self.state)
+        if new is SKIPPED and self.state is RUNNING:
+            self.halt_node()
+        elif new is FAILURE:
+            self.fail(FAILED, f"its condition `{conditions.text('fail_if')}` holds")
+        return new
+
+    def _start(self) -> None:
+        self.runs += 1
+        self.failure = None
+        self.started_at = self.context.now
+        for node in self.below:
+            if node.shown is not IDLE:
+                node.show(IDLE)
+
+    def _end(self, new: Status) -> None:
+        if new is FAILURE:
+            self.failures += 1
+        self._count_seconds()
+
+    def _count_seconds(self) -> None:
+        if self.started_at is not None:
+            self.seconds += self.context.now - self.started_at
+            self.started_at = None
+
+    def _broken(self, error: Failure | ScriptError) -> Status:
+        self.reset_children()
+        self.clear()
+        value = (
+            error.value if isinstance(error, Failure) else FailureValue(SCRIPT_ERROR, str(error))
+        )
+        return self.fail_with(self.own(value))
+
+
+class Decorator(TreeNode):
+    """A node around one child. An end that the child is left with is cleared after each tick."""
+
+    @property
+    def child(self) -> TreeNode:
+        """The one child."""
+        return self.kids[0]
+
+    def execute(self) -> Status:
+        """Tick, then clear the child's end, so that its conditions are asked anew."""
+        new = super().execute()
+        child = self.kids[0]
+        if child.state is SUCCESS or child.state is FAILURE:
+            child.state = IDLE
+        return new
+
+    def pass_on(self, status: Status) -> Status:
+        """The child's status as this node's own, its failure included."""
+        if status is FAILURE:
+            return self.fail_with(self.failure_of(self.child))
+        return status

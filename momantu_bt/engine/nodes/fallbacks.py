@@ -1,0 +1,119 @@
+"""Fallback, AsyncFallback, RoundRobin: children in turn until one succeeds.
+
+| child returns | Fallback                              |
+|---------------|---------------------------------------|
+| RUNNING       | RUNNING                               |
+| SUCCESS       | SUCCESS, back to the first            |
+| FAILURE       | the next child; at the end FAILURE    |
+| SKIPPED       | the next child; SKIPPED when all were |
+
+It fails with the last failure; those before stand beside it. AsyncFallback returns RUNNING
+between two children. RoundRobin starts with the child after the one that ended it last time.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import ClassVar
+
+from momantu_bt.engine.node import TreeNode
+from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Status
+from momantu_bt.failure import FailureValue
+
+
+def with_beside(failures: list[FailureValue]) -> FailureValue:
+    """The last of some failures, with the earlier ones beside it."""
+    *earlier, last = failures
+    return replace(last, beside=(*earlier, *last.beside)) if earlier else last
+
+
+class Fallback(TreeNode):
+    """Goes on where it was; starts over after its end."""
+
+    pauses: ClassVar[bool] = False
+    at = 0
+    skipped = 0
+
+    def step(self) -> Status:
+        """Tick children from the current one on."""
+        if self.state is IDLE:
+            self.skipped = 0
+        if self.at == 0:
+            self.failures_seen: list[FailureValue] = []
+        self.state = RUNNING
+        while self.at < len(self.kids):
+            child = self.kids[self.at]
+            fresh = child.state is IDLE
+            status = child.execute()
+            if status is RUNNING:
+                return RUNNING
+            if status is SUCCESS:
+                self.reset_children()
+                self.at = 0
+                return SUCCESS
+            self.at += 1
+            if status is SKIPPED:
+                self.skipped += 1
+                continue
+            self.failures_seen.append(self.failure_of(child))
+            if self.pauses and fresh and self.at < len(self.kids):
+                return RUNNING
+        all_skipped = self.skipped == len(self.kids)
+        self.reset_children()
+        self.at = self.skipped = 0
+        if all_skipped:
+            return SKIPPED
+        return self.fail_with(with_beside(self.failures_seen))
+
+    def clear(self) -> None:
+        """Back to the first child."""
+        self.at = self.skipped = 0
+
+
+class AsyncFallback(Fallback):
+    """A fallback that lets a tick pass between two children."""
+
+    pauses = True
+
+
+class RoundRobin(TreeNode):
+    """One child at a time, each start the next one.
+
+    A child's SUCCESS is its own, and next time the one after it begins. A FAILURE hands on to
+    the child after; when each has failed (or was skipped) it fails with the last failure. The
+    place is kept between starts, until a recovery around it starts from scratch.
+    """
+
+    at = 0
+    tried = 0
+
+    def step(self) -> Status:
+        """Tick the current child, and the ones after it while they fail."""
+        if self.tried == 0:
+            self.failures_seen: list[FailureValue] = []
+        self.state = RUNNING
+        while self.tried < len(self.kids):
+            child = self.kids[self.at]
+            status = child.execute()
+            if status is RUNNING:
+                return RUNNING
+            if status is FAILURE:
+                self.failures_seen.append(self.failure_of(child))
+            child.reset()
+            self.at = (self.at + 1) % len(self.kids)
+            self.tried += 1
+            if status is SUCCESS:
+                self.tried = 0
+                return SUCCESS
+        self.tried = 0
+        if not self.failures_seen:
+            return SKIPPED
+        return self.fail_with(with_beside(self.failures_seen))
+
+    def clear(self) -> None:
+        """Forget this start; the place stays."""
+        self.tried = 0
+
+    def renew(self) -> None:
+        """Begin with the first child again."""
+        self.at = self.tried = 0

@@ -1,0 +1,202 @@
+"""Recover and Handle: a failure's code decides what happens next.
+
+Recover runs `try`; a failure runs the handler of its code, then `try` again, `attempts` times in
+all. A code without a handler fails at once; a handler that fails ends it, with the first failure
+as its cause. What `try` wrote is taken back before it runs again. Handle runs `try` once, and the
+handler's result is the result.
+
+| `try` returns | Recover                         | Handle                             |
+|---------------|---------------------------------|------------------------------------|
+| SUCCESS       | SUCCESS                         | SUCCESS                            |
+| FAILURE       | handler, then again; or FAILURE | the handler's result; or FAILURE   |
+| RUNNING       | RUNNING                         | RUNNING                            |
+| SKIPPED       | SKIPPED                         | SKIPPED                            |
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from momantu_bt.engine.blackboard import Cell, rollback
+from momantu_bt.engine.node import TreeNode
+from momantu_bt.engine.ports import Inputs
+from momantu_bt.engine.status import FAILURE, RUNNING, SUCCESS, Status
+from momantu_bt.engine.tries import with_root_cause, with_tries
+from momantu_bt.failure import FailureValue
+
+ANY = "any"
+"""The handler of every code that no other handler names."""
+
+
+@dataclass(frozen=True, slots=True)
+class Catch:
+    """Codes and the node that answers them; None just tries again."""
+
+    codes: tuple[str, ...]
+    node: TreeNode | None
+
+    def names(self, failure: FailureValue) -> bool:
+        """Whether one of the codes is the failure's; `pick.SLIPPED` asks for the node as well."""
+        for code in self.codes:
+            kind, dot, narrowed = code.rpartition(".")
+            if code == failure.code:
+                return True
+            if dot and narrowed == failure.code and _came_from(failure, kind):
+                return True
+        return False
+
+
+def _came_from(failure: FailureValue, kind: str) -> bool:
+    return any(
+        link.code == failure.code and kind in (link.node_type, link.node)
+        for link in failure.chain()
+    )
+
+
+class _Catching(TreeNode):
+    """children: `try`, then the handlers' nodes. caught: the cell that handlers see as failure."""
+
+    def __init__(
+        self, *arguments: Any, catches: Sequence[Catch], caught: Cell, **named: Any
+    ) -> None:
+        super().__init__(*arguments, **named)
+        self.catches = tuple(catches)
+        self.caught = caught
+        self.handling: Catch | None = None
+        self.first: FailureValue | None = None
+
+    def clear(self) -> None:
+        """No failure is being handled."""
+        self.handling = self.first = None
+
+    def _catch(self, failure: FailureValue) -> Catch | None:
+        named = [catch for catch in self.catches if catch.names(failure)]
+        rest = [catch for catch in self.catches if ANY in catch.codes]
+        return next(iter(named + rest), None)
+
+    def _begin_handling(self, catch: Catch, failure: FailureValue) -> None:
+        self.handling, self.first = catch, failure
+        self.caught.write(failure)
+
+    def _handler_failed(self, handler: TreeNode) -> FailureValue:
+        assert self.first is not None
+        return with_root_cause(self.failure_of(handler), self.first)
+
+
+class Recover(_Catching):
+    """Runs `try`; when it fails runs the handler of its code, then `try` again."""
+
+    def __init__(self, *arguments: Any, inputs: Inputs, **named: Any) -> None:
+        super().__init__(*arguments, **named)
+        self.inputs = inputs
+        self.count = 0
+        self.before: dict[Cell, Any] = {}
+
+    def step(self) -> Status:
+        """Go on with the handler, or with `try`."""
+        if self.state is not RUNNING:
+            self._start_over()
+        self.state = RUNNING
+        if self.handling is None:
+            status = self._try()
+            if status is not RUNNING or self.handling is None:
+                return status
+        return self._handle()
+
+    def clear(self) -> None:
+        """No tries yet."""
+        super().clear()
+        self.count = 0
+
+    def _start_over(self) -> None:
+        self.clear()
+        self.before = {}
+        for node in self.below:
+            node.renew()
+
+    def _try(self) -> Status:
+        """Tick `try`. RUNNING with `handling` set when its failure is to be handled."""
+        body = self.kids[0]
+        status = self._noting_writes(body)
+        if status is RUNNING:
+            return RUNNING
+        body.reset()
+        if status is not FAILURE:
+            self.clear()
+            return status
+        failure = self.failure_of(body)
+        self.count += 1
+        attempts: int = self.inputs["attempts"]
+        catch = self._catch(failure)
+        if catch is None or self.count >= attempts:
+            failure = with_tries(self, failure, self.count, attempts)
+            self.clear()
+            return self.fail_with(failure)
+        self._begin_handling(catch, failure)
+        return RUNNING
+
+    def _noting_writes(self, body: TreeNode) -> Status:
+        """Tick `try`, remembering what its cells held before it first wrote them."""
+        journal = self.context.writes
+        seen = len(journal)
+        status = body.execute()
+        for cell, held in journal[seen:]:
+            self.before.setdefault(cell, held)
+        return status
+
+    def _handle(self) -> Status:
+        assert self.handling is not None
+        handler = self.handling.node
+        status = SUCCESS if handler is None else handler.execute()
+        if status is RUNNING:
+            return RUNNING
+        if handler is not None:
+            handler.reset()
+            if status is FAILURE:
+                failure = with_tries(
+                    self, self._handler_failed(handler), self.count, self.inputs["attempts"]
+                )
+                self.clear()
+                return self.fail_with(failure)
+        self.handling = self.first = None
+        rollback(self.before.items())
+        self.before = {}
+        return RUNNING
+
+
+class Handle(_Catching):
+    """Runs `try`; when it fails the result of its code's handler is the result."""
+
+    def step(self) -> Status:
+        """Go on with the handler, or with `try`."""
+        self.state = RUNNING
+        if self.handling is None:
+            body = self.kids[0]
+            status = body.execute()
+            if status is RUNNING:
+                return RUNNING
+            body.reset()
+            if status is not FAILURE:
+                return status
+            failure = self.failure_of(body)
+            catch = self._catch(failure)
+            if catch is None:
+                return self.fail_with(failure)
+            self._begin_handling(catch, failure)
+        return self._handle()
+
+    def _handle(self) -> Status:
+        assert self.handling is not None
+        handler = self.handling.node
+        status = SUCCESS if handler is None else handler.execute()
+        if status is RUNNING:
+            return RUNNING
+        failure = (
+            None if status is not FAILURE or handler is None else self._handler_failed(handler)
+        )
+        if handler is not None:
+            handler.reset()
+        self.clear()
+        return status if failure is None else self.fail_with(failure)

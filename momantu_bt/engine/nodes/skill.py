@@ -1,0 +1,112 @@
+"""The leaf that runs a skill: a fresh instance for each start."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from momantu_bt.engine.blackboard import Cell
+from momantu_bt.engine.context import Body
+from momantu_bt.engine.node import TreeNode
+from momantu_bt.engine.ports import Inputs
+from momantu_bt.engine.session import SLOW_STEP, Session, SkillContext
+from momantu_bt.engine.status import FAILURE, RUNNING, SUCCESS, Status
+from momantu_bt.failure import FAILED, FailureValue
+from momantu_bt.skill import Skill
+from momantu_bt.world import seeded
+
+
+class SkillLeaf(TreeNode):
+    """RUNNING at each `yield`, SUCCESS when `run` returns, FAILURE when it raises.
+
+    Inputs are read at the start (live ones at each tick), outputs written with SUCCESS (live
+    ones when assigned). Halting closes the generator and stops what the skill owns.
+    slow_steps: ticks in which the skill worked longer than SLOW_STEP without declaring it.
+    """
+
+    def __init__(
+        self,
+        *arguments: Any,
+        kind: type[Skill],
+        body: Body,
+        inputs: Inputs,
+        outputs: Mapping[str, Cell],
+        path: str,
+        **named: Any,
+    ) -> None:
+        super().__init__(*arguments, **named)
+        self.kind = kind
+        self.body = body
+        self.inputs = inputs
+        self.outputs = dict(outputs)
+        self.path = path
+        self.session: Session | None = None
+        self.slow_steps = 0
+        self.slowest = 0.0
+        self._live_in = [p.name for p in kind.ports.values() if p.direction == "in" and p.live]
+        self._live_out = [p.name for p in kind.ports.values() if p.direction == "out" and p.live]
+        self._written: dict[str, Any] = {}
+
+    @property
+    def phase(self) -> str:
+        """What the running skill last yielded."""
+        return "" if self.session is None else self.session.phase
+
+    def step(self) -> Status:
+        """One step of the skill."""
+        if self.session is None:
+            self.session = self._begin()
+            live = None
+        else:
+            live = {name: self.inputs[name] for name in self._live_in if name in self.inputs}
+        session = self.session
+        status = session.step(live)
+        self._note_time(session)
+        if status is RUNNING:
+            self._write(session, self._live_out)
+            return RUNNING
+        self.session = None
+        if status is SUCCESS:
+            self._write(session, list(self.outputs))
+            return SUCCESS
+        failure = session.failure or FailureValue(FAILED, "failed without a reason")
+        self.fail_with(self.own(failure))
+        return FAILURE
+
+    def clear(self) -> None:
+        """Close the skill and stop what it owns."""
+        session, self.session = self.session, None
+        if session is not None:
+            session.halt()
+            if session.failure is not None:
+                self.context.remark(f"{self.where}: while it was halted: {session.failure}")
+
+    def _begin(self) -> Session:
+        body = self.body
+        self._written = {}
+        context = SkillContext(
+            clock=self.context.clock,
+            random=seeded(self.context.seed, self.path, self.runs),
+            frames=body.frames,
+            site=body.site,
+            services=body.services,
+        )
+        lease = body.actuators.lease(self.name, self.kind.uses)
+        return Session(self.kind, self.inputs.all(), lease, context)
+
+    def _write(self, session: Session, names: list[str]) -> None:
+        if not names:
+            return
+        values = session.outputs
+        for name in names:
+            cell = self.outputs.get(name)
+            if cell is None or name not in values:
+                continue
+            if self._written.get(name) is not values[name]:
+                self._written[name] = values[name]
+                cell.write(values[name])
+
+    def _note_time(self, session: Session) -> None:
+        if session.slowest > SLOW_STEP:
+            self.slow_steps += 1
+            self.slowest = max(self.slowest, session.slowest)

@@ -1,0 +1,39 @@
+"""SubTree: another tree of the document, on a board of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from momantu_bt.engine.blackboard import Cell
+from momantu_bt.engine.node import Decorator
+from momantu_bt.engine.ports import Reader
+from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, Status
+from momantu_bt.engine.tries import through
+
+
+class SubTree(Decorator):
+    """The status of the tree inside; its failures carry this node's name and place.
+
+    A key that is wired to a key outside is that key. Everything else that is given (a value, a
+    part of a value, a text, a default) is written to the inner key at each start.
+    """
+
+    def __init__(
+        self, *arguments: Any, given: Mapping[str, tuple[Cell, Reader]], **named: Any
+    ) -> None:
+        super().__init__(*arguments, **named)
+        self.given = dict(given)
+
+    def step(self) -> Status:
+        """Tick the tree inside."""
+        if self.state is IDLE:
+            for cell, read in self.given.values():
+                cell.write(read())
+            self.state = RUNNING
+        status = self.child.execute()
+        if status is FAILURE:
+            self.fail_with(through(self, self.failure_of(self.child)))
+        if status.completed:
+            self.child.reset()
+        return status

@@ -1,0 +1,98 @@
+"""Timeout, Delay, Sleep: time by the world's clock, never by the wall's."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from momantu_bt.engine.node import Decorator, TreeNode
+from momantu_bt.engine.ports import Inputs
+from momantu_bt.engine.session import CLOCK_SLACK
+from momantu_bt.engine.status import RUNNING, SKIPPED, SUCCESS, Status
+from momantu_bt.failure import HALTED, TIMEOUT, FailureValue
+
+
+class Timeout(Decorator):
+    """Halts a child that runs too long and fails with TIMEOUT; what was running is its cause.
+
+    The time runs from this node's start; 0 or less is no limit. Otherwise the child's status.
+    """
+
+    def __init__(self, *arguments: Any, inputs: Inputs, **named: Any) -> None:
+        super().__init__(*arguments, **named)
+        self.inputs = inputs
+        self.begun: float | None = None
+
+    def step(self) -> Status:
+        """Tick the child while there is time."""
+        limit: float = self.inputs["duration"]
+        if self.begun is None:
+            self.begun = self.context.now
+        self.state = RUNNING
+        passed = self.context.now - self.begun
+        if self.child.state is RUNNING and 0.0 < limit <= passed + CLOCK_SLACK:
+            cause = running_as_cause(self.child, passed)
+            self.child.reset()
+            self.begun = None
+            return self.fail(TIMEOUT, f"{self.child.name} took longer than {limit:g} s", cause)
+        status = self.child.execute()
+        if status is not RUNNING:
+            self.begun = None
+        if status.completed:
+            self.child.reset()
+        return self.pass_on(status)
+
+    def clear(self) -> None:
+        """The time starts anew."""
+        self.begun = None
+
+
+def running_as_cause(node: TreeNode, seconds: float) -> FailureValue:
+    """What ran deepest below a node, as the cause of the failure that ends it."""
+    running = [n for n in (node, *node.below) if n.shown is RUNNING]
+    deepest = max(running, key=lambda n: n.depth, default=node)
+    phase = getattr(deepest, "phase", "")
+    doing = f" in phase {phase!r}" if phase else ""
+    return deepest.own(FailureValue(HALTED, f"was running{doing} after {seconds:.1f} s"))
+
+
+class Delay(Decorator):
+    """RUNNING for a while, then the child; the next start waits again."""
+
+    def __init__(self, *arguments: Any, inputs: Inputs, **named: Any) -> None:
+        super().__init__(*arguments, **named)
+        self.inputs = inputs
+        self.begun: float | None = None
+
+    def step(self) -> Status:
+        """Wait, then tick the child."""
+        if self.begun is None:
+            self.begun = self.context.now
+        self.state = RUNNING
+        duration: float = self.inputs["duration"]
+        if self.context.now - self.begun < duration - CLOCK_SLACK:
+            return RUNNING
+        status = self.child.execute()
+        if status is not RUNNING:
+            self.begun = None
+        if status is not RUNNING and status is not SKIPPED:
+            self.child.reset()
+        return self.pass_on(status)
+
+    def clear(self) -> None:
+        """The waiting starts anew."""
+        self.begun = None
+
+
+class Sleep(TreeNode):
+    """RUNNING for a while, then SUCCESS."""
+
+    def __init__(self, *arguments: Any, inputs: Inputs, **named: Any) -> None:
+        super().__init__(*arguments, **named)
+        self.inputs = inputs
+        self.until = 0.0
+
+    def step(self) -> Status:
+        """Wait; the duration is read at the start."""
+        if self.state is not RUNNING:
+            self.until = self.context.now + self.inputs["duration"]
+        return SUCCESS if self.context.now >= self.until - CLOCK_SLACK else RUNNING

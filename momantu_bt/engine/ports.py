@@ -1,0 +1,140 @@
+"""What is wired to a node's ports: readers made once, when the tree is built."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, TypeAlias
+
+from momantu_bt.engine.blackboard import ROOT_MARK, Board, Cell
+from momantu_bt.failure import INPUT_MISSING, WRONG_TYPE, Failure
+from momantu_bt.skill import MISSING, Port
+from momantu_bt.tree.model import Literal, PortValue, Reference, Scope, Template
+from momantu_bt.tree.script import ScriptError
+from momantu_bt.tree.values import ConversionError, convert, part, render
+
+Reader: TypeAlias = Callable[[], Any]
+
+
+def cell_of(reference: Reference, board: Board) -> Cell:
+    """The cell that a wire leads to; parts of a value are not followed."""
+    mark = ROOT_MARK if reference.scope is Scope.ROOT else ""
+    return board.cell(mark + reference.key)
+
+
+def reader(port: Port, value: PortValue, board: Board) -> Reader:
+    """A function that gives the input's value as its port takes it.
+
+    Raises:
+        ConversionError: a literal does not fit its port. (Wires fail when they are read, with
+            INPUT_MISSING or WRONG_TYPE.)
+    """
+    if isinstance(value, Literal):
+        constant = convert(value.value, port)
+        return lambda: constant
+    if isinstance(value, Template):
+        return _template_reader(port, value, board)
+    return _wire_reader(port, value, board)
+
+
+def wire(reference: Reference) -> str:
+    """A wire as a person writes it: `$found.pose`, `$@key`."""
+    mark = ROOT_MARK if reference.scope is Scope.ROOT else ""
+    return "$" + ".".join((mark + reference.key, *reference.fields))
+
+
+def _wire_reader(port: Port, reference: Reference, board: Board) -> Reader:
+    cell = cell_of(reference, board)
+
+    def read() -> Any:
+        return _fitted(_follow(reference, cell, port.name), port, wire(reference))
+
+    return read
+
+
+def _follow(reference: Reference, cell: Cell, port: str) -> Any:
+    value = cell.value
+    text = wire(reference)
+    if value is MISSING:
+        raise Failure(
+            INPUT_MISSING,
+            f"input {port} reads {text}, which holds no value: nobody has written it yet",
+            port=port,
+            key=text,
+        )
+    if not reference.fields:
+        return value
+    try:
+        return part(value, reference.fields)
+    except ScriptError as error:
+        raise Failure(WRONG_TYPE, f"input {port} reads {text}: {error}", port=port) from None
+
+
+def _fitted(value: Any, port: Port, source: str) -> Any:
+    try:
+        return convert(value, port)
+    except ConversionError as error:
+        raise Failure(
+            WRONG_TYPE, f"input {port.name} reads {source}: {error}", port=port.name
+        ) from None
+
+
+def _template_reader(port: Port, template: Template, board: Board) -> Reader:
+    pieces: list[str | tuple[Reference, Cell]] = [
+        piece if isinstance(piece, str) else (piece, cell_of(piece, board))
+        for piece in template.parts
+    ]
+
+    def read() -> Any:
+        parts = [p if isinstance(p, str) else _follow(p[0], p[1], port.name) for p in pieces]
+        return _fitted(render(parts), port, "a text")
+
+    return read
+
+
+class Inputs:
+    """The inputs of one node by port name; reading one asks its wire."""
+
+    def __init__(self, readers: Mapping[str, Reader]) -> None:
+        self.readers = dict(readers)
+
+    def __getitem__(self, name: str) -> Any:
+        return self.readers[name]()
+
+    def __contains__(self, name: str) -> bool:
+        return name in self.readers
+
+    def all(self) -> dict[str, Any]:
+        """Every input's value; the first that cannot be read raises its Failure."""
+        return {name: read() for name, read in self.readers.items()}
+
+
+def inputs_of(ports: Mapping[str, Port], values: Mapping[str, PortValue], board: Board) -> Inputs:
+    """Readers of all inputs that are wired, written out, or have a default.
+
+    Raises:
+        ConversionError: a literal does not fit its port.
+    """
+    readers: dict[str, Reader] = {}
+    for name, port in ports.items():
+        if port.direction != "in":
+            continue
+        if name in values:
+            readers[name] = reader(port, values[name], board)
+        elif port.default is not MISSING:
+            readers[name] = _constant(port.default)
+    return Inputs(readers)
+
+
+def _constant(value: Any) -> Reader:
+    return lambda: value
+
+
+def outputs_of(
+    ports: Mapping[str, Port], values: Mapping[str, PortValue], board: Board
+) -> dict[str, Cell]:
+    """The cells that outputs are wired to, by port name."""
+    return {
+        name: cell_of(value, board)
+        for name, value in values.items()
+        if name in ports and ports[name].direction == "out" and isinstance(value, Reference)
+    }
