@@ -1,4 +1,4 @@
-"""Where every frame was at every recent instant: joints, odometry and localization in one buffer."""
+"""Where every frame was at each recent instant, from joints, odometry and localization."""
 
 from __future__ import annotations
 

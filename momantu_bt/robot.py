@@ -100,8 +100,10 @@ class PlanningGroup(_Part):
 
 
 class EndEffector(_Part):
-    """The gripper. Its grasp frame: x points out along the fingers, y is the closing direction,
-    the origin lies between the pads.
+    """The gripper.
+
+    In its grasp frame x points out along the fingers, y is the closing direction, and the origin
+    lies between the pads.
 
     frame: link the grasp frame is fixed to; grasp_offset: distance of the grasp frame's origin
     along that link's x, m. pad_length: the pads' length along x, pad_height along z, m.

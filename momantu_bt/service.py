@@ -86,7 +86,7 @@ class Localization(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class HeldObject:
-    """What is believed to be between the fingers. `grasp_from_object`: its pose in the grasp frame."""
+    """What is believed to be between the fingers, and its pose in the grasp frame."""
 
     object: DetectedObject
     grasp_from_object: Transform
@@ -106,7 +106,7 @@ class PlanningScene(Protocol):
         ...
 
     def grasped(self, thing: DetectedObject, grasp_from_object: Transform) -> None:
-        """Say what the gripper has just closed on; it counts as held while width and effort agree."""
+        """Say what the gripper closed on; it counts as held while width and effort agree."""
         ...
 
     def footprint(self, state: RobotState) -> Array:

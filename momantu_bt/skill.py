@@ -65,8 +65,9 @@ T = TypeVar("T")
 
 
 def compute(function: Callable[[], T], budget: float) -> Generator[Compute, Any, T]:
-    """`plan = yield from compute(lambda: search(...), budget=0.2)`.
+    """Do work that takes time.
 
+    Write `plan = yield from compute(lambda: search(...), budget=0.2)`.
     In lock-step the function runs in place and the clock then advances by `budget` seconds, so
     thinking is never free. What it raises is raised here.
     """
