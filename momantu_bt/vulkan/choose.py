@@ -125,6 +125,6 @@ def _names(folder: str) -> list[str]:
 
 def _modified(path: str) -> int | None:
     try:
-        return os.stat(path).st_mtime_ns
+        return Path(path).stat().st_mtime_ns
     except OSError:
         return None

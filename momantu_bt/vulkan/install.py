@@ -77,8 +77,8 @@ def install(say: Callable[[str], None] = print) -> Choice:
                 reasons.append(f"{recipe.name}: {str(error).partition('. ')[0]}")
                 say(f"  {reasons[-1]}")
     raise VulkanMissingError(
-        f"no Vulkan driver could be set up ({'; '.join(reasons)}). Install a Vulkan driver with your "
-        f"system's packages: Mesa 24.3 or newer (`mesa-vulkan-drivers`) and {WINDOW_PACKAGE}"
+        f"no Vulkan driver could be set up ({'; '.join(reasons)}). Install one with your system's "
+        f"packages: Mesa 24.3 or newer (`mesa-vulkan-drivers`) and {WINDOW_PACKAGE}"
     )
 
 
@@ -168,4 +168,5 @@ if __name__ == "__main__":
         chosen = install()
     except VulkanMissingError as problem:
         sys.exit(f"momantu-bt: {problem}")
-    print(f"Vulkan: {chosen.device} ({chosen.way.value})")
+    if "--quiet" not in sys.argv[1:]:
+        print(f"Vulkan: {chosen.device} ({chosen.way.value})")
