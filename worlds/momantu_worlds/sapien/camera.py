@@ -28,7 +28,13 @@ class Camera:
     """Takes a picture from where the link really is, plus a constant mounting error."""
 
     def __init__(
-        self, scene: Any, link: Any, name: str, sensor: CameraSensor, seed: int, errors: CameraErrors
+        self,
+        scene: Any,
+        link: Any,
+        name: str,
+        sensor: CameraSensor,
+        seed: int,
+        errors: CameraErrors,
     ) -> None:
         self._scene, self._link, self._name = scene, link, name
         self._sensor, self._seed, self._errors = sensor, seed, errors
@@ -66,7 +72,7 @@ def noisy_color(
     span = max(1, round(errors.color_noise * math.sqrt(3.0)))
     noise = random.integers(-span, span + 1, size=color.shape, dtype=np.int8)
     noisy = color.astype(np.int16) + noise
-    return np.clip(noisy, 0, 255).astype(np.uint8)
+    return np.asarray(np.clip(noisy, 0, 255), dtype=np.uint8)
 
 
 def noisy_depth(

@@ -9,6 +9,7 @@ from momantu_bt.robot import RobotDescription
 from momantu_bt.world import seeded
 from momantu_worlds.sapien.config import JointErrors
 
+
 class Encoders:
     """Adds constant offsets and noise to true joint values.
 

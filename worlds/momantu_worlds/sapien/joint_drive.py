@@ -26,7 +26,11 @@ class JointDrive:
     """Moves a group of joints. Goals are in measured angles: `offset` = measured - true."""
 
     def __init__(
-        self, names: Sequence[str], joints: Sequence[Any], limits: Sequence[JointLimit], offset: Array
+        self,
+        names: Sequence[str],
+        joints: Sequence[Any],
+        limits: Sequence[JointLimit],
+        offset: Array,
     ) -> None:
         self.names = tuple(names)
         self._joints = list(joints)

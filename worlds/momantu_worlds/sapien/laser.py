@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
-import trimesh
 from embreex import rtcore_scene
 from embreex.mesh_construction import TriangleMesh
 
@@ -89,8 +87,3 @@ def _to_segments(origin: Array, directions: Array, segments: Array) -> Array:
         share = (a[:, 0] * dy - a[:, 1] * dx) / across
     ok = (along > 0.0) & (share >= 0.0) & (share <= 1.0)
     return np.asarray(np.where(ok, along, np.inf).min(axis=1))
-
-
-def triangles_of(mesh: trimesh.Trimesh) -> Any:
-    """Triangles (k, 3, 3) of a mesh."""
-    return np.asarray(mesh.triangles, dtype=np.float64)

@@ -9,6 +9,7 @@ import sapien
 from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array
+from momantu_worlds.sapien.meshes import collision_mesh
 from momantu_worlds.scenes.bodies import Box, Cylinder, Hull, Mesh, Part, Picture
 
 GAMMA = 2.2
@@ -22,16 +23,12 @@ def render_shape(part: Part) -> Any:
         half = [edge / 2 for edge in geometry.size]
         return sapien.render.RenderShapeBox(half, _plain(part))
     if isinstance(geometry, Cylinder):
-        return sapien.render.RenderShapeCylinder(
-            geometry.radius, geometry.height / 2, _plain(part)
-        )
+        return sapien.render.RenderShapeCylinder(geometry.radius, geometry.height / 2, _plain(part))
     if isinstance(geometry, Picture):
         return _picture(geometry)
     if isinstance(geometry, Mesh):
         return _mesh(geometry, part)
     if isinstance(geometry, Hull):
-        from momantu_worlds.sapien.meshes import collision_mesh
-
         hull = collision_mesh(geometry)
         return _mesh(Mesh(hull.vertices, hull.faces), part)
     raise TypeError(f"a {type(geometry).__name__} cannot be shown")
@@ -71,24 +68,14 @@ def _picture(picture: Picture) -> Any:
 
 
 def _mesh(mesh: Mesh, part: Part) -> Any:
-    """A mesh with smooth normals; each triangle has the colour of its first corner."""
+    """A mesh in the part's colour; vertices that triangles share are shaded smoothly."""
     vertices = np.asarray(mesh.vertices, dtype=np.float64)
-    triangles = np.asarray(mesh.triangles)
-    corners = triangles.reshape(-1)
-    uvs = np.zeros((len(corners), 2))
-    material = _plain(part)
-    if mesh.colors is not None:
-        firsts = np.round(255.0 * mesh.colors[triangles[:, 0]]).astype(np.uint8)
-        palette, cell = np.unique(firsts, axis=0, return_inverse=True)
-        uvs[:, 0] = np.repeat((cell.reshape(-1) + 0.5) / len(palette), 3)
-        uvs[:, 1] = 0.5
-        material = _textured(palette[None])
     return sapien.render.RenderShapeTriangleMesh(
-        vertices[corners].astype(np.float32),
-        np.arange(len(corners), dtype=np.uint32).reshape(-1, 3),
-        _smooth_normals(vertices, triangles)[corners].astype(np.float32),
-        uvs.astype(np.float32),
-        material,
+        vertices.astype(np.float32),
+        np.asarray(mesh.triangles).astype(np.uint32),
+        _smooth_normals(vertices, np.asarray(mesh.triangles)).astype(np.float32),
+        np.zeros((len(vertices), 2), dtype=np.float32),
+        _plain(part),
     )
 
 

@@ -15,8 +15,8 @@ CYLINDER_SIDES = 24
 """Sides of the prism that stands for a cylinder: 0.9 % of the radius off at most."""
 
 
-def collision_mesh(geometry: Geometry) -> trimesh.Trimesh:
-    """The geometry around its own origin.
+def collision_mesh(geometry: Geometry) -> Any:
+    """The geometry around its own origin, a trimesh.Trimesh.
 
     Raises:
         TypeError: something that is only there to be looked at.
@@ -41,8 +41,8 @@ def volume(geometry: Geometry) -> float:
     return float(collision_mesh(geometry).volume)
 
 
-def body_mesh(body: Body) -> trimesh.Trimesh | None:
-    """All colliding parts of a body in its own frame; None when nothing of it collides."""
+def body_mesh(body: Body) -> Any:
+    """All colliding parts of a body in its own frame, a trimesh.Trimesh; None without any."""
     parts = [_placed(part) for part in body.parts if part.collision]
     return trimesh.util.concatenate(parts) if parts else None
 

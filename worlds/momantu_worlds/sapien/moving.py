@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import trimesh
+from trimesh import intersections
 
 from momantu_bt.geometry import Array
 from momantu_worlds.sapien.poses import transform_of
@@ -14,7 +14,7 @@ from momantu_worlds.sapien.poses import transform_of
 class MovingBody:
     """A loose body and the outline that a horizontal plane cuts out of it."""
 
-    def __init__(self, entity: Any, mesh: trimesh.Trimesh) -> None:
+    def __init__(self, entity: Any, mesh: Any) -> None:
         self._entity, self._mesh = entity, mesh
         self._radius = float(np.linalg.norm(mesh.vertices, axis=1).max())
 
@@ -31,5 +31,6 @@ class MovingBody:
         map_from_body = transform_of(pose)
         height = map_from_body.inverse().apply(np.array([0.0, 0.0, origin[2]]))
         normal = map_from_body.rotation.T[:, 2]
-        lines = trimesh.intersections.mesh_plane(self._mesh, normal, height)
+        cut: Any = intersections.mesh_plane
+        lines = cut(self._mesh, normal, height)
         return np.asarray(map_from_body.apply(lines)[..., :2])

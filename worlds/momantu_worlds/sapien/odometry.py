@@ -30,7 +30,9 @@ class Odometry:
         e, noise = self._errors, seeded(self._seed, "odometry", stamp).standard_normal(2)
         along = moved.x * self._linear_scale + float(noise[0]) * e.slip * math.sqrt(distance)
         across = moved.y * self._linear_scale
-        yaw_sigma = math.hypot(e.yaw_per_metre * math.sqrt(distance), e.yaw_per_turn * math.sqrt(turn))
+        yaw_sigma = math.hypot(
+            e.yaw_per_metre * math.sqrt(distance), e.yaw_per_turn * math.sqrt(turn)
+        )
         yaw = wrap_angle(moved.yaw * self._angular_scale + float(noise[1]) * yaw_sigma)
         self.odom_from_base = self.odom_from_base @ Pose2D(along, across, yaw)
 

@@ -44,7 +44,7 @@ class Path:
     @property
     def finished(self) -> bool:
         """Whether the end is reached."""
-        return self.time >= self._times[-1]
+        return bool(self.time >= self._times[-1])
 
     @property
     def resting(self) -> bool:

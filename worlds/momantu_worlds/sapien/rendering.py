@@ -1,25 +1,15 @@
-"""Making SAPIEN render: the driver, our shaders, and a clear word where neither works."""
+"""Making SAPIEN render with our shaders, and a clear word where it cannot."""
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import Any
+
+import sapien
 
 from momantu_bt.world import WorldError
 
 SHADERS = Path(__file__).parent / "shaders" / "lambert"
-
-
-def prepare_rendering() -> None:
-    """Find a Vulkan driver before SAPIEN is imported; rasterise on one thread unless told else.
-
-    One software-rendering thread leaves the other cores to other episodes.
-    """
-    os.environ.setdefault("LP_NUM_THREADS", "1")
-    from momantu_bt.vulkan import ensure_vulkan
-
-    ensure_vulkan()
 
 
 def render_system() -> Any:
@@ -28,8 +18,6 @@ def render_system() -> Any:
     Raises:
         WorldError: SAPIEN finds no rendering device.
     """
-    import sapien
-
     sapien.render.set_log_level("error")
     sapien.render.set_camera_shader_dir(str(SHADERS))
     sapien.render.set_picture_format("Color", "r8g8b8a8unorm")

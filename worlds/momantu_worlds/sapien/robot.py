@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 
@@ -65,7 +65,8 @@ class SimulatedRobot:
         self._base_columns = [model.index[n] for n in (base.x, base.y, base.yaw)]
         self._efforts = np.array([model.efforts.get(name, np.inf) for name in self._names])
         self._physics = config.physics
-        self.base = BaseDrive(*(model.joints[n] for n in (base.x, base.y, base.yaw)), description.base)
+        slides = model.joints[base.x], model.joints[base.y]
+        self.base = BaseDrive(*slides, model.joints[base.yaw], description.base)
         self.joint_drives = {
             name: self._joint_drive(actuator)
             for name, actuator in description.actuators.items()

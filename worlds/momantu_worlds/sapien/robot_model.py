@@ -168,4 +168,3 @@ def _couple_fingers(
         stiffness=physics.tendon_stiffness,
         damping=physics.tendon_damping,
     )
-

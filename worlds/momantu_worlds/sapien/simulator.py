@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import sapien
@@ -10,11 +11,15 @@ from momantu_bt.robot import CameraSensor, LaserSensor, RobotDescription
 from momantu_bt.world import TICK
 from momantu_worlds.robots.loading import read_simulation
 from momantu_worlds.sapien.building import add_bodies, add_lights
+from momantu_worlds.sapien.camera import Camera
 from momantu_worlds.sapien.config import STEP, SUB_STEPS, Physics, SimulatorConfig
+from momantu_worlds.sapien.laser import Laser
 from momantu_worlds.sapien.poses import transform_of
+from momantu_worlds.sapien.rendering import render_system
 from momantu_worlds.sapien.robot import Sensor, SimulatedRobot
 from momantu_worlds.sapien.robot_model import RobotModel, build_robot
 from momantu_worlds.sapien.truth import Truth
+from momantu_worlds.sapien.wrench import Wrench
 from momantu_worlds.scenes.bodies import Episode
 
 START_POSE = "home"
@@ -35,10 +40,12 @@ class Simulator:
         *,
         render: bool = True,
         config: SimulatorConfig | None = None,
+        pose: Mapping[str, float] | None = None,
     ) -> None:
         """Build everything; see `momantu_worlds.sapien.rendering` for what rendering needs.
 
         render: without it there is no camera, and no Vulkan driver is needed.
+        pose: joint positions to begin with; the named pose `home` when None.
 
         Raises:
             WorldError: the robot cannot be simulated, or SAPIEN cannot render.
@@ -60,13 +67,14 @@ class Simulator:
             simulation,
             model,
             episode.start,
-            description.named_poses[START_POSE],
+            description.named_poses[START_POSE] if pose is None else pose,
             seed,
             self.config,
             self.now,
         )
         for name, sensor in self._sensors(description, model, still, moving, seed, render):
             self.robot.sensors[name] = sensor
+        self._wrists = [s for s in self.robot.sensors.values() if isinstance(s, Wrench)]
 
     def now(self) -> float:
         """Seconds since the episode began."""
@@ -76,9 +84,13 @@ class Simulator:
         """Advance by one tick: drives act before each of its physics steps."""
         self.robot.begin_tick()
         self.truth.begin_tick()
+        for wrist in self._wrists:
+            wrist.begin_tick()
         for index in range(SUB_STEPS):
             self.robot.apply(index)
             self._system.step()
+            for wrist in self._wrists:
+                wrist.collect()
             if self.truth.watching:
                 self.truth.collect()
         self._ticks += 1
@@ -97,10 +109,6 @@ class Simulator:
         seed: int,
         render: bool,
     ) -> list[tuple[str, Sensor]]:
-        from momantu_worlds.sapien.camera import Camera
-        from momantu_worlds.sapien.laser import Laser
-        from momantu_worlds.sapien.wrench import Wrench
-
         sensors: list[tuple[str, Sensor]] = []
         for name, spec in description.sensors.items():
             link = model.links[spec.frame]
@@ -124,8 +132,6 @@ def _pose_source(link: Any) -> Any:
 
 def _new_scene(physics: Physics, render: bool) -> Any:
     """A scene with our settings, which SAPIEN keeps globally: they are set before each build."""
-    from momantu_worlds.sapien.rendering import render_system
-
     body = sapien.physx.PhysxBodyConfig()
     body.solver_position_iterations = physics.position_iterations
     body.solver_velocity_iterations = physics.velocity_iterations

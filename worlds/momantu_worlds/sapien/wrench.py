@@ -28,6 +28,8 @@ class Wrench:
         self._articulation, self._index = articulation, link.get_index()
         self._link_from_joint = matrix_from_quaternion(link.get_joint().get_pose_in_child().q)
         self._name, self._sensor, self._seed, self._errors = name, sensor, seed, errors
+        self._sum = np.zeros(6)
+        self._count = 0
         random = seeded(seed, name, "bias")
         self._force_bias = errors.force_bias * random.standard_normal(3)
         self._torque_bias = errors.torque_bias * random.standard_normal(3)
@@ -42,12 +44,21 @@ class Wrench:
             stamp, self._sensor.frame, np.asarray(frozen(force)), np.asarray(frozen(torque))
         )
 
-    def exact(self) -> tuple[Array, Array]:
-        """Force (3,) N and torque (3,) Nm without errors.
+    def begin_tick(self) -> None:
+        """Start a new average."""
+        self._sum[:] = 0.0
+        self._count = 0
 
+    def collect(self) -> None:
+        """Take in the physics step just made."""
+        self._sum += self._articulation.get_link_incoming_joint_forces()[self._index]
+        self._count += 1
+
+    def exact(self) -> tuple[Array, Array]:
+        """Force (3,) N and torque (3,) Nm without errors, averaged over the last tick.
+
+        The average matters: a grasp's contact solver alternates by a newton from step to step.
         The joint carries the hand, so what the load puts on it is the reaction's opposite.
         """
-        incoming = np.asarray(
-            self._articulation.get_link_incoming_joint_forces()[self._index], dtype=np.float64
-        )
-        return -(self._link_from_joint @ incoming[:3]), -(self._link_from_joint @ incoming[3:])
+        mean = -self._sum / max(self._count, 1)
+        return self._link_from_joint @ mean[:3], self._link_from_joint @ mean[3:]
