@@ -1,0 +1,112 @@
+"""navigate: drive to a place, before a surface, or to where a pose can be reached."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, ClassVar
+
+from momantu_bt.geometry import Pose, Pose2D
+from momantu_bt.robot import CAMERA_CARRIER, Robot
+from momantu_bt.service import Localization, PlanningScene
+from momantu_bt.skill import Failure, In, Needs, Run, Skill
+
+if TYPE_CHECKING:
+    from momantu_skills.navigation.config import NavigationConfig
+    from momantu_skills.navigation.trip import Destination
+    from momantu_skills.navigation.vehicle import Vehicle
+
+
+class Navigate(Skill):
+    """Drive somewhere, round what the map does not know, and stop there within tolerance."""
+
+    in_front_of: str | None = In(None, names="place", doc="a place, or a surface to look over")
+    goal: Pose2D | None = In(None, doc="a pose in the map")
+    within_reach_of: Pose | None = In(None, doc="stand where the hand reaches this pose")
+    side: int = In(0, doc="0: the best stand; 1, 2, …: the next best, to try from elsewhere")
+    tolerance: float = In(0.05, unit="m", doc="distance from the stand at the end")
+    angle_tolerance: float = In(0.05, unit="rad", doc="heading off the stand's at the end")
+    recovery: bool = In(True, doc="when blocked: look again, back up, turn, and retry")
+
+    failures: ClassVar = {
+        "BAD_GOAL": "the goal is not one place on the map",
+        "GOAL_BLOCKED": "something stands wherever the base could stand",
+        "NO_PATH": "the map has no way that is wide enough",
+        "PATH_BLOCKED": "what the sensors see closes the way",
+        "NO_PROGRESS": "the base got no nearer for too long",
+        "NOT_LOCALIZED": "the robot does not know well enough where it is",
+    }
+    uses: ClassVar = {"base", CAMERA_CARRIER}
+
+    localization: Localization = Needs()
+    planning_scene: PlanningScene = Needs()
+
+    def run(self, robot: Robot) -> Run:
+        """Check the goal, then travel."""
+        from momantu_skills.navigation.config import NavigationConfig, configured
+        from momantu_skills.navigation.mppi import Mppi
+        from momantu_skills.navigation.trip import travel
+        from momantu_skills.navigation.vehicle import Vehicle
+
+        self._check()
+        parameters = self.site.services.get("navigate", {})
+        config = configured(NavigationConfig, parameters, "navigate")
+        vehicle = Vehicle(self, robot, self.localization, self.planning_scene, config)
+        destination = self._destination(vehicle, config)
+        mppi = Mppi(robot.description.base, config, self.random)
+        yield from travel(vehicle, mppi, destination, recovery=self.recovery)
+
+    def _check(self) -> None:
+        given = [
+            n for n in ("in_front_of", "goal", "within_reach_of") if getattr(self, n) is not None
+        ]
+        if len(given) != 1:
+            raise Failure(
+                "BAD_GOAL",
+                "navigate takes exactly one of in_front_of, goal and within_reach_of; "
+                f"it got {', '.join(given) or 'none'}",
+            )
+        if not (self.tolerance > 0.0 and self.angle_tolerance > 0.0 and self.side >= 0):
+            raise Failure(
+                "BAD_GOAL",
+                f"tolerance {self.tolerance} m and angle_tolerance {self.angle_tolerance} rad must "
+                f"be above 0, side {self.side} at least 0",
+            )
+        known = self.site.known_places()
+        if self.in_front_of is not None and self.in_front_of not in known:
+            raise Failure(
+                "BAD_GOAL", f"no place {self.in_front_of!r}; places: {', '.join(known) or 'none'}"
+            )
+
+    def _destination(self, vehicle: Vehicle, config: NavigationConfig) -> Destination:
+        from momantu_skills.navigation.goals import Stand, before_surface, within_reach
+        from momantu_skills.navigation.trip import Destination
+
+        tolerance = (self.tolerance, self.angle_tolerance)
+        surfaces = self.site.surfaces
+        if self.in_front_of in surfaces:
+            stands = before_surface(surfaces[self.in_front_of], config)
+            return Destination(lambda: stands, tolerance, side=self.side)
+        target = self.within_reach_of
+        if target is not None:
+            frame = target.frame
+
+            def reachable() -> list[Stand]:
+                there = target.position
+                if frame != "map":
+                    there = self.frames.lookup("map", frame).apply(there)
+                point = (float(there[0]), float(there[1]))
+                return within_reach(point, surfaces.values(), vehicle.pose(), config)
+
+            return Destination(reachable, tolerance, side=self.side, in_odom=True)
+        pose = self.goal if self.goal is not None else self.site.places[str(self.in_front_of)]
+        if not all(map(math.isfinite, (pose.x, pose.y, pose.yaw))) or not (
+            vehicle.costmap.grid.contains(pose.x, pose.y)
+        ):
+            width, height = vehicle.costmap.grid.size
+            x, y = vehicle.costmap.grid.origin
+            raise Failure(
+                "BAD_GOAL",
+                f"({pose.x}, {pose.y}) is not on the map, which spans x {x:.1f} to {x + width:.1f} "
+                f"and y {y:.1f} to {y + height:.1f} m",
+            )
+        return Destination(lambda: [Stand(pose, 0, 0.0)], tolerance)

@@ -1,0 +1,1 @@
+"""Localization, costmaps, planning and control for a base that drives forward and turns."""

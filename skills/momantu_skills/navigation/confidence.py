@@ -1,0 +1,28 @@
+"""When a robot may believe where it is."""
+
+from __future__ import annotations
+
+import math
+
+from momantu_bt.geometry import Array
+from momantu_bt.service import Localization
+
+POSITION_SIGMA = 0.15
+"""m: half of the narrowest room for error in a doorway one metre wide."""
+YAW_SIGMA = 0.12
+"""rad: 7 degrees."""
+QUALITY = 0.6
+"""Fit of the newest scan below which the estimate is doubted."""
+
+
+def sigmas(covariance: Array) -> tuple[float, float]:
+    """Standard deviations (position in m along its widest axis, yaw in rad) of a (3, 3)."""
+    a, b, c = float(covariance[0, 0]), float(covariance[0, 1]), float(covariance[1, 1])
+    widest = 0.5 * (a + c) + math.sqrt(0.25 * (a - c) ** 2 + b * b)
+    return math.sqrt(max(widest, 0.0)), math.sqrt(max(float(covariance[2, 2]), 0.0))
+
+
+def is_localized(localization: Localization) -> bool:
+    """Whether the estimate is narrow and the newest scan agrees with it."""
+    position, yaw = sigmas(localization.covariance)
+    return position < POSITION_SIGMA and yaw < YAW_SIGMA and localization.quality > QUALITY

@@ -1,0 +1,124 @@
+"""Where to stand: before a surface, within reach of a pose, or where one is told."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from momantu_bt.geometry import Pose2D, wrap_angle
+from momantu_bt.world import Surface
+from momantu_skills.navigation.config import NavigationConfig
+
+LATERAL = (0.0, 0.4, -0.4)
+"""m along the edge: the middle first, then from either side of it."""
+BACK = (0.0, 0.08, 0.16, 0.25)
+"""m farther off, tried in turn where something stands in the nearest place."""
+ON_SURFACE = 0.20
+"""m by which a pose may lie beyond a surface's nominal edge and still be on it: tables move."""
+SHIFTS = (0.0, 0.1, -0.1, 0.2, -0.2, 0.3, -0.3)
+"""m along the edge by which one may stand beside the point that is to be reached."""
+RING = 16
+"""Directions from which a pose in the open is approached."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stand:
+    """One place to stand. variant: stands of one variant differ in stand-off alone. cost: m."""
+
+    pose: Pose2D
+    variant: int
+    cost: float
+
+
+def before_surface(surface: Surface, config: NavigationConfig) -> list[Stand]:
+    """Stands from which a surface can be looked over, best first, facing its middle (map)."""
+    stands = []
+    variant = 0
+    for angle in surface.sides:
+        edge, half = _edge(surface, angle)
+        for lateral in LATERAL:
+            if abs(lateral) > half:
+                continue
+            for back in BACK:
+                off = edge + config.look_off + back
+                pose = surface.map_from_surface @ _facing(angle, off, lateral)
+                turned = math.atan2(-lateral, off)
+                pose = Pose2D(pose.x, pose.y, wrap_angle(pose.yaw - turned))
+                stands.append(Stand(pose, variant, variant + back))
+            variant += 1
+    return stands
+
+
+def within_reach(
+    target: tuple[float, float],
+    surfaces: Iterable[Surface],
+    base: Pose2D,
+    config: NavigationConfig,
+) -> list[Stand]:
+    """Stands from which a point (x, y) can be reached, best first; all in the map.
+
+    Square before the surface that it lies on; around it where it lies on none. `base` is where
+    the robot stands: the shorter way is better.
+    """
+    stands: list[Stand] = []
+    for surface in surfaces:
+        here = surface.map_from_surface.inverse() @ Pose2D(*target)
+        beyond = max(abs(here.x) - surface.size[0] / 2, abs(here.y) - surface.size[1] / 2)
+        if beyond < ON_SURFACE:
+            stands = list(_square_stands(surface, here, base, config))
+            break
+    if not stands:
+        for k in range(RING):
+            yaw = wrap_angle(2.0 * math.pi * k / RING)
+            pose = Pose2D(
+                target[0] - config.reach[1] * math.cos(yaw),
+                target[1] - config.reach[1] * math.sin(yaw),
+                yaw,
+            )
+            stands.append(Stand(pose, k, pose.distance_to(base)))
+    return sorted(stands, key=lambda stand: stand.cost)
+
+
+def _square_stands(
+    surface: Surface, target: Pose2D, base: Pose2D, config: NavigationConfig
+) -> Iterable[Stand]:
+    nearest, best, farthest = config.reach
+    for number, angle in enumerate(surface.sides):
+        edge, _ = _edge(surface, angle)
+        c, s = math.cos(angle), math.sin(angle)
+        out, along = c * target.x + s * target.y, -s * target.x + c * target.y
+        closest = max(edge - out + config.stand_off, nearest)
+        for index, shift in enumerate(SHIFTS):
+            for back in BACK:
+                away = max(closest + back, min(best, closest + 0.05))
+                distance = math.hypot(away, shift)
+                if distance > farthest:
+                    continue
+                pose = surface.map_from_surface @ _facing(angle, out + away, along + shift)
+                cost = (
+                    2.0 * abs(distance - best)
+                    + 6.0 * shift * shift
+                    + 0.3 * number
+                    + 0.3 * min(pose.distance_to(base), 3.0)
+                    + 0.3 * _sideways(base, pose)
+                )
+                yield Stand(pose, number * len(SHIFTS) + index, cost)
+
+
+def _sideways(base: Pose2D, pose: Pose2D) -> float:
+    """How far beside the base's own line a nearby pose lies, m: such a way needs a manoeuvre."""
+    return min(abs((pose.inverse() @ base).y), 0.5)
+
+
+def _edge(surface: Surface, angle: float) -> tuple[float, float]:
+    """Distance from the centre to the edge in direction `angle`, and half that edge's length."""
+    c, s = abs(math.cos(angle)), abs(math.sin(angle))
+    x, y = surface.size[0] / 2, surface.size[1] / 2
+    return c * x + s * y, s * x + c * y
+
+
+def _facing(angle: float, off: float, lateral: float) -> Pose2D:
+    """In the surface's frame: `off` m out from its centre towards `angle`, facing it squarely."""
+    c, s = math.cos(angle), math.sin(angle)
+    return Pose2D(c * off - s * lateral, s * off + c * lateral, wrap_angle(angle + math.pi))

@@ -1,0 +1,51 @@
+"""How well poses explain a scan: a likelihood field, looked up where the beams end."""
+
+from __future__ import annotations
+
+import math
+
+import numba
+import numpy as np
+
+from momantu_bt.geometry import Array
+from momantu_skills.navigation.fields import Field, sample
+
+
+@numba.njit(cache=True)  # type: ignore[untyped-decorator]
+def log_likelihoods(
+    poses: Array,
+    points: Array,
+    field: Field,
+    origin_x: float,
+    origin_y: float,
+    resolution: float,
+    sigma: float,
+    random_share: float,
+    cap: float,
+) -> Array:
+    """Sum over beams of log(hit + random) for each pose.
+
+    poses: (n, 3) x, y, yaw in the map. points: (k, 2) beam ends in the base frame, m.
+    field: distance to the nearest surface, m, at most `cap`, which holds outside as well.
+    """
+    n = poses.shape[0]
+    k = points.shape[0]
+    total = np.empty(n)
+    scale = -0.5 / (sigma * sigma)
+    for i in range(n):
+        c = math.cos(poses[i, 2]) / resolution
+        s = math.sin(poses[i, 2]) / resolution
+        x = (poses[i, 0] - origin_x) / resolution - 0.5
+        y = (poses[i, 1] - origin_y) / resolution - 0.5
+        product = 1.0
+        log = 0.0
+        for j in range(k):
+            px = points[j, 0]
+            py = points[j, 1]
+            d = sample(field, x + c * px - s * py, y + s * px + c * py, cap)
+            product *= (1.0 - random_share) * math.exp(scale * d * d) + random_share
+            if product < 1e-100:
+                log += math.log(product)
+                product = 1.0
+        total[i] = log + math.log(product)
+    return total

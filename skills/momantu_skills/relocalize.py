@@ -1,0 +1,107 @@
+"""relocalize: find out where the robot is, by turning on the spot and comparing with the map."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, ClassVar
+
+from momantu_bt.messages import BaseVelocity
+from momantu_bt.robot import Robot
+from momantu_bt.service import Localization
+from momantu_bt.skill import Failure, In, Needs, Run, Skill
+
+if TYPE_CHECKING:
+    import numpy as np
+
+WIDEN = (0.35, 0.35)
+"""m and rad by which the estimate is doubted at first: the most that a robot usually drifts."""
+LOOK = 1.6
+"""s at rest that the service's scans after a reset take."""
+TURNS = (math.radians(120.0), math.radians(360.0))
+"""rad turned about the estimate, then after a spread over the whole map."""
+RATE = 0.9
+"""rad/s: slow enough for a scan every five degrees."""
+BRAKE = 1.5
+"""rad/s2 of planned braking."""
+DONE = 0.03
+"""rad."""
+
+
+class Relocalize(Skill):
+    """Doubt the estimate a little, look around, and if that does not settle it, start from nothing.
+
+    First the particles are spread about the estimate and the robot turns to and fro. If the scans
+    still do not fit, particles are spread over the whole map and the robot turns once round.
+    """
+
+    everywhere: bool = In(False, doc="start with the whole map at once")
+
+    failures: ClassVar = {"NOT_LOCALIZED": "no place on the map fits what the laser sees"}
+    uses: ClassVar = {"base"}
+
+    localization: Localization = Needs()
+
+    def run(self, robot: Robot) -> Run:
+        """Local first, then global; each is judged at rest."""
+        from momantu_skills.navigation.confidence import is_localized, sigmas
+
+        for stage in (1,) if self.everywhere else (0, 1):
+            if stage == 0:
+                self.localization.reset(self.localization.map_from_base, *WIDEN)
+            else:
+                self.localization.spread()
+            yield from self._rest(robot, LOOK)
+            if stage == 0 and is_localized(self.localization):
+                return
+            yield from self._turn(robot, TURNS[stage])
+            yield from self._rest(robot, 0.5)
+            if is_localized(self.localization):
+                return
+        position, yaw = sigmas(self.localization.covariance)
+        raise Failure(
+            "NOT_LOCALIZED",
+            f"after turning round the newest scan fits the map by {self.localization.quality:.2f}, "
+            f"and the robot may be anywhere within {position:.2f} m and {yaw:.2f} rad",
+            quality=self.localization.quality,
+            sigma_position=position,
+            sigma_yaw=yaw,
+        )
+
+    def _rest(self, robot: Robot, seconds: float) -> Run:
+        end = self.clock.now() + seconds - 1e-6
+        while self.clock.now() < end:
+            robot.command("base", BaseVelocity(0.0, 0.0))
+            yield "look"
+
+    def _turn(self, robot: Robot, angle: float) -> Run:
+        """Turn by odometry, as far as the newest scan leaves room; bounded in time."""
+        discs = self._discs(robot)
+        state = robot.state()
+        before, turned = state.odom_from_base.yaw, 0.0
+        end = self.clock.now() + 2.0 * angle / RATE
+        while angle - turned > DONE and self.clock.now() < end:
+            rate = min(RATE, math.sqrt(2.0 * BRAKE * (angle - turned)))
+            robot.command("base", BaseVelocity(0.0, rate * self._share(robot, rate, discs)))
+            yield "turn"
+            yaw = robot.state().odom_from_base.yaw
+            turned += (yaw - before + math.pi) % (2.0 * math.pi) - math.pi
+            before = yaw
+
+    def _discs(self, robot: Robot) -> np.ndarray:
+        import numpy as np
+
+        from momantu_skills.navigation.footprint import discs
+
+        return discs(np.array(robot.description.footprint))
+
+    def _share(self, robot: Robot, rate: float, discs: np.ndarray) -> float:
+        from momantu_bt.robot import read_laser
+        from momantu_skills.navigation.guard import safe_share
+        from momantu_skills.navigation.scans import Rays
+
+        scan = read_laser(robot)
+        base = robot.description.base_frame
+        rays = Rays.from_scan(scan, self.frames.lookup(base, scan.frame, scan.stamp))
+        state = robot.state()
+        speed = (state.linear, state.angular)
+        return safe_share((0.0, rate), speed, robot.description.base, discs, rays.points())

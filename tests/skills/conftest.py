@@ -1,0 +1,185 @@
+"""A flat world for navigation: rectangles, a robot that drives and drifts, a laser that sees."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from momantu_bt.geometry import Pose2D
+from momantu_bt.messages import CameraImage, LaserScan, RobotState, frozen
+from momantu_bt.testing import ScriptedRobot, ScriptedWorld, scripted_site
+from momantu_bt.world import Surface, seeded
+
+Box = tuple[float, float, float, float]
+"""x from, y from, x to, y to, in the map, m."""
+
+
+class FlatRobot(ScriptedRobot):
+    """Stands truly at `truth`; its odometry starts at 0 and drifts, its laser is noisy.
+
+    solid: function of points (n, 2) in the map that gives the distance to the nearest thing, m.
+    """
+
+    def __init__(self, truth: Pose2D, seed: int = 0, drift: float = 0.02) -> None:
+        super().__init__()
+        self.truth, self.seed, self.drift = truth, seed, drift
+        self.boxes: list[Box] = []
+        self.nearest = math.inf
+        self.readings = {"laser": _scan, "camera": _blind}
+
+    def advance(self, seconds: float) -> None:
+        before = self.base
+        super().advance(seconds)
+        step = before.inverse() @ self.base
+        self.truth = self.truth @ Pose2D(
+            step.x * (1 + self.drift), step.y, step.yaw * (1 - self.drift)
+        )
+        corners = np.array(self.description.footprint)
+        outline = np.concatenate(
+            [a + np.linspace(0, 1, 9)[:, None] * (b - a) for a, b in _pairs(corners)]
+        )
+        self.nearest = min(self.nearest, float(self.distance(_placed(self.truth, outline)).min()))
+
+    def distance(self, points: np.ndarray) -> np.ndarray:
+        """Distance (n,) of points (n, 2) in the map to the nearest box, 0 inside."""
+        best = np.full(len(points), 1e9)
+        for x0, y0, x1, y1 in self.boxes:
+            dx = np.maximum(np.maximum(x0 - points[:, 0], points[:, 0] - x1), 0.0)
+            dy = np.maximum(np.maximum(y0 - points[:, 1], points[:, 1] - y1), 0.0)
+            best = np.minimum(best, np.hypot(dx, dy))
+        return best
+
+
+def _pairs(corners: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+    return list(zip(corners, np.roll(corners, -1, axis=0), strict=True))
+
+
+def _placed(pose: Pose2D, points: np.ndarray) -> np.ndarray:
+    c, s = math.cos(pose.yaw), math.sin(pose.yaw)
+    return points @ np.array([[c, s], [-s, c]]) + (pose.x, pose.y)
+
+
+def _scan(robot: ScriptedRobot) -> LaserScan:
+    assert isinstance(robot, FlatRobot)
+    sensor = robot.description.laser()[1]
+    mount = robot.description.kinematics().base_from_frame(sensor.frame, robot.joints)
+    angles = np.linspace(sensor.angle_min, sensor.angle_max, sensor.beams)
+    flat = np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
+    ways = flat @ mount.rotation.T
+    c, s = math.cos(robot.truth.yaw), math.sin(robot.truth.yaw)
+    ways = ways[:, :2] @ np.array([[c, s], [-s, c]])
+    start = _placed(robot.truth, mount.position[None, :2])
+    ranges = np.zeros(len(angles))
+    for _ in range(80):
+        ranges += np.minimum(robot.distance(start + ways * ranges[:, None]), 30.0)
+    noise = seeded(robot.seed, "laser", robot.time).normal(0.0, 0.015, len(ranges))
+    ranges = np.where(ranges < sensor.range_max, ranges + noise, sensor.range_max)
+    step = (sensor.angle_max - sensor.angle_min) / (sensor.beams - 1)
+    return LaserScan(
+        stamp=robot.time,
+        frame=sensor.frame,
+        angle_min=sensor.angle_min,
+        angle_increment=step,
+        range_min=sensor.range_min,
+        range_max=sensor.range_max,
+        ranges=frozen(ranges),
+    )
+
+
+def _blind(robot: ScriptedRobot) -> CameraImage:
+    """A camera that measures no depth anywhere."""
+    camera = robot.description.camera()[1]
+    size = (camera.height, camera.width)
+    focus = 0.5 * camera.width / math.tan(0.5 * camera.horizontal_fov)
+    k = np.array([[focus, 0, size[1] / 2], [0, focus, size[0] / 2], [0, 0, 1]])
+    color, depth = np.zeros((*size, 3), np.uint8), np.zeros(size, np.float32)
+    return CameraImage(robot.time, camera.frame, color, depth, k)
+
+
+class FlatScene:
+    """A planning scene whose footprint is the base's, and to which nothing is the robot."""
+
+    held = None
+    last_contact = -math.inf
+
+    def __init__(self, outline: Sequence[tuple[float, float]]) -> None:
+        self.outline = np.array(outline)
+
+    def footprint(self, state: RobotState) -> np.ndarray:
+        return self.outline
+
+    def is_robot(self, points: np.ndarray, state: RobotState) -> np.ndarray:
+        return np.zeros(len(points), dtype=bool)
+
+
+def write_map(folder: Path, known: Sequence[Box], span: Box) -> Path:
+    """A map_server map of boxes, 0.05 m per pixel, over `span`."""
+    columns, rows = round((span[2] - span[0]) / 0.05), round((span[3] - span[1]) / 0.05)
+    y, x = np.mgrid[0:rows, 0:columns]
+    x, y = span[0] + (x + 0.5) * 0.05, span[1] + (y + 0.5) * 0.05
+    pixels = np.full((rows, columns), 254, np.uint8)
+    for x0, y0, x1, y1 in known:
+        pixels[(x > x0) & (x < x1) & (y > y0) & (y < y1)] = 0
+    header = f"P5\n# drawn\n{columns} {rows}\n255\n".encode()
+    (folder / "flat.pgm").write_bytes(header + pixels[::-1].tobytes())
+    (folder / "flat.yaml").write_text(
+        f"image: flat.pgm\nresolution: 0.05\norigin: [{span[0]}, {span[1]}, 0.0]\n"
+        "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
+    )
+    return folder / "flat.yaml"
+
+
+Flat = Callable[..., ScriptedWorld]
+
+ROOMS: tuple[Box, ...] = (
+    (-4.0, -3.0, 6.0, -2.9),
+    (-4.0, 3.0, 6.0, 3.1),
+    (-4.1, -3.0, -4.0, 3.1),
+    (6.0, -3.0, 6.1, 3.1),
+    (1.0, -3.0, 1.1, 0.4),
+    (1.0, 1.5, 1.1, 3.0),
+    (-3.2, -2.9, -2.2, -2.3),
+)
+"""Two rooms with a doorway 1.1 m wide between them, and a cupboard to tell left from right."""
+
+DESK: Box = (3.6, -0.4, 4.2, 0.8)
+"""A solid desk in the second room."""
+
+
+@pytest.fixture
+def flat(tmp_path: Path) -> Flat:
+    """`flat(truth, believed=…, hidden=…, moved=…)`: two rooms, a desk and a robot in them."""
+
+    def build(
+        truth: Pose2D = Pose2D(-2.0, 0.0, 0.0),
+        *,
+        believed: Pose2D | None = None,
+        hidden: Sequence[Box] = (),
+        desk: Box = DESK,
+        known: Sequence[Box] = (),
+        seed: int = 0,
+        drift: float = 0.02,
+    ) -> ScriptedWorld:
+        robot = FlatRobot(truth, seed, drift)
+        robot.boxes = [*ROOMS, *known, desk, *hidden]
+        site = scripted_site(
+            map_file=write_map(tmp_path, [*ROOMS, *known, DESK], (-4.5, -3.5, 6.5, 3.5)),
+            start=believed or truth,
+            places={"left": Pose2D(-2.0, 1.5, 0.0), "right": Pose2D(2.2, -2.0, -1.0)},
+            surfaces={
+                "desk": Surface(Pose2D(3.9, 0.2, 0.0), (0.6, 1.2), 0.7, (math.pi, -math.pi / 2))
+            },
+        )
+        return ScriptedWorld(robot, site)
+
+    return build
+
+
+@pytest.fixture
+def flat_scene() -> Callable[[ScriptedWorld], FlatScene]:
+    """`flat_scene(world)`: the planning scene that navigation needs."""
+    return lambda world: FlatScene(world.robot.description.footprint)
