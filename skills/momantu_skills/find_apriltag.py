@@ -1,0 +1,121 @@
+"""find_apriltag: sweep until the tag is seen, then measure where it lies."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from momantu_bt.frames import ODOM
+from momantu_bt.geometry import Array, Pose
+from momantu_bt.robot import CAMERA_CARRIER, Robot
+from momantu_bt.service import Localization, PlanningScene
+from momantu_bt.skill import Compute, Failure, In, Needs, Out, Run, Skill, compute
+
+if TYPE_CHECKING:
+    from momantu_skills.perception.tag_poses import TagSighting
+
+BUDGET = 0.05
+"""s granted to searching one picture."""
+PICTURES = 4
+"""Pictures that are averaged once the tag is in the middle of the view."""
+LOOKS = 2
+"""Fewest looks over a surface; the second sees what a thing hides from the first."""
+
+
+class FindAprilTag(Skill):
+    """Look over a surface (or around) until a tag36h11 tag is seen, and measure its pose."""
+
+    tag_id: int = In(doc="which tag")
+    edge: float = In(unit="m", doc="length of the black square's side")
+    on: str | None = In(None, names="surface", doc="surface that it lies on; None: look around")
+    tag_pose: Pose = Out(doc="centre of the tag, z out of it, x to its right; odom, stamped")
+    tag_sigma: float = Out(unit="m", doc="standard uncertainty of its position")
+    failures = {"TAG_NOT_SEEN": "no look of the sweep showed the tag; data lists other tags"}
+    uses = {CAMERA_CARRIER}
+    localization: Localization = Needs()
+    planning_scene: PlanningScene = Needs()
+
+    def run(self, robot: Robot) -> Run:
+        """Sweep, look at it, average."""
+        from momantu_skills.perception.looking import look_at
+        from momantu_skills.perception.tag_poses import average
+
+        others: set[int] = set()
+        for point in self._points(robot):
+            first = yield from self._glance(robot, point, others)
+            if first is None:
+                continue
+            sightings = [first]
+            try:
+                yield from look_at(self, robot, first.odom_from_tag.position)
+            except Failure as failure:
+                if failure.code != "OUT_OF_VIEW":
+                    raise
+            sightings += yield from self._watch(robot, others)
+            result = average(sightings)
+            self.tag_pose = Pose(result.odom_from_tag, ODOM, result.stamp)
+            self.tag_sigma = result.sigma
+            return
+        raise self._not_seen(others)
+
+    def _glance(
+        self, robot: Robot, point: Array, others: set[int]
+    ) -> Generator[str | Compute, Any, TagSighting | None]:
+        from momantu_skills.perception.looking import look_at
+        from momantu_skills.perception.surveys import OFF_AXIS
+
+        try:
+            yield from look_at(self, robot, point, within=OFF_AXIS)
+        except Failure as failure:
+            if failure.code != "OUT_OF_VIEW":
+                raise
+            return None
+        return (yield from self._search(robot, others))
+
+    def _watch(
+        self, robot: Robot, others: set[int]
+    ) -> Generator[str | Compute, Any, list[TagSighting]]:
+        seen: list[TagSighting] = []
+        for _ in range(PICTURES):
+            sighting = yield from self._search(robot, others)
+            if sighting is not None:
+                seen.append(sighting)
+        return seen
+
+    def _search(
+        self, robot: Robot, others: set[int]
+    ) -> Generator[str | Compute, Any, TagSighting | None]:
+        from momantu_skills.perception.tag_poses import search
+        from momantu_skills.perception.views import take
+
+        snapshot = take(self, robot)
+        ids, sighting = yield from compute(
+            partial(search, snapshot, self.tag_id, self.edge), budget=BUDGET
+        )
+        others.update(ids - {self.tag_id})
+        return sighting
+
+    def _points(self, robot: Robot) -> list[Array]:
+        from momantu_skills.perception.regions import surface_corners
+        from momantu_skills.perception.surveys import around
+        from momantu_skills.perception.views import sweep
+
+        if self.on is None:
+            return around(self, robot)
+        surface = self.site.surfaces.get(self.on)
+        if surface is None:
+            known = ", ".join(self.site.surfaces) or "none"
+            raise Failure("TAG_NOT_SEEN", f"the site has no surface {self.on!r}; surfaces: {known}")
+        sensor = robot.description.camera()[1]
+        camera = self.frames.lookup(ODOM, sensor.frame).position
+        corners = surface_corners(surface, self.frames)
+        return [corners.mean(axis=0), *sweep(corners, camera, sensor, LOOKS)]
+
+    def _not_seen(self, others: set[int]) -> Failure:
+        where = f"on {self.on}" if self.on is not None else "around"
+        ids = sorted(others)
+        beside = f"; other tags there: {', '.join(map(str, ids))}" if ids else ""
+        return Failure(
+            "TAG_NOT_SEEN", f"no tag {self.tag_id} was seen {where}{beside}", other_tags=ids
+        )

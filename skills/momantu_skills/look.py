@@ -1,0 +1,69 @@
+"""look: point the camera at something and hold it there."""
+
+from __future__ import annotations
+
+from momantu_bt.frames import ODOM
+from momantu_bt.geometry import Array, Pose
+from momantu_bt.robot import CAMERA_CARRIER, Robot
+from momantu_bt.skill import Failure, In, Run, Skill
+
+AHEAD = 3.0
+"""m before the base, at the camera's own height."""
+DOWN = 1.0
+"""m before the base, on the floor: near enough to see what the base is about to meet."""
+DIRECTIONS = ("ahead", "down")
+
+
+class Look(Skill):
+    """Point the camera at a pose, at a surface, or ahead; SUCCESS once it is still."""
+
+    at: Pose | None = In(None, doc="look at the origin of this pose (odom or map)")
+    surface: str | None = In(None, names="surface", doc="look at the middle of this surface")
+    direction: str | None = In(None, doc="look 'ahead', or 'down' at the floor ahead")
+    failures = {
+        "BAD_TARGET": "not exactly one of at, surface and direction is given, or it is unknown",
+        "OUT_OF_VIEW": "the camera's carrier cannot turn that far, or is stuck",
+    }
+    uses = {CAMERA_CARRIER}
+
+    def run(self, robot: Robot) -> Run:
+        """Work out the point, then look."""
+        from momantu_skills.perception.looking import look_at
+
+        yield from look_at(self, robot, self._point(robot))
+
+    def _point(self, robot: Robot) -> Array:
+        given = [name for name in ("at", "surface", "direction") if getattr(self, name) is not None]
+        if len(given) != 1:
+            raise Failure(
+                "BAD_TARGET",
+                f"look takes exactly one of at, surface, direction; given: "
+                f"{', '.join(given) or 'none'}",
+            )
+        if self.at is not None:
+            return self.frames.lookup(ODOM, self.at.frame).apply(self.at.position)
+        if self.surface is not None:
+            return self._middle_of(self.surface)
+        return self._ahead(robot)
+
+    def _middle_of(self, name: str) -> Array:
+        surface = self.site.surfaces.get(name)
+        if surface is None:
+            known = ", ".join(self.site.surfaces) or "none"
+            raise Failure("BAD_TARGET", f"the site has no surface {name!r}; surfaces: {known}")
+        top = surface.map_from_surface.transform(surface.height)
+        return self.frames.lookup(ODOM, "map").apply(top.position)
+
+    def _ahead(self, robot: Robot) -> Array:
+        base, camera = robot.description.base_frame, robot.description.camera()[1].frame
+        if self.direction == "ahead":
+            height = float(self.frames.lookup(base, camera).position[2])
+            point_base = (AHEAD, 0.0, height)
+        elif self.direction == "down":
+            point_base = (DOWN, 0.0, 0.0)
+        else:
+            raise Failure(
+                "BAD_TARGET",
+                f"unknown direction {self.direction!r}; directions: {', '.join(DIRECTIONS)}",
+            )
+        return self.frames.lookup(ODOM, base).apply(point_base)

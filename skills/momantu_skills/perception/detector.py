@@ -1,0 +1,98 @@
+"""From views of a surface to the things on it, scored against what is asked."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+
+from momantu_bt.frames import ODOM
+from momantu_bt.geometry import Pose, Transform, quaternion_from_axis_angle
+from momantu_bt.messages import DetectedObject, ObjectClass
+from momantu_skills.perception.matching import MatchConfig, score
+from momantu_skills.perception.planes import PlaneConfig, Support, measure_support
+from momantu_skills.perception.segment import SegmentConfig, Thing, things_on
+from momantu_skills.perception.shapes import Shape, describe
+from momantu_skills.perception.splitting import split
+from momantu_skills.perception.views import View
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Detections:
+    """support: the surface as measured. things: everything on it, best score first."""
+
+    support: Support
+    things: tuple[DetectedObject, ...]
+
+
+class ObjectDetector(Protocol):
+    """Finds things on a surface. A learned detector may take the place of the geometric one."""
+
+    def detect(
+        self, views: Sequence[View], low: float, high: float, asked: ObjectClass
+    ) -> Detections | None:
+        """Everything that stands on the surface between the heights `low` and `high` (m, odom).
+
+        None when no view shows such a surface. Scores say how well each thing is `asked`; one
+        below `accepted` is another thing.
+        """
+        ...
+
+    @property
+    def accepted(self) -> float:
+        """Score from which on a thing is the asked one."""
+        ...
+
+
+@dataclass(frozen=True)
+class GeometricDetector:
+    """Measures the plane, groups what stands on it, and fits cylinders and boxes."""
+
+    planes: PlaneConfig = field(default_factory=PlaneConfig)
+    segments: SegmentConfig = field(default_factory=SegmentConfig)
+    matches: MatchConfig = field(default_factory=MatchConfig)
+
+    @property
+    def accepted(self) -> float:
+        """Score from which on a thing is the asked one."""
+        return self.matches.accepted
+
+    def detect(
+        self, views: Sequence[View], low: float, high: float, asked: ObjectClass
+    ) -> Detections | None:
+        """See `ObjectDetector.detect`."""
+        support = measure_support(views, low, high, self.planes)
+        if support is None:
+            return None
+        shapes = [
+            shape
+            for thing in things_on(support, self.segments)
+            for shape in self._shapes(thing, asked)
+        ]
+        found = [self._object(shape, support, asked) for shape in shapes]
+        found.sort(key=lambda thing: -thing.score)
+        return Detections(support, tuple(found))
+
+    def _shapes(self, thing: Thing, asked: ObjectClass) -> list[Shape]:
+        """The thing as a whole, or its parts where it is several that touch."""
+        radius = None if asked.diameter is None else asked.diameter / 2
+        whole = describe(thing, radius)
+        if score(whole, asked, self.matches) >= self.accepted:
+            return [whole]
+        parts = split(thing, self.segments)
+        return [describe(part, radius) for part in parts] if len(parts) > 1 else [whole]
+
+    def _object(self, shape: Shape, support: Support, asked: ObjectClass) -> DetectedObject:
+        middle = np.array([*shape.centre, support.height + shape.size[2] / 2])
+        turn = quaternion_from_axis_angle((0.0, 0.0, 1.0), shape.yaw)
+        worth = score(shape, asked, self.matches)
+        return DetectedObject(
+            category=asked.category if worth >= self.accepted else shape.category,
+            pose=Pose(Transform(middle, turn), ODOM, support.stamp),
+            size=shape.size,
+            shape=shape.kind,
+            score=worth,
+            support_height=support.height,
+        )

@@ -1,0 +1,92 @@
+"""Convex regions of the floor plan with a range of heights, and plane geometry around them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from momantu_bt.frames import MAP, ODOM, FrameBuffer
+from momantu_bt.geometry import Array
+from momantu_bt.world import Surface
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Region:
+    """outline: (k, 2) convex, counter-clockwise, odom, m. low, high: heights, m."""
+
+    outline: Array
+    low: float
+    high: float
+
+    def contains(self, points: Array) -> NDArray[np.bool_]:
+        """(n,) bool: which points (n, 3) in odom lie inside."""
+        inside = (points[:, 2] >= self.low) & (points[:, 2] <= self.high)
+        candidates = np.nonzero(inside)[0]
+        inside[candidates] = depth_inside(points[candidates, :2], self.outline) >= 0.0
+        return inside
+
+
+def depth_inside(points: Array, outline: Array) -> Array:
+    """(n,) distance in m of points (n, 2) to the nearest edge line of a convex outline (k, 2).
+
+    Positive inside, negative outside. Outside beyond a corner it is the distance to the edges'
+    lines, a lower bound of the distance to the outline.
+    """
+    depth = np.full(len(points), np.inf)
+    for start, end in zip(outline, np.roll(outline, -1, axis=0), strict=True):
+        along = end - start
+        length = float(np.hypot(*along))
+        if length < 1e-9:
+            continue
+        inward = np.array([-along[1], along[0]]) / length
+        np.minimum(depth, points @ inward - float(start @ inward), out=depth)
+    return depth
+
+
+def grown(outline: Array, by: float) -> Array:
+    """A convex outline (k, 2) whose edges are moved outwards by `by` m (corners are mitred)."""
+    edges = np.roll(outline, -1, axis=0) - outline
+    outward = np.column_stack([edges[:, 1], -edges[:, 0]])
+    outward /= np.linalg.norm(outward, axis=1, keepdims=True)
+    corners = []
+    for here, before in zip(outward, np.roll(outward, 1, axis=0), strict=True):
+        corners.append((here + before) / (1.0 + float(here @ before)))
+    return np.asarray(outline + by * np.array(corners))
+
+
+def convex_hull(points: Array) -> Array:
+    """(k, 2) counter-clockwise hull of points (n, 2), by Andrew's monotone chain."""
+    ordered = np.unique(points, axis=0)
+    if len(ordered) < 3:
+        return ordered
+    halves = []
+    for sequence in (ordered, ordered[::-1]):
+        half: list[tuple[float, float]] = []
+        for x, y in sequence.tolist():
+            while len(half) >= 2 and _turn(half[-2], half[-1], (x, y)) <= 0.0:
+                half.pop()
+            half.append((x, y))
+        halves.extend(half[:-1])
+    return np.array(halves)
+
+
+def _turn(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]) -> float:
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
+def surface_corners(surface: Surface, frames: FrameBuffer) -> Array:
+    """Corners (4, 3) in odom, m, of a site's surface where localization believes it to be."""
+    half_x, half_y = surface.size[0] / 2, surface.size[1] / 2
+    flat = np.array(
+        [[-half_x, -half_y, 0], [half_x, -half_y, 0], [half_x, half_y, 0], [-half_x, half_y, 0]]
+    )
+    in_map = surface.map_from_surface.transform(surface.height)
+    return (frames.lookup(ODOM, MAP) @ in_map).apply(flat)
+
+
+def disc(centre: Array, radius: float, corners: int = 16) -> Array:
+    """Outline (corners, 2) of a regular polygon around a point (2,), counter-clockwise."""
+    angles = 2 * np.pi * np.arange(corners) / corners
+    return np.asarray(centre + radius * np.column_stack([np.cos(angles), np.sin(angles)]))

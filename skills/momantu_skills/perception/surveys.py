@@ -1,0 +1,115 @@
+"""Looking over a surface: several views of one region."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Generator
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from momantu_bt.failure import Failure
+from momantu_bt.frames import ODOM
+from momantu_bt.geometry import Array
+from momantu_bt.robot import Robot
+from momantu_bt.service import PlanningScene
+from momantu_bt.skill import Compute, Skill, compute
+from momantu_skills.perception.looking import look_at
+from momantu_skills.perception.regions import Region, disc, grown
+from momantu_skills.perception.views import Snapshot, View, see, sweep, take
+
+BESIDE = 0.20
+"""m by which a surface may lie beside where it is believed: 0.10 m of its own and localization."""
+HEIGHT_ERROR = 0.06
+"""m by which it may be higher or lower: 0.03 m of its own, and the camera's mounting."""
+HEADROOM = 0.55
+"""m above a surface within which things stand on it."""
+OFF_AXIS = math.radians(12.0)
+"""How far from the middle of the picture a looked-at point may lie: it is still well inside."""
+NEAR, TABLE = 1.0, 0.6
+"""m; distance and height of what is looked at where nothing is known: a table ahead."""
+AROUND = tuple(math.radians(angle) for angle in (0.0, 40.0, -40.0, 80.0, -80.0))
+"""rad; bearings of those looks: neighbouring views of 60 degrees overlap by a third."""
+WIDE = 0.30
+"""m to each side of a place that the looks at it are spread over."""
+PATCH = 0.60
+"""m around a place within which a surface and what stands there matter to a hand."""
+PLACE_ERROR = 0.03
+"""m by which a place that was measured may be higher or lower than its surface."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SurfaceRegion(Region):
+    """Where a surface and what stands on it are looked for.
+
+    support_heights: (lowest, highest) z of the surface itself in odom, m.
+    """
+
+    support_heights: tuple[float, float]
+
+
+def surface_region(corners: Array) -> SurfaceRegion:
+    """Around a surface whose corners (4, 3) in odom are roughly known."""
+    height = float(corners[:, 2].mean())
+    low, high = height - HEIGHT_ERROR, height + HEIGHT_ERROR
+    return SurfaceRegion(grown(corners[:, :2], BESIDE), low, high + HEADROOM, (low, high))
+
+
+def survey(
+    skill: Skill,
+    robot: Robot,
+    corners: Array,
+    region: Region,
+    *,
+    at_least: int,
+    budget: float,
+    unseen: str,
+) -> Generator[str | Compute, Any, list[View]]:
+    """Look along a surface's outline (k, 3) in odom and return the views of `region`.
+
+    Looks that the camera's carrier cannot take are left out. budget: s granted to each.
+    unseen: code of the failure when no look is possible.
+
+    Raises:
+        Failure: `unseen`, caused by the last look's OUT_OF_VIEW.
+    """
+    scene: PlanningScene = skill.services["planning_scene"]
+    description = robot.description
+    camera = skill.frames.lookup(ODOM, description.camera()[1].frame).position
+    points = sweep(corners, camera, description.camera()[1], at_least)
+    views: list[View] = []
+    refused: Failure | None = None
+    for point in points:
+        try:
+            yield from look_at(skill, robot, point, within=OFF_AXIS)
+        except Failure as failure:
+            if failure.code != "OUT_OF_VIEW":
+                raise
+            refused = failure
+            continue
+        snapshot: Snapshot = take(skill, robot)
+        views.append((yield from compute(partial(see, snapshot, region, scene), budget=budget)))
+    if not views:
+        raise Failure(unseen, "the camera cannot look there from here") from refused
+    return views
+
+
+def around(skill: Skill, robot: Robot) -> list[Array]:
+    """Points (3,) in odom to look at where nothing is known: ahead, then to both sides."""
+    odom_from_base = skill.frames.lookup(ODOM, robot.description.base_frame)
+    points = []
+    for bearing in AROUND:
+        ahead = (NEAR * math.cos(bearing), NEAR * math.sin(bearing), TABLE)
+        points.append(odom_from_base.apply(ahead))
+    return points
+
+
+def place_region(near: Array) -> tuple[Array, SurfaceRegion]:
+    """What to look over (4, 3) and where points count, around a measured place (3,) in odom."""
+    square = WIDE * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+    corners = np.column_stack([near[:2] + square, np.full(4, near[2])])
+    low, high = float(near[2]) - PLACE_ERROR, float(near[2]) + PLACE_ERROR
+    outline = disc(near[:2], PATCH)
+    return corners, SurfaceRegion(outline, low, high + HEADROOM, (low, high))

@@ -1,0 +1,150 @@
+"""AprilTags in RGB-D pictures: corners from colour, the pose from depth."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+import pyapriltags
+from numpy.typing import NDArray
+
+from momantu_bt.geometry import Array, Transform
+from momantu_bt.messages import CameraImage
+
+FAMILY = "tag36h11"
+GAMMA = 2.2
+"""Of the camera's colours. Undone, because it lets white bleed into a tag's black border, which
+makes the tag seem 1.6 % farther."""
+PIXEL_CENTRE = 0.5
+"""px; the tag library gives the middle of the first pixel 0.5, pinhole matrices here give it 0."""
+LEAST_MARGIN = 15.0
+"""Decision margin of the decoded bits below which a tag is not believed."""
+EDGE_TOLERANCE = 0.12
+"""Relative difference of a measured edge from the told one up to which it is that tag."""
+LEAST_DEPTHS = 30
+"""Depth pixels on a tag that make a plane of it."""
+PLANE_OUTLIER = 3.0
+"""Times the median residual at which a depth pixel is left out of the plane."""
+UNIT_CORNERS = np.array([[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]])
+"""A tag's corners in the library's order, x to the right and y up on the printed tag, in edges."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SeenTag:
+    """camera_from_tag: x right and y up on the printed tag, z out of it, at its centre.
+
+    misfit: root mean square distance of the measured corners from the fitted square's, m.
+    """
+
+    tag_id: int
+    camera_from_tag: Transform
+    misfit: float
+
+
+def find_tags(image: CameraImage) -> dict[int, Array]:
+    """Corners (4, 2) in px of every tag in a picture, by id; the larger one where an id repeats."""
+    grey = _linear()[image.color[..., 1]]
+    found: dict[int, Array] = {}
+    for detection in _detector().detect(np.ascontiguousarray(grey)):
+        if detection.hamming > 1 or detection.decision_margin < LEAST_MARGIN:
+            continue
+        corners = np.asarray(detection.corners, dtype=np.float64) - PIXEL_CENTRE
+        other = found.get(int(detection.tag_id))
+        if other is None or _area(corners) > _area(other):
+            found[int(detection.tag_id)] = corners
+    return found
+
+
+def locate(image: CameraImage, tag_id: int, corners: Array, edge: float) -> SeenTag | None:
+    """Pose of a tag whose black square is `edge` m wide, from its corners (4, 2) in px and depth.
+
+    The plane through the tag's depth pixels, met by the rays of its corners, gives four points in
+    space; the pose is the least-squares fit of a square to them (Kabsch 1976). There is no
+    two-fold ambiguity. None when depth is missing or the tag is not of that size.
+    """
+    plane = _plane_of(image, corners)
+    if plane is None:
+        return None
+    rays = _rays(corners, image.intrinsics)
+    scale = plane[1] / (rays @ plane[0])
+    points = rays * scale[:, None]
+    sides = np.linalg.norm(points - np.roll(points, -1, axis=0), axis=1)
+    if not np.isfinite(sides).all() or float(np.abs(sides / edge - 1.0).max()) > EDGE_TOLERANCE:
+        return None
+    pose, misfit = _fit_square(points, edge)
+    return SeenTag(tag_id, pose, misfit)
+
+
+def _rays(pixels: Array, intrinsics: Array) -> Array:
+    """(n, 3) directions with z = 1 through pixels (n, 2)."""
+    x = (pixels[:, 0] - intrinsics[0, 2]) / intrinsics[0, 0]
+    y = (pixels[:, 1] - intrinsics[1, 2]) / intrinsics[1, 1]
+    return np.column_stack([x, y, np.ones(len(pixels))])
+
+
+def _plane_of(image: CameraImage, corners: Array) -> tuple[Array, float] | None:
+    """Unit normal (3,) and distance n.p of the tag's plane in the optical frame.
+
+    Along a plane 1/z is linear in the pixel's coordinates, and its noise is even there because
+    depth noise grows with z2; so the fit is plain least squares, once repeated without outliers.
+    """
+    pixels = _pixels_within(image.depth.shape, corners)
+    z = image.depth[pixels[:, 1], pixels[:, 0]].astype(np.float64)
+    pixels, z = pixels[z > 0], z[z > 0]
+    if len(z) < LEAST_DEPTHS:
+        return None
+    rays, inverse = _rays(pixels, image.intrinsics), 1.0 / z
+    scaled = np.linalg.lstsq(rays, inverse, rcond=None)[0]
+    residuals = np.abs(rays @ scaled - inverse)
+    kept = residuals <= PLANE_OUTLIER * max(float(np.median(residuals)), 1e-6)
+    scaled = np.linalg.lstsq(rays[kept], inverse[kept], rcond=None)[0]
+    length = float(np.linalg.norm(scaled))
+    return (scaled / length, 1.0 / length) if length > 1e-9 else None
+
+
+def _pixels_within(shape: tuple[int, ...], corners: Array) -> NDArray[np.int64]:
+    """Whole pixels (n, 2) as (column, row) inside a convex quadrilateral."""
+    low = np.maximum(np.floor(corners.min(axis=0)).astype(int), 0)
+    high = np.minimum(np.ceil(corners.max(axis=0)).astype(int), [shape[1] - 1, shape[0] - 1])
+    columns, rows = np.meshgrid(
+        np.arange(low[0], high[0] + 1), np.arange(low[1], high[1] + 1), indexing="xy"
+    )
+    pixels = np.column_stack([columns.ravel(), rows.ravel()])
+    turn = np.ones(len(pixels), dtype=bool)
+    sign = math.copysign(1.0, _signed_area(corners))
+    for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        along, relative = end - start, pixels - start
+        turn &= sign * (along[0] * relative[:, 1] - along[1] * relative[:, 0]) >= 0.0
+    return np.asarray(pixels[turn])
+
+
+def _fit_square(points: Array, edge: float) -> tuple[Transform, float]:
+    model = np.column_stack([UNIT_CORNERS * edge, np.zeros(4)])
+    centre = points.mean(axis=0)
+    u, _, vt = np.linalg.svd(model.T @ (points - centre))
+    flip = np.diag([1.0, 1.0, float(np.sign(np.linalg.det(vt.T @ u.T)))])
+    rotation = vt.T @ flip @ u.T
+    misfits = np.linalg.norm(model @ rotation.T + centre - points, axis=1)
+    return Transform.from_rotation(rotation, centre), float(np.sqrt((misfits**2).mean()))
+
+
+def _signed_area(corners: Array) -> float:
+    x, y = corners[:, 0], corners[:, 1]
+    return 0.5 * float((x * np.roll(y, -1) - np.roll(x, -1) * y).sum())
+
+
+def _area(corners: Array) -> float:
+    return abs(_signed_area(corners))
+
+
+@lru_cache(maxsize=1)
+def _linear() -> NDArray[np.uint8]:
+    """Table (256,) from a colour's value to light."""
+    return np.round(255.0 * (np.arange(256) / 255.0) ** GAMMA).astype(np.uint8)
+
+
+@lru_cache(maxsize=1)
+def _detector() -> pyapriltags.Detector:
+    return pyapriltags.Detector(families=FAMILY, nthreads=1, quad_decimate=1.0)
