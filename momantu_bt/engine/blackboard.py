@@ -97,6 +97,10 @@ class Board:
             self.cells[key] = found
         return found
 
+    def publish(self, cell: ReadOnlyCell) -> None:
+        """Add a read-only key; before the nodes are built, which keep the cells they find."""
+        self.cells[cell.name] = cell
+
     def with_cells(self, cells: Mapping[str, Cell]) -> Board:
         """The same keys, except that some names mean other cells (`failure` in a handler)."""
         return _Overlay(self, cells)

@@ -89,15 +89,18 @@ class Built:
     board: Board
 
 
-def build(document: Document, context: RunContext, skill_of: SkillFinder) -> Built:
+def build(
+    document: Document, context: RunContext, skill_of: SkillFinder, board: Board | None = None
+) -> Built:
     """Make the nodes of a document's main tree, subtrees included.
 
-    skill_of: a skill's class by name; PluginError passes through.
+    skill_of: a skill's class by name; PluginError passes through. board: the root's, an empty
+    one unless given.
 
     Raises:
         BuildError: an unknown node, a literal that does not fit, nesting beyond MAX_DEPTH.
     """
-    board = Board(context.writes)
+    board = board or Board(context.writes)
     tree = _tree(document, document.main)
     root = _Builder(document, context, skill_of).node(tree.root, board, "0")
     nodes = (root, *root.below)

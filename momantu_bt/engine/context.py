@@ -32,7 +32,8 @@ class RunContext:
     """Shared by the nodes of one run.
 
     now: seconds of the world's clock at this tick. tick: its number, from 1.
-    writes: cells written in this tick, with what they held before. changes: nodes whose status changed, with the new status.
+    writes: cells written in this tick, with what they held before. changes: nodes whose status
+    changed, with the new status.
     remark: tells a person something that never influences the run.
     """
 

@@ -7,13 +7,14 @@ from dataclasses import dataclass
 from typing import Any
 
 from momantu_bt.engine.actuators import Actuators
+from momantu_bt.engine.services import Services
 from momantu_bt.engine.session import Session, SkillContext
 from momantu_bt.engine.status import FAILURE, RUNNING
 from momantu_bt.failure import FailureValue
 from momantu_bt.frames import FrameBuffer
 from momantu_bt.geometry import Transform
 from momantu_bt.robot import Robot
-from momantu_bt.service import Service, ServiceContext
+from momantu_bt.service import Service
 from momantu_bt.skill import Skill
 from momantu_bt.testing.robot import ScriptedRobot
 from momantu_bt.testing.world import ScriptedWorld
@@ -122,40 +123,20 @@ class _Services:
     """The services of a run without a tree, and the frame buffer they share."""
 
     def __init__(
-        self,
-        world: World,
-        services: dict[str, Any],
-        frames: FrameBuffer | None,
-        seed: int,
+        self, world: World, services: dict[str, Any], frames: FrameBuffer | None, seed: int
     ) -> None:
         self.services = services
         self._world = world
         self.frames = frames or FrameBuffer(world.robot.description.kinematics())
-        self._due = dict.fromkeys(self._ticking(), world.now())
-        if frames is not None:
-            return
-        self.frames.add_state(world.robot.state())
-        for name, service in self._ticking().items():
-            service.start(
-                ServiceContext(
-                    site=world.site,
-                    description=world.robot.description,
-                    frames=self.frames,
-                    clock=world,
-                    random=seeded(seed, name),
-                    parameters=world.site.services.get(name, {}),
-                    other=self.services.__getitem__,
-                )
+        ticking = {n: s for n, s in services.items() if isinstance(s, Service)}
+        self._ticking = Services(ticking, Actuators(world.robot))
+        if frames is None:
+            self.frames.add_state(world.robot.state())
+            self._ticking.start(
+                world.site, self.frames, world, seed, other=self.services.__getitem__
             )
-
-    def _ticking(self) -> dict[str, Service]:
-        return {n: s for n, s in self.services.items() if isinstance(s, Service)}
 
     def update(self) -> None:
         """Remember the robot's state and update the services that are due."""
-        now = self._world.now()
         self.frames.add_state(self._world.robot.state())
-        for name, service in self._ticking().items():
-            if now >= self._due[name] - 1e-9:
-                self._due[name] += 1.0 / service.rate
-                service.update(self._world.robot, now)
+        self._ticking.update(self._world.now())

@@ -1,0 +1,203 @@
+"""The run: step the world, services, tree, observers, until it ends and everything stands still."""
+
+from __future__ import annotations
+
+import time
+import traceback
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from momantu_bt.engine.build import Built
+from momantu_bt.engine.context import RunContext
+from momantu_bt.engine.interrupts import Interrupts
+from momantu_bt.engine.nodes.timing import running_as_cause
+from momantu_bt.engine.services import Services
+from momantu_bt.engine.session import CLOCK_SLACK
+from momantu_bt.engine.status import FAILURE, RUNNING, Status
+from momantu_bt.failure import TIMEOUT, FailureValue
+from momantu_bt.record import report as outcome
+from momantu_bt.record.fingerprint import Fingerprint
+from momantu_bt.world import Verdict, World
+
+SETTLE = 1.5
+"""Simulated seconds after the end in which everything stops: the referee wants 1 s of stillness."""
+
+
+class Stepper(Protocol):
+    """A world, or a clock where a tree needs no world."""
+
+    def now(self) -> float:
+        """Seconds since the run began."""
+        ...
+
+    def step(self) -> None:
+        """Advance by one tick."""
+        ...
+
+
+class Observer(Protocol):
+    """Sees each tick and changes nothing."""
+
+    def ticked(self, run: Executor) -> None:
+        """After each tick, and after each step while everything comes to rest."""
+        ...
+
+    def close(self) -> None:
+        """The run is over."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Ending:
+    """How a run ended. status: as in `Report`. error: a traceback."""
+
+    status: str
+    failure: FailureValue | None
+    verdict: Verdict | None
+    sim_time: float
+    wall_time: float
+    ticks: int
+    error: str | None
+
+
+class Executor:
+    """Runs one tree once.
+
+    settling: the tree has ended and the robot comes to rest.
+    """
+
+    def __init__(
+        self,
+        built: Built,
+        context: RunContext,
+        stepper: Stepper,
+        *,
+        world: World | None = None,
+        services: Services | None = None,
+        observers: Sequence[Observer] = (),
+        max_time: float = 600.0,
+        realtime: bool = False,
+    ) -> None:
+        self.built = built
+        self.context = context
+        self.world = world
+        self.services = services or Services({}, None)
+        self.observers = list(observers)
+        self.fingerprint = Fingerprint()
+        self.settling = False
+        self._stepper = stepper
+        self._max_time = max_time
+        self._realtime = realtime
+        self._error: str | None = None
+        self._failure: FailureValue | None = None
+
+    def run(self, interrupts: Interrupts) -> Ending:
+        """From the first tick to the last; nothing but an interrupt's second signal escapes."""
+        started = time.perf_counter()
+        interrupts.patient = True
+        try:
+            status = self._until_end(interrupts, started)
+        except KeyboardInterrupt:
+            status = outcome.INTERRUPTED
+        except Exception:
+            self._error = traceback.format_exc()
+            status = outcome.ERROR
+        sim_time, ticks = self.context.now, self.context.tick
+        verdict = self._come_to_rest(status)
+        wall_time = time.perf_counter() - started
+        if self._error is not None:
+            status = outcome.ERROR
+        return Ending(status, self._failure, verdict, sim_time, wall_time, ticks, self._error)
+
+    def _until_end(self, interrupts: Interrupts, started: float) -> str:
+        body = self.context.body
+        self.fingerprint.add(None, (), (), self._written())
+        if body is not None:
+            body.frames.add_state(body.actuators.robot.state())
+            self.services.start(body.site, body.frames, self._stepper, self.context.seed)
+        while True:
+            if interrupts.requested:
+                return outcome.INTERRUPTED
+            status = self._tick()
+            if status is not RUNNING:
+                self._failure = self.built.root.failure if status is FAILURE else None
+                return outcome.FAILURE if status is FAILURE else outcome.SUCCESS
+            if self.context.now >= self._max_time - CLOCK_SLACK:
+                self._failure = self._timed_out()
+                return outcome.FAILURE
+            if self._realtime:
+                time.sleep(max(0.0, started + self.context.now - time.perf_counter()))
+
+    def _tick(self) -> Status:
+        self._stepper.step()
+        self.context.begin_tick()
+        body = self.context.body
+        if body is not None:
+            body.frames.add_state(body.actuators.robot.state())
+        self.services.update(self.context.now)
+        status = self.built.root.execute()
+        self._note()
+        return status
+
+    def _note(self) -> None:
+        """Fingerprint what happened, then show it to the observers."""
+        context, body = self.context, self.context.body
+        state, issued = None, []
+        if body is not None:
+            state, issued = body.actuators.robot.state(), body.actuators.issued
+        self.fingerprint.add(
+            state,
+            issued,
+            [(node.index, status.value) for node, status in context.changes],
+            self._written(),
+        )
+        for observer in self.observers:
+            observer.ticked(self)
+        if body is not None:
+            issued.clear()
+
+    def _written(self) -> list[tuple[str, Any]]:
+        return [(cell.name, cell.value) for cell, _ in self.context.writes]
+
+    def _timed_out(self) -> FailureValue:
+        root = self.built.root
+        cause = running_as_cause(root, self.context.now)
+        return root.own(
+            FailureValue(TIMEOUT, f"the run took longer than {self._max_time:g} s", cause=cause)
+        )
+
+    def _come_to_rest(self, status: str) -> Verdict | None:
+        """Halt all, stop all, let the world go on until all stands; then ask the referee."""
+        try:
+            self.halt_all()
+            if self.context.body is not None:
+                self.context.body.actuators.stop_all()
+            if status == outcome.ERROR:
+                return None
+            self.settling = True
+            self._settle()
+            return None if self.world is None else self.world.verdict()
+        except KeyboardInterrupt:
+            return None
+        except Exception:
+            self._error = self._error or traceback.format_exc()
+            return None
+
+    def _settle(self) -> None:
+        if self.world is None:
+            return
+        until = self._stepper.now() + SETTLE
+        while self._stepper.now() < until - CLOCK_SLACK:
+            self._note()
+            self._stepper.step()
+            self.context.begin_tick()
+        self._note()
+
+    def halt_all(self) -> None:
+        """Halt the tree; nodes that an exception left running are halted one by one."""
+        self.built.root.reset()
+        for node in reversed(self.built.nodes):
+            if node.state is RUNNING:
+                node.halt()
+            node.clear()

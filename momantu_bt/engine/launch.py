@@ -1,0 +1,203 @@
+"""From a checked document to a report: open the world, build the tree, run it, close all."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from typing import Any, TypeAlias
+
+from momantu_bt.engine.actuators import Actuators
+from momantu_bt.engine.blackboard import Board, ReadOnlyCell
+from momantu_bt.engine.build import build, skills_in
+from momantu_bt.engine.context import Body, RunContext
+from momantu_bt.engine.executor import Ending, Executor, Observer
+from momantu_bt.engine.interrupts import Interrupts
+from momantu_bt.engine.no_world import NoWorld
+from momantu_bt.engine.services import Services, in_order
+from momantu_bt.frames import FrameBuffer
+from momantu_bt.record.report import NodeReport, Report
+from momantu_bt.record.versions import versions
+from momantu_bt.robot import RobotDescription
+from momantu_bt.skill import Skill
+from momantu_bt.tree.model import Document
+from momantu_bt.tree.registry import Registry
+from momantu_bt.tree.values import natural
+from momantu_bt.world import World
+
+NO_WORLD = "none"
+"""Instead of a world's name: run without one."""
+ROBOT_KEY = "robot"
+"""`$@robot.…`: the robot's state, as the trees read it."""
+
+Watch: TypeAlias = Callable[[Executor], Sequence[Observer]]
+
+
+class LaunchError(Exception):
+    """The run cannot begin as it was asked for; nothing was started."""
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """How to run.
+
+    world: a name, an open world, `"none"`, or None for the tree's own. robot: a name, or None
+    for the world's default. max_time: simulated seconds after which the run fails with TIMEOUT.
+    referee: False takes it out, which changes nothing else.
+    """
+
+    world: str | World | None = None
+    robot: str | None = None
+    seed: int = 0
+    max_time: float = 600.0
+    realtime: bool = False
+    referee: bool = True
+    remark: Callable[[str], None] = field(default=lambda text: None)
+
+
+def launch(
+    document: Document, options: Options, registry: Registry, watch: Watch | None = None
+) -> Report:
+    """Run a checked document to its end.
+
+    watch: makes the observers once the world is open; they are closed at the end.
+
+    Raises:
+        LaunchError: no world for a tree with skills, or a robot that lacks what a skill uses.
+        WorldError: the world could not start.
+        KeyboardInterrupt: Ctrl-C before the first tick.
+    """
+    begun = time.perf_counter()
+    kinds = {name: registry.skills[name] for name in skills_in(document)}
+    with ExitStack() as stack:
+        interrupts = stack.enter_context(Interrupts())
+        world = _open(document, options, registry, kinds)
+        if world is not None and not _is_open(options.world):
+            stack.callback(world.close)
+        executor = _assemble(document, options, registry, kinds, world)
+        if watch is not None:
+            executor.observers = list(watch(executor))
+        for observer in executor.observers:
+            stack.callback(observer.close)
+        started = time.perf_counter() - begun
+        ending = executor.run(interrupts)
+        return _report(document, options, executor, ending, started)
+
+
+def _is_open(world: str | World | None) -> bool:
+    return world is not None and not isinstance(world, str)
+
+
+def _open(
+    document: Document,
+    options: Options,
+    registry: Registry,
+    kinds: Mapping[str, type[Skill]],
+) -> World | None:
+    if options.world is not None and not isinstance(options.world, str):
+        _check_uses(kinds, options.world.robot.description)
+        return options.world
+    name = options.world or document.world
+    if name is None or name == NO_WORLD:
+        if kinds:
+            raise LaunchError(
+                f"{document.main} needs a world for {', '.join(kinds)}; worlds: "
+                f"{', '.join(registry.worlds) or 'none'}; give one with --world"
+            )
+        return None
+    entry = registry.worlds[name]
+    description = registry.description(options.robot or entry.default_robot)
+    _check_uses(kinds, description)
+    return entry.open(description, options.seed, referee=options.referee)
+
+
+def _check_uses(kinds: Mapping[str, type[Skill]], description: RobotDescription) -> None:
+    for name, kind in kinds.items():
+        for use in sorted(kind.uses):
+            try:
+                description.resolve_use(use)
+            except KeyError as error:
+                raise LaunchError(f"{name} cannot run on {description.name}: {error}") from None
+
+
+def _assemble(
+    document: Document,
+    options: Options,
+    registry: Registry,
+    kinds: Mapping[str, type[Skill]],
+    world: World | None,
+) -> Executor:
+    stepper = world if world is not None else NoWorld()
+    context = RunContext(stepper, seed=options.seed, remark=options.remark)
+    services = Services({}, None)
+    if world is not None:
+        actuators = Actuators(world.robot)
+        needs = [need for kind in kinds.values() for need in kind.needs]
+        ordered = in_order(needs, registry.services.__getitem__)
+        services = Services({name: kind() for name, kind in ordered.items()}, actuators)
+        frames = FrameBuffer(world.robot.description.kinematics())
+        context.body = Body(actuators, frames, world.site, services.running)
+    board = _board(context, document, services, world)
+    built = build(document, context, kinds.__getitem__, board)
+    return Executor(
+        built,
+        context,
+        stepper,
+        world=world,
+        services=services,
+        max_time=options.max_time,
+        realtime=options.realtime,
+    )
+
+
+def _board(
+    context: RunContext, document: Document, services: Services, world: World | None
+) -> Board:
+    """The root's board as the first tick finds it."""
+    board = Board(context.writes)
+    for name, service in services.running.items():
+        board.publish(ReadOnlyCell(name, service.published))
+    if world is not None:
+        board.publish(ReadOnlyCell(ROBOT_KEY, world.robot.state))
+    for key, literal in document.values.items():
+        board.set(key, natural(literal.value))
+    return board
+
+
+def _report(
+    document: Document, options: Options, executor: Executor, ending: Ending, started: float
+) -> Report:
+    world, verdict = executor.world, ending.verdict
+    return Report(
+        tree=document.file,
+        world=None if world is None else world.name,
+        robot=None if world is None else world.robot.description.name,
+        seed=options.seed,
+        status=ending.status,
+        success=None if verdict is None else verdict.success,
+        failure=ending.failure,
+        unmet=() if verdict is None else verdict.unmet,
+        measures={} if verdict is None else verdict.measures,
+        sim_time_s=ending.sim_time,
+        wall_time_s=ending.wall_time,
+        start_time_s=started,
+        ticks=ending.ticks,
+        blackboard=executor.built.board.values(),
+        nodes=tuple(_node_report(node) for node in executor.built.nodes),
+        fingerprint=executor.fingerprint.hexdigest(),
+        versions=versions(),
+        error=ending.error,
+    )
+
+
+def _node_report(node: Any) -> NodeReport:
+    return NodeReport(
+        name=node.name,
+        type=node.model.target or node.model.type,
+        place=node.place,
+        ticks=node.ticks,
+        runs=node.runs,
+        failures=node.failures,
+        seconds=round(node.seconds, 9),
+    )

@@ -1,0 +1,84 @@
+"""The services of a run: which ones, in which order, and when each is due."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, TypeAlias
+
+from momantu_bt.engine.actuators import Actuators
+from momantu_bt.engine.session import CLOCK_SLACK
+from momantu_bt.frames import FrameBuffer
+from momantu_bt.robot import Robot
+from momantu_bt.service import Service, ServiceContext
+from momantu_bt.skill import Clock
+from momantu_bt.world import Site, seeded
+
+ServiceFinder: TypeAlias = Callable[[str], type[Service]]
+
+
+class ServiceCycleError(Exception):
+    """Services need each other in a circle; the message shows it."""
+
+
+def in_order(names: Iterable[str], service_of: ServiceFinder) -> dict[str, type[Service]]:
+    """The named services and all that they need, each after what it needs.
+
+    Raises:
+        ServiceCycleError: they need each other in a circle.
+    """
+    found: dict[str, type[Service]] = {}
+
+    def visit(name: str, path: tuple[str, ...]) -> None:
+        if name in path:
+            raise ServiceCycleError(" needs ".join((*path[path.index(name) :], name)))
+        if name in found:
+            return
+        kind = service_of(name)
+        for need in kind.needs:
+            visit(need, (*path, name))
+        found[name] = kind
+
+    for name in names:
+        visit(name, ())
+    return found
+
+
+class Services:
+    """The running services by name, in their order. They see the robot but cannot command it."""
+
+    def __init__(self, running: Mapping[str, Service], actuators: Actuators | None) -> None:
+        self.running = dict(running)
+        self._robots: dict[str, Robot] = {}
+        self._due: dict[str, float] = {}
+        if actuators is not None:
+            self._robots = {name: actuators.lease(name, ()) for name in running}
+
+    def start(
+        self,
+        site: Site,
+        frames: FrameBuffer,
+        clock: Clock,
+        seed: int,
+        other: Callable[[str], Any] | None = None,
+    ) -> None:
+        """Start each one, what it needs first. other: how they find each other."""
+        for name, service in self.running.items():
+            service.start(
+                ServiceContext(
+                    site=site,
+                    description=self._robots[name].description,
+                    frames=frames,
+                    clock=clock,
+                    random=seeded(seed, name),
+                    parameters=site.services.get(name, {}),
+                    other=other or self.running.__getitem__,
+                )
+            )
+            self._due[name] = clock.now()
+
+    def update(self, now: float) -> None:
+        """Update those whose time has come."""
+        for name, service in self.running.items():
+            if now >= self._due.get(name, now) - CLOCK_SLACK:
+                self._due[name] = max(self._due.get(name, now) + 1.0 / service.rate, now)
+                service.update(self._robots[name], now)

@@ -1,0 +1,1 @@
+"""A run on paper: its fingerprint, its report, its log of changes."""

@@ -1,0 +1,37 @@
+"""A failure in one line, outermost first.
+
+`bring_object failed: PATH_BLOCKED, a chair in the doorway <- Put (bring_object.yaml:22) <-
+navigate (:41), 3 of 3 tries`
+"""
+
+from __future__ import annotations
+
+from pathlib import PurePath
+
+from momantu_bt.failure import FailureValue
+
+
+def chain_text(failure: FailureValue) -> str:
+    """Code and sentence, then each node it came through; a cause of another code says its own."""
+    words: list[str] = [str(failure)]
+    code, file = failure.code, ""
+    for link in failure.chain():
+        where = link.node or "the tree"
+        name, _, line = link.place.rpartition(":")
+        if line:
+            where += f" (:{line})" if name == file else f" ({PurePath(name).name}:{line})"
+            file = name
+        if link.most_tries:
+            where += f", {tries_text(link)}"
+        if link.code != code:
+            where += f": {link}"
+            code = link.code
+        words.append(where)
+    return " <- ".join(words)
+
+
+def tries_text(failure: FailureValue) -> str:
+    """`3 of 3 tries`, or `3 tries` where there is no limit."""
+    if failure.most_tries < 0:
+        return f"{failure.tries} tries"
+    return f"{failure.tries} of {failure.most_tries} tries"

@@ -1,0 +1,46 @@
+"""Writing a file so that it is never half there."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+
+class OutputError(Exception):
+    """A file cannot be written where the user wants it; the message says why."""
+
+
+def write_whole(path: Path, text: str) -> None:
+    """Write a file under another name, then rename it.
+
+    Raises:
+        OutputError: the folder is missing or read-only, or the disk is full.
+    """
+    draft = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        draft.write_text(text, encoding="utf-8")
+        draft.replace(path)
+    except OSError as error:
+        draft.unlink(missing_ok=True)
+        raise OutputError(f"{path} cannot be written: {error.strerror or error}") from None
+
+
+def check_writable(path: Path) -> None:
+    """Make sure, before anything starts, that a file can be written there.
+
+    Raises:
+        OutputError: its folder does not exist or cannot be written, or it is a folder itself.
+    """
+    folder = path.parent
+    if path.is_dir():
+        raise OutputError(f"{path} is a folder, expected the name of a file to write")
+    if not folder.is_dir():
+        raise OutputError(f"{path} cannot be written: there is no folder {folder}")
+    probe = folder / f".{path.name}.{os.getpid()}.probe"
+    try:
+        probe.touch()
+        probe.unlink()
+    except OSError as error:
+        raise OutputError(
+            f"{path} cannot be written: {error.strerror or error}; choose a folder that is yours"
+        ) from None

@@ -1,0 +1,79 @@
+"""SHA-256 over every tick of a run: two runs are the same when theirs are."""
+
+from __future__ import annotations
+
+import hashlib
+import struct
+from collections.abc import Iterable
+from typing import Any
+
+from momantu_bt.engine.actuators import Issued
+from momantu_bt.messages import ActuatorGoal, RobotState
+from momantu_bt.record.encode import encode
+
+
+class Fingerprint:
+    """Feed it each tick; `hexdigest` at the end.
+
+    It takes what the robot reported, each command and stop in order, each node whose status
+    changed, and each cell that was written. Names of files do not enter.
+    """
+
+    def __init__(self) -> None:
+        self._hash = hashlib.sha256()
+        self._goals: dict[str, tuple[ActuatorGoal, bytes]] = {}
+
+    def add(
+        self,
+        state: RobotState | None,
+        issued: Iterable[Issued],
+        statuses: Iterable[tuple[int, str]],
+        written: Iterable[tuple[str, Any]],
+    ) -> None:
+        """One tick. statuses: (node index, status name); written: (cell name, value)."""
+        update = self._hash.update
+        if state is not None:
+            update(_state_bytes(state))
+        for command in issued:
+            update(b"c" + command.actuator.encode())
+            update(b"stop" if command.goal is None else self._goal_bytes(command))
+        for index, status in statuses:
+            update(f"n{index}{status}".encode())
+        for name, value in written:
+            update(b"w" + name.encode() + encode(value))
+        update(b"|")
+
+    def hexdigest(self) -> str:
+        """64 hexadecimal digits of all ticks so far."""
+        return self._hash.hexdigest()
+
+    def _goal_bytes(self, command: Issued) -> bytes:
+        """A goal's bytes; a trajectory that is commanded again is not encoded again."""
+        goal = command.goal
+        assert goal is not None
+        known = self._goals.get(command.actuator)
+        if known is None or known[0] is not goal:
+            known = (goal, encode(goal))
+            self._goals[command.actuator] = known
+        return known[1]
+
+
+def _state_bytes(state: RobotState) -> bytes:
+    pose = state.odom_from_base
+    return b"".join(
+        (
+            struct.pack(
+                "<5d",
+                state.stamp,
+                state.linear,
+                state.angular,
+                state.gripper_width,
+                state.gripper_effort,
+            ),
+            state.positions.tobytes(),
+            state.velocities.tobytes(),
+            state.efforts.tobytes(),
+            pose.position.tobytes(),
+            pose.quaternion.tobytes(),
+        )
+    )

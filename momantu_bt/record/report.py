@@ -1,0 +1,117 @@
+"""What a run came to, as a value and as a JSON file."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from momantu_bt.failure import FailureValue
+from momantu_bt.messages import plain
+from momantu_bt.record.files import write_whole
+
+SUCCESS, FAILURE, INTERRUPTED, ERROR = "SUCCESS", "FAILURE", "INTERRUPTED", "ERROR"
+
+EXIT_SUCCESS, EXIT_FAILURE, EXIT_ERROR, EXIT_INTERRUPTED = 0, 1, 4, 130
+
+
+@dataclass(frozen=True, slots=True)
+class NodeReport:
+    """One node: how often it was ticked, started and failed, and its active simulated seconds."""
+
+    name: str
+    type: str
+    place: str
+    ticks: int
+    runs: int
+    failures: int
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """How a run ended.
+
+    status: SUCCESS or FAILURE of the tree, INTERRUPTED, or ERROR. success: the referee's word,
+    None without one. unmet, measures: what it found. failure: the tree's, with its causes.
+    sim_time_s: world's clock when the tree ended. wall_time_s: from the first tick to the last;
+    start_time_s: what building the world took before. ticks: of the tree. blackboard: the
+    root's values at the end. error: traceback of an internal error.
+    """
+
+    tree: str
+    world: str | None
+    robot: str | None
+    seed: int
+    status: str
+    success: bool | None
+    failure: FailureValue | None
+    unmet: tuple[str, ...]
+    measures: Mapping[str, float]
+    sim_time_s: float
+    wall_time_s: float
+    start_time_s: float
+    ticks: int
+    blackboard: Mapping[str, Any]
+    nodes: tuple[NodeReport, ...]
+    fingerprint: str
+    versions: Mapping[str, str] = field(default_factory=dict)
+    error: str | None = None
+
+    @property
+    def real_time_factor(self) -> float:
+        """Simulated seconds per second of wall time."""
+        return self.sim_time_s / self.wall_time_s if self.wall_time_s > 0.0 else 0.0
+
+    @property
+    def exit_code(self) -> int:
+        """What the command line exits with."""
+        if self.status == ERROR:
+            return EXIT_ERROR
+        if self.status == INTERRUPTED:
+            return EXIT_INTERRUPTED
+        return (
+            EXIT_SUCCESS if self.status == SUCCESS and self.success is not False else EXIT_FAILURE
+        )
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data for JSON."""
+        return {
+            "tree": self.tree,
+            "world": self.world,
+            "robot": self.robot,
+            "seed": self.seed,
+            "status": self.status,
+            "success": self.success,
+            "failure": None if self.failure is None else _finite(plain(self.failure.as_dict())),
+            "unmet": list(self.unmet),
+            "measures": _finite(dict(self.measures)),
+            "sim_time_s": self.sim_time_s,
+            "wall_time_s": self.wall_time_s,
+            "start_time_s": self.start_time_s,
+            "real_time_factor": self.real_time_factor,
+            "ticks": self.ticks,
+            "blackboard": _finite(plain(self.blackboard)),
+            "nodes": [plain(node) for node in self.nodes],
+            "fingerprint": self.fingerprint,
+            "versions": dict(self.versions),
+            "error": self.error,
+        }
+
+    def write(self, path: Path) -> None:
+        """Write it as JSON; OutputError when that is not possible."""
+        write_whole(path, json.dumps(self.as_dict(), indent=2, default=str) + "\n")
+
+
+def _finite(value: Any) -> Any:
+    """JSON has no infinity and no NaN: they become text."""
+    if isinstance(value, float) and not math.isfinite(value):
+        return str(value)
+    if isinstance(value, dict):
+        return {key: _finite(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_finite(item) for item in value]
+    return value

@@ -1,0 +1,37 @@
+"""Which versions made a run: of this package, Python, and the libraries it loaded."""
+
+from __future__ import annotations
+
+import platform
+import sys
+from importlib import metadata
+
+import momantu_bt
+
+_LIBRARIES = {
+    "numpy": "numpy",
+    "py_trees": "py-trees",
+    "sapien": "sapien",
+    "pinocchio": "pin",
+    "coal": "coal",
+    "ompl": "ompl",
+    "toppra": "toppra",
+    "numba": "numba",
+    "scipy": "scipy",
+    "cv2": "opencv-python-headless",
+    "pyapriltags": "pyapriltags",
+    "torch": "torch",
+}
+"""Modules whose results a run may depend on, and the distributions they come from."""
+
+
+def versions() -> dict[str, str]:
+    """Versions by name; a library counts only when the run has loaded it."""
+    found = {"momantu-bt": momantu_bt.__version__, "python": platform.python_version()}
+    for module, distribution in _LIBRARIES.items():
+        if module in sys.modules:
+            try:
+                found[distribution] = metadata.version(distribution)
+            except metadata.PackageNotFoundError:
+                found[distribution] = "unknown"
+    return found
