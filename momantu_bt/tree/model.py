@@ -79,7 +79,9 @@ class Handler:
 
 @dataclass(slots=True)
 class Node:
-    """One node. `type` is the canonical name: BehaviorTree.CPP's for what it has ("Sequence",
+    """One node.
+
+    `type` is the canonical name: BehaviorTree.CPP's for what it has ("Sequence",
     "RetryUntilSuccessful", "SubTree"), ours otherwise ("Recover"), or a skill's ("navigate").
 
     Modifiers that are decorators are nodes of their own around the node they were written on;
@@ -105,7 +107,7 @@ class Node:
     condition_places: dict[str, Place] = field(default_factory=dict)
 
     def walk(self) -> Iterator[Node]:
-        """This node and everything below it, in the order of the file, without recursion."""
+        """The node and everything below it, in the order of the file, without recursion."""
         stack = [self]
         while stack:
             node = stack.pop()

@@ -1,0 +1,117 @@
+"""Handlers against what can fail below them: a handler that can never run is an error."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from momantu_bt.failure import (
+    ACTUATOR_BUSY,
+    FAILED,
+    FRAME_UNKNOWN,
+    INPUT_MISSING,
+    SERVICE_MISSING,
+    SKILL_ERROR,
+    TIMEOUT,
+    WRONG_TYPE,
+)
+from momantu_bt.tree.catalogue import SUBTREE
+from momantu_bt.tree.model import Handler, Literal, Node, Tree
+from momantu_bt.tree.problems import nearest
+from momantu_bt.tree.signatures import Context
+from momantu_bt.tree.yaml_nodes import ANY
+
+_ANY_SKILL = frozenset(
+    {
+        SKILL_ERROR,
+        ACTUATOR_BUSY,
+        FRAME_UNKNOWN,
+        SERVICE_MISSING,
+        INPUT_MISSING,
+        WRONG_TYPE,
+    }
+)
+"""What the engine makes of a skill's end beside the codes that it declares."""
+
+Codes = frozenset[str]
+"""Codes, bare and as `pick.SLIPPED`. UNKNOWN stands for any."""
+UNKNOWN = "?"
+
+
+def check_handlers(context: Context, order: list[Tree]) -> None:
+    """Every handler of every tree. order: trees after those that they run."""
+    of_tree: dict[str, Codes] = {}
+    for tree in order:
+        of_node: dict[int, Codes] = {}
+        for node in reversed(list(tree.root.walk())):
+            of_node[id(node)] = _codes(context, node, of_node, of_tree)
+            if node.handlers and node.children:
+                _check(context, node, of_node[id(node.children[0])])
+        of_tree[tree.name] = of_node[id(tree.root)]
+
+
+def _codes(
+    context: Context, node: Node, of_node: Mapping[int, Codes], of_tree: Mapping[str, Codes]
+) -> Codes:
+    below: Codes = frozenset().union(*(of_node[id(child)] for child in node.children))
+    handled: Codes = frozenset().union(
+        *(of_node[id(h.node)] for h in node.handlers if h.node is not None)
+    )
+    found = _own(context, node, below, handled, of_tree)
+    if "fail_if" in node.conditions:
+        found |= {FAILED}
+    return frozenset() if node.disabled else found
+
+
+def _own(
+    context: Context, node: Node, below: Codes, handled: Codes, of_tree: Mapping[str, Codes]
+) -> Codes:
+    if node.type == SUBTREE:
+        return of_tree.get(node.target or "", frozenset({UNKNOWN}))
+    if node.type == "Fail":
+        return _raised(node)
+    if node.type == "Handle":
+        return _left_over(node, below) | handled
+    if node.type == "ForceSuccess":
+        return frozenset()
+    if node.type == "Timeout":
+        return below | {TIMEOUT}
+    signature = context.signature(node)
+    if signature is None:
+        return frozenset({UNKNOWN})
+    if signature.skill is not None:
+        own = {*signature.skill.failures, *_ANY_SKILL}
+        return frozenset(own | {f"{node.type}.{code}" for code in own})
+    return below | handled | {FAILED, INPUT_MISSING, WRONG_TYPE}
+
+
+def _raised(node: Node) -> Codes:
+    code = node.ports.get("code")
+    return frozenset({str(code.value) if isinstance(code, Literal) else UNKNOWN})
+
+
+def _left_over(node: Node, below: Codes) -> Codes:
+    caught = {code for handler in node.handlers for code in handler.codes}
+    if ANY in caught:
+        return frozenset()
+    return frozenset(code for code in below if code not in caught)
+
+
+def _check(context: Context, node: Node, possible: Codes) -> None:
+    first: dict[str, Handler] = {}
+    for handler in node.handlers:
+        for code in handler.codes:
+            if code in first:
+                message = f"{code} has a handler already"
+                hint = f"in line {first[code].place.line}; the first one is taken"
+                context.problems.error("dead-handler", handler.place, message, hint)
+            elif code != ANY and UNKNOWN not in possible and code not in possible:
+                _report_dead(context, handler, code, possible)
+            first.setdefault(code, handler)
+
+
+def _report_dead(context: Context, handler: Handler, code: str, possible: Codes) -> None:
+    bare = sorted(c for c in possible if "." not in c and c not in _ANY_SKILL)
+    near = nearest(code, sorted(possible))
+    message = f"nothing in `try` fails with {code}"
+    hint = f"did you mean {near}?" if near else f"it can fail with: {', '.join(bare) or 'nothing'}"
+    context.problems.error("dead-handler", handler.place, message, hint)

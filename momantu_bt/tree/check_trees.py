@@ -1,0 +1,145 @@
+"""How trees call each other, what runs side by side, and names that stand twice."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+from momantu_bt.tree.catalogue import SUBTREE
+from momantu_bt.tree.model import Node, Place, Tree
+from momantu_bt.tree.signatures import Context
+
+MAX_NESTING = 150
+"""Nodes within nodes, decorators counted; bounds the stack of whatever walks a tree."""
+
+
+def calls(tree: Tree) -> dict[str, Place]:
+    """Trees that a tree runs, with the place of the first call."""
+    found: dict[str, Place] = {}
+    for node in tree.root.walk():
+        if node.type == SUBTREE and node.target is not None:
+            found.setdefault(node.target, node.place)
+    return found
+
+
+def callees_first(context: Context) -> list[Tree] | None:
+    """The trees, each after those it runs; None when they run in circles (reported then)."""
+    document = context.document
+    order: list[str] = []
+    state: dict[str, int] = {}
+    for start in document.trees:
+        stack: list[tuple[str, list[tuple[str, Place]]]] = []
+        if start not in state:
+            stack.append((start, list(calls(document.trees[start]).items())))
+            state[start] = 1
+        while stack:
+            name, below = stack[-1]
+            if not below:
+                state[name] = 2
+                order.append(name)
+                stack.pop()
+                continue
+            callee, place = below.pop(0)
+            if state.get(callee) == 1:
+                _report_circle(context, [entry[0] for entry in stack], callee, place)
+                return None
+            if callee not in state:
+                state[callee] = 1
+                stack.append((callee, list(calls(document.trees[callee]).items())))
+    return [document.trees[name] for name in order]
+
+
+def _report_circle(context: Context, path: list[str], callee: str, place: Place) -> None:
+    circle = " -> ".join([*path[path.index(callee) :], callee])
+    message = f"{callee!r} runs itself: {circle}"
+    hint = "a tree cannot contain itself; `repeat` or `recover` runs nodes again"
+    context.problems.error("recursion", place, message, hint)
+
+
+def check_nesting(context: Context, tree: Tree) -> bool:
+    """Whether a tree is shallow enough for what follows; reports it when not."""
+    stack = [(tree.root, 1)]
+    while stack:
+        node, depth = stack.pop()
+        if depth > MAX_NESTING:
+            message = f"more than {MAX_NESTING} nodes within nodes"
+            context.problems.error("too-large", node.place, message, "make a tree of a part")
+            return False
+        stack.extend((child, depth + 1) for child in node.children)
+        stack.extend((h.node, depth + 1) for h in node.handlers if h.node is not None)
+    return True
+
+
+def check_unused(context: Context) -> None:
+    """Warn of trees that nothing runs."""
+    document = context.document
+    reached = {document.main}
+    waiting = [document.main]
+    while waiting:
+        for name in calls(document.trees[waiting.pop()]):
+            if name not in reached:
+                reached.add(name)
+                waiting.append(name)
+    for name, tree in document.trees.items():
+        if name not in reached:
+            message = f"nothing runs the tree {name!r}"
+            context.problems.warning("unused-tree", tree.place, message)
+
+
+def check_given_names(context: Context, tree: Tree) -> None:
+    """Names given with `name:` are unique within a tree: records and statistics use them."""
+    first: dict[str, Node] = {}
+    for node in tree.root.walk():
+        if node.name is None:
+            continue
+        if node.name in first:
+            message = f"two nodes of {tree.name} are named {node.name!r}"
+            hint = f"the first is in line {first[node.name].place.line}"
+            context.problems.error("duplicate-name", node.place, message, hint)
+        first.setdefault(node.name, node)
+
+
+def check_parallel(context: Context, order: list[Tree]) -> None:
+    """Children of a parallel node must not command the same actuator."""
+    of_tree: dict[str, dict[str, Node]] = {}
+    for tree in order:
+        of_tree[tree.name] = _uses(context, tree.root, of_tree)
+        for node in tree.root.walk():
+            signature = context.signature(node)
+            if signature is None or signature.spec is None or not signature.spec.concurrent:
+                continue
+            used = [(child, _uses(context, child, of_tree)) for child in node.children]
+            for (_, left), (other, right) in combinations(used, 2):
+                for actuator in sorted(left.keys() & right.keys()):
+                    a, b = left[actuator], right[actuator]
+                    message = f"{_said(a)} (line {a.place.line}) and {_said(b)} both use {actuator}"
+                    hint = "run them one after the other"
+                    context.problems.error("overlapping-uses", other.place, message, hint)
+
+
+def _uses(context: Context, root: Node, of_tree: dict[str, dict[str, Node]]) -> dict[str, Node]:
+    """Actuators that a node or something below it commands, each with who does."""
+    used: dict[str, Node] = {}
+    for node in root.walk():
+        if node.disabled:
+            continue
+        signature = context.signature(node)
+        if node.type == SUBTREE:
+            for actuator in of_tree.get(node.target or "", {}):
+                used.setdefault(actuator, node)
+        elif signature is not None and signature.skill is not None:
+            for use in sorted(signature.skill.uses):
+                used.setdefault(_resolved(context, use), node)
+    return used
+
+
+def _resolved(context: Context, use: str) -> str:
+    if context.description is None:
+        return use
+    try:
+        return context.description.resolve_use(use)
+    except KeyError:
+        return use
+
+
+def _said(node: Node) -> str:
+    return node.name or node.target or node.type

@@ -1,0 +1,105 @@
+"""What is known of the keys of a board at one point of a tree."""
+
+from __future__ import annotations
+
+import typing
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, fields, is_dataclass
+from functools import cache
+from typing import Any, cast
+
+from momantu_bt.tree.model import Literal, Place
+from momantu_bt.tree.types import ValueType, assignable, without_none
+
+
+@dataclass(frozen=True, slots=True)
+class Key:
+    """A key that has a value.
+
+    type: of the value. literal: the value itself, where it is written in the file and nothing
+    has overwritten it. place: where it was written.
+    """
+
+    type: ValueType
+    place: Place
+    literal: Literal | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Known:
+    """Keys that surely have a value here; None when this point is never reached."""
+
+    keys: Mapping[str, Key] | None
+
+    @property
+    def reached(self) -> bool:
+        """Whether this point can be reached at all."""
+        return self.keys is not None
+
+    def get(self, name: str) -> Key | None:
+        """What is known of a key."""
+        return None if self.keys is None else self.keys.get(name)
+
+    def having(self, name: str, key: Key) -> Known:
+        """The same with one more key."""
+        return self if self.keys is None else Known({**self.keys, name: key})
+
+    def lacking(self, names: Iterable[str]) -> Known:
+        """The same without some keys."""
+        if self.keys is None:
+            return self
+        gone = set(names)
+        return Known({name: key for name, key in self.keys.items() if name not in gone})
+
+
+NEVER = Known(None)
+
+
+def meet(*points: Known) -> Known:
+    """What holds whichever of these points was passed."""
+    reached = [point.keys for point in points if point.keys is not None]
+    if not reached:
+        return NEVER
+    common = dict(reached[0])
+    for keys in reached[1:]:
+        common = {n: _either(k, keys[n]) for n, k in common.items() if n in keys}
+    return Known(common)
+
+
+def _either(left: Key, right: Key) -> Key:
+    if left == right:
+        return left
+    if assignable(left.type, right.type):
+        return Key(right.type, right.place)
+    if assignable(right.type, left.type):
+        return Key(left.type, left.place)
+    return Key(object, left.place)
+
+
+def part_type(type_: ValueType, parts: tuple[str, ...]) -> ValueType:
+    """The type of a part of a value; `object` where it cannot be told.
+
+    Raises:
+        KeyError: the type has no such part; the arguments are the part and the valid ones.
+    """
+    for name in parts:
+        choices = without_none(type_)
+        if len(choices) != 1 or not is_dataclass(choices[0]):
+            if choices[0] in (str, int, float, bool):
+                raise KeyError(name, ())
+            return object
+        known = _parts(cast(Any, choices[0]))
+        if name not in known:
+            raise KeyError(name, tuple(known))
+        type_ = known[name]
+    return type_
+
+
+@cache
+def _parts(type_: Any) -> dict[str, Any]:
+    hints = typing.get_type_hints(type_)
+    found = {field.name: hints.get(field.name, object) for field in fields(type_)}
+    for name, value in vars(type_).items():
+        if isinstance(value, property) and value.fget is not None:
+            found[name] = typing.get_type_hints(value.fget).get("return", object)
+    return found

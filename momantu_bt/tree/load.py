@@ -1,0 +1,109 @@
+"""From the name of a tree to a document that is ready to run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from momantu_bt.tree.check import check
+from momantu_bt.tree.lookup import TreeNotFound, find
+from momantu_bt.tree.model import Document, Literal, Place
+from momantu_bt.tree.problems import Problem, Problems, TreeError, errors
+from momantu_bt.tree.registry import Registry
+from momantu_bt.tree.yaml_format import read
+from momantu_bt.tree.yaml_source import MAX_BYTES, YamlSyntaxError, compose, plain_value
+
+__all__ = ["Checked", "TreeError", "TreeNotFound", "load", "read_file", "read_values"]
+
+
+@dataclass(frozen=True, slots=True)
+class Checked:
+    """A document without errors. notes: its warnings and hints."""
+
+    document: Document
+    notes: list[Problem]
+
+
+def load(
+    tree: str,
+    registry: Registry | None = None,
+    *,
+    world: str | None = None,
+    robot: str | None = None,
+    values: Mapping[str, Any] | None = None,
+) -> Checked:
+    """Find, read and check a tree.
+
+    tree: a path or the name of a bundled tree. values: keys of the root's board that replace or
+    join the file's own (`--set`, `--values`), raw as in the file ("66 mm").
+
+    Raises:
+        TreeNotFound: there is no such file.
+        TreeError: the file has errors; all of them are in it.
+    """
+    document, problems = read_file(find(tree))
+    _override(document, values or {})
+    found = check(
+        document,
+        registry if registry is not None else Registry.installed(),
+        world=world,
+        robot=robot,
+        reading=problems,
+    )
+    if errors(found):
+        raise TreeError(found, document.source)
+    return Checked(document, found)
+
+
+def read_file(path: Path) -> tuple[Document, Problems]:
+    """Read one tree file, unchecked.
+
+    Raises:
+        TreeNotFound: the file cannot be opened.
+        TreeError: it is not YAML, or holds no tree.
+    """
+    return read(_text(path), str(path))
+
+
+def read_values(path: Path) -> dict[str, Any]:
+    """A file of values: one YAML mapping.
+
+    Raises:
+        TreeNotFound: the file cannot be opened.
+        TreeError: it is not a YAML mapping.
+    """
+    text, name = _text(path), str(path)
+    try:
+        value = plain_value(compose(text, name))
+    except YamlSyntaxError as error:
+        raise TreeError([error.problem], {name: text}) from None
+    if not isinstance(value, dict):
+        problem = Problem("wrong-value", "a file of values is a mapping", Place(name, 1, 1))
+        raise TreeError([problem], {name: text})
+    return value
+
+
+def _text(path: Path) -> str:
+    try:
+        data = path.read_bytes()[: MAX_BYTES + 1]
+        return data.decode("utf-8-sig")
+    except OSError as error:
+        raise TreeNotFound(f"{path} cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        column = error.start - (data.rfind(b"\n", 0, error.start) + 1) + 1
+        problem = Problem(
+            "syntax",
+            "the file is not UTF-8 text",
+            Place(str(path), line, column),
+            "save it as UTF-8",
+        )
+        raise TreeError([problem], {}) from None
+
+
+def _override(document: Document, values: Mapping[str, Any]) -> None:
+    for name, value in values.items():
+        document.values[name] = Literal(value)
+        document.value_places.setdefault(name, Place(document.file, 1, 1))

@@ -1,0 +1,205 @@
+"""Trees in plain words: for `momantu-bt show` and for the live display."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from momantu_bt.tree.catalogue import BUILT_IN, SUBTREE
+from momantu_bt.tree.model import (
+    Document,
+    Handler,
+    Literal,
+    Node,
+    PortValue,
+    Reference,
+    Scope,
+    Template,
+    Tree,
+)
+from momantu_bt.tree.script import ScriptSyntaxError, yaml_spelling
+
+_WIDEST = 96
+"""Characters of one node's text; longer values are cut."""
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """One line of a printed tree. node: None for a heading or a handler's codes."""
+
+    depth: int
+    text: str
+    node: Node | None
+
+
+def lines(document: Document) -> Iterator[Line]:
+    """The main tree and, below it, every other tree that the document has."""
+    others = [tree for name, tree in document.trees.items() if name != document.main]
+    for tree in (document.trees[document.main], *others):
+        yield Line(0, _heading(tree), None)
+        yield from tree_lines(tree.root, 1)
+
+
+def tree_lines(root: Node, depth: int = 0) -> Iterator[Line]:
+    """A node and everything below it, one line each; decorators share their child's line."""
+    stack: list[tuple[Node | Handler, int, str]] = [(root, depth, "")]
+    while stack:
+        item, level, role = stack.pop()
+        if isinstance(item, Handler):
+            node = item.node
+            codes = " or ".join("anything else" if c == "any" else c for c in item.codes)
+            yield Line(level, f"on {codes}:" + ("" if node else " try again"), None)
+            if node is not None:
+                stack.append((node, level + 1, ""))
+            continue
+        inner, around = unwrap(item)
+        yield Line(level, role + text(inner, around), inner)
+        stack.extend(reversed(_below(inner, level + 1)))
+
+
+def unwrap(node: Node) -> tuple[Node, list[Node]]:
+    """A node without the decorators around it, and those, outermost first."""
+    around: list[Node] = []
+    while _is_decorator(node) and len(node.children) == 1 and not node.conditions:
+        around.append(node)
+        node = node.children[0]
+    return node, around
+
+
+def text(node: Node, around: list[Node] | None = None) -> str:
+    """One node in one line: what it is, its ports, and what is wrapped around it."""
+    words = _name(node)
+    said = _ports(node)
+    if said:
+        words += f" {said}"
+    extras = [_decorator(outer) for outer in reversed(around or [])]
+    extras += [f"{name} {_script(script)}" for name, script in node.conditions.items()]
+    if node.disabled:
+        extras.append("disabled")
+    if extras:
+        words += f"  ({', '.join(extras)})"
+    return words
+
+
+def value_text(value: PortValue) -> str:
+    """A port's value as a tree file writes it."""
+    if isinstance(value, Reference):
+        return "$" + _key(value)
+    if isinstance(value, Template):
+        parts = (p if isinstance(p, str) else f"${{{_key(p)}}}" for p in value.parts)
+        return '"' + "".join(parts) + '"'
+    return _plain(value.value)
+
+
+def _key(reference: Reference) -> str:
+    at = "@" if reference.scope is Scope.ROOT else ""
+    return at + ".".join((reference.key, *reference.fields))
+
+
+def _plain(value: Any) -> str:
+    if value is None:
+        return "nothing"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{k}: {_plain(v)}" for k, v in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ", ".join(_plain(item) for item in value) + "]"
+    return str(value)
+
+
+def _heading(tree: Tree) -> str:
+    words = tree.name
+    for direction, verb in (("in", "takes"), ("out", "gives")):
+        ports = [p for p in tree.ports.values() if p.direction == direction]
+        if ports:
+            words += f" {verb} " + ", ".join(f"{p.name} ({p.type_name})" for p in ports)
+    return words
+
+
+def _is_decorator(node: Node) -> bool:
+    return node.type in _IN_WORDS
+
+
+def _below(node: Node, level: int) -> list[tuple[Node | Handler, int, str]]:
+    spec = BUILT_IN.get(node.type)
+    roles = spec.positions if spec is not None and not spec.handlers else ()
+    named = [f"{role.replace('_do', '')}: " if role != "child" else "" for role in roles]
+    named += [""] * (len(node.children) - len(named))
+    children: list[tuple[Node | Handler, int, str]] = [
+        (child, level, role) for child, role in zip(node.children, named, strict=False)
+    ]
+    return children + [(handler, level, "") for handler in node.handlers]
+
+
+def _name(node: Node) -> str:
+    words = {
+        "Recover": "recover",
+        "IfThenElse": "if",
+        "WhileDoElse": "while",
+    }
+    spec = BUILT_IN.get(node.type)
+    plain = words.get(node.type) or (spec.yaml[0] if spec is not None else node.type)
+    said = (node.target or plain) if node.type == SUBTREE else plain.replace("_", " ")
+    if spec is None:
+        said = node.target or node.type
+    return f"{node.name}: {said}" if node.name else said
+
+
+def _ports(node: Node) -> str:
+    if node.type == "Recover":
+        attempts = node.ports.get("attempts")
+        return f"with {_tries(attempts)}" if attempts is not None else ""
+    if node.type in ("Script", "ScriptCondition", "Precondition"):
+        scripts = [_script(str(v.value)) for v in node.ports.values() if isinstance(v, Literal)]
+        return ", ".join(scripts)
+    shown = [
+        f"{name} {value_text(value)}" if len(node.ports) > 1 else value_text(value)
+        for name, value in node.ports.items()
+    ]
+    words = ", ".join(shown)
+    return words if len(words) <= _WIDEST else words[: _WIDEST - 1] + "…"
+
+
+def _tries(value: PortValue) -> str:
+    if value == Literal(1):
+        return "1 try"
+    if value == Literal(-1):
+        return "tries without end"
+    return f"{value_text(value)} tries"
+
+
+def _script(script: str) -> str:
+    try:
+        return yaml_spelling(script)
+    except ScriptSyntaxError:
+        return script
+
+
+def _count(node: Node, port: str) -> str:
+    return _tries(node.ports.get(port, Literal("?")))
+
+
+def _duration(node: Node) -> str:
+    value = node.ports.get("duration", Literal("?"))
+    shown = value_text(value)
+    bare = isinstance(value, Literal) and isinstance(value.value, int | float)
+    return f"{shown} s" if bare else shown
+
+
+_IN_WORDS: dict[str, Callable[[Node], str]] = {
+    "RetryUntilSuccessful": lambda n: _count(n, "attempts"),
+    "Repeat": lambda n: _count(n, "cycles").replace("tries", "rounds").replace("try", "round"),
+    "Timeout": lambda n: f"at most {_duration(n)}",
+    "Delay": lambda n: f"after {_duration(n)}",
+    "Inverter": lambda n: "inverted",
+    "ForceSuccess": lambda n: "success in any case",
+    "ForceFailure": lambda n: "failure in any case",
+    "KeepRunningUntilFailure": lambda n: "again and again until it fails",
+    "RunOnce": lambda n: "once only",
+}
+
+
+def _decorator(node: Node) -> str:
+    return _IN_WORDS[node.type](node)

@@ -1,0 +1,122 @@
+"""What each node of a document takes, gives, commands and fails with."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from momantu_bt.plugins import PluginError
+from momantu_bt.robot import RobotDescription
+from momantu_bt.skill import Port, Skill
+from momantu_bt.tree.catalogue import BUILT_IN, SUBTREE, NodeSpec
+from momantu_bt.tree.model import BROKEN, Document, Node, Tree
+from momantu_bt.tree.problems import Problems, nearest, valid_names
+from momantu_bt.tree.registry import Registry
+from momantu_bt.tree.types import parse_type
+from momantu_bt.tree.values import port_of
+from momantu_bt.world import Site
+
+
+@dataclass(frozen=True, slots=True)
+class Signature:
+    """One kind of node. said: its name in the file. first: the input that a bare value means.
+
+    spec: of a built-in node; skill: of a skill; both None for a subtree.
+    """
+
+    said: str
+    ports: Mapping[str, Port]
+    first: str | None
+    spec: NodeSpec | None = None
+    skill: type[Skill] | None = None
+
+    def inputs(self) -> list[str]:
+        """Names of its inputs."""
+        return [name for name, port in self.ports.items() if port.direction == "in"]
+
+
+@dataclass(slots=True)
+class Context:
+    """One check of one document. site, description: None where there is no world or robot."""
+
+    document: Document
+    registry: Registry
+    problems: Problems
+    site: Site | None = None
+    description: RobotDescription | None = None
+    _skills: dict[str, type[Skill] | None] = field(default_factory=dict)
+    _trees: dict[str, Signature] = field(default_factory=dict)
+
+    def signature(self, node: Node) -> Signature | None:
+        """What this node takes and gives; None where it is unknown or broken."""
+        spec = BUILT_IN.get(node.type)
+        if spec is not None:
+            return Signature(spec.yaml[0], spec.ports, spec.first, spec=spec)
+        if node.type == SUBTREE:
+            return self.tree_signature(self.document.trees[node.target or ""])
+        skill = None if node.type == BROKEN else self.skill(node.type)
+        if skill is None:
+            return None
+        return Signature(node.type, skill.ports, _first(skill.ports), skill=skill)
+
+    def tree_signature(self, tree: Tree) -> Signature:
+        """What a subtree takes and gives. An unknown type counts as `any`; `tree_ports` says so."""
+        if tree.name not in self._trees:
+            ports: dict[str, Port] = {}
+            for name, declaration in tree.ports.items():
+                try:
+                    ports[name] = port_of(declaration)
+                except KeyError:
+                    ports[name] = Port(name, declaration.direction, object, declaration.doc)
+            self._trees[tree.name] = Signature(tree.name, ports, _first(ports))
+        return self._trees[tree.name]
+
+    def skill(self, name: str) -> type[Skill] | None:
+        """A skill's class; None when there is none or it cannot be imported (reported then)."""
+        if name not in self._skills:
+            try:
+                self._skills[name] = self.registry.skills[name]
+            except (KeyError, PluginError):
+                self._skills[name] = None
+        return self._skills[name]
+
+    def names_of(self, kind: str) -> tuple[str, ...] | None:
+        """Valid values of an input with `names=kind`; None when nobody knows them."""
+        if kind == "named_pose":
+            return None if self.description is None else tuple(self.description.named_poses)
+        if self.site is None:
+            return None
+        return self.site.known_places() if kind == "place" else tuple(self.site.surfaces)
+
+
+def _first(ports: Mapping[str, Port]) -> str | None:
+    return next((name for name, port in ports.items() if port.direction == "in"), None)
+
+
+def report_unknown_node(context: Context, node: Node) -> None:
+    """Say that no node has this name, or why the skill of this name cannot be used."""
+    name = node.type
+    if name in context.registry.skills:
+        try:
+            context.registry.skills[name]
+        except PluginError as error:
+            context.problems.error("broken-plugin", node.place, str(error), "run momantu-bt doctor")
+        return
+    spellings = [spec.yaml[0] for spec in BUILT_IN.values()]
+    if name in BUILT_IN:
+        hint = f"did you mean {BUILT_IN[name].yaml[0]}?"
+    else:
+        known = [*context.document.trees, *context.registry.skills, *spellings]
+        near = nearest(name, known)
+        skills = [*context.document.trees, *context.registry.skills]
+        hint = f"did you mean {near}?" if near else valid_names(name, skills, "trees and skills")
+    context.problems.error("unknown-node", node.place, f"no node is called {name!r}", hint)
+
+
+def known_type(text: str) -> Any:
+    """The type of that name, or None."""
+    try:
+        return parse_type(text)
+    except KeyError:
+        return None
