@@ -82,7 +82,8 @@ def _check_python() -> None:
 
 def _make_venv() -> None:
     """Create .venv with a pip of its own, also where Debian's python3-venv is not installed."""
-    if VENV_PYTHON.exists() and _call([str(VENV_PYTHON), "-m", "pip", "--version"], quiet=True) == 0:
+    asking = [str(VENV_PYTHON), "-m", "pip", "--version"]
+    if VENV_PYTHON.exists() and _call(asking, quiet=True) == 0:
         return
     ensurepip = importlib.util.find_spec("ensurepip") is not None
     without = [] if ensurepip and _ensurepip_works() else ["--without-pip"]

@@ -1,1 +1,16 @@
 """Where robots act: robots, scenes and the simulator."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from momantu_bt.diagnosis import Diagnosis
+
+
+def diagnose() -> Iterator[Diagnosis]:
+    """For `momantu-bt doctor`: whether worlds can be built and rendered."""
+    from momantu_worlds.diagnosis import diagnose as look
+
+    return look()

@@ -1,0 +1,84 @@
+"""`momantu-bt doctor`: looks at everything a run needs, and names the cure for what is wrong."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from momantu_bt.diagnosis import Diagnosis
+from momantu_bt.diagnosis.machine import machine
+from momantu_bt.diagnosis.packages import packages
+from momantu_bt.diagnosis.plugins import plugins
+
+EXIT_WRONG = 1
+
+
+def doctor(
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,
+    fix: Annotated[bool, typer.Option("--fix", help="Carry out the cures that can be.")] = False,
+    output: Annotated[
+        Path, typer.Option(help="The folder that reports and videos shall go to.")
+    ] = Path(),
+) -> None:
+    """Look at Python, packages, Vulkan, memory and folders, and name the cure for what is wrong.
+
+    Exit code 0: nothing is wrong; 1: something is.
+
+    Examples:
+      momantu-bt doctor
+      momantu-bt doctor --fix
+      momantu-bt doctor --json
+    """
+    found: list[Diagnosis] = []
+    for diagnosis in diagnose(output):
+        if fix and not diagnosis.ok and diagnosis.mend is not None:
+            diagnosis = mended(diagnosis)
+        found.append(diagnosis)
+        if not as_json:
+            _say(diagnosis)
+    wrong = [diagnosis for diagnosis in found if not diagnosis.ok]
+    if as_json:
+        report = {"ok": not wrong, "diagnoses": [diagnosis.as_dict() for diagnosis in found]}
+        typer.echo(json.dumps(report, indent=2))
+    else:
+        typer.echo(_closing(wrong))
+    if wrong:
+        raise typer.Exit(EXIT_WRONG)
+
+
+def diagnose(output: Path) -> Iterator[Diagnosis]:
+    """Everything there is to look at, the quick and the certain first."""
+    yield from machine(output)
+    yield from packages()
+    yield from plugins()
+
+
+def mended(diagnosis: Diagnosis) -> Diagnosis:
+    """Carry out a cure; the result says whether it worked."""
+    if diagnosis.mend is None:
+        return diagnosis
+    try:
+        result = diagnosis.mend()
+    except (OSError, RuntimeError) as error:
+        return Diagnosis(diagnosis.name, False, f"could not be mended: {error}", diagnosis.cure)
+    return Diagnosis(diagnosis.name, True, f"mended ({result})" if result else "mended")
+
+
+def _say(diagnosis: Diagnosis) -> None:
+    colour = typer.colors.GREEN if diagnosis.ok else typer.colors.RED
+    sign = typer.style("ok   " if diagnosis.ok else "WRONG", fg=colour)
+    typer.echo(f"{sign} {diagnosis.name}: {diagnosis.detail}")
+    if not diagnosis.ok and diagnosis.cure:
+        typer.echo(f"      cure: {diagnosis.cure}")
+
+
+def _closing(wrong: list[Diagnosis]) -> str:
+    if not wrong:
+        return "Nothing is wrong."
+    mendable = any(diagnosis.mend is not None for diagnosis in wrong)
+    hint = " `momantu-bt doctor --fix` can mend some." if mendable else ""
+    return f"{len(wrong)} wrong: {', '.join(diagnosis.name for diagnosis in wrong)}.{hint}"

@@ -1,0 +1,64 @@
+"""Tries imports in a process of their own: a library that crashes does not take doctor along."""
+
+from __future__ import annotations
+
+import importlib.util
+import subprocess
+import sys
+from collections.abc import Iterable
+
+IMPORT_SECONDS = 120.0
+"""All imports of one call together; from a cold disk they take many seconds."""
+
+_PROGRAM = """
+import importlib, sys
+for name in sys.argv[1:]:
+    print("TRY", name, flush=True)
+    try:
+        importlib.import_module(name)
+    except Exception as error:
+        print("BAD", name, f"{type(error).__name__}: {error}".replace("\\n", " "), flush=True)
+    else:
+        print("GOOD", name, flush=True)
+"""
+
+
+def import_errors(names: Iterable[str]) -> dict[str, str]:
+    """Import modules one after another; the reasons of those that are there and cannot be."""
+    waiting = [name for name in names if importlib.util.find_spec(name) is not None]
+    errors: dict[str, str] = {}
+    while waiting:
+        done, reason = _attempt(waiting)
+        for name, error in done.items():
+            if error:
+                errors[name] = error
+        waiting = [name for name in waiting if name not in done]
+        if waiting:
+            # It ended in the middle of this one; go on behind it.
+            errors[waiting.pop(0)] = reason
+    return errors
+
+
+def _attempt(names: list[str]) -> tuple[dict[str, str], str]:
+    """What was tried (reason, or "" where it worked), and why the process ended."""
+    try:
+        result = subprocess.run(
+            [sys.executable, "-c", _PROGRAM, *names],
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            timeout=IMPORT_SECONDS,
+            check=False,
+        )
+        output, reason = result.stdout, f"importing it ended Python with {result.returncode}"
+    except subprocess.TimeoutExpired as expired:
+        said = expired.stdout or b""
+        output = said.decode(errors="replace") if isinstance(said, bytes) else said
+        reason = f"importing it took more than {IMPORT_SECONDS:.0f} s"
+    done: dict[str, str] = {}
+    for line in output.splitlines():
+        sign, _, rest = line.partition(" ")
+        name, _, error = rest.partition(" ")
+        if sign in ("GOOD", "BAD"):
+            done[name] = error
+    return done, reason

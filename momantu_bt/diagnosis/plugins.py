@@ -1,0 +1,74 @@
+"""Asks every installed plug-in, and says which of them cannot even be loaded."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from importlib.metadata import EntryPoint
+from typing import Any
+
+from momantu_bt.diagnosis import Diagnosis
+from momantu_bt.plugins import (
+    COMMANDS,
+    ROBOTS,
+    SERVICES,
+    SKILLS,
+    TREES,
+    WORLDS,
+    PluginError,
+    installed,
+    load,
+)
+
+GROUPS = (SKILLS, SERVICES, ROBOTS, WORLDS, TREES, COMMANDS)
+
+Hook = Callable[[], Iterable[Diagnosis]]
+
+
+def plugins(groups: Iterable[str] = GROUPS) -> Iterator[Diagnosis]:
+    """Load every plug-in, count those that load, and collect what they say of themselves."""
+    hooks: dict[int, tuple[str, Hook]] = {}
+    for group in groups:
+        try:
+            entries = installed(group)
+        except PluginError as error:
+            yield Diagnosis(group, False, str(error), "uninstall or rename one of them")
+            continue
+        loaded: list[str] = []
+        for name, entry in entries.items():
+            try:
+                hook = _hook(load(group, name), entry)
+            except PluginError as error:
+                yield Diagnosis(f"{group} {name}", False, str(error), _reinstall(entry))
+                continue
+            loaded.append(name)
+            if hook is not None:
+                hooks.setdefault(id(hook), (name, hook))
+        if loaded:
+            yield Diagnosis(group.partition(".")[2], True, ", ".join(loaded))
+    for name, hook in hooks.values():
+        yield from asked(name, hook)
+
+
+def asked(name: str, hook: Hook) -> Iterator[Diagnosis]:
+    """What one plug-in says; a hook that raises is itself a finding."""
+    try:
+        yield from hook()
+    except Exception as error:
+        detail = f"its diagnose() raised {type(error).__name__}: {error}"
+        yield Diagnosis(name, False, detail, "tell its authors")
+
+
+def _hook(plugin: Any, entry: EntryPoint) -> Hook | None:
+    """`diagnose` of the plug-in, of its module, or of its package: the first that is there."""
+    module = entry.module
+    for owner in (plugin, sys.modules.get(module), sys.modules.get(module.partition(".")[0])):
+        hook: Hook | None = getattr(owner, "diagnose", None)
+        if callable(hook):
+            return hook
+    return None
+
+
+def _reinstall(entry: EntryPoint) -> str:
+    package = entry.dist.name if entry.dist is not None else entry.module.partition(".")[0]
+    return f"`pip install --force-reinstall {package}`, or tell its authors"
