@@ -1,0 +1,1 @@
+"""Arms and hands: model, collisions, planning, grasps, and the planning scene."""

@@ -1,0 +1,153 @@
+"""One arm in one run of a skill: where it is, what it may meet, how it gets somewhere."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Generator, Sequence
+
+import numpy as np
+
+from momantu_bt.failure import Failure
+from momantu_bt.geometry import Array, Transform
+from momantu_bt.messages import JointTrajectory, RobotState
+from momantu_bt.robot import Robot
+from momantu_bt.service import HeldObject
+from momantu_bt.skill import Skill
+from momantu_skills.manipulation.collision import CollisionWorld
+from momantu_skills.manipulation.config import HandConfig, PlanningConfig
+from momantu_skills.manipulation.escape import escape
+from momantu_skills.manipulation.motion import Watch, follow
+from momantu_skills.manipulation.planning import Planner, Valid
+from momantu_skills.manipulation.scene import Scene
+from momantu_skills.manipulation.service import PlanningSceneService
+from momantu_skills.manipulation.timing import timed
+
+ACTUATOR = "arm"
+"""The actuator that carries the hand, and the planning group of the same name."""
+
+
+class Arm:
+    """What skills that move the arm share. `service` is the run's planning scene."""
+
+    def __init__(self, skill: Skill, robot: Robot, service: PlanningSceneService) -> None:
+        self.skill, self.robot, self.service = skill, robot, service
+        self.scene: Scene = service.scene
+        self.planning, self.hand = PlanningConfig(), HandConfig()
+        self.group = self.scene.model.group
+        self.planner = Planner(self.group, skill.random, self.planning)
+
+    @property
+    def state(self) -> RobotState:
+        """The robot's state of now."""
+        return self.robot.state()
+
+    @property
+    def joints(self) -> Array:
+        """The arm's joints (n,) of now, within their limits."""
+        return self.scene.model.joints(self.robot.state())
+
+    def route(self, goals: Sequence[Array], held: HeldObject | None) -> list[JointTrajectory]:
+        """Trajectories, one after the other, from here to the first reachable of `goals`.
+
+        Transits keep the configured margin; a start that does not is left by an escape first.
+
+        Raises:
+            Failure: NO_PLAN or START_IN_COLLISION.
+        """
+        state, start = self.state, self.joints
+        world = self.scene.world(state, held, self.planning.margin)
+        first: list[JointTrajectory] = []
+        if not world.free(start):
+            path = self._escape(state, start, held, world)
+            first.append(self.trajectory(path, self.hand.approach_speed))
+            start = path[-1]
+        valid = self._upright(world, held, start, goals)
+        found = self.planner.path(start, goals, valid)
+        if found is None and held is not None:
+            found = self.planner.path(start, goals, world.free)
+        if found is None:
+            raise self._no_plan(world, goals)
+        return [*first, *self._checked(found, world)]
+
+    def trajectory(self, path: Array, tip_speed: float | None = None) -> JointTrajectory:
+        """The fastest trajectory along a path; see `timed`."""
+        return timed(self.group, path, self.planning, tip_speed)
+
+    def follow(
+        self, trajectory: JointTrajectory, phase: str, until: Watch | None = None
+    ) -> Generator[str, None, bool]:
+        """See `motion.follow`."""
+        return follow(self.robot, self.skill.clock, ACTUATOR, trajectory, phase, until)
+
+    def line(self, start: Array, base_from_tip: Transform) -> Array | None:
+        """Joints (k, n) along the straight line from `start` to a tip pose; None if it breaks."""
+        targets = straight_line(
+            self.group.tip_matrix(start), base_from_tip.matrix, self.hand.linear_step
+        )
+        path, reached = self.group.trace(targets, start)
+        return np.vstack([start, path]) if reached == len(targets) else None
+
+    def lean(self, held: HeldObject, q: Array) -> float:
+        """Angle of what is held from upright at joints (n,), rad."""
+        tip_from_object = self.scene.model.tip_from_grasp @ held.grasp_from_object
+        axis = self.group.tip_matrix(q)[:3, :3] @ tip_from_object.rotation[:, 2]
+        return math.acos(max(-1.0, min(1.0, float(axis[2]))))
+
+    def _upright(
+        self, world: CollisionWorld, held: HeldObject | None, start: Array, goals: Sequence[Array]
+    ) -> Valid:
+        """Free, and what is held leans no more than configured, or than start and goals ask."""
+        if held is None:
+            return world.free
+        thing = held
+        ends = [self.lean(thing, q) for q in (start, *goals)]
+        limit = max(self.planning.tilt, max(ends) + 0.1)
+        return lambda q: self.lean(thing, q) <= limit and world.free(q)
+
+    def _escape(
+        self, state: RobotState, start: Array, held: HeldObject | None, world: CollisionWorld
+    ) -> Array:
+        bare = self.scene.world(state, held, 0.0, held_on_support=True)
+        path = escape(self.group, start, world, bare, self.skill.random)
+        if path is None:
+            pairs = ", ".join(f"{a} with {b}" for a, b in bare.touching(start)[:3])
+            raise Failure(
+                "START_IN_COLLISION",
+                f"the arm stands where it touches something ({pairs or 'within the margin'}), and "
+                "no small motion gets it out",
+                touching=pairs,
+            )
+        return path
+
+    def _checked(self, path: Array, world: CollisionWorld) -> list[JointTrajectory]:
+        """One trajectory, or one per straight piece where the spline would cut a corner."""
+        whole = self.trajectory(path)
+        if len(path) == 2 or world.path_free(whole.positions):
+            return [whole]
+        return [self.trajectory(path[i : i + 2]) for i in range(len(path) - 1)]
+
+    def _no_plan(self, world: CollisionWorld, goals: Sequence[Array]) -> Failure:
+        touching = [world.touching(goal) for goal in goals]
+        if all(touching):
+            a, b = touching[0][0]
+            text = f"every goal posture collides, the first one {a} with {b}"
+        else:
+            text = f"no way found to any of {len(goals)} goal postures"
+        return Failure("NO_PLAN", text, goals=len(goals), checks=world.checks)
+
+
+def straight_line(start: Array, end: Array, step: float) -> Array:
+    """Poses (k, 4, 4) from `start` (left out) to `end`, at most `step` m or 0.05 rad apart."""
+    first, last = Transform.from_matrix(start), Transform.from_matrix(end)
+    length = float(np.linalg.norm(last.position - first.position))
+    count = max(1, math.ceil(length / step), math.ceil(first.angle_to(last) / 0.05))
+    return np.array([_between(first, last, i / count).matrix for i in range(1, count + 1)])
+
+
+def _between(first: Transform, last: Transform, share: float) -> Transform:
+    """Straight in position; shortest arc in rotation, near enough by normalised blending."""
+    sign = math.copysign(1.0, float(first.quaternion @ last.quaternion))
+    return Transform(
+        first.position + share * (last.position - first.position),
+        first.quaternion + share * (sign * last.quaternion - first.quaternion),
+    )

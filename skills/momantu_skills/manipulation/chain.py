@@ -1,0 +1,181 @@
+"""Forward and inverse kinematics of a serial chain, compiled.
+
+A chain of n joints is given by arrays: origins (n, 4, 4), each joint's fixed transform from the
+previous joint; axes (n, 3), unit, in the joint's frame; slides (n,), True where prismatic; tip
+(4, 4), from the last joint to the tip. Poses are base_from_tip (4, 4).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+
+DAMPING = 1e-4
+"""Damped least squares' lambda squared, in m2 of weighted joint motion: keeps steps near
+singular arms short and costs a few iterations elsewhere."""
+LONGEST_STEP = 0.35
+"""rad (or scaled m) a joint moves in one iteration at most: the linearisation holds that far."""
+
+
+@njit(cache=True)
+def _rotation(axis, angle):  # type: ignore[no-untyped-def]
+    c, s = np.cos(angle), np.sin(angle)
+    x, y, z = axis[0], axis[1], axis[2]
+    r = np.empty((3, 3))
+    r[0, 0] = c + x * x * (1 - c)
+    r[0, 1] = x * y * (1 - c) - z * s
+    r[0, 2] = x * z * (1 - c) + y * s
+    r[1, 0] = y * x * (1 - c) + z * s
+    r[1, 1] = c + y * y * (1 - c)
+    r[1, 2] = y * z * (1 - c) - x * s
+    r[2, 0] = z * x * (1 - c) - y * s
+    r[2, 1] = z * y * (1 - c) + x * s
+    r[2, 2] = c + z * z * (1 - c)
+    return r
+
+
+@njit(cache=True)
+def _product(ra, pa, rb, pb):  # type: ignore[no-untyped-def]
+    r = np.empty((3, 3))
+    p = np.empty(3)
+    for i in range(3):
+        for j in range(3):
+            r[i, j] = ra[i, 0] * rb[0, j] + ra[i, 1] * rb[1, j] + ra[i, 2] * rb[2, j]
+        p[i] = ra[i, 0] * pb[0] + ra[i, 1] * pb[1] + ra[i, 2] * pb[2] + pa[i]
+    return r, p
+
+
+@njit(cache=True)
+def forward(origins, axes, slides, tip, q):  # type: ignore[no-untyped-def]
+    """Rotation (3, 3) and position (3,) of the tip, and the geometric Jacobian (6, n) in base.
+
+    Rows: linear velocity of the tip, then angular velocity (Siciliano et al., Robotics, 3.1).
+    """
+    n = len(q)
+    r, p = np.eye(3), np.zeros(3)
+    directions, points = np.empty((n, 3)), np.empty((n, 3))
+    zero = np.zeros(3)
+    for i in range(n):
+        r, p = _product(r, p, origins[i, :3, :3], origins[i, :3, 3])
+        for k in range(3):
+            directions[i, k] = r[k, 0] * axes[i, 0] + r[k, 1] * axes[i, 1] + r[k, 2] * axes[i, 2]
+            points[i, k] = p[k]
+        if slides[i]:
+            p = p + directions[i] * q[i]
+        else:
+            r, p = _product(r, p, _rotation(axes[i], q[i]), zero)
+    r, p = _product(r, p, tip[:3, :3], tip[:3, 3])
+    jacobian = np.zeros((6, n))
+    for i in range(n):
+        a = directions[i]
+        if slides[i]:
+            jacobian[:3, i] = a
+        else:
+            d = p - points[i]
+            jacobian[0, i] = a[1] * d[2] - a[2] * d[1]
+            jacobian[1, i] = a[2] * d[0] - a[0] * d[2]
+            jacobian[2, i] = a[0] * d[1] - a[1] * d[0]
+            jacobian[3:, i] = a
+    return r, p, jacobian
+
+
+@njit(cache=True)
+def _error(r, p, target):  # type: ignore[no-untyped-def]
+    """Twist (6,) from the pose to the target: metres, then the rotation vector in rad."""
+    e = np.empty(6)
+    m = np.empty((3, 3))
+    for i in range(3):
+        e[i] = target[i, 3] - p[i]
+        for j in range(3):
+            m[i, j] = target[i, 0] * r[j, 0] + target[i, 1] * r[j, 1] + target[i, 2] * r[j, 2]
+    v = np.array([m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1]])
+    sine = 0.5 * np.sqrt(v[0] ** 2 + v[1] ** 2 + v[2] ** 2)
+    cosine = 0.5 * (m[0, 0] + m[1, 1] + m[2, 2] - 1.0)
+    angle = np.arctan2(sine, cosine)
+    if sine > 1e-9:
+        e[3:] = v * (0.5 * angle / sine)
+    elif cosine > 0:
+        e[3:] = 0.5 * v
+    else:  # half a turn about an axis the sine cannot tell: any axis leads out of it
+        e[3:] = np.array([np.pi, 0.0, 0.0])
+    return e
+
+
+@njit(cache=True)
+def descend(  # type: ignore[no-untyped-def]
+    origins, axes, slides, tip, lower, upper, weights, target, q, rounds, near, turn
+):
+    """Damped least squares from `q` to `target`: joints (n,) and whether they are there.
+
+    weights (n,): squared speeds, so that slow joints move little (weighted pseudo-inverse).
+    near, turn: tolerances in m and rad. Limits hold after every step.
+    """
+    q = q.copy()
+    for _ in range(rounds):
+        r, p, jacobian = forward(origins, axes, slides, tip, q)
+        e = _error(r, p, target)
+        if (
+            np.sqrt(e[0] ** 2 + e[1] ** 2 + e[2] ** 2) < near
+            and np.sqrt(e[3] ** 2 + e[4] ** 2 + e[5] ** 2) < turn
+        ):
+            return q, True
+        weighted = jacobian * weights
+        system = weighted @ jacobian.T
+        for i in range(6):
+            system[i, i] += DAMPING
+        step = weighted.T @ np.linalg.solve(system, e)
+        largest = np.max(np.abs(step))
+        if largest > LONGEST_STEP:
+            step *= LONGEST_STEP / largest
+        q = np.minimum(np.maximum(q + step, lower), upper)
+    return q, False
+
+
+@njit(cache=True)
+def solve(  # type: ignore[no-untyped-def]
+    origins, axes, slides, tip, lower, upper, weights, targets, seeds, rounds, near, turn
+):
+    """Every target (m, 4, 4) from every seed (s, n): joints (m, s, n) and success (m, s)."""
+    m, s, n = len(targets), len(seeds), seeds.shape[1]
+    found, good = np.empty((m, s, n)), np.zeros((m, s), dtype=np.bool_)
+    for i in range(m):
+        for j in range(s):
+            found[i, j], good[i, j] = descend(
+                origins,
+                axes,
+                slides,
+                tip,
+                lower,
+                upper,
+                weights,
+                targets[i],
+                seeds[j],
+                rounds,
+                near,
+                turn,
+            )
+    return found, good
+
+
+@njit(cache=True)
+def trace(  # type: ignore[no-untyped-def]
+    origins, axes, slides, tip, lower, upper, weights, targets, start, near, turn, jump
+):
+    """Follow poses (k, 4, 4) closely spaced, from `start`: joints (k, n), how many were reached.
+
+    Stops where a pose cannot be reached, or a joint would move more than `jump` between two.
+    """
+    path = np.empty((len(targets), len(start)))
+    q = start
+    for i in range(len(targets)):
+        previous = q
+        q, good = descend(
+            origins, axes, slides, tip, lower, upper, weights, targets[i], q, 25, near, turn
+        )
+        if not good or np.max(np.abs(q - previous)) > jump:
+            return path, i
+        path[i] = q
+    return path, len(targets)
+
+

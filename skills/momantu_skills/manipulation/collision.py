@@ -1,0 +1,227 @@
+"""Whether the robot, and what it holds, would meet itself or its surroundings."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import combinations, product
+
+import coal
+import numpy as np
+import pinocchio as pin
+
+from momantu_bt.geometry import Array, Transform
+from momantu_skills.manipulation.hulls import convex, load_mesh, part_points
+from momantu_skills.manipulation.model import ArmModel
+
+FLOOR = 0.01
+"""m above which the floor's box ends: no moving link belongs below it."""
+LONGEST_HULL = 0.4
+"""m; longer links keep their mesh: the hull around a torso with shoulders and neck would swallow
+the arm folded before it. Checks against a mesh are slower, and few."""
+SAMPLES = 200
+"""Random postures in which pairs of links that always touch are looked for."""
+ALWAYS = 0.95
+"""Share of the postures in which a pair touches because its hulls overlap for good."""
+
+
+@dataclass(frozen=True, eq=False)
+class Obstacle:
+    """A convex solid: corners (n, 3) in base, m. support: the held object may touch it."""
+
+    name: str
+    corners: Array
+    support: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Attached:
+    """What the tip carries: corners (n, 3) of its hull in the tip's frame, m."""
+
+    corners: Array
+
+
+class BodyPairs:
+    """The robot's own shapes, and which pairs of links are worth checking."""
+
+    def __init__(self, model: ArmModel) -> None:
+        self.model = model
+        self.geometry = pin.GeometryModel()
+        self.links: dict[str, list[int]] = {link: [] for link in model.hulls}
+        for link, corners in model.hulls.items():
+            if float(np.ptp(corners, axis=0).max()) < LONGEST_HULL:
+                self._add(link, convex(corners), Transform())
+                continue
+            for part in (part for part in model.urdf.parts if part.link == link):
+                shape = load_mesh(part) if part.kind == "mesh" else convex(part_points(part))
+                place = part.link_from_part if part.kind == "mesh" else Transform()
+                self._add(link, shape, place)
+        self.moving = self._moving_links()
+        self.pairs = self._sometimes_apart(self._worthwhile())
+
+    def _add(self, link: str, shape: coal.CollisionGeometry, link_from_shape: Transform) -> None:
+        identity = self.model.frame_ids[link]
+        frame = self.model.pin.frames[identity]
+        place = frame.placement * pin.SE3(link_from_shape.matrix)
+        name = f"{link}:{len(self.links[link])}" if self.links[link] else link
+        thing = pin.GeometryObject(name, frame.parentJoint, identity, place, shape)
+        self.links[link].append(int(self.geometry.addGeometryObject(thing)))
+
+    def shape_pairs(self, one: str, other: str) -> Iterator[tuple[int, int]]:
+        """Pairs of shape indices of two links."""
+        return product(self.links[one], self.links[other])
+
+    def _moving_links(self) -> tuple[str, ...]:
+        first = min(
+            int(self.model.pin.getJointId(name)) for name in self.model.group.names
+        )
+        below = set(self.model.pin.subtrees[first])
+        frames = self.model.pin.frames
+        return tuple(
+            link
+            for link in self.model.hulls
+            if int(frames[self.model.frame_ids[link]].parentJoint) in below
+        )
+
+    def _worthwhile(self) -> list[tuple[int, int]]:
+        ignored = {frozenset(pair) for pair in self.model.description.ignored_collisions}
+        return [
+            pair
+            for one, other in combinations(self.model.hulls, 2)
+            for pair in self.shape_pairs(one, other)
+            if frozenset((one, other)) not in ignored
+            and not self._adjacent(one, other)
+            and (one in self.moving or other in self.moving)
+        ]
+
+    def _adjacent(self, one: str, other: str) -> bool:
+        """Whether links share a joint, or sit on the same one."""
+        frames, parents = self.model.pin.frames, self.model.pin.parents
+        a = int(frames[self.model.frame_ids[one]].parentJoint)
+        b = int(frames[self.model.frame_ids[other]].parentJoint)
+        return a == b or int(parents[a]) == b or int(parents[b]) == a
+
+    def _sometimes_apart(self, pairs: list[tuple[int, int]]) -> tuple[tuple[int, int], ...]:
+        geometry = self.geometry.copy()
+        for a, b in pairs:
+            geometry.addCollisionPair(pin.CollisionPair(a, b))
+        data, shapes = self.model.pin.createData(), geometry.createData()
+        random = np.random.default_rng(0)
+        lower = np.maximum(self.model.pin.lowerPositionLimit, -np.pi)
+        upper = np.minimum(self.model.pin.upperPositionLimit, np.pi)
+        touching = np.zeros(len(pairs))
+        for _ in range(SAMPLES):
+            q = random.uniform(lower, upper)
+            pin.computeCollisions(self.model.pin, data, geometry, shapes, q, False)
+            touching += [result.isCollision() for result in shapes.collisionResults]
+        return tuple(p for p, n in zip(pairs, touching, strict=True) if n < ALWAYS * SAMPLES)
+
+
+class CollisionWorld:
+    """Collision checks for one situation: posture of the rest, surroundings, what is held.
+
+    cells: centres (n, 3) of occupied cells in a frame that `base_from_cells` places. margin: m of
+    clearance to surroundings. touching: (link or "held", obstacle name) pairs that may touch.
+    """
+
+    def __init__(
+        self,
+        body: BodyPairs,
+        posture: Array,
+        obstacles: Sequence[Obstacle] = (),
+        cells: Array | None = None,
+        voxel: float = 0.02,
+        base_from_cells: Transform | None = None,
+        attached: Attached | None = None,
+        margin: float = 0.0,
+        held_on_support: bool = False,
+    ) -> None:
+        self.body = body
+        self.checks = 0
+        self._pin = body.model.pin
+        self._data = self._pin.createData()
+        self._geometry = body.geometry.copy()
+        self._q = np.array(posture)
+        self._index = body.model.group_index
+        around = {obstacle.name: self._add_obstacle(obstacle) for obstacle in obstacles}
+        around["floor"] = self._add_floor()
+        if cells is not None and len(cells):
+            around["cells"] = self._add_cells(cells, voxel, base_from_cells or Transform())
+        pairs = list(body.pairs)
+        moving = [shape for link in body.moving for shape in body.links[link]]
+        near = list(product(moving, around.values()))
+        if attached is not None:
+            held = self._attach(attached)
+            supports = {o.name for o in obstacles if o.support and held_on_support}
+            near += [(held, around[name]) for name in around if name not in supports]
+            pairs += [(held, shape) for shape in self._strangers()]
+        self._finish(pairs, near, margin)
+
+    def _finish(
+        self, pairs: Iterable[tuple[int, int]], near: Iterable[tuple[int, int]], margin: float
+    ) -> None:
+        for a, b in [*pairs, *near]:
+            self._geometry.addCollisionPair(pin.CollisionPair(a, b))
+        self._shapes = self._geometry.createData()
+        for a, b in near:
+            index = self._geometry.findCollisionPair(pin.CollisionPair(a, b))
+            self._shapes.collisionRequests[index].security_margin = margin
+        self._manager = pin.BroadPhaseManager_DynamicAABBTreeCollisionManager(
+            self._pin, self._geometry, self._shapes
+        )
+
+    def free(self, q: Array) -> bool:
+        """Whether joints (n,) of the planning group touch nothing."""
+        self.checks += 1
+        self._q[self._index] = q
+        return not pin.computeCollisions(self._pin, self._data, self._manager, self._q, True)
+
+    def path_free(self, path: Array) -> bool:
+        """Whether every one of joints (k, n) touches nothing."""
+        return all(self.free(q) for q in path)
+
+    def touching(self, q: Array) -> list[tuple[str, str]]:
+        """Names of all pairs that touch at joints (n,), for messages and tests."""
+        self._q[self._index] = q
+        pin.computeCollisions(
+            self._pin, self._data, self._geometry, self._shapes, self._q, False
+        )
+        objects = self._geometry.geometryObjects
+        return [
+            (str(objects[int(pair.first)].name), str(objects[int(pair.second)].name))
+            for pair, result in zip(
+                self._geometry.collisionPairs, self._shapes.collisionResults, strict=True
+            )
+            if result.isCollision()
+        ]
+
+    def _add_obstacle(self, obstacle: Obstacle) -> int:
+        return self._add(obstacle.name, convex(obstacle.corners), pin.SE3.Identity())
+
+    def _add_floor(self) -> int:
+        place = pin.SE3(np.eye(3), np.array([0.0, 0.0, FLOOR - 0.05]))
+        return self._add("floor", coal.Box(4.0, 4.0, 0.1), place)
+
+    def _add_cells(self, cells: Array, voxel: float, base_from_cells: Transform) -> int:
+        tree = coal.makeOctree(np.ascontiguousarray(cells), voxel)
+        place = pin.SE3(base_from_cells.rotation, np.array(base_from_cells.position))
+        return self._add("cells", tree, place)
+
+    def _add(self, name: str, shape: coal.CollisionGeometry, place: pin.SE3) -> int:
+        return int(self._geometry.addGeometryObject(pin.GeometryObject(name, 0, 0, place, shape)))
+
+    def _attach(self, attached: Attached) -> int:
+        model = self.body.model
+        tip = model.description.groups["arm"].tip
+        frame = model.pin.frames[int(model.pin.getFrameId(tip))]
+        shape = pin.GeometryObject(
+            "held", frame.parentJoint, int(model.pin.getFrameId(tip)), frame.placement,
+            convex(attached.corners),
+        )
+        return int(self._geometry.addGeometryObject(shape))
+
+    def _strangers(self) -> list[int]:
+        """Shapes of the links that what is held must not touch: all but the hand."""
+        touch = self.body.model.description.end_effector.touch_links
+        links = self.body.links
+        return [shape for link, shapes in links.items() if link not in touch for shape in shapes]

@@ -1,0 +1,92 @@
+"""Tunables of manipulation, each with its unit and reason."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class SceneConfig:
+    """How the planning scene sees its surroundings and judges what is held."""
+
+    voxel: float = 0.02
+    """m; edge of the octree's cells: finer than any gap the arm goes through."""
+    reach: float = 1.3
+    """m; points farther from the base than this cannot be met by the arm."""
+    pixel_stride: int = 4
+    """Every n-th pixel in each direction: 7 mm apart at 1 m, denser than the voxels."""
+    points_per_voxel: int = 2
+    """Cells with fewer points are noise at depth edges."""
+    thickness: float = 0.04
+    """m; what is seen is taken to be at least this deep behind its visible face."""
+    robot_padding: float = 0.03
+    """m; around links and held object when they are taken out of a picture: depth noise, the
+    camera's mounting error, and the lag between joints and picture."""
+    surface_band: float = 0.015
+    """m; points this near a support surface's height belong to it."""
+    footprint_height: float = 1.2
+    """m; what reaches above this does not widen the footprint."""
+    width_tolerance: float = 0.012
+    """m; change of the gripper's opening at which the held object is believed gone."""
+    least_effort: float = 3.0
+    """N; closing force below which nothing is held: the sensor's noise is 1 N."""
+    doubt: int = 4
+    """Updates in a row that must speak against holding: 0.2 s at 20 Hz, longer than any bounce."""
+
+
+@dataclass(frozen=True)
+class PlanningConfig:
+    """How motions are searched. Searches end by counting, never by a clock."""
+
+    step: float = 0.06
+    """Scaled rad between two collision checks of a motion; the hand then moves about 4 cm."""
+    margin: float = 0.012
+    """m; clearance that transits keep from surroundings: depth noise and half a voxel's corner."""
+    searches: int = 1500
+    """Growths of a search tree after which it gives up: about 0.3 s."""
+    range: float = 1.2
+    """Scaled rad; longest branch of the tree."""
+    shortcut_rounds: int = 40
+    """Random shortcuts tried on a path."""
+    densify: float = 0.1
+    """rad between waypoints given to the spline, so that it does not cut corners."""
+    speed: float = 0.95
+    """Share of the speed and acceleration limits that is used: drivers refuse what passes them."""
+    sample: float = 0.04
+    """s between points of a timed trajectory."""
+    tilt: float = 1.05
+    """rad; how far a held object may lean while it is moved, where that is possible: 60 degrees."""
+
+
+@dataclass(frozen=True)
+class HandConfig:
+    """How the hand approaches, closes, feels and lets go."""
+
+    approach: float = 0.10
+    """m of straight line before a grasp."""
+    approach_speed: float = 0.10
+    """m/s on that line: what is met by error is pushed softly."""
+    lift_speed: float = 0.15
+    """m/s when lifting and retreating."""
+    lower_speed: float = 0.03
+    """m/s when lowering until contact: one tick late is 1.5 mm, below 50 N on a table."""
+    above: float = 0.03
+    """m above a spot where lowering begins: height error of the surface and sag of the arm."""
+    below: float = 0.025
+    """m below a spot where lowering gives up."""
+    contact_force: float = 5.0
+    """N; change of the vertical load that counts as contact: 20 sigma of the sensor."""
+    force: float = 45.0
+    """N; closing force: holds 0.4 kg at a friction of 0.1, dents nothing."""
+    margin: float = 0.03
+    """m wider than the object when letting go beside other things."""
+    width_tolerance: float = 0.012
+    """m between measured diameter and gripper opening that a good grasp may show."""
+    close_time: float = 3.0
+    """s after which closing or opening is given up."""
+    linear_step: float = 0.01
+    """m between solved poses on a straight line."""
+    old_pose: float = 60.0
+    """s; a pose older than this is not touched."""
+    far_pose: float = 3.0
+    """m driven since a pose was measured: odometry has drifted by centimetres."""

@@ -1,0 +1,237 @@
+"""A robot's body for planning: links, hulls, chains of joints. Everything in the base frame."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+import pinocchio as pin
+from lxml import etree
+from numpy.typing import NDArray
+
+from momantu_bt.geometry import Array, Transform
+from momantu_bt.messages import RobotState
+from momantu_bt.robot import RobotDescription
+from momantu_skills.manipulation import chain
+from momantu_skills.manipulation.hulls import link_hulls
+from momantu_skills.manipulation.urdf import base_urdf
+
+PACE = 1.5
+"""rad/s; joints are scaled so that a scaled radian takes 1 / PACE seconds on each of them."""
+JUMP = 0.25
+"""rad between two solved poses of a straight line, 1 cm apart; more is another arm posture."""
+NEAR, TURN = 5e-4, 3e-3
+"""m and rad to which inverse kinematics solves: well below calibration errors."""
+
+
+@dataclass(frozen=True)
+class Group:
+    """A chain of n joints from the base to a tip, with limits (endless joints: infinite).
+
+    scale (n,): turns joint angles into equal times. The rest: see `chain`.
+    """
+
+    names: tuple[str, ...]
+    lower: Array
+    upper: Array
+    velocity: Array
+    acceleration: Array
+    origins: Array
+    axes: Array
+    slides: NDArray[np.bool_]
+    tip: Array
+
+    @property
+    def scale(self) -> Array:
+        """Scaled radians per radian or metre, (n,)."""
+        return PACE / self.velocity
+
+    @property
+    def endless(self) -> NDArray[np.bool_]:
+        """(n,) which joints turn for ever."""
+        return np.asarray(~np.isfinite(self.lower))
+
+    def tip_pose(self, q: Array) -> Transform:
+        """base_from_tip at joints (n,)."""
+        r, p, _ = chain.forward(self.origins, self.axes, self.slides, self.tip, q)
+        return Transform.from_rotation(r, p)
+
+    def tip_matrix(self, q: Array) -> Array:
+        """base_from_tip (4, 4) at joints (n,)."""
+        m = np.eye(4)
+        m[:3, :3], m[:3, 3], _ = chain.forward(self.origins, self.axes, self.slides, self.tip, q)
+        return m
+
+    def jacobian(self, q: Array) -> Array:
+        """(6, n): velocity of the tip, then angular velocity, in base, per joint."""
+        return np.asarray(chain.forward(self.origins, self.axes, self.slides, self.tip, q)[2])
+
+    def solve(self, targets: Array, seeds: Array, rounds: int = 40) -> tuple[Array, Array]:
+        """Inverse kinematics of poses (m, 4, 4) from seeds (s, n).
+
+        Returns joints (m, s, n) within the limits, and success (m, s).
+        """
+        found, good = chain.solve(
+            *self._kernel(), np.ascontiguousarray(targets), seeds, rounds, NEAR, TURN
+        )
+        return found, good
+
+    def trace(self, targets: Array, start: Array) -> tuple[Array, int]:
+        """Joints along poses (k, 4, 4) a centimetre apart: (reached, n), and how many there are."""
+        path, reached = chain.trace(
+            *self._kernel(), np.ascontiguousarray(targets), np.array(start), NEAR, TURN, JUMP
+        )
+        return path[:reached], int(reached)
+
+    def nearest_turn(self, q: Array, reference: Array) -> Array:
+        """The same posture with endless joints (.., n) within half a turn of `reference` (n,)."""
+        turns = np.round((q - reference) / (2 * np.pi)) * (2 * np.pi)
+        return np.where(self.endless, q - turns, q)
+
+    def _kernel(self) -> tuple[object, ...]:
+        weights = (self.velocity / PACE) ** 2
+        return (
+            self.origins,
+            self.axes,
+            self.slides,
+            self.tip,
+            self.lower,
+            self.upper,
+            weights,
+        )
+
+
+class ArmModel:
+    """Kinematics and hulls of the whole robot, for one planning group that is moved."""
+
+    def __init__(self, description: RobotDescription, group: str = "arm") -> None:
+        self.description = description
+        self.urdf = base_urdf(description)
+        self.pin: pin.Model = pin.buildModelFromXML(self.urdf.text)
+        self.hulls = link_hulls(self.urdf.parts)
+        self.group = _chain_of(self.urdf.text, description, group)
+        self._index = {
+            name: int(self.pin.joints[self.pin.getJointId(name)].idx_q)
+            for name in list(self.pin.names)[1:]
+        }
+        self.group_index = np.array([self._index[name] for name in self.group.names])
+        self.frame_ids = {link: int(self.pin.getFrameId(link)) for link in self.hulls}
+        fingers = description.actuators[description.end_effector.actuator].joints
+        self._fingers = [self._index[name] for name in fingers]
+
+    def joints(self, state: RobotState) -> Array:
+        """Joints of the planning group (n,) as measured, clipped into their limits."""
+        q = np.array([state.position(name) for name in self.group.names])
+        return np.clip(q, self.group.lower, self.group.upper)
+
+    def configuration(self, state: RobotState, width: float | None = None) -> Array:
+        """All joints (nq,) in pinocchio's order; fingers from a width, the measured one if None."""
+        return self._full(state.joints(), state.gripper_width if width is None else width)
+
+    def _full(self, joints: Mapping[str, float], width: float) -> Array:
+        q = np.zeros(self.pin.nq)
+        for name, value in joints.items():
+            if name in self._index:
+                q[self._index[name]] = value
+        for finger in self._fingers:
+            q[finger] = max(0.0, width) / len(self._fingers)
+        return q
+
+    def link_poses(self, q: Array) -> dict[str, Array]:
+        """base_from_link (4, 4) of every link that has a hull, at all joints (nq,)."""
+        data = self._data
+        pin.framesForwardKinematics(self.pin, data, q)
+        return {link: np.array(data.oMf[i].homogeneous) for link, i in self.frame_ids.items()}
+
+    @property
+    def _data(self) -> pin.Data:
+        data = self.__dict__.get("_cached_data")
+        if data is None:
+            data = self.__dict__["_cached_data"] = self.pin.createData()
+        return data
+
+    @property
+    def tip_from_grasp(self) -> Transform:
+        """The grasp frame in the planning group's tip link."""
+        effector = self.description.end_effector
+        return Transform((effector.grasp_offset, 0.0, 0.0))
+
+
+def arm_model(description: RobotDescription) -> ArmModel:
+    """The model of a description; built once per process."""
+    return _cached(_Key(description))
+
+
+class _Key:
+    def __init__(self, description: RobotDescription) -> None:
+        self.description = description
+        self.text = description.model_dump_json()
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Key) and other.text == self.text
+
+    def __hash__(self) -> int:
+        return hash(self.text)
+
+
+@lru_cache(maxsize=4)
+def _cached(key: _Key) -> ArmModel:
+    return ArmModel(key.description)
+
+
+def _chain_of(text: str, description: RobotDescription, name: str) -> Group:
+    """Read the joints of a group from a base-rooted URDF; fixed joints merge into origins."""
+    group = description.groups[name]
+    above = {str(j.find("child").get("link")): j for j in etree.fromstring(text).findall("joint")}
+    origins, axes, slides, joints = [], [], [], []
+    after = np.eye(4)
+    link = group.tip
+    while link != description.base_frame:
+        joint = above[link]
+        origin = joint.find("origin")
+        fixed = _origin(origin).matrix
+        if joint.get("name") in group.joints:
+            joints.append(str(joint.get("name")))
+            axis = joint.find("axis")
+            axes.append([float(v) for v in ("1 0 0" if axis is None else axis.get("xyz")).split()])
+            slides.append(joint.get("type") == "prismatic")
+            origins.append((fixed, after))
+            after = np.eye(4)
+        else:
+            after = fixed @ after
+        link = str(joint.find("parent").get("link"))
+    return _assemble(description, joints[::-1], origins[::-1], axes[::-1], slides[::-1], after)
+
+
+def _assemble(
+    description: RobotDescription,
+    joints: list[str],
+    origins: list[tuple[Array, Array]],
+    axes: list[list[float]],
+    slides: list[bool],
+    first: Array,
+) -> Group:
+    limits = [description.joint_limits[name] for name in joints]
+    before = [first] + [after for _, after in origins[:-1]]
+    unit = np.array(axes) / np.linalg.norm(np.array(axes), axis=1, keepdims=True)
+    return Group(
+        names=tuple(joints),
+        lower=np.array([-np.inf if m.lower is None else m.lower for m in limits]),
+        upper=np.array([np.inf if m.upper is None else m.upper for m in limits]),
+        velocity=np.array([m.velocity for m in limits]),
+        acceleration=np.array([m.acceleration for m in limits]),
+        origins=np.ascontiguousarray([b @ own for b, (own, _) in zip(before, origins, strict=True)]),
+        axes=np.ascontiguousarray(unit),
+        slides=np.array(slides),
+        tip=np.ascontiguousarray(origins[-1][1]),
+    )
+
+
+def _origin(element: etree._Element | None) -> Transform:
+    if element is None:
+        return Transform()
+    xyz = [float(v) for v in element.get("xyz", "0 0 0").split()]
+    rpy = [float(v) for v in element.get("rpy", "0 0 0").split()]
+    return Transform.from_rpy(xyz, rpy)

@@ -1,0 +1,110 @@
+"""Following a trajectory tick by tick, and noticing when the arm does not come along."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator
+
+import numpy as np
+
+from momantu_bt.failure import Failure
+from momantu_bt.geometry import Array
+from momantu_bt.messages import JointTrajectory, RobotState
+from momantu_bt.robot import Robot
+from momantu_bt.skill import Clock
+
+LAG = 0.35
+"""rad or m behind the trajectory that is normal at full speed: two ticks of delay."""
+PATIENCE = 0.3
+"""s for which the lag must last to mean that the arm is stuck."""
+SETTLE = 1.5
+"""s after the trajectory's end in which the joints must arrive."""
+ARRIVED = 0.02
+"""rad or m from the end at which the joints have arrived."""
+STILL = 0.03
+"""rad/s or m/s below which a joint stands still: its measurement noise is 0.002."""
+CODE = "ARM_STUCK"
+
+Watch = Callable[[Robot], bool]
+
+
+def follow(
+    robot: Robot,
+    clock: Clock,
+    actuator: str,
+    trajectory: JointTrajectory,
+    phase: str = "moving",
+    until: Watch | None = None,
+) -> Generator[str, None, bool]:
+    """Command a trajectory each tick until it has arrived and stands still: True.
+
+    until: asked each tick; when it says yes the actuator brakes along the path, and the answer
+    is False. Yields the phase.
+
+    Raises:
+        Failure: ARM_STUCK, when the joints stay behind or never arrive; the actuator is stopped.
+    """
+    began = behind_since = clock.now()
+    while True:
+        now = clock.now()
+        state = robot.state()
+        positions = _positions(state, trajectory)
+        if until is not None and until(robot):
+            yield from brake(robot, clock, actuator, phase)
+            return False
+        if now - began >= trajectory.duration and _there(state, positions, trajectory):
+            return True
+        lag = np.abs(positions - expected(trajectory, now - began))
+        if float(lag.max()) < LAG:
+            behind_since = now
+        if now - behind_since > PATIENCE or now - began > trajectory.duration + SETTLE:
+            robot.stop(actuator)
+            raise _stuck(trajectory, positions, now - began)
+        robot.command(actuator, trajectory)
+        yield phase
+
+
+def brake(
+    robot: Robot, clock: Clock, actuator: str, phase: str = "stopping"
+) -> Generator[str, None, None]:
+    """Stop an actuator and wait until its joints stand still, at most SETTLE seconds."""
+    joints = robot.description.actuators[actuator].joints
+    began = clock.now()
+    robot.stop(actuator)
+    yield phase
+    while clock.now() - began < SETTLE:
+        state = robot.state()
+        if all(abs(float(state.velocities[state.names.index(j)])) < STILL for j in joints):
+            return
+        yield phase
+
+
+def expected(trajectory: JointTrajectory, after: float) -> Array:
+    """Joints (n,) a trajectory asks for `after` seconds, interpolated linearly."""
+    times = trajectory.times
+    at = min(max(after, 0.0), trajectory.duration)
+    i = min(int(np.searchsorted(times, at, side="right")), len(times) - 1)
+    share = (at - times[i - 1]) / (times[i] - times[i - 1])
+    before, later = trajectory.positions[i - 1], trajectory.positions[i]
+    return np.asarray(before + share * (later - before))
+
+
+def _positions(state: RobotState, trajectory: JointTrajectory) -> Array:
+    return np.array([state.position(name) for name in trajectory.names])
+
+
+def _there(state: RobotState, positions: Array, trajectory: JointTrajectory) -> bool:
+    speeds = np.array([state.velocities[state.names.index(n)] for n in trajectory.names])
+    close = np.abs(positions - trajectory.positions[-1]).max() < ARRIVED
+    return bool(close and np.abs(speeds).max() < STILL)
+
+
+def _stuck(trajectory: JointTrajectory, positions: Array, after: float) -> Failure:
+    error = np.abs(positions - expected(trajectory, after))
+    worst = int(np.argmax(error))
+    return Failure(
+        CODE,
+        f"{trajectory.names[worst]} is {error[worst]:.2f} from where its trajectory asks it to "
+        f"be after {after:.1f} s: something holds the arm, or its driver does not answer",
+        joint=trajectory.names[worst],
+        error=float(error[worst]),
+    )

@@ -1,0 +1,133 @@
+"""Searching a collision-free path to any of several goal postures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from ompl import base as ob
+from ompl import geometric as og
+from ompl import util as ou
+
+from momantu_bt.geometry import Array
+from momantu_skills.manipulation.config import PlanningConfig
+from momantu_skills.manipulation.model import Group
+
+Valid = Callable[[Array], bool]
+
+ROOM = 0.4
+"""Scaled rad that the first search may stray past start and goals on slow joints."""
+WIDE = 1.3 * np.pi
+"""rad around the start in which endless joints are searched."""
+
+ou.setLogLevel(ou.LogLevel.LOG_NONE)  # it warns of every reseeding, which is what we want
+
+
+class Planner:
+    """Paths for one group of joints. Everything it draws comes from `random`."""
+
+    def __init__(self, group: Group, random: np.random.Generator, config: PlanningConfig) -> None:
+        self.group, self.random, self.config = group, random, config
+
+    def path(self, start: Array, goals: Sequence[Array], valid: Valid) -> Array | None:
+        """Waypoints (k, n) from `start` to one of `goals`, all of it valid; None if none is found.
+
+        `start` must be valid. Goals that are not are left out; endless joints of the others are
+        turned the short way. First straight lines, nearest goal first; then RRT-Connect (Kuffner
+        and LaValle 2000) with slow joints kept near where they are; then with all room there is.
+        """
+        turned = [self.group.nearest_turn(np.asarray(goal), start) for goal in goals]
+        ends = sorted((g for g in turned if valid(g)), key=lambda g: self.duration(start, g))
+        for goal in ends:
+            if self.straight(start, goal, valid):
+                return np.array([start, goal])
+        if not ends:
+            return None
+        for tight in (True, False):
+            found = self._search(start, ends, valid, tight)
+            if found is not None:
+                return found
+        return None
+
+    def duration(self, start: Array, goal: Array) -> float:
+        """Seconds a straight joint motion takes at full speed, accelerations left out."""
+        return float(np.max(np.abs(goal - start) / self.group.velocity))
+
+    def straight(self, start: Array, goal: Array, valid: Valid) -> bool:
+        """Whether the straight line in joint space is valid, both ends included."""
+        return all(valid(q) for q in self.line(start, goal))
+
+    def line(self, start: Array, goal: Array) -> Array:
+        """Joints (k, n) along a straight line, checks as far apart as the configuration says."""
+        length = float(np.linalg.norm((goal - start) * self.group.scale))
+        count = max(2, int(np.ceil(length / self.config.step)) + 1)
+        return start + np.linspace(0.0, 1.0, count)[:, None] * (goal - start)
+
+    def _search(
+        self, start: Array, goals: Sequence[Array], valid: Valid, tight: bool
+    ) -> Array | None:
+        scale = self.group.scale
+        space = ob.RealVectorStateSpace(len(start))
+        bounds = self._bounds(start, goals, tight)
+        space.setBounds(bounds)
+        information = ob.SpaceInformation(space)
+        n = len(start)
+        information.setStateValidityChecker(lambda state: valid(np.array(state[0:n]) / scale))
+        information.setStateValidityCheckingResolution(
+            self.config.step / space.getMaximumExtent()
+        )
+        information.setup()
+        ou.RNG.setSeed(int(self.random.integers(1, 2**31)))
+        problem = ob.ProblemDefinition(information)
+        problem.addStartState(_state(space, start * scale))
+        ends = ob.GoalStates(information)
+        for goal in goals:
+            ends.addState(_state(space, goal * scale))
+        problem.setGoal(ends)
+        planner = og.RRTConnect(information)
+        planner.setRange(self.config.range)
+        planner.setProblemDefinition(problem)
+        planner.setup()
+        planner.solve(ob.PlannerTerminationCondition(_Counter(self.config.searches)))
+        if not problem.hasExactSolution():
+            return None
+        path = problem.getSolutionPath()
+        simplifier = og.PathSimplifier(information)
+        simplifier.partialShortcutPath(path, self.config.shortcut_rounds)
+        simplifier.reduceVertices(path)
+        return np.array([state[0:n] for state in path.getStates()]) / scale
+
+    def _bounds(
+        self, start: Array, goals: Sequence[Array], tight: bool
+    ) -> ob.RealVectorBounds:
+        scale = self.group.scale
+        ends = np.vstack([start, *goals])
+        lower = np.where(self.group.endless, start - WIDE, self.group.lower)
+        upper = np.where(self.group.endless, start + WIDE, self.group.upper)
+        if tight:
+            slow = scale > 2.0
+            lower = np.where(slow, np.maximum(lower, ends.min(axis=0) - ROOM / scale), lower)
+            upper = np.where(slow, np.minimum(upper, ends.max(axis=0) + ROOM / scale), upper)
+        bounds = ob.RealVectorBounds(len(start))
+        for i in range(len(start)):
+            bounds.setLow(i, float(min(lower[i], ends[:, i].min()) * scale[i]) - 1e-6)
+            bounds.setHigh(i, float(max(upper[i], ends[:, i].max()) * scale[i]) + 1e-6)
+        return bounds
+
+
+class _Counter:
+    """Ends a search after so many questions whether it should end."""
+
+    def __init__(self, most: int) -> None:
+        self.left = most
+
+    def __call__(self) -> bool:
+        self.left -= 1
+        return self.left < 0
+
+
+def _state(space: ob.RealVectorStateSpace, values: Array) -> ob.State:
+    state = space.allocState()
+    for i, value in enumerate(values):
+        state[i] = float(value)
+    return state

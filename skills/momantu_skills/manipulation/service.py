@@ -1,0 +1,89 @@
+"""The planning scene: the robot, its surroundings and what it holds, as believed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from momantu_bt.frames import FrameBuffer
+from momantu_bt.geometry import Array, Transform
+from momantu_bt.messages import DetectedObject, RobotState, SupportPlane
+from momantu_bt.robot import Robot
+from momantu_bt.service import HeldObject, Service, ServiceContext
+from momantu_skills.manipulation.config import SceneConfig
+from momantu_skills.manipulation.holding import Holding
+
+if TYPE_CHECKING:
+    from momantu_skills.manipulation.scene import Scene
+
+
+class PlanningSceneService(Service):
+    """Keeps the scene. It reads no sensor but the state by itself; `observe` takes a picture.
+
+    `$@planning_scene.holding` is the category of what is held, or "".
+    """
+
+    rate = 20.0
+    publishes: Mapping[str, type] = {"holding": str}
+
+    def start(self, context: ServiceContext) -> None:
+        """Build the robot's model. Parameters: any field of SceneConfig."""
+        self.config = SceneConfig(**context.parameters)
+        self.frames: FrameBuffer = context.frames
+        self.holding = Holding(self.config)
+        self.scene: Scene = _scene(context, self.config)
+
+    def update(self, robot: Robot, now: float) -> None:
+        """Judge anew what is held."""
+        self._state = robot.state()
+        self.holding.judge(self._state)
+
+    def published(self) -> Mapping[str, Any]:
+        """See `publishes`."""
+        held = self.held
+        return {"holding": "" if held is None else held.object.category}
+
+    @property
+    def held(self) -> HeldObject | None:
+        """What is held, judged anew at each update from gripper width and effort."""
+        return self.holding.held
+
+    @property
+    def last_contact(self) -> float:
+        """When the hand last touched or released something, s; -inf when it never has."""
+        return self.holding.last_contact
+
+    def grasped(self, thing: DetectedObject, grasp_from_object: Transform) -> None:
+        """Say what the gripper has just closed on; it counts as held while width and effort agree."""
+        held = HeldObject(thing, grasp_from_object)
+        self.holding.claim(held, self._state.gripper_width, self._state.stamp)
+
+    def touched(self) -> None:
+        """Say that the hand has just touched or let go of something."""
+        self.holding.touched(self._state.stamp)
+
+    def observe(self, robot: Robot) -> None:
+        """Take a depth picture now and see the surroundings in it.
+
+        What the newest picture shows replaces what older ones showed of the same region.
+        """
+        self.scene.observe(robot, self.frames, self.held)
+
+    def support(self, plane: SupportPlane) -> None:
+        """Take over a measured surface."""
+        self.scene.add_support(plane)
+
+    def footprint(self, state: RobotState) -> Array:
+        """Convex outline (k, 2) of base, arm and held object on the floor, base frame, m."""
+        return self.scene.footprint(state, self.held)
+
+    def is_robot(self, points: Array, state: RobotState) -> Any:
+        """(n,) bool: which points (n, 3) in base frame lie on the robot or on what it holds."""
+        return self.scene.is_robot(points, state, self.held)
+
+
+def _scene(context: ServiceContext, config: SceneConfig) -> Scene:
+    from momantu_skills.manipulation.scene import Scene
+
+    return Scene(context.description, config)
+

@@ -1,0 +1,119 @@
+"""What stands around the robot, as the depth camera saw it: occupied cells and support tops."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import ConvexHull, QhullError
+
+from momantu_bt.geometry import Array, Transform
+from momantu_bt.messages import SupportPlane
+from momantu_skills.manipulation.collision import Obstacle
+from momantu_skills.manipulation.config import SceneConfig
+
+GRID = 0.05
+"""m; raster in which the points of one surface are taken to hang together."""
+SUPPORT_DEPTH = 0.5
+"""m below a support's top that no arm goes: nothing reaches under a table here."""
+LEAST_CELLS = 6
+"""Raster cells below which a patch of points is no surface."""
+
+
+@dataclass(frozen=True, eq=False)
+class Support:
+    """A horizontal top that things stand on. outline: (k, 2) convex, odom, m; height: odom z, m."""
+
+    outline: Array
+    height: float
+
+    def obstacle(self, base_from_odom: Transform, name: str) -> Obstacle:
+        """The solid below the top, in base."""
+        low = np.column_stack([self.outline, np.full(len(self.outline), self.height)])
+        corners = np.vstack([low, low - (0.0, 0.0, SUPPORT_DEPTH)])
+        return Obstacle(name, base_from_odom.apply(corners), support=True)
+
+
+@dataclass(frozen=True, eq=False)
+class Surroundings:
+    """cells: centres (n, 3) of occupied cells, odom, m. stamp: of the newest picture, s."""
+
+    cells: Array = field(default_factory=lambda: np.empty((0, 3)))
+    supports: tuple[Support, ...] = ()
+    stamp: float = -np.inf
+
+    def without(self, pose: Transform, half_size: tuple[float, float, float]) -> Surroundings:
+        """The same without the cells in a box (`odom_from_box`, half its edges in m)."""
+        local = np.abs(pose.inverse().apply(self.cells))
+        return Surroundings(
+            self.cells[~(local <= np.array(half_size)).all(axis=1)], self.supports, self.stamp
+        )
+
+
+def cells_of(points: Array, viewpoint: Array, floor: float, config: SceneConfig) -> Array:
+    """Centres (n, 3) of the cells that points (m, 3) occupy, everything in odom.
+
+    Behind each face a thickness is filled, away from `viewpoint` (3,) along the floor, for a
+    camera sees fronts only. Points below `floor` are left out.
+    """
+    points = points[points[:, 2] > floor]
+    if not len(points):
+        return np.empty((0, 3))
+    keys, counts = np.unique(_keys(points, config), axis=0, return_counts=True)
+    centres = (keys[counts >= config.points_per_voxel] + 0.5) * config.voxel
+    away = centres[:, :2] - viewpoint[:2]
+    away /= np.maximum(np.linalg.norm(away, axis=1, keepdims=True), 1e-6)
+    layers = [centres]
+    for depth in np.arange(config.voxel, config.thickness + 1e-9, config.voxel):
+        layers.append(centres + np.column_stack([away * depth, np.zeros(len(away))]))
+    filled = np.unique(_keys(np.vstack(layers), config), axis=0)
+    return np.asarray((filled + 0.5) * config.voxel)
+
+
+def _keys(points: Array, config: SceneConfig) -> NDArray[np.int64]:
+    return np.floor(points / config.voxel).astype(np.int64)
+
+
+def support_around(points: Array, centre: Array, height: float, band: float) -> Support | None:
+    """The surface at `height` below `centre` (2,), from points (n, 3), all in odom; or None.
+
+    Points within `band` of the height that hang together with the one nearest to the centre.
+    """
+    flat = points[np.abs(points[:, 2] - height) <= band][:, :2]
+    if len(flat) < 3:
+        return None
+    patch = _connected(flat, centre)
+    if patch is None:
+        return None
+    try:
+        return Support(patch[ConvexHull(patch).vertices], height)
+    except QhullError:
+        return None
+
+
+def _connected(flat: Array, centre: Array) -> Array | None:
+    """Those of points (n, 2) whose raster cells connect to the one nearest to `centre`."""
+    keys = np.floor(flat / GRID).astype(np.int64)
+    cells = {(int(a), int(b)) for a, b in np.unique(keys, axis=0)}
+    nearest = keys[int(np.argmin(np.linalg.norm(flat - centre, axis=1)))]
+    seen = {(int(nearest[0]), int(nearest[1]))}
+    waiting = deque(seen)
+    while waiting:
+        a, b = waiting.popleft()
+        for next_cell in ((a + i, b + j) for i in (-2, -1, 0, 1, 2) for j in (-2, -1, 0, 1, 2)):
+            if next_cell in cells and next_cell not in seen:
+                seen.add(next_cell)
+                waiting.append(next_cell)
+    if len(seen) < LEAST_CELLS:
+        return None
+    inside = np.array([(int(a), int(b)) in seen for a, b in keys])
+    return flat[inside]
+
+
+def support_of_plane(plane: SupportPlane) -> Support:
+    """A detected plane as a support in odom."""
+    outline = np.array([(x, y, 0.0) for x, y in plane.outline])
+    corners = plane.pose.transform.apply(outline)
+    return Support(corners[:, :2], float(corners[:, 2].mean()))

@@ -1,0 +1,121 @@
+"""A robot's URDF as planning needs it: rooted at the base, every joint with a plain angle."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+from lxml import etree
+
+from momantu_bt.geometry import Transform
+from momantu_bt.robot import RobotDescription
+
+
+@dataclass(frozen=True)
+class CollisionPart:
+    """One collision element of a link. kind: mesh, box, cylinder or sphere.
+
+    size: (3,) mesh scale; box edges; (radius, length, 0); (radius, 0, 0). m.
+    """
+
+    link: str
+    kind: str
+    link_from_part: Transform
+    size: tuple[float, float, float]
+    mesh: Path | None = None
+
+
+@dataclass(frozen=True)
+class BaseUrdf:
+    """text: URDF without anything above the base, continuous joints as revolute ones.
+
+    continuous: names of the joints that turn for ever.
+    """
+
+    text: str
+    continuous: tuple[str, ...]
+    parts: tuple[CollisionPart, ...]
+
+
+def base_urdf(description: RobotDescription) -> BaseUrdf:
+    """Cut a URDF down to what hangs below the base frame.
+
+    Virtual base joints above the base would add degrees of freedom; pinocchio gives continuous
+    joints two coordinates, and readers take their limits as (0, 0): they become revolute with
+    +-pi here, and whoever plans treats their range as endless.
+    """
+    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False)
+    root = etree.fromstring(description.urdf.read_bytes(), parser)
+    keep = _links_below(root, description.base_frame)
+    continuous: list[str] = []
+    for joint in root.findall("joint"):
+        if joint.find("child").get("link") not in keep - {description.base_frame}:
+            root.remove(joint)
+        elif joint.get("type") == "continuous":
+            continuous.append(str(joint.get("name")))
+            _make_revolute(joint)
+    for link in root.findall("link"):
+        if link.get("name") not in keep:
+            root.remove(link)
+    parts = tuple(p for link in root.findall("link") for p in _parts(link, description))
+    return BaseUrdf(etree.tostring(root).decode(), tuple(continuous), parts)
+
+
+def _links_below(root: etree._Element, base: str) -> set[str]:
+    children: dict[str, list[str]] = {}
+    for joint in root.findall("joint"):
+        parent, child = joint.find("parent").get("link"), joint.find("child").get("link")
+        children.setdefault(str(parent), []).append(str(child))
+    keep, waiting = {base}, [base]
+    while waiting:
+        for child in children.get(waiting.pop(), []):
+            if child not in keep:
+                keep.add(child)
+                waiting.append(child)
+    return keep
+
+
+def _make_revolute(joint: etree._Element) -> None:
+    joint.set("type", "revolute")
+    limit = joint.find("limit")
+    if limit is None:
+        limit = etree.SubElement(joint, "limit", effort="1", velocity="1")
+    limit.set("lower", repr(-math.pi))
+    limit.set("upper", repr(math.pi))
+
+
+def _parts(link: etree._Element, description: RobotDescription) -> list[CollisionPart]:
+    parts = []
+    for collision in link.findall("collision"):
+        origin = collision.find("origin")
+        xyz = _numbers("0 0 0" if origin is None else origin.get("xyz", "0 0 0"))
+        rpy = _numbers("0 0 0" if origin is None else origin.get("rpy", "0 0 0"))
+        place = Transform.from_rpy(xyz, rpy)
+        shape = collision.find("geometry")[0]
+        name = str(link.get("name"))
+        if shape.tag == "mesh":
+            path = _mesh_path(str(shape.get("filename")), description)
+            scale = _numbers(shape.get("scale", "1 1 1"))
+            parts.append(CollisionPart(name, "mesh", place, scale, path))
+        elif shape.tag == "box":
+            parts.append(CollisionPart(name, "box", place, _numbers(str(shape.get("size")))))
+        elif shape.tag in ("cylinder", "sphere"):
+            size = (float(str(shape.get("radius"))), float(shape.get("length", "0")), 0.0)
+            parts.append(CollisionPart(name, str(shape.tag), place, size))
+    return parts
+
+
+def _numbers(text: str) -> tuple[float, float, float]:
+    a, b, c = (float(part) for part in text.split())
+    return a, b, c
+
+
+def _mesh_path(name: str, description: RobotDescription) -> Path:
+    relative = name.removeprefix("package://").removeprefix("file://")
+    folders = (description.urdf.parent, *description.mesh_directories)
+    for folder in folders:
+        if (folder / relative).is_file():
+            return folder / relative
+    looked = ", ".join(str(folder) for folder in folders)
+    raise FileNotFoundError(f"{description.urdf} names the mesh {name!r}, which is not in {looked}")

@@ -1,0 +1,102 @@
+"""reset_pose: bring arm and camera into one of the robot's named poses."""
+
+from __future__ import annotations
+
+import difflib
+from typing import Any
+
+from momantu_bt.failure import Failure
+from momantu_bt.messages import JointPositions
+from momantu_bt.robot import CAMERA_CARRIER, Robot
+from momantu_bt.skill import In, Needs, Run, Skill, compute
+
+THINKING = 0.2
+"""s that planning is given: several times its median."""
+CLOSE = 0.01
+"""rad or m from the pose at which the arm need not move."""
+
+
+class ResetPose(Skill):
+    """Go to a named pose, planned around what stands there; what is held stays held.
+
+    A pose that names only some joints moves only those. Fails with UNKNOWN_POSE, NO_PLAN,
+    START_IN_COLLISION or ARM_STUCK.
+    """
+
+    pose: str = In(doc="which of the robot's named poses", names="named_pose")
+    failures = {
+        "UNKNOWN_POSE": "the robot has no pose of that name",
+        "NO_PLAN": "no collision-free way to the pose was found, or the pose itself collides",
+        "START_IN_COLLISION": "the arm touches something and no small motion frees it",
+        "ARM_STUCK": "the arm does not follow its trajectory",
+    }
+    uses = {"arm", CAMERA_CARRIER}
+    planning_scene: Any = Needs()
+
+    def run(self, robot: Robot) -> Run:
+        """Look, plan, move; the camera turns at the same time."""
+        from momantu_skills.manipulation.arm import Arm
+
+        wanted = self._wanted(robot)
+        arm = Arm(self, robot, self.planning_scene)
+        goal = arm.joints.copy()
+        for i, name in enumerate(arm.group.names):
+            goal[i] = wanted.get(name, goal[i])
+        goal = arm.group.nearest_turn(goal, arm.joints)
+        if abs(goal - arm.joints).max() > CLOSE:
+            self.planning_scene.observe(robot)
+            trajectories = yield from compute(
+                lambda: arm.route([goal], self.planning_scene.held), THINKING
+            )
+            for trajectory in trajectories:
+                for phase in arm.follow(trajectory, "moving"):
+                    self._turn_camera(robot, wanted)
+                    yield phase
+        yield from self._finish_camera(robot, wanted)
+
+    def _wanted(self, robot: Robot) -> dict[str, float]:
+        poses = robot.description.named_poses
+        if self.pose not in poses:
+            near = difflib.get_close_matches(self.pose, poses, n=1)
+            hint = f"; did you mean {near[0]!r}?" if near else ""
+            raise Failure(
+                "UNKNOWN_POSE",
+                f"{robot.description.name} has no pose {self.pose!r}{hint} "
+                f"Its poses: {', '.join(poses)}",
+                known=list(poses),
+            )
+        return poses[self.pose]
+
+    def _camera_goal(self, robot: Robot, wanted: dict[str, float]) -> JointPositions | None:
+        """Where the pose wants the camera's joints, unless the arm itself carries the camera."""
+        carrier = robot.description.resolve_use(CAMERA_CARRIER)
+        if carrier == "arm":
+            return None
+        names = tuple(j for j in robot.description.actuators[carrier].joints if j in wanted)
+        return JointPositions(names, tuple(wanted[n] for n in names)) if names else None
+
+    def _turn_camera(self, robot: Robot, wanted: dict[str, float]) -> None:
+        goal = self._camera_goal(robot, wanted)
+        if goal is not None:
+            robot.command(robot.description.resolve_use(CAMERA_CARRIER), goal)
+
+    def _finish_camera(self, robot: Robot, wanted: dict[str, float]) -> Run:
+        """Wait until the camera has arrived, at most as long as its slowest joint may take."""
+        goal = self._camera_goal(robot, wanted)
+        if goal is None:
+            return
+        limits = robot.description.joint_limits
+        state = robot.state()
+        travel = max(
+            abs(state.position(n) - p) / limits[n].velocity + 1.0
+            for n, p in zip(goal.names, goal.positions, strict=True)
+        )
+        deadline = self.clock.now() + travel
+        while self.clock.now() < deadline and self._camera_off(robot, goal):
+            self._turn_camera(robot, wanted)
+            yield "turning the camera"
+
+    def _camera_off(self, robot: Robot, goal: JointPositions) -> bool:
+        state = robot.state()
+        pairs = zip(goal.names, goal.positions, strict=True)
+        return any(abs(state.position(name) - p) > 2 * CLOSE for name, p in pairs)
