@@ -14,6 +14,7 @@ from momantu_bt.messages import CameraImage, frozen
 from momantu_bt.robot import CameraSensor
 from momantu_bt.world import seeded
 from momantu_worlds.sapien.config import CameraErrors
+from momantu_worlds.sapien.culling import Culling
 from momantu_worlds.sapien.poses import pose_of, transform_of
 
 NEAR, FAR = 0.05, 30.0
@@ -35,11 +36,13 @@ class Camera:
         sensor: CameraSensor,
         seed: int,
         errors: CameraErrors,
+        own_links: list[Any],
     ) -> None:
         self._scene, self._link, self._name = scene, link, name
         self._sensor, self._seed, self._errors = sensor, seed, errors
         self._link_from_camera = _mounting(seeded(seed, name, "mounting"), errors)
         self._camera, self._entity = _component(sensor)
+        self._culling = Culling(own_links, sensor)
         self.intrinsics = _intrinsics(sensor)
         scene.add_entity(self._entity)
 
@@ -47,9 +50,14 @@ class Camera:
         """A picture of now; runs the renderer."""
         truth = transform_of(self._link.entity_pose) @ self._link_from_camera
         self._entity.set_pose(pose_of(truth @ OPTICAL_FROM_SAPIEN))
+        unseen = self._culling.outside(truth)
+        for body in unseen:
+            body.disable()
         self._scene.update_render()
         self._camera.take_picture()
         color = self._camera.get_picture("Color")[..., :3]
+        for body in unseen:
+            body.enable()
         depth = -self._camera.get_picture("Position")[..., 2]
         random = seeded(self._seed, self._name, stamp)
         return CameraImage(
@@ -70,9 +78,10 @@ def noisy_color(
 ) -> NDArray[np.uint8]:
     """Colour (h, w, 3) uint8 with even noise of the configured sigma added, grey levels."""
     span = max(1, round(errors.color_noise * math.sqrt(3.0)))
-    noise = random.integers(-span, span + 1, size=color.shape, dtype=np.int8)
-    noisy = color.astype(np.int16) + noise
-    return np.asarray(np.clip(noisy, 0, 255), dtype=np.uint8)
+    levels = (np.arange(256) % (2 * span + 1) - span).astype(np.int16)
+    noise = levels[np.frombuffer(random.bytes(color.size), dtype=np.uint8)]
+    noisy = color + noise.reshape(color.shape)
+    return np.clip(noisy, 0, 255, out=noisy).astype(np.uint8)
 
 
 def noisy_depth(

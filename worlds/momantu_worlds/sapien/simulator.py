@@ -100,6 +100,11 @@ class Simulator:
         """The whole physics state, for comparing two runs bit by bit."""
         return bytes(self._system.pack())
 
+    def close(self) -> None:
+        """Empty the scene; safe to call twice."""
+        for entity in list(self.scene.entities):
+            self.scene.remove_entity(entity)
+
     def _sensors(
         self,
         description: RobotDescription,
@@ -115,7 +120,9 @@ class Simulator:
             if isinstance(spec, CameraSensor):
                 if render:
                     errors = self.config.camera
-                    sensors.append((name, Camera(self.scene, link, name, spec, seed, errors)))
+                    links = list(model.links.values())
+                    camera = Camera(self.scene, link, name, spec, seed, errors, links)
+                    sensors.append((name, camera))
             elif isinstance(spec, LaserSensor):
                 where = _pose_source(link)
                 laser = Laser(where, name, spec, still, moving, seed, self.config.laser)

@@ -1,0 +1,75 @@
+"""A world in SAPIEN: an episode, the robot in it, a referee who watches."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from momantu_bt.robot import RobotDescription
+from momantu_bt.world import Site, Verdict, Video, View
+from momantu_worlds.sapien.robot import SimulatedRobot
+from momantu_worlds.sapien.simulator import Simulator
+from momantu_worlds.scenes.bodies import Episode
+from momantu_worlds.scenes.referee import Referee
+
+
+class SapienWorld:
+    """Implements `momantu_bt.world.World`."""
+
+    def __init__(
+        self,
+        name: str,
+        description: RobotDescription,
+        episode: Episode,
+        seed: int,
+        *,
+        referee: bool = True,
+    ) -> None:
+        self._name, self._episode = name, episode
+        self.simulator = Simulator(description, episode, seed)
+        wanted = referee and episode.goal is not None
+        self._referee = Referee(episode, self.simulator.truth) if wanted else None
+
+    @property
+    def name(self) -> str:
+        """The world's name."""
+        return self._name
+
+    @property
+    def site(self) -> Site:
+        """What the robot is told of this episode."""
+        return self._episode.site
+
+    @property
+    def robot(self) -> SimulatedRobot:
+        """The robot's driver."""
+        return self.simulator.robot
+
+    def now(self) -> float:
+        """Seconds since the episode began."""
+        return self.simulator.now()
+
+    def step(self) -> None:
+        """Advance by one tick."""
+        self.simulator.step()
+        if self._referee is not None:
+            self._referee.observe(self.simulator.now())
+
+    def verdict(self) -> Verdict | None:
+        """The referee's word on this instant; None without a referee."""
+        return None if self._referee is None else self._referee.verdict()
+
+    def open_video(self, path: Path, title: str) -> Video:
+        """Start a film at `path`."""
+        from momantu_worlds.scenes.video import open_video
+
+        return open_video(self.simulator, path, title)
+
+    def open_view(self, port: int) -> View:
+        """Serve the scene to a browser on this machine."""
+        from momantu_worlds.scenes.view import open_view
+
+        return open_view(self.simulator, self._episode, port)
+
+    def close(self) -> None:
+        """Free the scene; safe to call twice."""
+        self.simulator.close()
