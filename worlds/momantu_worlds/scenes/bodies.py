@@ -37,8 +37,9 @@ class Cylinder:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Mesh:
-    """A triangle mesh to look at. vertices: (n, 3) m. triangles: (m, 3), counter-clockwise seen
-    from outside; vertices that faces share are shaded smoothly.
+    """A triangle mesh to look at; vertices that faces share are shaded smoothly.
+
+    vertices: (n, 3) m. triangles: (m, 3), counter-clockwise seen from outside.
     """
 
     vertices: Array
@@ -99,7 +100,7 @@ class Body:
 
 @dataclass(frozen=True, slots=True)
 class SunLight:
-    """Parallel light. direction: (3,) where it shines to, map frame. color: intensity per channel."""
+    """Parallel light. direction: (3,) where it shines to, map frame. color: strength per channel."""
 
     direction: tuple[float, float, float]
     color: Color
@@ -107,7 +108,7 @@ class SunLight:
 
 @dataclass(frozen=True, slots=True)
 class PointLight:
-    """A lamp. position: (3,) m, map frame. color: intensity per channel at 1 m."""
+    """A lamp. position: (3,) m, map frame. color: strength per channel at 1 m."""
 
     position: tuple[float, float, float]
     color: Color

@@ -1,0 +1,177 @@
+"""The furniture catalogue: what each kind is made of, from its sizes.
+
+Every kind stands on z = 0 around its own origin and shows its front to +x. `size` is
+(depth along x, width along y, height), m.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from itertools import product
+from types import MappingProxyType
+from typing import TypeAlias
+
+from momantu_worlds.scenes.bodies import Color, Part
+from momantu_worlds.scenes.parts import block, column, shade
+
+Size3: TypeAlias = tuple[float, float, float]
+Maker: TypeAlias = Callable[[Size3, Color], tuple[Part, ...]]
+
+BOARD = 0.03
+"""m; thickness of boards and panels."""
+LEG = 0.05
+"""m; thickness of table legs."""
+
+
+def table(size: Size3, color: Color) -> tuple[Part, ...]:
+    """A top on four legs; its size z is the height of the top's surface."""
+    depth, width, height = size
+    legs = product((-1, 1), (-1, 1))
+    at_x, at_y = depth / 2 - LEG, width / 2 - LEG
+    under = height - BOARD
+    return (
+        block((depth, width, BOARD), (0, 0, height - BOARD / 2), color),
+        *(
+            block((LEG, LEG, under), (a * at_x, b * at_y, under / 2), shade(color, 0.7))
+            for a, b in legs
+        ),
+    )
+
+
+def desk(size: Size3, color: Color) -> tuple[Part, ...]:
+    """A top on two side panels, with a modesty panel at the front (+x)."""
+    depth, width, height = size
+    under = height - BOARD
+    side = (depth - 0.06, BOARD, under)
+    dark = shade(color, 0.75)
+    return (
+        block((depth, width, BOARD), (0, 0, height - BOARD / 2), color),
+        block(side, (0, width / 2 - 0.05, under / 2), dark),
+        block(side, (0, 0.05 - width / 2, under / 2), dark),
+        block((BOARD, width - 0.1, 0.45), (depth / 2 - 0.06, 0, under - 0.225), dark),
+    )
+
+
+def chair(size: Size3, color: Color) -> tuple[Part, ...]:
+    """Four legs, a seat at half the height, and a back behind."""
+    depth, width, height = size
+    seat = 0.52 * height
+    leg = 0.035
+    at_x, at_y = depth / 2 - leg, width / 2 - leg
+    dark = shade(color, 0.6)
+    return (
+        block((depth, width, 0.05), (0, 0, seat - 0.025), color),
+        block((0.04, width, height - seat), (0.02 - depth / 2, 0, (height + seat) / 2), color),
+        *(
+            block((leg, leg, seat - 0.05), (a * at_x, b * at_y, (seat - 0.05) / 2), dark)
+            for a, b in product((-1, 1), (-1, 1))
+        ),
+    )
+
+
+def sofa(size: Size3, color: Color) -> tuple[Part, ...]:
+    """Seat, back and two arms, all down to the floor."""
+    depth, width, height = size
+    seat, arm = 0.5 * height, 0.2
+    dark = shade(color, 0.8)
+    return (
+        block((depth, width - 2 * arm, seat), (0, 0, seat / 2), color),
+        block((0.25, width, height), (0.125 - depth / 2, 0, height / 2), dark),
+        block((depth, arm, 0.72 * height), (0, (width - arm) / 2, 0.36 * height), dark),
+        block((depth, arm, 0.72 * height), (0, (arm - width) / 2, 0.36 * height), dark),
+    )
+
+
+def shelf(size: Size3, color: Color) -> tuple[Part, ...]:
+    """Sides, a back and boards about every 0.38 m, open to the front."""
+    depth, width, height = size
+    boards = max(2, round(height / 0.38) + 1)
+    gap = (height - BOARD) / (boards - 1)
+    inner = width - 2 * BOARD
+    dark = shade(color, 0.8)
+    return (
+        block((depth, BOARD, height), (0, (width - BOARD) / 2, height / 2), color),
+        block((depth, BOARD, height), (0, (BOARD - width) / 2, height / 2), color),
+        block((0.01, inner, height), (0.005 - depth / 2, 0, height / 2), dark),
+        *(
+            block((depth - 0.01, inner, BOARD), (0.005, 0, BOARD / 2 + i * gap), color)
+            for i in range(boards)
+        ),
+    )
+
+
+def crate(size: Size3, color: Color) -> tuple[Part, ...]:
+    """A closed box on the floor, with a lid of another shade."""
+    depth, width, height = size
+    lid = 0.03
+    return (
+        block((depth, width, height - lid), (0, 0, (height - lid) / 2), color),
+        block((depth, width, lid), (0, 0, height - lid / 2), shade(color, 1.2)),
+    )
+
+
+def cabinet(size: Size3, color: Color) -> tuple[Part, ...]:
+    """A closed chest with two doors to the front."""
+    depth, width, height = size
+    door = (0.02, width / 2 - 0.02, height - 0.1)
+    body = depth - 0.02
+    return (
+        block((body, width, height), (-0.01, 0, height / 2), color),
+        block(door, (depth / 2 - 0.01, width / 4, height / 2), shade(color, 1.15)),
+        block(door, (depth / 2 - 0.01, -width / 4, height / 2), shade(color, 1.15)),
+    )
+
+
+def plant(size: Size3, color: Color) -> tuple[Part, ...]:
+    """A pot with a stem and a round of leaves above; the leaves are as wide as the size says."""
+    depth, _, height = size
+    pot = 0.35 * height
+    return (
+        column(0.32 * depth, 0.0, pot, (0.55, 0.33, 0.24)),
+        column(0.03, pot, 0.6 * height, (0.35, 0.25, 0.15)),
+        column(depth / 2, 0.6 * height, height, color),
+    )
+
+
+def figure(size: Size3, color: Color) -> tuple[Part, ...]:
+    """A standing person: legs, trunk, arms, head."""
+    depth, width, height = size
+    hip, neck = 0.48 * height, 0.84 * height
+    leg = 0.26 * width
+    skin: Color = (0.85, 0.66, 0.54)
+    trousers = shade(color, 0.45)
+    return (
+        column(leg, 0.0, hip, trousers, y=0.28 * width),
+        column(leg, 0.0, hip, trousers, y=-0.28 * width),
+        block((depth, 0.72 * width, neck - hip), (0, 0, (neck + hip) / 2), color),
+        block((0.4 * depth, 0.13 * width, 0.36 * height), (0, 0.43 * width, 0.65 * height), color),
+        block((0.4 * depth, 0.13 * width, 0.36 * height), (0, -0.43 * width, 0.65 * height), color),
+        column(0.055 * height, neck, height, skin),
+    )
+
+
+CATALOGUE: Mapping[str, tuple[Maker, Size3, Color]] = MappingProxyType(
+    {
+        "table": (table, (0.8, 1.4, 0.72), (0.72, 0.56, 0.38)),
+        "desk": (desk, (0.8, 1.5, 0.72), (0.66, 0.50, 0.34)),
+        "chair": (chair, (0.45, 0.45, 0.90), (0.30, 0.36, 0.44)),
+        "sofa": (sofa, (0.85, 1.90, 0.80), (0.42, 0.47, 0.50)),
+        "shelf": (shelf, (0.35, 1.60, 1.90), (0.62, 0.52, 0.42)),
+        "crate": (crate, (0.45, 0.55, 0.50), (0.70, 0.55, 0.36)),
+        "cabinet": (cabinet, (0.45, 1.20, 0.90), (0.55, 0.56, 0.58)),
+        "plant": (plant, (0.50, 0.50, 1.30), (0.22, 0.45, 0.22)),
+        "figure": (figure, (0.24, 0.50, 1.75), (0.35, 0.42, 0.62)),
+    }
+)
+"""Kind -> how to make it, its usual size and its usual colour."""
+
+
+def furniture(kind: str, size: Size3 | None = None, color: Color | None = None) -> tuple[Part, ...]:
+    """The parts of one piece; size and colour are the usual ones unless given."""
+    make, usual_size, usual_color = CATALOGUE[kind]
+    return make(size or usual_size, color or usual_color)
+
+
+def usual_size(kind: str) -> Size3:
+    """(depth, width, height) of a kind, m."""
+    return CATALOGUE[kind][1]

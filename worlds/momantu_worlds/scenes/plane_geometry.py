@@ -1,0 +1,131 @@
+"""Rectangles and discs on a floor plan: gaps, coverage, what a disc can get through."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from momantu_bt.geometry import Array, Pose2D
+
+
+@dataclass(frozen=True, slots=True)
+class Rectangle:
+    """A rectangle around its pose's origin; size: full extent along its own x and y, m."""
+
+    pose: Pose2D
+    size: tuple[float, float]
+
+    def corners(self) -> Array:
+        """(4, 2), counter-clockwise."""
+        x, y = self.size[0] / 2, self.size[1] / 2
+        c, s = math.cos(self.pose.yaw), math.sin(self.pose.yaw)
+        own = np.array([(x, y), (-x, y), (-x, -y), (x, -y)])
+        return np.array(own @ np.array([(c, s), (-s, c)]) + (self.pose.x, self.pose.y))
+
+    def distance(self, points: Array) -> Array:
+        """Distance of points (..., 2) from the rectangle, 0 inside, m."""
+        c, s = math.cos(self.pose.yaw), math.sin(self.pose.yaw)
+        dx, dy = points[..., 0] - self.pose.x, points[..., 1] - self.pose.y
+        out_x = np.maximum(np.abs(c * dx + s * dy) - self.size[0] / 2, 0.0)
+        out_y = np.maximum(np.abs(c * dy - s * dx) - self.size[1] / 2, 0.0)
+        return np.asarray(np.hypot(out_x, out_y))
+
+
+def gap(a: Rectangle, b: Rectangle) -> float:
+    """Distance between two rectangles, 0 when they touch or overlap, m.
+
+    Convex polygons that do not overlap are nearest to each other at a corner of one of them;
+    overlap is found by the separating axis theorem.
+    """
+    ours, theirs = a.corners(), b.corners()
+    if not _separated(ours, theirs):
+        return 0.0
+    return float(min(a.distance(theirs).min(), b.distance(ours).min()))
+
+
+def _separated(a: Array, b: Array) -> bool:
+    for corners in (a, b):
+        for i in range(2):
+            edge = corners[i + 1] - corners[i]
+            axis = np.array((-edge[1], edge[0]))
+            along_a, along_b = a @ axis, b @ axis
+            if along_a.max() < along_b.min() or along_b.max() < along_a.min():
+                return True
+    return False
+
+
+def clear_of(rectangle: Rectangle, others: Iterable[Rectangle], least: float) -> bool:
+    """Whether the gap to every other rectangle is at least `least` m."""
+    reach = math.hypot(*rectangle.size) / 2 + least
+    for other in others:
+        far = reach + math.hypot(*other.size) / 2
+        if rectangle.pose.distance_to(other.pose) < far and gap(rectangle, other) < least:
+            return False
+    return True
+
+
+@dataclass(frozen=True, slots=True)
+class Passages:
+    """Which cells of a floor plan a disc's centre may be in, and which of them hang together.
+
+    origin: of cell [0, 0]'s centre, m. cell: m. free: (rows along y, columns along x).
+    """
+
+    origin: tuple[float, float]
+    cell: float
+    free: NDArray[np.bool_]
+
+    def reachable(self, start: tuple[float, float]) -> NDArray[np.bool_]:
+        """Cells that the disc gets to from a point, by steps to four neighbours."""
+        reached = np.zeros_like(self.free)
+        rows, columns = self.free.shape
+        flat, seen = self.free.ravel().tolist(), bytearray(rows * columns)
+        row, column = self.index(start)
+        stack = [row * columns + column]
+        while stack:
+            at = stack.pop()
+            if seen[at] or not flat[at]:
+                continue
+            seen[at] = 1
+            stack += (at + 1, at - 1, at + columns, at - columns)
+        reached.ravel()[:] = np.frombuffer(seen, dtype=np.uint8) != 0
+        return reached
+
+    def index(self, point: tuple[float, float]) -> tuple[int, int]:
+        """(row, column) of the cell that holds a point."""
+        column = round((point[0] - self.origin[0]) / self.cell)
+        row = round((point[1] - self.origin[1]) / self.cell)
+        return row, column
+
+    def connects(self, points: Sequence[tuple[float, float]]) -> bool:
+        """Whether the disc gets from the first point to all the others."""
+        reached = self.reachable(points[0])
+        return all(bool(reached[self.index(point)]) for point in points)
+
+
+def passages(
+    obstacles: Iterable[Rectangle],
+    center: tuple[float, float],
+    size: tuple[float, float],
+    radius: float,
+    cell: float = 0.1,
+) -> Passages:
+    """Where a disc of `radius` m may be among obstacles, on an area with a closed border."""
+    columns, rows = round(size[0] / cell), round(size[1] / cell)
+    origin = (center[0] - size[0] / 2 + cell / 2, center[1] - size[1] / 2 + cell / 2)
+    xs, ys = origin[0] + cell * np.arange(columns), origin[1] + cell * np.arange(rows)
+    free = np.ones((rows, columns), dtype=np.bool_)
+    for rectangle in obstacles:
+        low = rectangle.corners().min(axis=0) - radius
+        high = rectangle.corners().max(axis=0) + radius
+        i = slice(int(np.searchsorted(xs, low[0])), int(np.searchsorted(xs, high[0], "right")))
+        j = slice(int(np.searchsorted(ys, low[1])), int(np.searchsorted(ys, high[1], "right")))
+        points = np.stack(np.meshgrid(xs[i], ys[j]), axis=-1)
+        free[j, i] &= rectangle.distance(points) >= radius
+    free[[0, -1], :] = False
+    free[:, [0, -1]] = False
+    return Passages(origin, cell, free)

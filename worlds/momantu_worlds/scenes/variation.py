@@ -1,0 +1,57 @@
+"""One episode's arrangement, drawn from its seed."""
+
+from __future__ import annotations
+
+import math
+
+from momantu_bt.world import seeded
+from momantu_worlds.scenes.bodies import PointLight, SunLight
+from momantu_worlds.scenes.floor import place_furniture, place_start, place_tables
+from momantu_worlds.scenes.layout import Layout, Lighting
+from momantu_worlds.scenes.tabletop import place_item, place_tag, place_things
+from momantu_worlds.scenes.world_file import WorldFile
+
+LAMP_HEIGHT = 2.4
+"""m; where lamps hang, just below the walls' tops."""
+SUN_TILT = (math.radians(20), math.radians(50))
+"""rad from straight down, least and most."""
+
+
+def vary(world: WorldFile, seed: int) -> Layout:
+    """The layout of a seed; the same in every process.
+
+    Raises:
+        WorldError: the world leaves no room for the robot.
+    """
+    tables = place_tables(world, seed)
+    start, believed = place_start(world, seed)
+    item_at, tag_at = place_item(world, seed), place_tag(world, seed)
+    return Layout(
+        seed=seed,
+        tables=tables,
+        item_at=item_at,
+        tag_at=tag_at,
+        things=place_things(world, seed, tables, item_at, tag_at),
+        pieces=place_furniture(world, seed, tables, start),
+        start=start,
+        believed_start=believed,
+        light=place_light(world, seed),
+    )
+
+
+def place_light(world: WorldFile, seed: int) -> Lighting:
+    """Brightness of the surroundings, of the sun and of each lamp, and the sun's direction."""
+    draw, light = seeded(seed, "light"), world.light
+    ambient = float(draw.uniform(*light.ambient))
+    sun, warm = float(draw.uniform(*light.sun)), float(draw.uniform(0.9, 1.0))
+    tilt, turn = float(draw.uniform(*SUN_TILT)), float(draw.uniform(-math.pi, math.pi))
+    direction = (math.sin(tilt) * math.cos(turn), math.sin(tilt) * math.sin(turn), -math.cos(tilt))
+    lamps = []
+    for x, y in light.lamps:
+        strength = float(draw.uniform(*light.lamp))
+        lamps.append(PointLight((x, y, LAMP_HEIGHT), (strength, strength, 0.92 * strength)))
+    return Lighting(
+        ambient=(ambient, ambient, ambient),
+        sun=SunLight(direction, (sun, warm * sun, warm * sun)),
+        lamps=tuple(lamps),
+    )
