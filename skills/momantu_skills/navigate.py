@@ -83,7 +83,7 @@ class Navigate(Skill):
 
         tolerance = (self.tolerance, self.angle_tolerance)
         surfaces = self.site.surfaces
-        if self.in_front_of in surfaces:
+        if self.in_front_of is not None and self.in_front_of in surfaces:
             stands = before_surface(surfaces[self.in_front_of], config)
             return Destination(lambda: stands, tolerance, side=self.side)
         target = self.within_reach_of

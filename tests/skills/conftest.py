@@ -150,12 +150,16 @@ DESK: Box = (3.6, -0.4, 4.2, 0.8)
 """A solid desk in the second room."""
 
 
+START = Pose2D(-2.0, 0.0, 0.0)
+"""In the first room, looking at the doorway's side."""
+
+
 @pytest.fixture
 def flat(tmp_path: Path) -> Flat:
     """`flat(truth, believed=…, hidden=…, moved=…)`: two rooms, a desk and a robot in them."""
 
     def build(
-        truth: Pose2D = Pose2D(-2.0, 0.0, 0.0),
+        truth: Pose2D = START,
         *,
         believed: Pose2D | None = None,
         hidden: Sequence[Box] = (),

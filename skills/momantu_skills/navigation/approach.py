@@ -19,14 +19,14 @@ FOLLOW = 3.5
 """k2 of the paper: how fast the heading follows."""
 SLOW_IN_CURVES = 0.5
 """Speed divides by 1 + this * curvature^2 (1/m)."""
-TOP_SPEED = 0.6
+TOP_SPEED = 0.8
 """m/s: the last metre is driven with care."""
-CREEP = 0.05
+CREEP = 0.06
 """m/s towards the very end."""
+EASE = 1.8
+"""1/s: speed per metre to go, near the goal, where commands are late by a scan."""
 BRAKE = 0.5
 """m/s2 of planned braking, half of what the base can do."""
-LATENCY = 0.1
-"""s between a command and the next."""
 ARRIVED = 0.012
 """m before the goal's line at which the base stops; braking from `CREEP` takes the rest."""
 STEP = 0.1
@@ -78,7 +78,7 @@ def simulate(
     return Arrival(*_simulate(start, end, bounds, costmap.field, costmap.frame, discs))
 
 
-@numba.njit(cache=True)  # type: ignore[untyped-decorator]
+@numba.njit(cache=True)
 def _law(
     x: float, y: float, yaw: float, goal_x: float, goal_y: float, goal_yaw: float, fastest: float
 ) -> tuple[float, float]:
@@ -95,13 +95,13 @@ def _law(
     pull += (1.0 + TURN_IN / (1.0 + (TURN_IN * theta) ** 2)) * math.sin(delta)
     curvature = -pull / max(distance, 0.15)
     v = TOP_SPEED / (1.0 + SLOW_IN_CURVES * curvature * curvature)
-    v = min(v, math.sqrt(2.0 * BRAKE * ahead), 1.2 * ahead + CREEP)
+    v = min(v, math.sqrt(2.0 * BRAKE * ahead), EASE * ahead + CREEP)
     if abs(v * curvature) > fastest:
         v = fastest / abs(curvature)
     return v, v * curvature
 
 
-@numba.njit(cache=True)  # type: ignore[untyped-decorator]
+@numba.njit(cache=True)
 def _simulate(
     start: Array, goal: Array, bounds: Array, field: Field, frame: Array, discs: Array
 ) -> tuple[float, float, float, float, float]:

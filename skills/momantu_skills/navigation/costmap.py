@@ -43,11 +43,15 @@ class Costmap:
         self.known_field = np.minimum(clearance(self.known, grid.resolution), np.float32(FAR))
         self.field = self.known_field.copy()
 
-    def clear(self) -> None:
-        """Forget what the sensors saw."""
-        self._laser[:] = 0
-        self._depth[:] = 0
-        self.field = self.known_field.copy()
+    def clear_ahead(self, map_from_base: Pose2D) -> None:
+        """Forget what was seen before the base, which can be seen again; keep what lies behind."""
+        rows, columns = np.mgrid[0 : self.grid.cells.shape[0], 0 : self.grid.cells.shape[1]]
+        x = self.frame[0] + (columns + 0.5) * self.frame[2] - map_from_base.x
+        y = self.frame[1] + (rows + 0.5) * self.frame[2] - map_from_base.y
+        ahead = math.cos(map_from_base.yaw) * x + math.sin(map_from_base.yaw) * y > 0.0
+        self._laser[ahead] = 0
+        self._depth[ahead] = 0
+        self.refresh()
 
     def see_laser(self, map_from_base: Pose2D, rays: Rays) -> None:
         """Mark what a scan hit and clear what it passed through."""
@@ -123,7 +127,7 @@ def _resampled(layer: GridMap, grid: GridMap) -> NDArray[np.bool_]:
     return blocked
 
 
-@numba.njit(cache=True)  # type: ignore[untyped-decorator]
+@numba.njit(cache=True)
 def room(field: Field, frame: Array, discs: Array, x: float, y: float, yaw: float) -> float:
     """Least distance in m between any of the discs and a blocked cell; 0 off the grid."""
     c = math.cos(yaw)
@@ -138,7 +142,7 @@ def room(field: Field, frame: Array, discs: Array, x: float, y: float, yaw: floa
     return least
 
 
-@numba.njit(cache=True)  # type: ignore[untyped-decorator]
+@numba.njit(cache=True)
 def _trace(
     marks: NDArray[np.uint8],
     from_known: Field,

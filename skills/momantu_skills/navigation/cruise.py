@@ -70,10 +70,10 @@ def cruise(vehicle: Vehicle, mppi: Mppi, route: Route, arrive: tuple[float, floa
             continue
         watch.check(route.to_go(vehicle, pose))
         off = wrap_angle(route.heading(pose) - pose.yaw)
-        if abs(off) > TURN_FIRST and abs(vehicle.speed()[0]) < 0.1:
-            if (yield from turn_to(vehicle, pose.yaw + off, "turn to the path")):
-                mppi.restart()
-                continue
+        turn_first = abs(off) > TURN_FIRST and abs(vehicle.speed()[0]) < 0.1
+        if turn_first and (yield from turn_to(vehicle, pose.yaw + off, "turn to the path")):
+            mppi.restart()
+            continue
         linear, angular = mppi.command(
             pose, vehicle.speed(), vehicle.costmap, vehicle.discs, route.plan
         )

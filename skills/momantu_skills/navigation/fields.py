@@ -21,7 +21,7 @@ def clearance(blocked: NDArray[np.bool_], resolution: float) -> Field:
     if free.all():
         return np.full(blocked.shape, np.float32(math.hypot(*blocked.shape) * resolution))
     cells = cv2.distanceTransform(free, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
-    return np.maximum((cells - np.float32(0.5)) * np.float32(resolution), np.float32(0.0))
+    return np.asarray(np.maximum((cells - 0.5) * resolution, 0.0), dtype=np.float32)
 
 
 def surface_distance(occupied: NDArray[np.bool_], resolution: float, cap: float) -> Field:
@@ -35,7 +35,7 @@ def surface_distance(occupied: NDArray[np.bool_], resolution: float, cap: float)
     return np.minimum(np.where(occupied, inside, outside), np.float32(cap)).astype(np.float32)
 
 
-@numba.njit(cache=True, inline="always")  # type: ignore[untyped-decorator]
+@numba.njit(cache=True, inline="always")
 def sample(field: Field, column: float, row: float, outside: float) -> float:
     """Bilinear value at fractional cell coordinates (0 is the first cell's centre)."""
     rows, columns = field.shape
@@ -47,4 +47,5 @@ def sample(field: Field, column: float, row: float, outside: float) -> float:
     v = row - r
     low = field[r, c] * (1.0 - u) + field[r, c + 1] * u
     high = field[r + 1, c] * (1.0 - u) + field[r + 1, c + 1] * u
-    return low * (1.0 - v) + high * v
+    value: float = low * (1.0 - v) + high * v
+    return value

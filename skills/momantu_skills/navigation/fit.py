@@ -44,7 +44,7 @@ def scan_fit(grid: GridMap, field: Field, pose: Pose2D, rays: Rays) -> float:
     return float(hits / weight) if weight > 0 else 0.0
 
 
-@numba.njit(cache=True)  # type: ignore[untyped-decorator]
+@numba.njit(cache=True)
 def _count(
     cells: NDArray[np.uint8],
     field: Field,

@@ -42,7 +42,7 @@ def safe_share(
     return 0.0
 
 
-@numba.njit(cache=True)  # type: ignore[untyped-decorator]
+@numba.njit(cache=True)
 def _clear(wanted: Array, bounds: Array, discs: Array, hits: Array) -> bool:
     now = _least(0.0, 0.0, 0.0, discs, hits)
     x = y = yaw = 0.0
@@ -66,7 +66,7 @@ def _clear(wanted: Array, bounds: Array, discs: Array, hits: Array) -> bool:
     return True
 
 
-@numba.njit(cache=True)  # type: ignore[untyped-decorator]
+@numba.njit(cache=True)
 def _least(x: float, y: float, yaw: float, discs: Array, hits: Array) -> float:
     least = 1e9
     c = math.cos(yaw)

@@ -11,7 +11,7 @@ from momantu_bt.geometry import Array
 from momantu_skills.navigation.fields import Field, sample
 
 
-@numba.njit(cache=True)  # type: ignore[untyped-decorator]
+@numba.njit(cache=True)
 def log_likelihoods(
     poses: Array,
     points: Array,

@@ -49,7 +49,7 @@ class GridMap:
         """Whether map coordinates lie on the grid."""
         row, column = self.index(x, y)
         rows, columns = self.cells.shape
-        return 0 <= row < rows and 0 <= column < columns
+        return bool(0 <= row < rows and 0 <= column < columns)
 
     def centers(self, mask: NDArray[np.bool_]) -> Array:
         """Map coordinates (n, 2) of the centres of the cells where `mask` holds, row by row."""
@@ -135,7 +135,7 @@ def _read_pgm(path: Path) -> Array:
         pixels = np.array([int(word) for word in words[: columns * rows]])
     if pixels is None or pixels.size != columns * rows:
         raise ValueError(f"{path} ends early: its header promises {columns} x {rows} pixels")
-    return np.asarray(pixels.reshape(rows, columns) / float(brightest))
+    return np.asarray(pixels, dtype=np.float64).reshape(rows, columns) / brightest
 
 
 def _pgm_header(path: Path, data: bytes) -> tuple[tuple[bytes, int, int, int], int]:

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Generator
+from typing import Any
 
 from momantu_bt.geometry import Pose2D, wrap_angle
+from momantu_bt.skill import Compute
 from momantu_skills.navigation.vehicle import Vehicle
 
-Move = Generator[str, None, bool]
+Move = Generator[str | Compute, Any, bool]
 """Yields phases; returns whether it got where it was sent."""
 
-TURN_BRAKE = 1.5
-"""rad/s2 of planned braking, half of what a usual base can do."""
+TURN_BRAKE = 0.6
+"""Share of the base's angular deceleration that turns count on."""
 TURN_DONE = 0.015
 """rad: a third of the usual tolerance."""
 TURN_LEAST = 0.06
@@ -32,14 +34,15 @@ STALL = 3.0
 def turn_to(vehicle: Vehicle, yaw: float, phase: str = "turn") -> Move:
     """Turn on the spot to a heading in the map; False when something stands in the way."""
     gap = abs(wrap_angle(yaw - vehicle.pose().yaw))
-    fastest = min(1.2, vehicle.limits.angular)
+    fastest = vehicle.limits.angular
+    brake = TURN_BRAKE * vehicle.limits.angular_acceleration
     deadline = vehicle.now() + 2.0 * gap / fastest + STALL
     while vehicle.now() < deadline:
         error = wrap_angle(yaw - vehicle.pose().yaw)
         if abs(error) < TURN_DONE:
             yield from vehicle.stop(phase)
             return True
-        rate = min(fastest, math.sqrt(2.0 * TURN_BRAKE * abs(error)), 2.5 * abs(error))
+        rate = min(fastest, math.sqrt(2.0 * brake * abs(error)), 4.0 * abs(error))
         vehicle.sense(depth=False)
         yield from vehicle.drive(0.0, math.copysign(max(rate, TURN_LEAST), error), phase)
         if vehicle.blocked_for > vehicle.config.blocked_patience:

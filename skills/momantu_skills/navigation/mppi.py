@@ -18,7 +18,9 @@ from momantu_skills.navigation.planner import Plan
 
 @dataclass(frozen=True, slots=True)
 class MppiConfig:
-    """samples: rollouts per call. steps, step: horizon, count and s. knots: noise is drawn at this
+    """Sampling and weights.
+
+    samples: rollouts per call. steps, step: horizon, count and s. knots: noise is drawn at this
     many instants and interpolated, so that rollouts are smooth. speed_noise, turn_noise: standard
     deviations, m/s and rad/s. temperature: of the weights, in cost units (metres to the goal).
     collision, nearness, haste, heading, smoothness: weights of the terms, see `_cost`.
@@ -101,7 +103,7 @@ class Mppi:
         return float(self._controls[0, 0]), float(self._controls[0, 1])
 
 
-@numba.njit(cache=True)  # type: ignore[untyped-decorator]
+@numba.njit(cache=True)
 def _costs(
     start: Array,
     controls: Array,
@@ -119,7 +121,7 @@ def _costs(
     return costs
 
 
-@numba.njit(cache=True)  # type: ignore[untyped-decorator]
+@numba.njit(cache=True)
 def _cost(
     start: Array,
     controls: Array,
@@ -171,7 +173,7 @@ def _cost(
     return total
 
 
-@numba.njit(cache=True, inline="always")  # type: ignore[untyped-decorator]
+@numba.njit(cache=True, inline="always")
 def _to_go(cost_to_go: Field, frame: Array, x: float, y: float) -> float:
     column = (x - frame[0]) / frame[2] - 0.5
     row = (y - frame[1]) / frame[2] - 0.5

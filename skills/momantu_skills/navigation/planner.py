@@ -75,7 +75,7 @@ def _slowness(field: Field, radius: float, comfort: float) -> Field:
     return np.ascontiguousarray(slow, dtype=np.float32)
 
 
-@numba.njit(cache=True)  # type: ignore[untyped-decorator]
+@numba.njit(cache=True)
 def _march(
     slowness: Field, row: int, column: int, start_row: int, start_column: int, resolution: float
 ) -> Field:
@@ -124,7 +124,7 @@ def _march(
     return time
 
 
-@numba.njit(cache=True)  # type: ignore[untyped-decorator]
+@numba.njit(cache=True)
 def _arrival(time: Field, done: NDArray[np.bool_], r: int, c: int, h: float) -> np.float32:
     """Upwind solution of |grad T| = slowness at one cell; h is slowness times cell size."""
     rows, columns = time.shape
@@ -143,7 +143,7 @@ def _arrival(time: Field, done: NDArray[np.bool_], r: int, c: int, h: float) -> 
     return np.float32(0.5 * (a + b + math.sqrt(2.0 * h * h - (a - b) * (a - b))))
 
 
-@numba.njit(cache=True)  # type: ignore[untyped-decorator]
+@numba.njit(cache=True)
 def _push(keys: Field, cells: NDArray[np.int64], size: int, key: np.float32, cell: int) -> int:
     i = size
     while i > 0:
@@ -158,7 +158,7 @@ def _push(keys: Field, cells: NDArray[np.int64], size: int, key: np.float32, cel
     return size + 1
 
 
-@numba.njit(cache=True)  # type: ignore[untyped-decorator]
+@numba.njit(cache=True)
 def _pop(keys: Field, cells: NDArray[np.int64], size: int) -> int:
     size -= 1
     key = keys[size]
@@ -180,7 +180,7 @@ def _pop(keys: Field, cells: NDArray[np.int64], size: int) -> int:
     return size
 
 
-@numba.njit(cache=True)  # type: ignore[untyped-decorator]
+@numba.njit(cache=True)
 def _descend(cost: Field, frame: Array, x: float, y: float, gx: float, gy: float) -> Array:
     """From (x, y) down the cost to the goal: the best of 16 directions at each half cell."""
     most = 20_000

@@ -14,7 +14,7 @@ _SLOTS = 1 << 16
 """Slots of the table of occupied bins: three times the most particles, a power of two."""
 
 
-@numba.njit(cache=True)  # type: ignore[untyped-decorator]
+@numba.njit(cache=True)
 def kld_resample(
     poses: Array,
     weights: Array,

@@ -61,7 +61,7 @@ class Route:
 
 
 def planning_radius(vehicle: Vehicle) -> float:
-    """m of room that driving straight needs on either side of the base's axis."""
+    """Room that driving straight needs on either side of the base's axis, m."""
     return vehicle.half_width + EXTRA
 
 

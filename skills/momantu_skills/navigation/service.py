@@ -48,6 +48,7 @@ class LocalizationService(Service):
         )
         self._odom_from_base: Pose2D | None = None
         self._since_scan = [0.0, 0.0]
+        self._rest_scans = 0
         self._told = False
         self.reset(context.site.start, *context.site.start_sigma)
 

@@ -8,10 +8,11 @@ from typing import Any
 from momantu_bt.failure import Failure
 from momantu_bt.geometry import Pose2D
 from momantu_bt.skill import Compute, compute
-from momantu_skills.navigation.arrive import AIM, LOCAL, TURN_AT_END, arrive, retreat_needed, within
+from momantu_skills.navigation.arrive import arrive, within
 from momantu_skills.navigation.confidence import is_localized, sigmas
 from momantu_skills.navigation.cruise import cruise, leave
 from momantu_skills.navigation.goals import Stand
+from momantu_skills.navigation.manoeuvre import AIM, TURN_AT_END, prepare, retreat_needed
 from momantu_skills.navigation.moves import back_off, turn_to
 from momantu_skills.navigation.mppi import Mppi
 from momantu_skills.navigation.route import Route, choose
@@ -22,6 +23,8 @@ Trip = Generator[str | Compute, Any, None]
 SURE_WITHIN = 2.5
 """s that localization gets at the start: its scans at rest take 1.5 s."""
 RECOVERABLE = ("PATH_BLOCKED", "NO_PROGRESS", "GOAL_BLOCKED", "NO_PATH")
+LOCAL = 1.5
+"""m from the goal within which it is reached by manoeuvres instead of by a planned way."""
 WALK = 3.0
 """m: nearer goals that were seen are kept in odometry's frame, which does not jump."""
 
@@ -90,7 +93,7 @@ def _go(vehicle: Vehicle, mppi: Mppi, to: Destination) -> Trip:
     if within(vehicle.pose(), goal(), distance, angle):
         return
     for _ in range(3):
-        if not (yield from _near(vehicle, goal, distance)):
+        if not (yield from _near(vehicle, goal(), distance)):
             yield from leave(vehicle, route.heading(vehicle.pose()))
             yield from cruise(vehicle, mppi, route, (distance * AIM, TURN_AT_END))
             yield from _line_up(vehicle, goal(), distance)
@@ -103,22 +106,19 @@ def _go(vehicle: Vehicle, mppi: Mppi, to: Destination) -> Trip:
     raise Failure("NO_PROGRESS", "three approaches did not end at the goal")
 
 
-def _near(vehicle: Vehicle, goal: Callable[[], Pose2D], distance: float) -> Trip | Any:
-    """Whether the goal is near enough to be reached by backing up and approaching; backs up."""
-    if vehicle.pose().distance_to(goal()) > LOCAL:
+def _near(vehicle: Vehicle, goal: Pose2D, distance: float) -> Trip | Any:
+    """Whether the goal is near enough to be reached by a manoeuvre, which is then done."""
+    if vehicle.pose().distance_to(goal) > LOCAL:
         return False
-    back = retreat_needed(vehicle, goal(), distance)
-    if back is None:
-        return False
-    return True if back == 0.0 else (yield from back_off(vehicle, back))
+    return (yield from prepare(vehicle, goal, distance))
 
 
 def _line_up(vehicle: Vehicle, goal: Pose2D, distance: float) -> Trip:
-    """At the lead-in, but heading elsewhere: turn on the spot until the approach is sure."""
+    """At the lead-in, but the approach is not sure: turn or hop until it is."""
     if retreat_needed(vehicle, goal, distance) == 0.0:
         return
     yield from vehicle.stop("line up")
-    yield from turn_to(vehicle, goal.yaw, "line up")
+    yield from prepare(vehicle, goal, distance)
 
 
 def _kept(vehicle: Vehicle, stand: Pose2D, in_odom: bool) -> Callable[[], Pose2D]:
@@ -131,7 +131,7 @@ def _kept(vehicle: Vehicle, stand: Pose2D, in_odom: bool) -> Callable[[], Pose2D
 def _recover(vehicle: Vehicle, attempt: int) -> Trip:
     """Forget what was seen and look again; then back up; then turn as well."""
     yield from vehicle.stop("recover")
-    vehicle.costmap.clear()
+    vehicle.costmap.clear_ahead(vehicle.pose())
     vehicle.sense()
     if attempt >= 1:
         yield from back_off(vehicle, 0.3, "recover")
