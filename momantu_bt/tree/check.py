@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from momantu_bt.plugins import PluginError
-from momantu_bt.tree.catalogue import SUBTREE
 from momantu_bt.tree.check_codes import check_handlers
 from momantu_bt.tree.check_keys import KeyCheck
 from momantu_bt.tree.check_nodes import check_node, check_tree_ports
@@ -74,8 +72,8 @@ def _look_up(context: Context, world: str | None, robot: str | None) -> None:
                 entry = registry.worlds[name]
                 context.site = entry.site()
                 robot = robot or entry.default_robot
-            except (PluginError, OSError, ValueError) as error:
-                message = f"the world {name!r} cannot be read: {error}"
+            except Exception as error:  # a plug-in's code, which may raise anything
+                message = f"the world {name!r} cannot be read: {type(error).__name__}: {error}"
                 context.problems.error("broken-world", place or _start(document), message)
     if robot is None:
         return
@@ -86,8 +84,8 @@ def _look_up(context: Context, world: str | None, robot: str | None) -> None:
         return
     try:
         context.description = registry.description(robot)
-    except (PluginError, OSError, ValueError) as error:
-        message = f"the robot {robot!r} cannot be read: {error}"
+    except Exception as error:  # a plug-in's code, which may raise anything
+        message = f"the robot {robot!r} cannot be read: {type(error).__name__}: {error}"
         context.problems.error("broken-robot", _start(document), message)
 
 
@@ -125,4 +123,4 @@ def _root_keys(context: Context) -> set[str]:
     return names
 
 
-__all__ = ["NO_WORLD", "ROBOT_KEY", "SUBTREE", "check"]
+__all__ = ["NO_WORLD", "ROBOT_KEY", "check"]

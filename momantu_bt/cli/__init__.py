@@ -1,0 +1,159 @@
+"""The command line: one module per verb, imported when its verb is used.
+
+Exit codes: 0 the tree succeeded and no referee denies it; 1 it failed, or something is wrong;
+2 the tree or the arguments are wrong, and nothing was started; 3 the world could not start;
+4 an internal error; 130 interrupted.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Sequence
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import typer
+
+from momantu_bt import __version__, plugins
+from momantu_bt.world import WorldError
+
+EXIT_OK = 0
+EXIT_FAILED = 1
+EXIT_WRONG_INPUT = 2
+EXIT_NO_WORLD = 3
+EXIT_INTERNAL = 4
+EXIT_INTERRUPTED = 130
+
+TRACEBACK = "MOMANTU_BT_TRACEBACK"
+"""Environment variable: set to anything, internal errors come with their traceback."""
+
+VERBS = {
+    "run": "Run a tree.",
+    "check": "Say everything that is wrong with tree files.",
+    "show": "Print a tree in plain words.",
+    "skills": "List skills, or show one with its ports and failure codes.",
+    "worlds": "List worlds, or show one with its places and surfaces.",
+    "robots": "List robots, or show one with its actuators and named poses.",
+    "doctor": "Say what this machine lacks, and the cure.",
+}
+"""Built-in verbs. `momantu_bt.cli.<verb>` has a function or a typer app of the verb's name."""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command line and return its exit code; arguments default to the process's."""
+    given = list(sys.argv[1:] if arguments is None else arguments)
+    try:
+        if not given:
+            _app(None)(args=["--help"], prog_name="momantu-bt", standalone_mode=False)
+            return EXIT_WRONG_INPUT
+        verb = next((word for word in given if not word.startswith("-")), None)
+        result = _app(verb)(args=given, prog_name="momantu-bt", standalone_mode=False)
+    except KeyboardInterrupt:
+        return EXIT_INTERRUPTED
+    except SystemExit as error:
+        return error.code if isinstance(error.code, int) else EXIT_WRONG_INPUT
+    except BrokenPipeError:
+        # whoever read the output has gone; nobody is left to tell
+        sys.stdout = Path(os.devnull).open("w", encoding="utf-8")
+        return EXIT_FAILED
+    except Exception as error:
+        return _explain(error)
+    return result if isinstance(result, int) else EXIT_OK
+
+
+def _app(verb: str | None) -> typer.Typer:
+    """The command line with one verb ready; the others are names with a line of help."""
+    app = typer.Typer(
+        name="momantu-bt",
+        help="Program a mobile manipulator by editing one tree file.",
+        rich_markup_mode=None,
+        add_completion=False,
+        context_settings={"help_option_names": ["-h", "--help"]},
+    )
+    app.callback(epilog="momantu-bt VERB --help shows worked examples.")(_options)
+    for name, help_line in VERBS.items():
+        if name == verb:
+            _add(app, name, getattr(import_module(f"momantu_bt.cli.{name}"), name))
+        else:
+            app.command(name, help=help_line)(_never)
+    for name, entry in plugins.installed(plugins.COMMANDS).items():
+        if name == verb and name not in VERBS:
+            _add(app, name, plugins.load(plugins.COMMANDS, name))
+        elif name not in VERBS:
+            package = entry.dist.name if entry.dist is not None else "a plug-in"
+            app.command(name, help=f"From {package}.")(_never)
+    return app
+
+
+def _add(app: typer.Typer, name: str, verb: Any) -> None:
+    if isinstance(verb, typer.Typer):
+        app.add_typer(verb, name=name)
+    else:
+        app.command(name, help=_help(verb))(verb)
+
+
+def _help(verb: Callable[..., Any]) -> str:
+    """A verb's docstring; the lines of its examples stay lines."""
+    paragraphs = (verb.__doc__ or "").split("\n\n")
+    return "\n\n".join(
+        "\b\n" + paragraph if paragraph.strip().startswith("Examples:") else paragraph
+        for paragraph in map(_dedented, paragraphs)
+    )
+
+
+def _dedented(paragraph: str) -> str:
+    lines = paragraph.strip("\n").splitlines()
+    widths = [len(line) - len(line.lstrip()) for line in lines[1:] if line.strip()]
+    margin = min(widths, default=0)
+    first = lines[0].lstrip() if lines else ""
+    return "\n".join([first, *(line[margin:] for line in lines[1:])])
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(__version__)
+        raise typer.Exit
+
+
+def _options(
+    version: bool = typer.Option(
+        False, "--version", is_eager=True, callback=_print_version, help="Print the version."
+    ),
+) -> None:
+    """Options of the program itself."""
+
+
+def _never() -> None:
+    """Stand for a verb that was not asked for."""
+
+
+def _explain(error: Exception) -> int:
+    """Say what went wrong in one place, without a stack trace, and choose the exit code."""
+    from momantu_bt.tree.lookup import TreeNotFound
+    from momantu_bt.tree.problems import TreeError
+
+    if isinstance(error, TreeError):
+        from momantu_bt.cli.check import report
+
+        report(error.problems, error.source)
+        return EXIT_WRONG_INPUT
+    if isinstance(error, TreeNotFound | plugins.PluginError):
+        return _say(str(error), EXIT_WRONG_INPUT)
+    if isinstance(error, WorldError):
+        return _say(str(error), EXIT_NO_WORLD)
+    usage = getattr(error, "format_message", None)
+    if usage is not None:
+        return _say(f"{usage()} See momantu-bt --help.", EXIT_WRONG_INPUT)
+    if os.environ.get(TRACEBACK):
+        raise error
+    return _say(
+        f"internal error: {type(error).__name__}: {error} (set {TRACEBACK}=1 for the traceback)",
+        EXIT_INTERNAL,
+    )
+
+
+def _say(message: str, code: int) -> int:
+    typer.echo(f"momantu-bt: {message}", err=True)
+    return code

@@ -1,0 +1,39 @@
+"""Listing the plug-ins of one kind, each with one line about it."""
+
+from __future__ import annotations
+
+import inspect
+import json
+from collections.abc import Callable
+from typing import Any
+
+import typer
+
+from momantu_bt.plugins import installed, load
+
+
+def listing(group: str, about: Callable[[Any], str], as_json: bool) -> None:
+    """Print every plug-in of an entry point group with what `about` says of it.
+
+    One that cannot be loaded is listed with the reason.
+    """
+    rows: list[tuple[str, str]] = []
+    for name in installed(group):
+        try:
+            rows.append((name, about(load(group, name))))
+        except Exception as error:  # other people's code: whatever it raises is its reason
+            rows.append((name, f"cannot be loaded: {error}"))
+    if as_json:
+        typer.echo(json.dumps([{"name": name, "about": line} for name, line in rows], indent=2))
+        return
+    width = max((len(name) for name, _ in rows), default=0)
+    for name, line in rows:
+        typer.echo(f"{name:{width}}  {line}".rstrip())
+    if not rows:
+        typer.echo("none is installed", err=True)
+
+
+def first_line(plugin: Any) -> str:
+    """The first line of a plug-in's docstring."""
+    lines = (inspect.getdoc(plugin) or "").splitlines()
+    return lines[0] if lines else ""
