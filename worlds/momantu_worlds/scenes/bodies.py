@@ -100,7 +100,7 @@ class Body:
 
 @dataclass(frozen=True, slots=True)
 class SunLight:
-    """Parallel light. direction: (3,) where it shines to, map frame. color: strength per channel."""
+    """Parallel light. direction: (3,) where it shines to, map frame. color: its strength."""
 
     direction: tuple[float, float, float]
     color: Color
@@ -108,7 +108,7 @@ class SunLight:
 
 @dataclass(frozen=True, slots=True)
 class PointLight:
-    """A lamp. position: (3,) m, map frame. color: strength per channel at 1 m."""
+    """A lamp. position: (3,) m, map frame. color: its strength at 1 m."""
 
     position: tuple[float, float, float]
     color: Color

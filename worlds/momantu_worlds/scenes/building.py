@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from momantu_bt.geometry import Transform
 from momantu_bt.world import Site
-from momantu_worlds.scenes.bodies import Body, Episode, Goal, Part, Picture
+from momantu_worlds.scenes.bodies import Body, Box, Episode, Goal, Part, Picture
 from momantu_worlds.scenes.furniture import furniture
 from momantu_worlds.scenes.layout import Layout
 from momantu_worlds.scenes.objects import Thing
@@ -55,9 +55,10 @@ def bodies(world: WorldFile, layout: Layout) -> Iterator[Body]:
 
 
 def floor_body(world: WorldFile) -> Body:
-    """The slab whose top is z = 0."""
+    """The slab whose top is z = 0; the simulator's own plane there is what is touched."""
     floor = world.floor
-    part = block((*floor.size, SLAB), (0, 0, -SLAB / 2), floor.color)
+    slab = Box((*floor.size, SLAB))
+    part = Part(slab, Transform((0, 0, -SLAB / 2)), floor.color, collision=False)
     pose = Transform((*floor.center, 0.0))
     return Body("floor", "floor", pose, (part,), friction=floor.friction)
 

@@ -161,12 +161,12 @@ def cells_of(plan: FloorPlan, x: float, y: float) -> tuple[int, int]:
 
 def main() -> None:
     """Draw the maps of `four_rooms` anew: `python -m momantu_worlds.scenes.floor_plan`."""
-    from momantu_worlds.scenes import four_rooms
+    from momantu_worlds.scenes.loading import load_world, map_files
 
-    plan, overhang = draw_plans(four_rooms.world_file())
-    four_rooms.MAP_FILE.parent.mkdir(exist_ok=True)
-    save_plan(plan, four_rooms.MAP_FILE)
-    save_plan(overhang, four_rooms.OVERHANG_FILE)
+    files = map_files("four_rooms")
+    for plan, file in zip(draw_plans(load_world("four_rooms")), files, strict=True):
+        file.parent.mkdir(exist_ok=True)
+        save_plan(plan, file)
 
 
 if __name__ == "__main__":
