@@ -1,4 +1,4 @@
-"""Values at ports: does a value fit its port's type, and is it immutable?"""
+"""Values at ports: whether they fit the port's type, and how they become immutable."""
 
 from __future__ import annotations
 

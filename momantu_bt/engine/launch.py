@@ -21,15 +21,11 @@ from momantu_bt.record.report import NodeReport, Report
 from momantu_bt.record.versions import versions
 from momantu_bt.robot import RobotDescription
 from momantu_bt.skill import Skill
+from momantu_bt.tree.check import NO_WORLD, ROBOT_KEY
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.values import natural
 from momantu_bt.world import World
-
-NO_WORLD = "none"
-"""Instead of a world's name: run without one."""
-ROBOT_KEY = "robot"
-"""`$@robot.…`: the robot's state, as the trees read it."""
 
 Watch: TypeAlias = Callable[[Executor], Sequence[Observer]]
 
@@ -42,17 +38,19 @@ class LaunchError(Exception):
 class Options:
     """How to run.
 
-    world: a name, an open world, `"none"`, or None for the tree's own. robot: a name, or None
-    for the world's default. max_time: simulated seconds after which the run fails with TIMEOUT.
+    world: a name, `"none"`, or None for the tree's own. robot: a name, or None for the world's
+    default. keep_world: it was open before and stays so. max_time: simulated seconds after
+    which the run fails with TIMEOUT.
     referee: False takes it out, which changes nothing else.
     """
 
-    world: str | World | None = None
+    world: str | None = None
     robot: str | None = None
     seed: int = 0
     max_time: float = 600.0
     realtime: bool = False
     referee: bool = True
+    keep_world: bool = False
     remark: Callable[[str], None] = field(default=lambda text: None)
 
 
@@ -73,7 +71,7 @@ def launch(
     with ExitStack() as stack:
         interrupts = stack.enter_context(Interrupts())
         world = _open(document, options, registry, kinds)
-        if world is not None and not _is_open(options.world):
+        if world is not None and not options.keep_world:
             stack.callback(world.close)
         executor = _assemble(document, options, registry, kinds, world)
         if watch is not None:
@@ -85,19 +83,12 @@ def launch(
         return _report(document, options, executor, ending, started)
 
 
-def _is_open(world: str | World | None) -> bool:
-    return world is not None and not isinstance(world, str)
-
-
 def _open(
     document: Document,
     options: Options,
     registry: Registry,
     kinds: Mapping[str, type[Skill]],
 ) -> World | None:
-    if options.world is not None and not isinstance(options.world, str):
-        _check_uses(kinds, options.world.robot.description)
-        return options.world
     name = options.world or document.world
     if name is None or name == NO_WORLD:
         if kinds:

@@ -18,6 +18,7 @@ from momantu_bt.engine.conditions import Conditions
 from momantu_bt.engine.context import RunContext
 from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Status
 from momantu_bt.failure import FAILED, SCRIPT_ERROR, Failure, FailureValue
+from momantu_bt.tree.catalogue import BUILT_IN
 from momantu_bt.tree.model import Node
 from momantu_bt.tree.script import ScriptError
 
@@ -49,7 +50,7 @@ class TreeNode(Behaviour):
     ) -> None:
         self.state = IDLE
         self.shown = IDLE
-        super().__init__(model.name or model.target or model.type)
+        super().__init__(_name(model))
         self.model = model
         self.context = context
         self.kids = tuple(children)
@@ -79,6 +80,11 @@ class TreeNode(Behaviour):
 
     def renew(self) -> None:
         """Forget what outlasts an end (RoundRobin's place): a recovery starts from scratch."""
+
+    @property
+    def note(self) -> str:
+        """What a person should see beside the name while it runs: a phase, a count of tries."""
+        return ""
 
     # what parents call
 
@@ -241,6 +247,12 @@ class TreeNode(Behaviour):
             error.value if isinstance(error, Failure) else FailureValue(SCRIPT_ERROR, str(error))
         )
         return self.fail_with(self.own(value))
+
+
+def _name(model: Node) -> str:
+    """Its own name, else the subtree's, else its spelling in YAML, else the skill's."""
+    spec = BUILT_IN.get(model.type)
+    return model.name or model.target or (model.type if spec is None else spec.yaml[0])
 
 
 class Decorator(TreeNode):

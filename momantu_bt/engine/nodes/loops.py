@@ -50,6 +50,11 @@ class Repeat(Decorator):
         self.count = 0
         return SUCCESS
 
+    @property
+    def note(self) -> str:
+        """Which round it is."""
+        return f"round {self.count + 1}"
+
     def clear(self) -> None:
         """No rounds yet."""
         self.count = 0
@@ -82,6 +87,11 @@ class RetryUntilSuccessful(Decorator):
                 return RUNNING
         tries, self.count = self.count, 0
         return self.fail_with(with_tries(self, self.failure_of(self.child), tries, attempts))
+
+    @property
+    def note(self) -> str:
+        """Which try it is."""
+        return f"try {self.count + 1}"
 
     def clear(self) -> None:
         """No tries yet."""

@@ -25,6 +25,7 @@ from momantu_bt.engine.ports import Inputs
 from momantu_bt.engine.status import FAILURE, RUNNING, SUCCESS, Status
 from momantu_bt.engine.tries import with_root_cause, with_tries
 from momantu_bt.failure import FailureValue
+from momantu_bt.tree.printing import text
 
 ANY = "any"
 """The handler of every code that no other handler names."""
@@ -55,6 +56,10 @@ def _came_from(failure: FailureValue, kind: str) -> bool:
     )
 
 
+def _words(handler: TreeNode) -> str:
+    return f"does {text(handler.model)}"
+
+
 class _Catching(TreeNode):
     """children: `try`, then the handlers' nodes. caught: the cell that handlers see as failure."""
 
@@ -70,6 +75,14 @@ class _Catching(TreeNode):
     def clear(self) -> None:
         """No failure is being handled."""
         self.handling = self.first = None
+
+    @property
+    def note(self) -> str:
+        """What it does about a failure while it does it."""
+        if self.handling is None or self.first is None:
+            return ""
+        handler = self.handling.node
+        return f"{self.first.code}: {'again' if handler is None else _words(handler)}"
 
     def _catch(self, failure: FailureValue) -> Catch | None:
         named = [catch for catch in self.catches if catch.names(failure)]
@@ -104,6 +117,11 @@ class Recover(_Catching):
             if status is not RUNNING or self.handling is None:
                 return status
         return self._handle()
+
+    @property
+    def note(self) -> str:
+        """Which try it is, or what it does about a failure before the next."""
+        return f"try {self.count + 1}" if self.handling is None else super().note
 
     def clear(self) -> None:
         """No tries yet."""

@@ -48,7 +48,7 @@ class SkillLeaf(TreeNode):
         self._written: dict[str, Any] = {}
 
     @property
-    def phase(self) -> str:
+    def note(self) -> str:
         """What the running skill last yielded."""
         return "" if self.session is None else self.session.phase
 

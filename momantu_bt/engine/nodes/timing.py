@@ -50,8 +50,7 @@ def running_as_cause(node: TreeNode, seconds: float) -> FailureValue:
     """What ran deepest below a node, as the cause of the failure that ends it."""
     running = [n for n in (node, *node.below) if n.shown is RUNNING]
     deepest = max(running, key=lambda n: n.depth, default=node)
-    phase = getattr(deepest, "phase", "")
-    doing = f" in phase {phase!r}" if phase else ""
+    doing = f" ({deepest.note})" if deepest.note else ""
     return deepest.own(FailureValue(HALTED, f"was running{doing} after {seconds:.1f} s"))
 
 

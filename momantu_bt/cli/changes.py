@@ -1,0 +1,71 @@
+"""A run as plain lines: one for each change that a person would tell."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from momantu_bt.engine.executor import Executor
+from momantu_bt.engine.node import TreeNode
+from momantu_bt.engine.nodes.recovery import Recover
+from momantu_bt.engine.nodes.skill import SkillLeaf
+from momantu_bt.engine.nodes.subtree import SubTree
+from momantu_bt.engine.nodes.timing import Sleep
+from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, Status
+from momantu_bt.record.chain import chain_text
+from momantu_bt.tree.printing import text
+
+_WORDS = {"RUNNING": "starts", "SUCCESS": "done", "IDLE": "halted", "SKIPPED": "skipped"}
+_TOLD = (SkillLeaf, SubTree, Sleep, Recover)
+
+
+class ChangeLines:
+    """Says when a skill or a subtree starts and ends, and what a recovery does about a failure.
+
+    say: takes one line at a time.
+    """
+
+    def __init__(self, say: Callable[[str], None]) -> None:
+        self._say = say
+        self._was_running: set[int] = set()
+        self._notes: dict[int, str] = {}
+
+    def ticked(self, run: Executor) -> None:
+        """Tell this tick's changes."""
+        now = run.context.now
+        for node, status in run.context.changes:
+            if isinstance(node, _TOLD):
+                self._tell(now, node, status)
+        for node in run.built.nodes:
+            if isinstance(node, Recover) and node.shown is RUNNING:
+                self._tell_note(now, node)
+
+    def close(self) -> None:
+        """Nothing is left to say."""
+
+    def _tell(self, now: float, node: TreeNode, status: Status) -> None:
+        running = node.index in self._was_running
+        self._was_running.discard(node.index)
+        if status is RUNNING:
+            self._was_running.add(node.index)
+        if isinstance(node, Recover) or (status is IDLE and not running):
+            return
+        words = f"fails: {_reason(node)}" if status is FAILURE else _WORDS[status.value]
+        self._line(now, node, f"{text(node.model)} {words}")
+
+    def _tell_note(self, now: float, node: Recover) -> None:
+        note = node.note
+        before = self._notes.get(node.index, "try 1")
+        if note != before:
+            self._notes[node.index] = note
+            self._line(now, node, f"{node.name}: {note}")
+
+    def _line(self, now: float, node: TreeNode, words: str) -> None:
+        self._say(f"{now:8.2f} s {'  ' * min(node.depth // 2, 8)}{words}")
+
+
+def _reason(node: TreeNode) -> str:
+    if node.failure is None:
+        return "FAILED"
+    if isinstance(node, SubTree):
+        return node.failure.code
+    return chain_text(node.failure).partition(" <- ")[0]

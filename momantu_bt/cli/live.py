@@ -1,0 +1,64 @@
+"""The live tree in a terminal: statuses, the simulated clock, reasons, and what is done."""
+
+from __future__ import annotations
+
+import time
+
+from rich.console import Console, Group
+from rich.live import Live
+from rich.text import Text
+
+from momantu_bt.cli.changes import ChangeLines
+from momantu_bt.engine.executor import Executor
+from momantu_bt.record.lines import tree_lines
+
+REFRESH = 0.1
+"""Seconds of wall time between two pictures: enough for the eye, cheap for the run."""
+LAST = 6
+"""Lines of what happened last, below the tree."""
+
+_MARKS = {
+    "RUNNING": ("*", "bold cyan"),
+    "SUCCESS": ("✓", "green"),
+    "FAILURE": ("✗", "bold red"),
+    "SKIPPED": ("-", "dim"),
+    "IDLE": (" ", "dim"),
+}
+
+
+class LiveTree:
+    """Redraws the tree in place while the run goes on."""
+
+    def __init__(self, console: Console) -> None:
+        self._console = console
+        self._said: list[str] = []
+        self._changes = ChangeLines(self._said.append)
+        self._drawn = 0.0
+        self._live = Live(console=console, auto_refresh=False, transient=False)
+        self._live.start()
+
+    def ticked(self, run: Executor) -> None:
+        """Remember what happened, and draw when it is time."""
+        self._changes.ticked(run)
+        del self._said[:-LAST]
+        now = time.perf_counter()
+        if now - self._drawn >= REFRESH:
+            self._drawn = now
+            self._live.update(self._picture(run), refresh=True)
+
+    def close(self) -> None:
+        """Leave the last picture standing; safe to call twice."""
+        self._live.stop()
+
+    def _picture(self, run: Executor) -> Group:
+        rest = "  (coming to rest)" if run.settling else ""
+        lines = [Text(f"{run.context.now:7.1f} s simulated{rest}", style="bold")]
+        lines += [_line(line.depth, line.text, line.status) for line in tree_lines(run.built.root)]
+        lines.append(Text())
+        lines += [Text(said, style="dim", no_wrap=True, overflow="ellipsis") for said in self._said]
+        return Group(*lines)
+
+
+def _line(depth: int, words: str, status: str) -> Text:
+    mark, style = _MARKS[status]
+    return Text(f"{'  ' * depth}{mark} {words}", style=style, no_wrap=True, overflow="ellipsis")

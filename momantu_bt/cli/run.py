@@ -1,0 +1,211 @@
+"""`momantu-bt run`: a tree, in a world, to its end."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from momantu_bt.engine.executor import Executor, Observer
+    from momantu_bt.record.report import Report
+
+EXIT_WRONG_ARGUMENTS, EXIT_INTERRUPTED = 2, 130
+VIEW_PORT = 8080
+
+
+def run(
+    tree: Annotated[str, typer.Argument(help="A tree file, or the name of a bundled tree.")],
+    world: Annotated[
+        str | None, typer.Option(help="A world's name, or none; else the tree's own.")
+    ] = None,
+    robot: Annotated[str | None, typer.Option(help="A robot's name; else the world's own.")] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Varies the episode; same seed, same run.")] = 0,
+    set_: Annotated[
+        list[str] | None, typer.Option("--set", help="key=value: a value of the tree's board.")
+    ] = None,
+    values: Annotated[Path | None, typer.Option(help="A YAML file of values.")] = None,
+    video: Annotated[Path | None, typer.Option(help="Film the run to this MP4 file.")] = None,
+    view: Annotated[bool, typer.Option("--view", help="Serve the scene to a browser.")] = False,
+    view_port: Annotated[int, typer.Option(help="The port of --view.")] = VIEW_PORT,
+    record: Annotated[
+        Path | None, typer.Option(help="A new folder for the report and a log of every change.")
+    ] = None,
+    report: Annotated[Path | None, typer.Option(help="Write the report to this JSON file.")] = None,
+    realtime: Annotated[
+        bool, typer.Option("--realtime", help="No faster than the simulated clock.")
+    ] = False,
+    max_time: Annotated[
+        float, typer.Option(min=0.05, help="Simulated seconds after which the run fails.")
+    ] = 600.0,
+    referee: Annotated[
+        bool, typer.Option("--referee/--no-referee", help="Whether somebody judges the run.")
+    ] = True,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Only the last line.")] = False,
+) -> int:
+    """Run a tree until it ends, and say what happened.
+
+    Exit code 0: the tree succeeded and no referee denies it; 1: it failed, or the referee denies
+    its success; 2: the tree or the arguments are wrong; 3: the world could not start; 4: an
+    internal error; 130: interrupted.
+
+    Examples:
+      momantu-bt run bring_object
+      momantu-bt run trees/bring_object.yaml --seed 3 --video run.mp4 --report run.json
+      momantu-bt run bring_object --set from=table_b --set to=table_a --view
+    """
+    wanted = _Outputs(video, view, view_port, record, report, quiet)
+    return _guarded(
+        lambda: _run(tree, world, robot, seed, set_ or [], values, wanted)(
+            max_time=max_time, realtime=realtime, referee=referee
+        )
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Outputs:
+    video: Path | None
+    view: bool
+    view_port: int
+    record: Path | None
+    report: Path | None
+    quiet: bool
+
+
+def _guarded(start: Callable[[], Report]) -> int:
+    """Run; what is wrong with the arguments becomes a sentence and an exit code."""
+    from momantu_bt.engine.build import BuildError
+    from momantu_bt.engine.launch import LaunchError
+    from momantu_bt.engine.services import ServiceCycleError
+    from momantu_bt.record.files import OutputError
+
+    try:
+        return start().exit_code
+    except (LaunchError, BuildError, ServiceCycleError, OutputError) as error:
+        _complain(error)
+        return EXIT_WRONG_ARGUMENTS
+    except KeyboardInterrupt:
+        _complain("interrupted before the first tick; nothing was started")
+        return EXIT_INTERRUPTED
+
+
+def _complain(message: object) -> None:
+    typer.echo(f"momantu-bt: {message}", err=True)
+
+
+def _run(
+    tree: str,
+    world: str | None,
+    robot: str | None,
+    seed: int,
+    settings: Sequence[str],
+    values: Path | None,
+    wanted: _Outputs,
+) -> Callable[..., Report]:
+    """Check what was asked for; the result starts the run and says how it ended."""
+    from momantu_bt.engine.launch import Options, launch
+    from momantu_bt.record.log import REPORT
+    from momantu_bt.tree.load import load
+    from momantu_bt.tree.registry import Registry
+
+    registry = Registry.installed()
+    board = _values(settings, values)
+    checked = load(tree, registry, world=world, robot=robot, values=board)
+    _check_outputs(wanted)
+
+    def start(**how: Any) -> Report:
+        options = Options(world=world, robot=robot, seed=seed, remark=_complain, **how)
+        result = launch(checked.document, options, registry, lambda run: _watch(run, wanted))
+        paths = [wanted.report] if wanted.report is not None else []
+        if wanted.record is not None:
+            paths.append(wanted.record / REPORT)
+        for path in paths:
+            result.write(path)
+        _say_end(result, wanted)
+        return result
+
+    return start
+
+
+def _values(settings: Sequence[str], file: Path | None) -> dict[str, Any]:
+    """What `--values` and `--set` give, the latter winning."""
+    from momantu_bt.engine.launch import LaunchError
+    from momantu_bt.tree.load import read_values
+    from momantu_bt.tree.settings import setting
+
+    board = {} if file is None else read_values(file)
+    for text in settings:
+        try:
+            key, value = setting(text)
+        except ValueError as error:
+            raise LaunchError(f"--set {text}: {error}") from None
+        board[key] = value
+    return board
+
+
+def _check_outputs(wanted: _Outputs) -> None:
+    from momantu_bt.record.files import check_writable
+    from momantu_bt.record.log import prepare_folder
+
+    for path in (wanted.report, wanted.video):
+        if path is not None:
+            check_writable(path)
+    if wanted.record is not None:
+        prepare_folder(wanted.record)
+
+
+def _watch(run: Executor, wanted: _Outputs) -> list[Observer]:
+    """Observers of what the user asked to see; those opened are closed when one cannot be."""
+    from momantu_bt.engine.launch import LaunchError
+    from momantu_bt.record.film import FilmObserver, ViewObserver
+    from momantu_bt.record.log import LogObserver
+
+    observers: list[Observer] = []
+    with ExitStack() as stack:
+
+        def add(observer: Observer) -> None:
+            stack.callback(observer.close)
+            observers.append(observer)
+
+        if wanted.record is not None:
+            add(LogObserver(wanted.record))
+        if (wanted.video is not None or wanted.view) and run.world is None:
+            raise LaunchError("--video and --view need a world; this run has none")
+        if wanted.video is not None and run.world is not None:
+            add(FilmObserver(run.world.open_video(wanted.video, run.built.root.model.place.file)))
+        if wanted.view and run.world is not None:
+            scene = run.world.open_view(wanted.view_port)
+            add(ViewObserver(scene))
+            typer.echo(f"view: {scene.url}")
+        if not wanted.quiet:
+            add(_display())
+        stack.pop_all()
+    return observers
+
+
+def _display() -> Observer:
+    """A live tree on a terminal, plain lines elsewhere."""
+    from momantu_bt.cli.changes import ChangeLines
+
+    if not sys.stdout.isatty():
+        return ChangeLines(typer.echo)
+    from rich.console import Console
+
+    from momantu_bt.cli.live import LiveTree
+
+    return LiveTree(Console())
+
+
+def _say_end(result: Report, wanted: _Outputs) -> None:
+    from momantu_bt.record.ending import ending_text
+
+    if result.error is not None:
+        typer.echo(result.error, err=True)
+    named = (("report", wanted.report), ("video", wanted.video), ("record", wanted.record))
+    places = [f"{what}: {path}" for what, path in named if path is not None]
+    typer.echo("; ".join([ending_text(result), *places]))

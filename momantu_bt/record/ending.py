@@ -1,0 +1,31 @@
+"""How a run ended, in one line."""
+
+from __future__ import annotations
+
+from pathlib import PurePath
+
+from momantu_bt.record.chain import chain_text
+from momantu_bt.record.report import ERROR, FAILURE, INTERRUPTED, Report
+
+
+def ending_text(report: Report) -> str:
+    """`bring_object succeeded after 83.2 s …`, or why it did not; the referee's word beside it."""
+    name = PurePath(report.tree).stem
+    times = f"after {report.sim_time_s:.1f} s simulated, {report.real_time_factor:.1f} x real time"
+    if report.status == ERROR:
+        last = (report.error or "").strip().rpartition("\n")[2]
+        return f"{name}: internal error {times}: {last}"
+    if report.status == INTERRUPTED:
+        return f"{name} was interrupted {times}; everything stands still"
+    if report.status == FAILURE:
+        chain = "" if report.failure is None else chain_text(report.failure)
+        return f"{name} failed: {chain}; {times}{_referee(report)}"
+    return f"{name} succeeded {times}{_referee(report)}"
+
+
+def _referee(report: Report) -> str:
+    if report.success is None:
+        return ""
+    if report.success:
+        return "; the referee agrees" if report.status != FAILURE else "; the referee sees success"
+    return f"; the referee denies success: {', '.join(report.unmet) or 'no reason given'}"
