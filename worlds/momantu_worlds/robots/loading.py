@@ -24,11 +24,22 @@ class BaseJoints(BaseModel):
     yaw: str
 
 
+class Cuts(BaseModel):
+    """Where a mesh is cut by planes across x, y and z of its own frame, m."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    x: tuple[float, ...] = ()
+    y: tuple[float, ...] = ()
+    z: tuple[float, ...] = ()
+
+
 class SimulationModel(BaseModel):
     """What a simulator must know of a robot beyond its description.
 
     base_force (N), base_torque (Nm): the most that the wheels can push. floor_links: links that
-    are not checked against the floor. finger_friction: of the pads, at most 2.
+    are not checked against the floor. finger_friction: of the pads, at most 2. convex_cells:
+    links whose collision mesh is cut, each cell becoming a convex hull; others are one hull.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -40,7 +51,7 @@ class SimulationModel(BaseModel):
     no_collision_links: tuple[str, ...]
     finger_links: tuple[str, ...]
     finger_friction: float
-    wrist_link: str
+    convex_cells: dict[str, Cuts] = {}
 
 
 def read_description(folder: Path) -> RobotDescription:

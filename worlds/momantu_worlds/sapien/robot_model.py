@@ -7,11 +7,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import sapien
 from lxml import etree
 
 from momantu_bt.geometry import Array
 from momantu_bt.robot import ActuatorKind, RobotDescription
-from momantu_worlds.robots.loading import SimulationModel
+from momantu_worlds.robots.loading import Cuts, SimulationModel
+from momantu_worlds.sapien.cells import convex_cells
 from momantu_worlds.sapien.config import Physics
 
 FLOOR_BIT = 1 << 30
@@ -58,7 +60,13 @@ def build_robot(
     visuals: whether to load what cameras see; impossible in a scene without a renderer.
     """
     builder = _parse(scene, description, simulation, visuals)
+    cells = {
+        name: _take_cells(builder, name, cuts) for name, cuts in simulation.convex_cells.items()
+    }
     articulation = builder.build(fix_root_link=True)
+    for name, shapes in cells.items():
+        for shape in shapes:
+            articulation.find_link_by_name(name).attach(shape)
     articulation.set_name(description.name)
     articulation.set_sleep_threshold(0.0)
     articulation.set_solver_position_iterations(physics.position_iterations)
@@ -99,6 +107,22 @@ def _parse(
         links[name].collision_groups[2] |= FLOOR_BIT
     _ignore_pairs(links, description.ignored_collisions)
     return builder
+
+
+def _take_cells(builder: Any, name: str, cuts: Cuts) -> list[Any]:
+    """Replace a link's collision mesh by hulls of its cells, to be attached once it is built."""
+    link = next(link for link in builder.link_builders if link.name == name)
+    shapes = []
+    for record in link.collision_records:
+        for vertices in convex_cells(record.filename, cuts):
+            shape = sapien.physx.PhysxCollisionShapeConvexMesh(
+                vertices=vertices, scale=record.scale, material=record.material
+            )
+            shape.local_pose = record.pose
+            shape.set_collision_groups(link.collision_groups)
+            shapes.append(shape)
+    link.collision_records.clear()
+    return shapes
 
 
 def _unwrap(joint: Any, simulation: SimulationModel) -> None:
