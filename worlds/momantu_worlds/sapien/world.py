@@ -27,7 +27,8 @@ class SapienWorld:
         self._name, self._episode = name, episode
         self.simulator = Simulator(description, episode, seed)
         wanted = referee and episode.goal is not None
-        self._referee = Referee(episode, self.simulator.truth) if wanted else None
+        hand = description.end_effector.frame
+        self._referee = Referee(episode, self.simulator.truth, hand) if wanted else None
 
     @property
     def name(self) -> str:
