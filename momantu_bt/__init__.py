@@ -1,3 +1,70 @@
-"""momantu-bt: program a mobile manipulator by editing one tree file."""
+"""momantu-bt: program a mobile manipulator by editing one tree file.
+
+What a plug-in author imports, and `run(tree, world=…, seed=…) -> Report`. Names are looked up
+when they are first used, so that importing the package costs next to nothing.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from momantu_bt.engine.api import run
+    from momantu_bt.failure import Failure
+    from momantu_bt.geometry import Pose, Pose2D, Transform
+    from momantu_bt.record.report import Report
+    from momantu_bt.robot import CAMERA_CARRIER, Robot
+    from momantu_bt.service import Service, ServiceContext
+    from momantu_bt.skill import In, Needs, Out, Run, Skill, compute
+    from momantu_bt.world import Site, World
 
 __version__ = "0.1.0"
+
+_HOMES = {
+    "CAMERA_CARRIER": "robot",
+    "Failure": "failure",
+    "In": "skill",
+    "Needs": "skill",
+    "Out": "skill",
+    "Pose": "geometry",
+    "Pose2D": "geometry",
+    "Report": "record.report",
+    "Robot": "robot",
+    "Run": "skill",
+    "Service": "service",
+    "ServiceContext": "service",
+    "Site": "world",
+    "Skill": "skill",
+    "Transform": "geometry",
+    "World": "world",
+    "compute": "skill",
+    "run": "engine.api",
+}
+
+__all__ = [
+    "CAMERA_CARRIER",
+    "Failure",
+    "In",
+    "Needs",
+    "Out",
+    "Pose",
+    "Pose2D",
+    "Report",
+    "Robot",
+    "Run",
+    "Service",
+    "ServiceContext",
+    "Site",
+    "Skill",
+    "Transform",
+    "World",
+    "__version__",
+    "compute",
+    "run",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """A public name, imported from the module that defines it."""
+    if name not in _HOMES:
+        raise AttributeError(f"momantu_bt has no {name!r}; it has: {', '.join(__all__)}")
+    return getattr(import_module(f"momantu_bt.{_HOMES[name]}"), name)

@@ -15,7 +15,7 @@ from momantu_bt.record.chain import chain_text
 from momantu_bt.tree.printing import text
 
 _WORDS = {"RUNNING": "starts", "SUCCESS": "done", "IDLE": "halted", "SKIPPED": "skipped"}
-_TOLD = (SkillLeaf, SubTree, Sleep, Recover)
+_TOLD = (SkillLeaf, SubTree, Sleep)
 
 
 class ChangeLines:
@@ -31,13 +31,11 @@ class ChangeLines:
 
     def ticked(self, run: Executor) -> None:
         """Tell this tick's changes."""
-        now = run.context.now
         for node, status in run.context.changes:
-            if isinstance(node, _TOLD):
-                self._tell(now, node, status)
-        for node in run.built.nodes:
-            if isinstance(node, Recover) and node.shown is RUNNING:
-                self._tell_note(now, node)
+            if isinstance(node, Recover):
+                self._tell_note(run.context.now, node)
+            elif isinstance(node, _TOLD):
+                self._tell(run.context.now, node, status)
 
     def close(self) -> None:
         """Nothing is left to say."""
@@ -47,16 +45,16 @@ class ChangeLines:
         self._was_running.discard(node.index)
         if status is RUNNING:
             self._was_running.add(node.index)
-        if isinstance(node, Recover) or (status is IDLE and not running):
+        if status is IDLE and not running:
             return
         words = f"fails: {_reason(node)}" if status is FAILURE else _WORDS[status.value]
         self._line(now, node, f"{text(node.model)} {words}")
 
     def _tell_note(self, now: float, node: Recover) -> None:
-        note = node.note
+        note = node.note if node.shown is RUNNING else "try 1"
         before = self._notes.get(node.index, "try 1")
-        if note != before:
-            self._notes[node.index] = note
+        self._notes[node.index] = note
+        if note not in (before, "try 1"):
             self._line(now, node, f"{node.name}: {note}")
 
     def _line(self, now: float, node: TreeNode, words: str) -> None:

@@ -33,7 +33,7 @@ class RunContext:
 
     now: seconds of the world's clock at this tick. tick: its number, from 1.
     writes: cells written in this tick, with what they held before. changes: nodes whose status
-    changed, with the new status.
+    changed (or whose note did, while RUNNING), with the new status.
     remark: tells a person something that never influences the run.
     """
 

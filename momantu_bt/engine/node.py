@@ -141,7 +141,7 @@ class TreeNode(Behaviour):
                 child.reset()
 
     def show(self, status: Status) -> None:
-        """Change what people see, and note it in the journal."""
+        """Change what people see and note it in the journal; RUNNING again for a new `note`."""
         self.shown = status
         self.context.changes.append((self, status))
 

@@ -21,6 +21,7 @@ from typing import Any
 
 from momantu_bt.engine.blackboard import Cell, rollback
 from momantu_bt.engine.node import TreeNode
+from momantu_bt.engine.nodes.fallbacks import RoundRobin
 from momantu_bt.engine.ports import Inputs
 from momantu_bt.engine.status import FAILURE, RUNNING, SUCCESS, Status
 from momantu_bt.engine.tries import with_root_cause, with_tries
@@ -57,7 +58,12 @@ def _came_from(failure: FailureValue, kind: str) -> bool:
 
 
 def _words(handler: TreeNode) -> str:
-    return f"does {text(handler.model)}"
+    """What a handler is going to do: the steps of a list, the turn of a round robin."""
+    if isinstance(handler, RoundRobin):
+        return f"{text(handler.kids[handler.at].model)} ({handler.at + 1} of {len(handler.kids)})"
+    if handler.model.type == "Sequence" and handler.model.name is None:
+        return ", then ".join(text(child.model) for child in handler.kids)
+    return text(handler.model)
 
 
 class _Catching(TreeNode):
@@ -92,6 +98,7 @@ class _Catching(TreeNode):
     def _begin_handling(self, catch: Catch, failure: FailureValue) -> None:
         self.handling, self.first = catch, failure
         self.caught.write(failure)
+        self.show(RUNNING)
 
     def _handler_failed(self, handler: TreeNode) -> FailureValue:
         assert self.first is not None
@@ -181,6 +188,7 @@ class Recover(_Catching):
         self.handling = self.first = None
         rollback(self.before.items())
         self.before = {}
+        self.show(RUNNING)
         return RUNNING
 
 
