@@ -11,7 +11,7 @@ import numpy as np
 from momantu_bt.failure import Failure
 from momantu_bt.geometry import Pose2D, wrap_angle
 from momantu_bt.skill import Compute, compute
-from momantu_skills.navigation.approach import simulate
+from momantu_skills.navigation.manoeuvre import approach_is_sure
 from momantu_skills.navigation.moves import back_off, can_turn, clear_behind, turn_to
 from momantu_skills.navigation.mppi import Mppi
 from momantu_skills.navigation.route import Route, no_way, route_to
@@ -53,8 +53,8 @@ def leave(vehicle: Vehicle, heading: float) -> Drive:
             return
 
 
-def cruise(vehicle: Vehicle, mppi: Mppi, route: Route, arrive: tuple[float, float]) -> Drive:
-    """Drive until the approach to the route's stand is sure to end within `arrive` (m, rad).
+def cruise(vehicle: Vehicle, mppi: Mppi, route: Route, distance: float) -> Drive:
+    """Drive until the approach to the route's stand is sure to end within `distance` m of it.
 
     Ends at the latest at the lead-in. Raises PATH_BLOCKED or NO_PROGRESS.
     """
@@ -63,7 +63,10 @@ def cruise(vehicle: Vehicle, mppi: Mppi, route: Route, arrive: tuple[float, floa
     while True:
         vehicle.sense()
         pose = vehicle.pose()
-        if _approach_is_sure(vehicle, route, arrive) or route.to_go(vehicle, pose) < NEAR:
+        near = pose.distance_to(route.stand) < APPROACH_FROM
+        if near and approach_is_sure(vehicle, route.stand, distance):
+            return
+        if route.to_go(vehicle, pose) < NEAR:
             return
         if watch.replan_due(route, pose):
             route = yield from _replanned(vehicle, route, watch)
@@ -78,16 +81,6 @@ def cruise(vehicle: Vehicle, mppi: Mppi, route: Route, arrive: tuple[float, floa
             pose, vehicle.speed(), vehicle.costmap, vehicle.discs, route.plan
         )
         yield from vehicle.drive(linear, angular, "drive")
-
-
-def _approach_is_sure(vehicle: Vehicle, route: Route, arrive: tuple[float, float]) -> bool:
-    pose = vehicle.pose()
-    if pose.distance_to(route.stand) > APPROACH_FROM:
-        return False
-    end = simulate(
-        pose, vehicle.speed(), route.stand, vehicle.limits, vehicle.costmap, vehicle.base_discs
-    )
-    return end.within(*arrive, vehicle.config.margin)
 
 
 def _replanned(vehicle: Vehicle, route: Route, watch: _Watch) -> Generator[Any, Any, Route]:

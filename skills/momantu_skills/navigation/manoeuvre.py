@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -27,8 +28,10 @@ TURN_TIME = 1.0
 """rad/s on average over a turn, for comparing manoeuvres."""
 DRIVE_TIME = 0.4
 """m/s on average over a short straight."""
-BACK_TIME = 0.2
-"""m/s on average backwards, to and fro counted together."""
+BACK_SPEED = 0.25
+"""m/s on average backwards."""
+SWITCH = 0.5
+"""s lost at each change of direction."""
 
 
 def prepare(vehicle: Vehicle, goal: Pose2D, distance: float) -> Move:
@@ -38,32 +41,57 @@ def prepare(vehicle: Vehicle, goal: Pose2D, distance: float) -> Move:
     is quickest; False when none has room.
     """
     vehicle.sense()
-    back = retreat_needed(vehicle, goal, distance)
-    if back == 0.0:
-        return True
+    retreat = quickest_retreat(vehicle, goal, distance)
     bearing = hop_bearing(vehicle, goal)
     if bearing is not None and (
-        back is None or _hop_time(vehicle, goal, bearing) < back / BACK_TIME
+        retreat is None or _hop_time(vehicle, goal, bearing) < retreat.seconds
     ):
         return (yield from _hop(vehicle, goal, bearing))
-    return False if back is None else (yield from back_off(vehicle, back))
+    if retreat is None or retreat.back == 0.0:
+        return retreat is not None
+    return (yield from back_off(vehicle, retreat.back))
 
 
-def retreat_needed(vehicle: Vehicle, goal: Pose2D, distance: float) -> float | None:
-    """How far to back up for the approach to succeed, m: 0 at once; None when nothing serves."""
-    pose = vehicle.pose()
-    margin = min(vehicle.config.margin, vehicle.room(goal, whole=False) - 0.005)
-    for back in np.arange(0.0, FARTHEST_BACK + 0.01, BACKS):
-        if back > 0.0 and not clear_behind(vehicle, pose, float(back)):
-            return None
-        start = pose @ Pose2D(-float(back), 0.0, 0.0)
+@dataclass(frozen=True, slots=True)
+class Retreat:
+    """How far to back up for the approach to succeed, m (0: not at all); seconds: both take."""
+
+    back: float
+    seconds: float
+
+
+def approach_is_sure(vehicle: Vehicle, goal: Pose2D, distance: float) -> bool:
+    """Whether `run_in`, begun now, ends within `distance` m of the goal with room all along."""
+    return _arrival(vehicle, vehicle.pose(), vehicle.speed(), goal).within(
+        distance * AIM, TURN_AT_END, _margin(vehicle, goal)
+    )
+
+
+def quickest_retreat(vehicle: Vehicle, goal: Pose2D, distance: float) -> Retreat | None:
+    """The quickest way to back up and approach, backing up by 0 m included; None without room."""
+    pose, best = vehicle.pose(), None
+    for back in (float(b) for b in np.arange(0.0, FARTHEST_BACK + 0.01, BACKS)):
+        if back > 0.0 and not clear_behind(vehicle, pose, back):
+            break
+        start = pose @ Pose2D(-back, 0.0, 0.0)
         speed = vehicle.speed() if back == 0.0 else (0.0, 0.0)
-        end = approach.simulate(
-            start, speed, goal, vehicle.limits, vehicle.costmap, vehicle.base_discs
-        )
-        if end.within(distance * AIM, TURN_AT_END, margin):
-            return float(back)
-    return None
+        end = _arrival(vehicle, start, speed, goal)
+        seconds = end.seconds + (back / BACK_SPEED + SWITCH if back else 0.0)
+        sure = end.within(distance * AIM, TURN_AT_END, _margin(vehicle, goal))
+        if sure and (best is None or seconds < best.seconds):
+            best = Retreat(back, seconds)
+    return best
+
+
+def _arrival(
+    vehicle: Vehicle, pose: Pose2D, speed: tuple[float, float], goal: Pose2D
+) -> approach.Arrival:
+    return approach.simulate(pose, speed, goal, vehicle.limits, vehicle.costmap, vehicle.base_discs)
+
+
+def _margin(vehicle: Vehicle, goal: Pose2D) -> float:
+    """Room that an approach must keep: the goal itself may offer less than the usual margin."""
+    return min(vehicle.config.margin, vehicle.room(goal, whole=False) - 0.005)
 
 
 def hop_bearing(vehicle: Vehicle, goal: Pose2D) -> float | None:
@@ -87,7 +115,7 @@ def hop_bearing(vehicle: Vehicle, goal: Pose2D) -> float | None:
 def _hop_time(vehicle: Vehicle, goal: Pose2D, bearing: float) -> float:
     pose = vehicle.pose()
     turns = abs(wrap_angle(bearing - pose.yaw)) + abs(wrap_angle(goal.yaw - bearing))
-    return turns / TURN_TIME + pose.distance_to(goal) / DRIVE_TIME
+    return 2.0 * SWITCH + turns / TURN_TIME + pose.distance_to(goal) / DRIVE_TIME
 
 
 def _hop(vehicle: Vehicle, goal: Pose2D, bearing: float) -> Move:

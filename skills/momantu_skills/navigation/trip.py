@@ -12,7 +12,7 @@ from momantu_skills.navigation.arrive import arrive, within
 from momantu_skills.navigation.confidence import is_localized, sigmas
 from momantu_skills.navigation.cruise import cruise, leave
 from momantu_skills.navigation.goals import Stand
-from momantu_skills.navigation.manoeuvre import AIM, TURN_AT_END, prepare, retreat_needed
+from momantu_skills.navigation.manoeuvre import approach_is_sure, prepare
 from momantu_skills.navigation.moves import back_off, turn_to
 from momantu_skills.navigation.mppi import Mppi
 from momantu_skills.navigation.route import Route, choose
@@ -95,7 +95,7 @@ def _go(vehicle: Vehicle, mppi: Mppi, to: Destination) -> Trip:
     for _ in range(3):
         if not (yield from _near(vehicle, goal(), distance)):
             yield from leave(vehicle, route.heading(vehicle.pose()))
-            yield from cruise(vehicle, mppi, route, (distance * AIM, TURN_AT_END))
+            yield from cruise(vehicle, mppi, route, distance)
             yield from _line_up(vehicle, goal(), distance)
         if (yield from arrive(vehicle, goal, distance, angle)):
             return
@@ -115,7 +115,7 @@ def _near(vehicle: Vehicle, goal: Pose2D, distance: float) -> Trip | Any:
 
 def _line_up(vehicle: Vehicle, goal: Pose2D, distance: float) -> Trip:
     """At the lead-in, but the approach is not sure: turn or hop until it is."""
-    if retreat_needed(vehicle, goal, distance) == 0.0:
+    if approach_is_sure(vehicle, goal, distance):
         return
     yield from vehicle.stop("line up")
     yield from prepare(vehicle, goal, distance)
