@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import re
 import subprocess
 import sys
 from collections.abc import Iterable
@@ -21,6 +22,17 @@ for name in sys.argv[1:]:
     else:
         print("GOOD", name, flush=True)
 """
+
+
+_NO_LIBRARY = re.compile(r"(?P<file>\S+\.so[.\d]*): cannot open shared object file")
+
+
+def import_cure(name: str, reason: str) -> str:
+    """What helps against an import error: a package of the system, or the module once more."""
+    library = _NO_LIBRARY.search(reason)
+    if library is not None:
+        return f"install the system's package that holds {library['file']}"
+    return f"`pip install --force-reinstall` the package of {name}"
 
 
 def import_errors(names: Iterable[str]) -> dict[str, str]:

@@ -152,7 +152,9 @@ def _one_at_a_time() -> Iterator[None]:
     """
     try:
         cache_folder().mkdir(parents=True, exist_ok=True)
-        lock = (cache_folder() / "vulkan.lock").open("w")
+        # The lock may be there already, in a folder that has become read-only since.
+        with tempfile.TemporaryFile(dir=cache_folder()):
+            lock = (cache_folder() / "vulkan.lock").open("w")
     except OSError as error:
         raise VulkanMissingError(
             f"the cache folder {cache_folder()} cannot be written ({error.strerror}); "

@@ -10,18 +10,20 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from momantu_bt.diagnosis import Diagnosis
-from momantu_bt.diagnosis.imports import import_errors
+from momantu_bt.diagnosis.imports import import_cure, import_errors
 
 LIBRARIES = ("pinocchio", "coal", "ompl", "toppra", "numba", "scipy", "pyapriltags")
+PREPARATION = "momantu_skills.manipulation"
+"""Imported before the libraries, as skills do: it finds the OpenMP runtime that some need."""
 HEADLESS = "opencv-python-headless"
 
 
 def diagnose() -> Iterator[Diagnosis]:
     """Diagnoses of the libraries that skills stand on; silent where none is installed."""
     present = [name for name in LIBRARIES if importlib.util.find_spec(name) is not None]
-    errors = import_errors(present)
+    errors = import_errors([PREPARATION, *present] if present else [])
     for name, reason in errors.items():
-        yield Diagnosis(name, False, f"cannot be imported: {reason}", "reinstall it with pip")
+        yield Diagnosis(name, False, f"cannot be imported: {reason}", import_cure(name, reason))
     if present and not errors:
         yield Diagnosis("libraries for skills", True, f"{', '.join(present)} can be imported")
     if importlib.util.find_spec("cv2") is not None:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from momantu_bt.diagnosis import Diagnosis
-from momantu_bt.diagnosis.imports import import_errors
+from momantu_bt.diagnosis.imports import import_cure, import_errors
 from momantu_bt.vulkan import VulkanMissingError, ensure_vulkan
 from momantu_bt.vulkan.choose import CURE
 
@@ -20,7 +20,7 @@ def diagnose() -> Iterator[Diagnosis]:
     present = [name for name in LIBRARIES if importlib.util.find_spec(name) is not None]
     errors = import_errors(present)
     for name, reason in errors.items():
-        yield Diagnosis(name, False, f"cannot be imported: {reason}", "reinstall it with pip")
+        yield Diagnosis(name, False, f"cannot be imported: {reason}", import_cure(name, reason))
     if present and not errors:
         yield Diagnosis("libraries for worlds", True, f"{', '.join(present)} can be imported")
     if importlib.util.find_spec("mani_skill") is not None:
