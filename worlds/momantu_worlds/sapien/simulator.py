@@ -92,7 +92,7 @@ class Simulator:
             for wrist in self._wrists:
                 wrist.collect()
             if self.truth.watching:
-                self.truth.collect()
+                self.truth.collect(last=index == SUB_STEPS - 1)
         self._ticks += 1
         self.robot.end_tick()
 

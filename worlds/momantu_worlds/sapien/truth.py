@@ -9,6 +9,7 @@ import numpy as np
 
 from momantu_bt.geometry import Array, Pose2D, Transform
 from momantu_bt.world import TICK
+from momantu_worlds.sapien.config import SUB_STEPS
 from momantu_worlds.sapien.poses import transform_of
 from momantu_worlds.sapien.robot_model import RobotModel
 
@@ -18,7 +19,8 @@ class Contact:
     """Two things that touched during the last tick.
 
     first, second: names of bodies, or of the robot's links (which come first).
-    force: length of the contact force, averaged over the tick, N.
+    force: length of the contact force, averaged over the tick (between two bodies: over its last
+    physics step), N.
     """
 
     first: str
@@ -35,6 +37,7 @@ class Truth:
         self._impulses: dict[tuple[str, str], Array] = {}
         self.watching = False
         self.robot_links = frozenset(model.links)
+        self._links = frozenset(model.links.values())
 
     def add(self, name: str, entity: Any) -> None:
         """Make a body known by name."""
@@ -88,17 +91,27 @@ class Truth:
         """Forget the contacts of the tick before."""
         self._impulses.clear()
 
-    def collect(self) -> None:
-        """Add the contact impulses of the physics step just made."""
+    def collect(self, *, last: bool) -> None:
+        """Add the contact impulses of the physics step just made.
+
+        The robot's contacts are added up over all steps of a tick, for they may be blows; those
+        between bodies are taken from its last step, which is enough for what rests on what.
+        """
         for contact in self._system.get_contacts():
-            impulse = sum(point.impulse for point in contact.points)
-            if not np.any(impulse):
-                continue
-            a, b = contact.bodies[0].name, contact.bodies[1].name
-            sign = 1.0
-            if (a not in self.robot_links, a) > (b not in self.robot_links, b):
-                a, b, sign = b, a, -1.0
-            self._impulses[a, b] = self._impulses.get((a, b), 0.0) + sign * np.asarray(impulse)
+            a, b = contact.bodies
+            if a in self._links or b in self._links:
+                self._add(a.name, b.name, contact, 1)
+            elif last:
+                self._add(a.name, b.name, contact, SUB_STEPS)
+
+    def _add(self, a: str, b: str, contact: Any, steps: int) -> None:
+        impulse = sum((point.impulse for point in contact.points), np.zeros(3)) * steps
+        if not impulse.any():
+            return
+        if (a not in self.robot_links, a) > (b not in self.robot_links, b):
+            a, b, impulse = b, a, -impulse
+        before = self._impulses.get((a, b))
+        self._impulses[a, b] = impulse if before is None else before + impulse
 
     def _entity(self, name: str) -> Any:
         if name not in self._entities:

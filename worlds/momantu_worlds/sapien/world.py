@@ -61,13 +61,13 @@ class SapienWorld:
 
     def open_video(self, path: Path, title: str) -> Video:
         """Start a film at `path`."""
-        from momantu_worlds.scenes.video import open_video
+        from momantu_worlds.display.video import open_video
 
         return open_video(self.simulator, path, title)
 
     def open_view(self, port: int) -> View:
         """Serve the scene to a browser on this machine."""
-        from momantu_worlds.scenes.view import open_view
+        from momantu_worlds.display.view import open_view
 
         return open_view(self.simulator, self._episode, port)
 
