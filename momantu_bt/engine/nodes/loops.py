@@ -7,7 +7,8 @@
 | RUNNING       | RUNNING           | RUNNING              | RUNNING                 |
 | SKIPPED       | SKIPPED           | SKIPPED              | RUNNING                 |
 
-A tick passes between two rounds, so that what is around can interrupt. -1 rounds are without end.
+After a round that began and ended within one tick a tick passes, so that what is around can
+interrupt; after a longer one the next begins at once. -1 rounds are without end.
 """
 
 from __future__ import annotations

@@ -1,0 +1,134 @@
+"""Every decorator: its status for each status of its child, and its own memory."""
+
+from __future__ import annotations
+
+import pytest
+
+from momantu_bt.engine.nodes.forcing import ForceFailure, ForceSuccess, Inverter
+from momantu_bt.engine.nodes.loops import (
+    KeepRunningUntilFailure,
+    Repeat,
+    RetryUntilSuccessful,
+    RunOnce,
+)
+from momantu_bt.engine.nodes.timing import Delay, Sleep, Timeout
+from momantu_bt.engine.status import IDLE, RUNNING
+
+TABLE = [
+    (Inverter, "RS", {}, "RF"),
+    (Inverter, "F", {}, "S"),
+    (Inverter, "K", {}, "K"),
+    (ForceSuccess, "RF", {}, "RS"),
+    (ForceSuccess, "K", {}, "K"),
+    (ForceFailure, "RS", {}, "RF"),
+    (ForceFailure, "F", {}, "F"),
+    (KeepRunningUntilFailure, "SSF", {}, "RRF"),
+    (KeepRunningUntilFailure, "KF", {}, "RF"),
+    (Repeat, "S", {"cycles": 3}, "RRS"),
+    (Repeat, "SF", {"cycles": 3}, "RF"),
+    (Repeat, "RS", {"cycles": 1}, "RS"),
+    (Repeat, "K", {"cycles": 3}, "K"),
+    (Repeat, "S", {"cycles": 0}, "S"),
+    (RetryUntilSuccessful, "FFS", {"attempts": 3}, "RRS"),
+    (RetryUntilSuccessful, "F", {"attempts": 3}, "RRF"),
+    (RetryUntilSuccessful, "RFRS", {"attempts": 2}, "RRS"),
+    (RetryUntilSuccessful, "K", {"attempts": 2}, "K"),
+    (RetryUntilSuccessful, "FFFFS", {"attempts": -1}, "RRRRS"),
+    (Timeout, "RRS", {"duration": 1.0}, "RRS"),
+    (Timeout, "R", {"duration": 0.1}, "RRF"),
+    (Timeout, "RRRRS", {"duration": 0.0}, "RRRRS"),
+    (Delay, "S", {"duration": 0.1}, "RRS"),
+    (Delay, "F", {"duration": 0.0}, "F"),
+]
+
+
+@pytest.mark.parametrize(("kind", "child", "ports", "expected"), TABLE)
+def test_status_for_each_status_of_the_child(bench, kind, child, ports, expected):
+    node = bench.node(kind, [child], **ports)
+    assert bench.ticks(node) == expected
+    assert node.child.state is IDLE
+
+
+@pytest.mark.parametrize("kind", [Inverter, ForceSuccess, KeepRunningUntilFailure])
+def test_halting_a_decorator_halts_its_child(bench, kind):
+    node = bench.node(kind, ["R"])
+    bench.tick(node)
+    node.reset()
+    assert node.child.halts == 1
+    assert node.child.state is IDLE
+
+
+def test_a_timeout_names_what_was_running(bench):
+    node = bench.node(Timeout, ["R"], duration=0.1)
+    bench.ticks(node)
+    assert node.failure.code == "TIMEOUT"
+    assert "0.1 s" in node.failure.message
+    assert node.failure.cause.code == "HALTED"
+    assert node.failure.cause.node == "leaf0"
+    assert node.child.halts == 1
+
+
+def test_a_timeout_starts_anew_after_a_halt(bench):
+    node = bench.node(Timeout, ["R"], duration=0.1)
+    bench.tick(node)
+    node.reset()
+    assert bench.ticks(node) == "RRF"
+
+
+def test_a_delay_waits_again_at_its_next_start(bench):
+    node = bench.node(Delay, ["S"], duration=0.1)
+    assert bench.ticks(node) == "RRS"
+    assert bench.ticks(node) == "RRS"
+
+
+def test_sleep_waits_by_the_clock_and_forgets_a_halt(bench):
+    node = bench.node(Sleep, [], duration=0.1)
+    assert bench.ticks(node) == "RRS"
+    bench.tick(node)
+    node.reset()
+    assert bench.ticks(node) == "RRS"
+    assert bench.node(Sleep, [], duration=0.0).execute().value == "SUCCESS"
+
+
+@pytest.mark.parametrize(("then_skip", "later"), [(True, "K"), (False, "F")])
+def test_run_once_runs_its_child_once(bench, then_skip, later):
+    node = bench.node(RunOnce, ["RF"], then_skip=then_skip)
+    assert bench.ticks(node) == "RF"
+    assert bench.tick(node) == later
+    assert bench.tick(node) == later
+    assert node.child.given == 2
+
+
+def test_retry_keeps_the_code_and_adds_the_tries(bench):
+    node = bench.node(RetryUntilSuccessful, ["F"], attempts=3)
+    bench.ticks(node)
+    assert (node.failure.code, node.failure.node) == ("FAILED", "leaf0")
+    assert (node.failure.tries, node.failure.most_tries) == (3, 3)
+
+
+def test_retry_within_retry_keeps_both_counts(bench):
+    inner = bench.node(RetryUntilSuccessful, ["F"], attempts=2)
+    outer = bench.node(RetryUntilSuccessful, [inner], attempts=3)
+    bench.ticks(outer, most=20)
+    assert (outer.failure.tries, outer.failure.most_tries) == (3, 3)
+    assert (outer.failure.cause.tries, outer.failure.cause.most_tries) == (2, 2)
+
+
+def test_counts_are_forgotten_by_a_halt(bench):
+    node = bench.node(RetryUntilSuccessful, ["FFRFFS"], attempts=3)
+    for _ in range(3):
+        bench.tick(node)
+    assert node.count == 2
+    node.reset()
+    assert bench.ticks(node) == "RRS"
+
+
+def test_a_node_counts_its_runs_failures_ticks_and_active_seconds(bench):
+    node = bench.node(RetryUntilSuccessful, ["RRFRS"], attempts=2)
+    bench.ticks(node)
+    leaf = node.child
+    assert (leaf.ticks, leaf.runs, leaf.failures) == (5, 2, 1)
+    assert leaf.seconds == pytest.approx(0.15)
+    assert (node.runs, node.failures) == (1, 0)
+    assert node.seconds == pytest.approx(0.15)
+    assert node.state is not RUNNING
