@@ -13,15 +13,19 @@ from momantu_bt.messages import JointTrajectory, RobotState
 from momantu_bt.robot import Robot
 from momantu_bt.service import HeldObject
 from momantu_bt.skill import Skill
-from momantu_skills.manipulation.collision import CollisionWorld
+from momantu_skills.manipulation.collision import CollisionWorld, Obstacle
 from momantu_skills.manipulation.config import HandConfig, PlanningConfig
 from momantu_skills.manipulation.escape import escape
 from momantu_skills.manipulation.motion import Watch, follow
 from momantu_skills.manipulation.planning import Planner, Valid
-from momantu_skills.manipulation.scene import Scene
+from momantu_skills.manipulation.scene import Cut, Scene
 from momantu_skills.manipulation.service import PlanningSceneService
 from momantu_skills.manipulation.timing import timed
 
+SLOW = 2.0
+"""Scaled rad per rad or m above which a joint is slow (see Group.scale)."""
+LEAN_PENALTY = 2.0
+"""s per rad: turning what is held upside down on the way costs about as much."""
 ACTUATOR = "arm"
 """The actuator that carries the hand, and the planning group of the same name."""
 
@@ -46,16 +50,57 @@ class Arm:
         """The arm's joints (n,) of now, within their limits."""
         return self.scene.model.joints(self.robot.state())
 
-    def route(self, goals: Sequence[Array], held: HeldObject | None) -> list[JointTrajectory]:
+    @property
+    def open_width(self) -> float:
+        """The widest opening of the gripper, m."""
+        return self.scene.model.description.end_effector.max_width
+
+    def seeds(self, start: Array, count: int) -> Array:
+        """Starts (count, n) for inverse kinematics: here, then random ones.
+
+        Every other one leaves slow joints where they are, for moving them takes long.
+        """
+        lower = np.where(self.group.endless, -np.pi, self.group.lower)
+        upper = np.where(self.group.endless, np.pi, self.group.upper)
+        seeds = self.skill.random.uniform(lower, upper, (count, len(start)))
+        slow = self.group.scale > SLOW
+        seeds[::2, slow] = start[slow]
+        seeds[0] = start
+        return np.asarray(seeds)
+
+    def carry_penalty(self, grasp_from_object: Transform) -> float:
+        """Seconds a grasp may cost more than one that is upright in the pose for carrying."""
+        pose = self.scene.model.description.named_poses["carry"]
+        joints = np.array([pose.get(name, 0.0) for name in self.group.names])
+        tip_from_object = self.scene.model.tip_from_grasp @ grasp_from_object
+        return LEAN_PENALTY * _lean(self.group.tip_matrix(joints)[:3, :3], tip_from_object)
+
+    def turned(self, path: Array, reference: Array) -> Array:
+        """A path (k, n) or joints (n,) with endless joints turned as one to meet `reference`."""
+        first = path if path.ndim == 1 else path[0]
+        return np.asarray(path + (self.group.nearest_turn(first, reference) - first))
+
+    def route(
+        self,
+        goals: Sequence[Array],
+        held: HeldObject | None,
+        *,
+        width: float | None = None,
+        cut: Cut | None = None,
+        extra: tuple[Obstacle, ...] = (),
+    ) -> list[JointTrajectory]:
         """Trajectories, one after the other, from here to the first reachable of `goals`.
 
         Transits keep the configured margin; a start that does not is left by an escape first.
+
+        width, cut, extra: see `Scene.world`.
 
         Raises:
             Failure: NO_PLAN or START_IN_COLLISION.
         """
         state, start = self.state, self.joints
-        world = self.scene.world(state, held, self.planning.margin)
+        margin = self.planning.margin
+        world = self.scene.world(state, held, margin, width=width, cut=cut, extra=extra)
         first: list[JointTrajectory] = []
         if not world.free(start):
             path = self._escape(state, start, held, world)
@@ -90,8 +135,7 @@ class Arm:
     def lean(self, held: HeldObject, q: Array) -> float:
         """Angle of what is held from upright at joints (n,), rad."""
         tip_from_object = self.scene.model.tip_from_grasp @ held.grasp_from_object
-        axis = self.group.tip_matrix(q)[:3, :3] @ tip_from_object.rotation[:, 2]
-        return math.acos(max(-1.0, min(1.0, float(axis[2]))))
+        return _lean(self.group.tip_matrix(q)[:3, :3], tip_from_object)
 
     def _upright(
         self, world: CollisionWorld, held: HeldObject | None, start: Array, goals: Sequence[Array]
@@ -134,6 +178,12 @@ class Arm:
         else:
             text = f"no way found to any of {len(goals)} goal postures"
         return Failure("NO_PLAN", text, goals=len(goals), checks=world.checks)
+
+
+def _lean(base_from_tip: Array, tip_from_object: Transform) -> float:
+    """Angle between the object's z axis and the vertical, for the tip's rotation (3, 3), rad."""
+    upward = float(base_from_tip[2] @ tip_from_object.rotation[:, 2])
+    return math.acos(max(-1.0, min(1.0, upward)))
 
 
 def straight_line(start: Array, end: Array, step: float) -> Array:

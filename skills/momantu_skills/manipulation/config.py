@@ -88,5 +88,3 @@ class HandConfig:
     """m between solved poses on a straight line."""
     old_pose: float = 60.0
     """s; a pose older than this is not touched."""
-    far_pose: float = 3.0
-    """m driven since a pose was measured: odometry has drifted by centimetres."""

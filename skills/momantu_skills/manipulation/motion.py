@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Sequence
 
 import numpy as np
 
 from momantu_bt.failure import Failure
 from momantu_bt.geometry import Array
-from momantu_bt.messages import JointTrajectory, RobotState
+from momantu_bt.messages import JointTrajectory
 from momantu_bt.robot import Robot
 from momantu_bt.skill import Clock
 
@@ -20,8 +20,9 @@ SETTLE = 1.5
 """s after the trajectory's end in which the joints must arrive."""
 ARRIVED = 0.02
 """rad or m from the end at which the joints have arrived."""
-STILL = 0.03
-"""rad/s or m/s below which a joint stands still: its measurement noise is 0.002."""
+STILL = 2e-3
+"""rad or m a joint may move between two ticks and still stand: measurement noise and creep.
+Speeds are no good for this: a clamped joint may report one while its position stays."""
 CODE = "ARM_STUCK"
 
 Watch = Callable[[Robot], bool]
@@ -44,14 +45,16 @@ def follow(
         Failure: ARM_STUCK, when the joints stay behind or never arrive; the actuator is stopped.
     """
     began = behind_since = clock.now()
+    last = _positions(robot, trajectory.names)
     while True:
         now = clock.now()
-        state = robot.state()
-        positions = _positions(state, trajectory)
+        positions = _positions(robot, trajectory.names)
+        still = float(np.abs(positions - last).max()) < STILL
+        last = positions
         if until is not None and until(robot):
             yield from brake(robot, clock, actuator, phase)
             return False
-        if now - began >= trajectory.duration and _there(state, positions, trajectory):
+        if now - began >= trajectory.duration and still and _arrived(positions, trajectory):
             return True
         lag = np.abs(positions - expected(trajectory, now - began))
         if float(lag.max()) < LAG:
@@ -69,12 +72,14 @@ def brake(
     """Stop an actuator and wait until its joints stand still, at most SETTLE seconds."""
     joints = robot.description.actuators[actuator].joints
     began = clock.now()
+    last = _positions(robot, joints)
     robot.stop(actuator)
     yield phase
     while clock.now() - began < SETTLE:
-        state = robot.state()
-        if all(abs(float(state.velocities[state.names.index(j)])) < STILL for j in joints):
+        now = _positions(robot, joints)
+        if float(np.abs(now - last).max()) < STILL:
             return
+        last = now
         yield phase
 
 
@@ -88,14 +93,13 @@ def expected(trajectory: JointTrajectory, after: float) -> Array:
     return np.asarray(before + share * (later - before))
 
 
-def _positions(state: RobotState, trajectory: JointTrajectory) -> Array:
-    return np.array([state.position(name) for name in trajectory.names])
+def _positions(robot: Robot, joints: Sequence[str]) -> Array:
+    state = robot.state()
+    return np.array([state.position(name) for name in joints])
 
 
-def _there(state: RobotState, positions: Array, trajectory: JointTrajectory) -> bool:
-    speeds = np.array([state.velocities[state.names.index(n)] for n in trajectory.names])
-    close = np.abs(positions - trajectory.positions[-1]).max() < ARRIVED
-    return bool(close and np.abs(speeds).max() < STILL)
+def _arrived(positions: Array, trajectory: JointTrajectory) -> bool:
+    return float(np.abs(positions - trajectory.positions[-1]).max()) < ARRIVED
 
 
 def _stuck(trajectory: JointTrajectory, positions: Array, after: float) -> Failure:

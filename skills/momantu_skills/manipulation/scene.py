@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TypeAlias
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,7 +12,7 @@ from momantu_bt.geometry import Array, Transform
 from momantu_bt.messages import CameraImage, DetectedObject, RobotState, SupportPlane
 from momantu_bt.robot import Robot, RobotDescription, read_camera
 from momantu_bt.service import HeldObject
-from momantu_skills.manipulation.collision import Attached, BodyPairs, CollisionWorld
+from momantu_skills.manipulation.collision import Attached, BodyPairs, CollisionWorld, Obstacle
 from momantu_skills.manipulation.config import SceneConfig
 from momantu_skills.manipulation.mask import LinkMask, floor_outline
 from momantu_skills.manipulation.model import arm_model
@@ -32,6 +34,8 @@ DISC = 0.25
 """m; radius of the support assumed below an object when too little of it is seen."""
 FLOOR_BAND = 0.06
 """m above the floor below which points are the floor."""
+Cut: TypeAlias = tuple[Transform, tuple[float, float, float]]
+"""A box: `odom_from_box`, and half its edges in m."""
 SEEN_THROUGH = 0.05
 """m; an old cell is gone when the picture shows something that much behind it."""
 
@@ -174,13 +178,14 @@ class Scene:
         *,
         width: float | None = None,
         held_on_support: bool = False,
-        cut: tuple[Transform, tuple[float, float, float]] | None = None,
+        cut: Cut | None = None,
+        extra: tuple[Obstacle, ...] = (),
     ) -> CollisionWorld:
         """A collision world of now. Everything is placed by the state's odometry.
 
         width: the gripper's opening to check with, m; the measured one if None.
-        held_on_support: what is held may touch supports. cut: `odom_from_box` and half edges of
-        a box in which cells are ignored.
+        held_on_support: what is held may touch supports. cut: a box in which cells are ignored.
+        extra: more solids.
         """
         base_from_odom = state.odom_from_base.inverse()
         around = self.surroundings if cut is None else self.surroundings.without(*cut)
@@ -192,8 +197,8 @@ class Scene:
             self.body,
             self.model.configuration(state, width),
             obstacles=[
-                support.obstacle(base_from_odom, f"support {i}")
-                for i, support in enumerate(around.supports)
+                *(s.obstacle(base_from_odom, f"support {i}") for i, s in enumerate(around.supports)),
+                *extra,
             ],
             cells=cells,
             voxel=self.config.voxel,

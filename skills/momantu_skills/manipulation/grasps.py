@@ -1,0 +1,142 @@
+"""Grasps of a measured shape, from many directions, in the object's own frame."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from momantu_bt.geometry import Array, Transform
+from momantu_bt.messages import DetectedObject
+from momantu_bt.robot import EndEffector
+
+AZIMUTHS = 24
+"""Directions around an upright cylinder."""
+TILTS = (0.0, math.radians(15), math.radians(30), math.radians(50))
+"""rad by which the fingers point below the horizontal."""
+HEIGHTS = (0.5, 0.62, 0.78)
+"""Where along the object's height it is held, as shares of it."""
+TOP_TURNS = 12
+"""Directions of the fingers when they come from above."""
+SLACK = 0.004
+"""m between palm and object: half of what the detection is wrong by, the rest only pushes."""
+PAD_SHARE = 0.012
+"""m of the pads' length that must lie beyond the object's axis, so that they close on it."""
+OPENING = 0.014
+"""m by which the open gripper must be wider than the object."""
+TOP_PENALTY = 3.0
+"""s; a grasp from above cannot be carried upright and hides what it holds."""
+TILT_PENALTY = 1.5
+"""s per rad of tilt: the same to a lesser degree."""
+OFF_CENTRE_PENALTY = 4.0
+"""s per share of the height away from HEIGHTS[0]: what is held far from its middle swings."""
+
+
+@dataclass(frozen=True, eq=False)
+class Grasp:
+    """object_from_grasp: the grasp frame's pose when the fingers close. width: between the pads
+    then, m. penalty: seconds it may cost more than another grasp and still be as good."""
+
+    object_from_grasp: Transform
+    width: float
+    penalty: float
+
+
+def grasps_for(thing: DetectedObject, hand: EndEffector, palm: Array) -> list[Grasp]:
+    """Every grasp worth trying, in a fixed order; empty when the object is too wide.
+
+    palm: corners (n, 3) of the hand's body in the grasp frame, m.
+    """
+    found: list[Grasp] = []
+    for width, direction, top in _approaches(thing):
+        if width > hand.max_width - OPENING:
+            continue
+        if top:
+            found += _from_above(thing, hand, direction, width)
+        else:
+            found += _from_side(thing, hand, palm, direction, width)
+    return [flipped for grasp in found for flipped in (grasp, _flipped(grasp))]
+
+
+def _approaches(thing: DetectedObject) -> Iterator[tuple[float, float, bool]]:
+    """(width between pads, direction of the fingers in the object's xy plane, from above)."""
+    if thing.shape == "cylinder":
+        width = max(thing.size[0], thing.size[1])
+        for i in range(AZIMUTHS):
+            yield width, 2 * math.pi * i / AZIMUTHS, False
+        for i in range(TOP_TURNS):
+            yield width, math.pi * i / TOP_TURNS, True
+        return
+    for i in range(4):
+        width = thing.size[1 if i % 2 == 0 else 0]
+        yield width, i * math.pi / 2, False
+        if i < 2:
+            yield width, i * math.pi / 2, True
+
+
+def _from_side(
+    thing: DetectedObject, hand: EndEffector, palm: Array, direction: float, width: float
+) -> Iterator[Grasp]:
+    surface = _surface(thing)
+    for tilt, share in product(TILTS, HEIGHTS):
+        x = np.array(
+            [
+                math.cos(tilt) * math.cos(direction),
+                math.cos(tilt) * math.sin(direction),
+                -math.sin(tilt),
+            ]
+        )
+        y = np.array([-math.sin(direction), math.cos(direction), 0.0])
+        rotation = np.stack([x, y, np.cross(x, y)], axis=1)
+        centre = np.array([0.0, 0.0, (share - 0.5) * thing.size[2]])
+        back = _setback(surface, centre, rotation, hand, palm)
+        if back is None:
+            continue
+        penalty = TILT_PENALTY * tilt + OFF_CENTRE_PENALTY * (share - HEIGHTS[0])
+        yield Grasp(Transform.from_rotation(rotation, centre - back * x), width, penalty)
+
+
+def _setback(
+    surface: Array, centre: Array, rotation: Array, hand: EndEffector, palm: Array
+) -> float | None:
+    """m the grasp frame stays behind the object's axis so that the palm clears it; None if the
+    pads would then no longer reach past the axis."""
+    local = (surface - centre) @ rotation
+    reach_y, reach_z = np.abs(palm[:, 1]).max(), np.abs(palm[:, 2]).max()
+    before = local[(np.abs(local[:, 1]) <= reach_y) & (np.abs(local[:, 2]) <= reach_z)]
+    deepest = -float(before[:, 0].min()) if len(before) else 0.0
+    back = max(0.0, deepest - (hand.hand_clearance - SLACK))
+    return back if back <= hand.pad_length / 2 - PAD_SHARE else None
+
+
+def _from_above(
+    thing: DetectedObject, hand: EndEffector, direction: float, width: float
+) -> Iterator[Grasp]:
+    x = np.array([0.0, 0.0, -1.0])
+    y = np.array([-math.sin(direction), math.cos(direction), 0.0])
+    rotation = np.stack([x, y, np.cross(x, y)], axis=1)
+    depth = min(hand.hand_clearance - SLACK, thing.size[2] / 2)
+    centre = np.array([0.0, 0.0, thing.size[2] / 2 - depth])
+    yield Grasp(Transform.from_rotation(rotation, centre), width, TOP_PENALTY)
+
+
+def _flipped(grasp: Grasp) -> Grasp:
+    """The same grasp with the hand turned by half a turn about its fingers' direction."""
+    turn = Transform((0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0))
+    return Grasp(grasp.object_from_grasp @ turn, grasp.width, grasp.penalty)
+
+
+def _surface(thing: DetectedObject) -> Array:
+    """Points (n, 3) on the object's surface, about a centimetre apart, in its frame."""
+    half = np.array(thing.size) / 2
+    heights = np.linspace(-half[2], half[2], max(2, math.ceil(thing.size[2] / 0.01)))
+    angles = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
+    circle = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    if thing.shape == "cylinder":
+        ring = circle * max(half[0], half[1])
+    else:
+        ring = circle / np.abs(circle).max(axis=1, keepdims=True) * half[:2]
+    return np.vstack([np.column_stack([ring, np.full(len(ring), z)]) for z in heights])

@@ -1,0 +1,214 @@
+"""pick: grasp a detected object and lift it, and make sure that it really is in the hand."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from typing import TYPE_CHECKING, Any
+
+from momantu_bt.failure import Failure
+from momantu_bt.geometry import Array, Transform
+from momantu_bt.messages import DetectedObject
+from momantu_bt.robot import CAMERA_CARRIER, Robot
+from momantu_bt.skill import In, Needs, Run, Skill, compute
+
+if TYPE_CHECKING:
+    from momantu_skills.manipulation.arm import Arm
+    from momantu_skills.manipulation.reaching import PickPlan
+
+THINKING = 0.4
+"""s that choosing a grasp and planning are given: twice the median."""
+LEAST_WEIGHT = 0.5
+"""N by which the wrist must be heavier with the object: four times the sensor's noise."""
+BUMP = 25.0
+"""N on the wrist that stop the approach: enough to push a can aside, far from doing damage."""
+
+
+class Pick(Skill):
+    """Look, reach, close, check, lift, look again.
+
+    Fails with a code that says what the world was like: see `failures`. After a failure the hand
+    is open and drawn back, unless something else held the arm.
+    """
+
+    object: DetectedObject = In(doc="what to grasp, as detected; pose in odom, not old")
+    lift: float = In(0.12, unit="m", doc="how far it is lifted straight up")
+    failures = {
+        "STALE_POSE": "the pose is too old, or something was touched since it was seen",
+        "NOTHING_THERE": "the camera sees nothing where the object should stand",
+        "NO_GRASP": "no grasp can be approached, held and lifted from here",
+        "NO_PLAN": "the grasps can be reached, but no way to them was found",
+        "GRASP_MISSED": "the fingers closed on nothing, or on something of another size",
+        "SLIPPED": "it was between the fingers and is not any more",
+        "HAND_FULL": "the hand holds something already",
+        "ARM_STUCK": "the arm or the gripper does not follow its commands",
+    }
+    uses = {"arm", "gripper", CAMERA_CARRIER}
+    planning_scene: Any = Needs()
+
+    def run(self, robot: Robot) -> Run:
+        """The whole skill; each step is a method below."""
+        from momantu_skills.manipulation.arm import Arm
+
+        arm = Arm(self, robot, self.planning_scene)
+        self._check_start(arm)
+        yield from self._look(arm)
+        plan = yield from compute(lambda: self._plan(arm), THINKING)
+        yield from self._reach(arm, plan)
+        rest = yield from self._close(arm, plan)
+        yield from self._lift(arm, plan, rest)
+        yield from self._look_again(arm)
+
+    def _check_start(self, arm: Arm) -> None:
+        from momantu_skills.manipulation.freshness import check_fresh
+
+        held = self.planning_scene.held
+        if held is not None:
+            raise Failure("HAND_FULL", f"the hand already holds a {held.object.category}")
+        last = self.planning_scene.last_contact
+        check_fresh(self.object.pose, self.object.category, self.clock.now(), last, arm.hand)
+
+    def _look(self, arm: Arm) -> Run:
+        """See the surroundings, and that something stands where the object should be."""
+        from momantu_skills.manipulation.looks import stands_there
+
+        yield from self._turn_camera(arm)
+        self.planning_scene.observe(arm.robot)
+        arm.scene.support_below(self.object)
+        thing = self.object
+        pose, support = thing.pose.transform, thing.support_height
+        if not stands_there(arm.scene.points, pose, thing, support):
+            x, y, z = pose.position
+            raise Failure(
+                "NOTHING_THERE",
+                f"the camera sees no {thing.category} at ({x:.2f}, {y:.2f}, {z:.2f}) m in odom",
+                position=[float(x), float(y), float(z)],
+            )
+
+    def _turn_camera(self, arm: Arm) -> Run:
+        """Point the camera at the object as well as the robot can."""
+        from momantu_skills.perception.looking import look_at
+
+        try:
+            yield from look_at(self, arm.robot, self.object.pose.position)
+        except Failure as failure:
+            if failure.code != "OUT_OF_VIEW":
+                raise
+
+    def _plan(self, arm: Arm) -> PickPlan:
+        from momantu_skills.manipulation.reaching import plan_pick
+
+        try:
+            return plan_pick(arm, self.object, self.lift)
+        except Failure as failure:
+            if failure.code != "START_IN_COLLISION":
+                raise
+            raise Failure("NO_PLAN", failure.value.message, **failure.value.data) from None
+
+    def _reach(self, arm: Arm, plan: PickPlan) -> Run:
+        """Open on the way to the pre-grasp, then go straight in."""
+        from momantu_bt.messages import GripperCommand
+        from momantu_skills.manipulation.hand import bump, open_hand, rested_force
+
+        effector = arm.robot.description.end_effector
+        opened = GripperCommand(effector.max_width, arm.hand.force)
+        for trajectory in plan.transit:
+            for phase in arm.follow(trajectory, "reaching"):
+                arm.robot.command(effector.actuator, opened)
+                yield phase
+        yield from self._gripper_or_stuck(
+            open_hand(arm.robot, self.clock, effector.max_width, arm.hand.force, arm.hand.close_time)
+        )
+        rest = yield from rested_force(arm.robot, self.frames, "feeling", 3)
+        watch = bump(self.frames, rest, BUMP)
+        arrived = yield from arm.follow(plan.approach, "approaching", watch)
+        if not arrived:
+            self.planning_scene.touched()
+            yield from self._draw_back(arm)
+            raise Failure("GRASP_MISSED", "the hand met something before it was around the object")
+
+    def _close(self, arm: Arm, plan: PickPlan) -> Generator[str, None, Array | None]:
+        """Close with a force limit and judge the opening; the wrist's force before that."""
+        from momantu_skills.manipulation.hand import move_gripper, rested_force
+
+        hand = arm.hand
+        rest = yield from rested_force(arm.robot, self.frames, "feeling")
+        width = yield from move_gripper(
+            arm.robot, self.clock, 0.0, hand.force, hand.close_time, "closing"
+        )
+        self.planning_scene.touched()
+        effort = arm.state.gripper_effort
+        fits = abs(width - plan.grasp.width) <= hand.width_tolerance
+        if not fits or effort < arm.scene.config.least_effort:
+            yield from self._give_up(arm, plan)
+            raise Failure(
+                "GRASP_MISSED",
+                f"the fingers closed to {width * 1000:.0f} mm with {effort:.0f} N; "
+                f"the {self.object.category} measures {plan.grasp.width * 1000:.0f} mm there",
+                width=width,
+                expected=plan.grasp.width,
+                effort=effort,
+            )
+        self.planning_scene.grasped(self.object, self._grasp_from_object(arm, plan))
+        return rest
+
+    def _grasp_from_object(self, arm: Arm, plan: PickPlan) -> Transform:
+        """Where the object is in the hand: as detected, but centred between the fingers."""
+        state = arm.state
+        base_from_grasp = arm.group.tip_pose(arm.joints) @ arm.scene.model.tip_from_grasp
+        odom_from_grasp = state.odom_from_base @ base_from_grasp
+        seen = odom_from_grasp.inverse() @ self.object.pose.transform
+        planned = plan.grasp.object_from_grasp.inverse()
+        return Transform((seen.position[0], planned.position[1], seen.position[2]), seen.quaternion)
+
+    def _lift(self, arm: Arm, plan: PickPlan, rest: Array | None) -> Run:
+        """Lift; it must still be there, and weigh something."""
+        from momantu_skills.manipulation.hand import rested_force
+
+        yield from arm.follow(plan.lift, "lifting")
+        loaded = yield from rested_force(arm.robot, self.frames, "weighing")
+        weight = None if rest is None or loaded is None else float(rest[2] - loaded[2])
+        if self.planning_scene.held is None or (weight is not None and weight < LEAST_WEIGHT):
+            text = "the fingers lost it" if weight is None else f"the hand is {weight:.1f} N heavier"
+            yield from self._let_go(arm)
+            raise Failure("SLIPPED", f"after lifting, {text}", weight=weight)
+
+    def _look_again(self, arm: Arm) -> Run:
+        """The place where it stood must be empty, unless the hand hides it."""
+        from momantu_skills.manipulation.looks import stands_there
+
+        yield "looking"
+        self.planning_scene.observe(arm.robot)
+        thing = self.object
+        pose, support = thing.pose.transform, thing.support_height
+        if stands_there(arm.scene.points, pose, thing, support):
+            yield from self._let_go(arm)
+            raise Failure("SLIPPED", f"the {thing.category} still stands where it stood")
+
+    def _give_up(self, arm: Arm, plan: PickPlan) -> Run:
+        """Open and draw back along the approach."""
+        yield from self._let_go(arm)
+        yield from arm.follow(plan.retreat, "drawing back")
+
+    def _draw_back(self, arm: Arm) -> Run:
+        """Draw back along the fingers from wherever the hand is now, as far as the arm can."""
+        start = arm.joints
+        tip = arm.group.tip_pose(start)
+        path = arm.line(start, tip @ Transform((-arm.hand.approach, 0.0, 0.0)))
+        if path is not None:
+            yield from arm.follow(arm.trajectory(path, arm.hand.lift_speed), "drawing back")
+
+    def _let_go(self, arm: Arm) -> Run:
+        from momantu_skills.manipulation.hand import open_hand
+
+        effector, hand = arm.robot.description.end_effector, arm.hand
+        yield from self._gripper_or_stuck(
+            open_hand(arm.robot, self.clock, effector.max_width, hand.force, hand.close_time)
+        )
+        self.planning_scene.touched()
+
+    def _gripper_or_stuck(self, opening: Run) -> Run:
+        """A gripper that does not move is, to pick, an arm that does not."""
+        try:
+            yield from opening
+        except Failure as failure:
+            raise Failure("ARM_STUCK", failure.value.message, **failure.value.data) from None
