@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 
 from momantu_bt.frames import ODOM
-from momantu_bt.geometry import Pose, Transform, quaternion_from_axis_angle
+from momantu_bt.geometry import Array, Pose, Transform, quaternion_from_axis_angle
 from momantu_bt.messages import DetectedObject, ObjectClass
 from momantu_skills.perception.matching import MatchConfig, score
 from momantu_skills.perception.planes import PlaneConfig, Support, measure_support
@@ -17,6 +17,11 @@ from momantu_skills.perception.segment import SegmentConfig, Thing, things_on
 from momantu_skills.perception.shapes import Shape, describe
 from momantu_skills.perception.splitting import split
 from momantu_skills.perception.views import View
+
+SIMPLE_MISFIT = 0.003
+"""m; median distance up to which one form explains a thing: twice the noise at 1.2 m."""
+SIMPLE_BEYOND = 0.15
+"""Share of points outside the form up to which it is one thing: a mug's handle has a tenth."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -66,23 +71,26 @@ class GeometricDetector:
         support = measure_support(views, low, high, self.planes)
         if support is None:
             return None
+        eyes = support.cameras - np.array([0.0, 0.0, support.height])
         shapes = [
             shape
             for thing in things_on(support, self.segments)
-            for shape in self._shapes(thing, asked)
+            for shape in self._shapes(thing, eyes, asked)
         ]
         found = [self._object(shape, support, asked) for shape in shapes]
         found.sort(key=lambda thing: -thing.score)
         return Detections(support, tuple(found))
 
-    def _shapes(self, thing: Thing, asked: ObjectClass) -> list[Shape]:
+    def _shapes(self, thing: Thing, eyes: Array, asked: ObjectClass) -> list[Shape]:
         """The thing as a whole, or its parts where it is several that touch."""
         radius = None if asked.diameter is None else asked.diameter / 2
-        whole = describe(thing, radius)
-        if score(whole, asked, self.matches) >= self.accepted:
+        whole = describe(thing, eyes, radius)
+        if whole.misfit <= SIMPLE_MISFIT and whole.beyond <= SIMPLE_BEYOND:
             return [whole]
-        parts = split(thing, self.segments)
-        return [describe(part, radius) for part in parts] if len(parts) > 1 else [whole]
+        parts = [describe(part, eyes, radius) for part in split(thing, self.segments)]
+        if max(part.misfit for part in parts) < max(SIMPLE_MISFIT, 0.5 * whole.misfit):
+            return parts
+        return [whole]
 
     def _object(self, shape: Shape, support: Support, asked: ObjectClass) -> DetectedObject:
         middle = np.array([*shape.centre, support.height + shape.size[2] / 2])

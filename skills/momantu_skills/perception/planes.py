@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from momantu_bt.geometry import Array, Transform, quaternion_from_axis_angle
-from momantu_skills.perception.grids import Grid, closed, largest_component
+from momantu_skills.perception.grids import Grid, Mask, closed, largest_component
 from momantu_skills.perception.regions import convex_hull
 from momantu_skills.perception.views import View
 
@@ -48,7 +48,7 @@ class Plane:
     centre: Array
     height: float
     slope: Array
-    inliers: Array
+    inliers: Mask
     area: float
     tilt_known: bool
 
@@ -69,7 +69,7 @@ class Support:
     height: float
     outline: Array
     points: Array
-    on_plane: Array
+    on_plane: Mask
     stamp: float
     cameras: Array
 
@@ -148,7 +148,7 @@ def _least_squares(points: Array, centre: Array, config: PlaneConfig) -> tuple[f
     return height - float(slope @ mean), slope, True
 
 
-def _one_patch(points: Array, inliers: Array, config: PlaneConfig) -> tuple[Array, float]:
+def _one_patch(points: Array, inliers: Mask, config: PlaneConfig) -> tuple[Mask, float]:
     """Inliers of the largest connected patch, and its area in m2."""
     if not inliers.any():
         return inliers, 0.0

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from momantu_bt.frames import MAP, ODOM, FrameBuffer
 from momantu_bt.geometry import Array
 from momantu_bt.world import Surface
+
+cv2.setNumThreads(1)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -57,23 +60,9 @@ def grown(outline: Array, by: float) -> Array:
 
 
 def convex_hull(points: Array) -> Array:
-    """(k, 2) counter-clockwise hull of points (n, 2), by Andrew's monotone chain."""
-    ordered = np.unique(points, axis=0)
-    if len(ordered) < 3:
-        return ordered
-    halves = []
-    for sequence in (ordered, ordered[::-1]):
-        half: list[tuple[float, float]] = []
-        for x, y in sequence.tolist():
-            while len(half) >= 2 and _turn(half[-2], half[-1], (x, y)) <= 0.0:
-                half.pop()
-            half.append((x, y))
-        halves.extend(half[:-1])
-    return np.array(halves)
-
-
-def _turn(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]) -> float:
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    """(k, 2) counter-clockwise hull of points (n, 2), n > 0."""
+    index = cv2.convexHull(points.astype(np.float32), clockwise=False, returnPoints=False)
+    return np.asarray(points[index[:, 0]])
 
 
 def surface_corners(surface: Surface, frames: FrameBuffer) -> Array:

@@ -106,7 +106,7 @@ def _step(
     step *= min(1.0, 0.02 / max(length, 1e-12))
     noise = float(weights @ residuals**2) / max(float(weights.sum()), 1.0)
     worst = noise / max(float(np.linalg.eigvalsh(normal)[0]), 1e-12)
-    return step, float(np.sqrt(worst))
+    return np.asarray(step), float(np.sqrt(worst))
 
 
 def _weights(residuals: Array) -> Array:

@@ -6,9 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array
-from momantu_skills.perception.grids import Grid, components
+from momantu_skills.perception.grids import Grid, Mask, components
 from momantu_skills.perception.planes import Support
 from momantu_skills.perception.regions import depth_inside
 
@@ -40,7 +41,7 @@ class Thing:
     """points: (n, 3) odom x, y and height above the surface, m. side: (n,) bool: on a side face."""
 
     points: Array
-    side: Array
+    side: Mask
 
     @property
     def height(self) -> float:
@@ -75,7 +76,7 @@ def group(points: Array, config: SegmentConfig) -> list[Thing]:
     return [thing for thing in found if _is_thing(thing, config)]
 
 
-def taken_out(thing: Thing, mask: Array, config: SegmentConfig) -> Sequence[Thing]:
+def taken_out(thing: Thing, mask: Mask, config: SegmentConfig) -> Sequence[Thing]:
     """What remains of a thing, as things of their own, once the points in `mask` are gone."""
     return group(thing.points[~mask], config)
 
@@ -86,7 +87,7 @@ def _is_thing(thing: Thing, config: SegmentConfig) -> bool:
     return float(np.percentile(thing.points[:, 2], 95.0)) >= config.least_height
 
 
-def _sides(heights: Array, cells: Array, config: SegmentConfig) -> Array:
+def _sides(heights: Array, cells: NDArray[np.int64], config: SegmentConfig) -> Mask:
     """(n,) bool: points of cells that span much height, but for the uppermost ones."""
     _, index = np.unique(cells, return_inverse=True)
     size = int(index.max()) + 1

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from momantu_bt.geometry import Array
-from momantu_skills.perception.rectangles import Rectangle, smallest_rectangle
+from momantu_skills.perception.rectangles import Rectangle, fitted_to, smallest_rectangle
 from momantu_skills.perception.revolution import SLICE, Revolution, fit_revolution
 from momantu_skills.perception.segment import Thing
 
@@ -23,8 +24,14 @@ FLARE = 0.80
 """A bowl's foot is narrower than this share of its rim."""
 INSIDE = 0.75
 """Share of the radius within which points tell a closed top from an opening."""
-OPENING = 0.02
-"""m below the rim from which on a point inside has looked into an opening."""
+RIM = 0.015
+"""m below the highest point within which a point inside belongs to a closed top."""
+STEEP = math.radians(15.0)
+"""Elevation from which on a camera sees enough of a top to miss it when it is not there."""
+HANDLE = 0.012
+"""m that a handle stands out at least."""
+BEYOND = 0.008
+"""m outside the fitted form from which on a point belongs to something else, or to a handle."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +40,8 @@ class Shape:
 
     kind: "cylinder" or "box". category: can, bottle, mug, bowl or box, by its form. centre: x, y
     in odom, m. yaw: of a box, rad. size: along its own x, y and up, m. misfit: median distance of
-    its side to the form, m. radius_sigma: uncertainty of a round thing's radius, m.
+    its side to the form, m. radius_sigma: uncertainty of a round thing's radius, m. beyond: share
+    of its points that lie outside the form.
     """
 
     kind: str
@@ -43,23 +51,25 @@ class Shape:
     size: tuple[float, float, float]
     misfit: float
     radius_sigma: float
-    points: int
+    beyond: float
 
 
-def describe(thing: Thing, expected_radius: float | None = None) -> Shape:
+def describe(thing: Thing, eyes: Array, expected_radius: float | None = None) -> Shape:
     """Fit both forms and keep the better one.
 
+    eyes: (k, 3) where the cameras were, odom x, y and height above the surface, m.
     expected_radius: of what is looked for, m. It serves where the view leaves the radius open
     within what was measured: the centre of a half-hidden can is then still found.
     """
-    rectangle = smallest_rectangle(thing.points[:, :2])
     side = thing.points[thing.side]
+    rectangle = smallest_rectangle(thing.points[:, :2])
+    rectangle = fitted_to(rectangle, thing.points[:, :2], side[:, :2])
     body = fit_revolution(side) if len(side) >= LEAST_SIDE else None
     if body is None or not _is_round(body, rectangle, side):
         return _box(thing, rectangle, side)
     if expected_radius is not None:
         body = _with_expected(side, body, expected_radius)
-    return _round(thing, body)
+    return _round(thing, body, eyes)
 
 
 def _is_round(body: Revolution, rectangle: Rectangle, side: Array) -> bool:
@@ -81,11 +91,11 @@ def _with_expected(side: Array, body: Revolution, radius: float) -> Revolution:
     return tight
 
 
-def _round(thing: Thing, body: Revolution) -> Shape:
+def _round(thing: Thing, body: Revolution, eyes: Array) -> Shape:
     height = thing.height
     known = ~np.isnan(body.radii)
     widest = float(np.percentile(body.radii[known], 90.0))
-    category = _round_category(thing, body, height)
+    category = _round_category(thing, body, height, eyes)
     radius = body.radius if category in ("can", "mug") else widest
     return Shape(
         "cylinder",
@@ -95,11 +105,11 @@ def _round(thing: Thing, body: Revolution) -> Shape:
         (2 * radius, 2 * radius, height),
         body.misfit,
         body.radius_sigma,
-        len(thing.points),
+        float((_distances(thing, body) > widest + BEYOND).mean()),
     )
 
 
-def _round_category(thing: Thing, body: Revolution, height: float) -> str:
+def _round_category(thing: Thing, body: Revolution, height: float, eyes: Array) -> str:
     known = ~np.isnan(body.radii)
     heights, radii = body.heights[known], body.radii[known]
     widest = float(np.percentile(radii, 90.0))
@@ -108,24 +118,28 @@ def _round_category(thing: Thing, body: Revolution, height: float) -> str:
         return "bottle"
     if len(lower) and float(lower.min()) < FLARE * widest and height < 2.2 * widest:
         return "bowl"
-    return "mug" if _is_open(thing, body, height) or _has_handle(thing, body) else "can"
+    return "mug" if _is_open(thing, body, height, eyes) or _has_handle(thing, body) else "can"
 
 
-def _is_open(thing: Thing, body: Revolution, height: float) -> bool:
-    """Whether what is seen inside the rim lies lower than the rim."""
-    offsets = thing.points[:, :2] - body.centre
-    inside = np.hypot(offsets[:, 0], offsets[:, 1]) < INSIDE * body.radius
-    if int(inside.sum()) < LEAST_SIDE:
+def _is_open(thing: Thing, body: Revolution, height: float, eyes: Array) -> bool:
+    """Whether a camera that looks down on the top sees none."""
+    away = np.hypot(eyes[:, 0] - body.centre[0], eyes[:, 1] - body.centre[1])
+    if float(np.arctan2(eyes[:, 2] - height, away).max()) < STEEP:
         return False
-    rim = float(np.percentile(thing.points[:, 2], 99.0))
-    return float(np.median(thing.points[inside, 2])) < rim - OPENING
+    inside = _distances(thing, body) < INSIDE * body.radius
+    return int((inside & (thing.points[:, 2] > height - RIM)).sum()) < LEAST_SIDE
+
+
+def _distances(thing: Thing, body: Revolution) -> Array:
+    """(n,) distance of the thing's points to the axis, m."""
+    offsets = thing.points[:, :2] - body.centre
+    return np.asarray(np.hypot(offsets[:, 0], offsets[:, 1]))
 
 
 def _has_handle(thing: Thing, body: Revolution) -> bool:
     """Whether a narrow part stands out to one side."""
     offsets = thing.points[:, :2] - body.centre
-    distances = np.hypot(offsets[:, 0], offsets[:, 1])
-    out = distances > body.radius + 0.012
+    out = _distances(thing, body) > body.radius + HANDLE
     if int(out.sum()) < LEAST_SIDE // 2:
         return False
     bearings = np.arctan2(offsets[out, 1], offsets[out, 0])
@@ -143,5 +157,5 @@ def _box(thing: Thing, rectangle: Rectangle, side: Array) -> Shape:
         (float(rectangle.size[0]), float(rectangle.size[1]), thing.height),
         misfit,
         0.0,
-        len(thing.points),
+        float((rectangle.outside(thing.points[:, :2]) > BEYOND).mean()),
     )

@@ -6,6 +6,7 @@ import numpy as np
 
 from momantu_bt.geometry import Array
 from momantu_bt.world import seeded
+from momantu_skills.perception.grids import Mask
 from momantu_skills.perception.revolution import fit_revolution
 from momantu_skills.perception.segment import SegmentConfig, Thing, taken_out
 
@@ -38,7 +39,7 @@ def split(thing: Thing, config: SegmentConfig) -> list[Thing]:
     return parts + rest
 
 
-def _round_part(clump: Thing) -> Array | None:
+def _round_part(clump: Thing) -> Mask | None:
     """(n,) bool: points of the best upright round body, or None when there is none, or only it."""
     side = clump.points[clump.side]
     if len(side) < LEAST_SUPPORT:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from momantu_bt.geometry import Array
-from momantu_skills.perception.grids import Grid, clearance, closed
+from momantu_skills.perception.grids import Grid, Mask, clearance, closed
 from momantu_skills.perception.planes import Support
 from momantu_skills.perception.regions import depth_inside
 
@@ -48,8 +48,8 @@ class Ground:
     """A surface as a grid. obstacle, seen: (nx, ny) bool: something stands there; it was seen."""
 
     grid: Grid
-    obstacle: Array
-    seen: Array
+    obstacle: Mask
+    seen: Mask
 
 
 def survey_ground(support: Support, floor: float, ceiling: float, config: SpotConfig) -> Ground:
@@ -79,8 +79,8 @@ def free_spots(
     flat = centres.reshape(-1, 2)
     shape = ground.grid.shape
     edge = depth_inside(flat, outline).reshape(shape)
-    room = clearance(np.asarray(ground.obstacle, dtype=bool), ground.grid.cell)
-    known = clearance(~np.asarray(ground.seen | ground.obstacle, dtype=bool), ground.grid.cell)
+    room = clearance(ground.obstacle, ground.grid.cell)
+    known = clearance(~(ground.seen | ground.obstacle), ground.grid.cell)
     asked = np.linalg.norm(centres - near, axis=2)
     free = (edge >= radius + config.edge) & (room >= radius + config.fingers)
     free &= (known >= radius + config.unseen) & (asked <= config.reach)

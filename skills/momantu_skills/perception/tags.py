@@ -95,13 +95,13 @@ def _plane_of(image: CameraImage, corners: Array) -> tuple[Array, float] | None:
     pixels, z = pixels[z > 0], z[z > 0]
     if len(z) < LEAST_DEPTHS:
         return None
-    rays, inverse = _rays(pixels, image.intrinsics), 1.0 / z
+    rays, inverse = _rays(pixels.astype(np.float64), image.intrinsics), 1.0 / z
     scaled = np.linalg.lstsq(rays, inverse, rcond=None)[0]
     residuals = np.abs(rays @ scaled - inverse)
     kept = residuals <= PLANE_OUTLIER * max(float(np.median(residuals)), 1e-6)
     scaled = np.linalg.lstsq(rays[kept], inverse[kept], rcond=None)[0]
     length = float(np.linalg.norm(scaled))
-    return (scaled / length, 1.0 / length) if length > 1e-9 else None
+    return (np.asarray(scaled / length), 1.0 / length) if length > 1e-9 else None
 
 
 def _pixels_within(shape: tuple[int, ...], corners: Array) -> NDArray[np.int64]:
