@@ -19,7 +19,7 @@ FOLLOW = 3.5
 """k2 of the paper: how fast the heading follows."""
 SLOW_IN_CURVES = 0.5
 """Speed divides by 1 + this * curvature^2 (1/m)."""
-TOP_SPEED = 0.8
+TOP_SPEED = 0.95
 """m/s: the last metre is driven with care."""
 CREEP = 0.06
 """m/s towards the very end."""
