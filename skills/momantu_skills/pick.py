@@ -51,6 +51,7 @@ class Pick(Skill):
 
         arm = Arm(self, robot, self.planning_scene)
         self._check_start(arm)
+        yield from arm.settle()
         yield from self._look(arm)
         plan = yield from compute(lambda: self._plan(arm), THINKING)
         yield from self._reach(arm, plan)

@@ -39,6 +39,7 @@ class ResetPose(Skill):
 
         wanted = self._wanted(robot)
         arm = Arm(self, robot, self.planning_scene)
+        yield from arm.settle()
         goal = arm.joints.copy()
         for i, name in enumerate(arm.group.names):
             goal[i] = wanted.get(name, goal[i])

@@ -16,7 +16,7 @@ from momantu_bt.skill import Skill
 from momantu_skills.manipulation.collision import CollisionWorld, Obstacle
 from momantu_skills.manipulation.config import HandConfig, PlanningConfig
 from momantu_skills.manipulation.escape import escape
-from momantu_skills.manipulation.motion import Watch, follow
+from momantu_skills.manipulation.motion import STILL, Watch, follow
 from momantu_skills.manipulation.planning import Planner, Valid
 from momantu_skills.manipulation.scene import Cut, Scene
 from momantu_skills.manipulation.service import PlanningSceneService
@@ -24,6 +24,8 @@ from momantu_skills.manipulation.timing import timed
 
 SLOW = 2.0
 """Scaled rad per rad or m above which a joint is slow (see Group.scale)."""
+SETTLE_TICKS = 20
+"""Ticks to wait for a stop at most: 1 s, longer than any braking."""
 LEAN_PENALTY = 2.0
 """s per rad: turning what is held upside down on the way costs about as much."""
 ACTUATOR = "arm"
@@ -123,6 +125,23 @@ class Arm:
     ) -> Generator[str, None, bool]:
         """See `motion.follow`."""
         return follow(self.robot, self.skill.clock, ACTUATOR, trajectory, phase, until)
+
+    def settle(self) -> Generator[str, None, None]:
+        """Wait until the arm stands still: whoever had it before may have been cut off."""
+        last = self.joints
+        for _ in range(SETTLE_TICKS):
+            yield "settling"
+            now = self.joints
+            if float(np.abs(now - last).max()) < STILL:
+                return
+            last = now
+
+    def reversed(self, trajectory: JointTrajectory) -> JointTrajectory:
+        """The way back along a trajectory, from where the arm is to its start, at lifting speed."""
+        back = trajectory.positions[::-1]
+        nearest = int(np.argmin(np.abs(back - self.joints).max(axis=1)))
+        path = np.vstack([self.joints, back[min(nearest + 1, len(back) - 1) :]])
+        return self.trajectory(path, self.hand.lift_speed)
 
     def line(self, start: Array, base_from_tip: Transform) -> Array | None:
         """Joints (k, n) along the straight line from `start` to a tip pose; None if it breaks."""

@@ -32,6 +32,10 @@ class Holding:
         """The hand has touched or let go of something."""
         self.last_contact = now
 
+    def release(self, now: float) -> None:
+        """What was held has been let go."""
+        self.held, self.last_contact = None, now
+
     def judge(self, state: RobotState) -> None:
         """Compare the newest state with what a held object would show."""
         if self.held is None:

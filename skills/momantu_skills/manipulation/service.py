@@ -62,6 +62,10 @@ class PlanningSceneService(Service):
         """Say that the hand has just touched or let go of something."""
         self.holding.touched(self._state.stamp)
 
+    def released(self) -> None:
+        """Say that the hand has just let go of what it held."""
+        self.holding.release(self._state.stamp)
+
     def observe(self, robot: Robot) -> None:
         """Take a depth picture now and see the surroundings in it.
 

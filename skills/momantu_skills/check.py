@@ -1,0 +1,116 @@
+"""check: whether something holds true right now."""
+
+from __future__ import annotations
+
+import difflib
+import math
+from typing import Any
+
+from momantu_bt.failure import Failure
+from momantu_bt.geometry import Pose2D
+from momantu_bt.robot import Robot
+from momantu_bt.skill import In, Needs, Run, Skill
+
+SIGMA = 0.15
+"""m; standard deviation of the position above which the robot does not know where it is."""
+SIGMA_YAW = math.radians(8.0)
+"""rad; the same for its heading."""
+QUALITY = 0.35
+"""Fit of the newest scan below which the estimate is wrong however sure it is of itself."""
+NEAR = 1.5
+"""m from a place, or from the edge of a surface, that counts as near."""
+OPEN = 0.9
+"""Share of the widest opening at which the gripper counts as open."""
+KINDS = ("holding", "not_holding", "localized", "near", "gripper_open")
+
+
+class Check(Skill):
+    """Ask a question of the robot's beliefs; it moves nothing.
+
+    what: "holding", "not_holding", "localized", "near" (with `place`) or "gripper_open".
+    """
+
+    what: str = In(doc='"holding", "not_holding", "localized", "near" or "gripper_open"')
+    place: str = In("", doc='for "near": a place or surface of the site', names="place")
+    failures = {
+        "NOT_HOLDING": "nothing is held",
+        "HOLDING": "something is held",
+        "NOT_LOCALIZED": "the robot is not sure where it is",
+        "NOT_NEAR": "the robot is not near the place",
+        "NOT_OPEN": "the gripper is not open",
+        "BAD_QUESTION": "there is no such question, or no such place",
+    }
+    localization: Any = Needs()
+    planning_scene: Any = Needs()
+
+    def run(self, robot: Robot) -> Run:
+        """Answer at once."""
+        if self.what not in KINDS:
+            near = difflib.get_close_matches(self.what, KINDS, n=1)
+            hint = f"; did you mean {near[0]!r}?" if near else ""
+            raise Failure(
+                "BAD_QUESTION", f"cannot check {self.what!r}{hint} Valid: {', '.join(KINDS)}"
+            )
+        if self.what == "gripper_open":
+            self._gripper_open(robot)
+        else:
+            getattr(self, f"_{self.what}")()
+        return
+        yield ""
+
+    def _holding(self) -> None:
+        if self.planning_scene.held is None:
+            raise Failure("NOT_HOLDING", "gripper opening and effort say that nothing is held")
+
+    def _not_holding(self) -> None:
+        held = self.planning_scene.held
+        if held is not None:
+            raise Failure("HOLDING", f"the hand holds a {held.object.category}")
+
+    def _localized(self) -> None:
+        covariance, quality = self.localization.covariance, float(self.localization.quality)
+        sigma = math.sqrt(max(float(covariance[0, 0]), float(covariance[1, 1])))
+        sigma_yaw = math.sqrt(float(covariance[2, 2]))
+        if sigma > SIGMA or sigma_yaw > SIGMA_YAW or quality < QUALITY:
+            raise Failure(
+                "NOT_LOCALIZED",
+                f"the position is known to {sigma:.2f} m and {math.degrees(sigma_yaw):.0f} "
+                f"degrees, and {quality:.0%} of the scan fits the map",
+                sigma=sigma,
+                sigma_yaw=sigma_yaw,
+                quality=quality,
+            )
+
+    def _near(self) -> None:
+        here = self.localization.map_from_base
+        distance = self._distance(here)
+        if distance > NEAR:
+            raise Failure(
+                "NOT_NEAR",
+                f"{self.place} is {distance:.1f} m away, near is at most {NEAR} m",
+                distance=distance,
+            )
+
+    def _distance(self, here: Pose2D) -> float:
+        """m from `here` to a place, or to the nearest edge of a surface (0 above it)."""
+        if self.place in self.site.places:
+            return here.distance_to(self.site.places[self.place])
+        if self.place in self.site.surfaces:
+            surface = self.site.surfaces[self.place]
+            local = surface.map_from_surface.inverse() @ here
+            outside = [
+                max(0.0, abs(v) - edge / 2)
+                for v, edge in zip((local.x, local.y), surface.size, strict=True)
+            ]
+            return math.hypot(*outside)
+        known = ", ".join(self.site.known_places()) or "none"
+        raise Failure("BAD_QUESTION", f"the site has no place {self.place!r}; it has: {known}")
+
+    def _gripper_open(self, robot: Robot) -> None:
+        width, widest = robot.state().gripper_width, robot.description.end_effector.max_width
+        if width < OPEN * widest:
+            raise Failure(
+                "NOT_OPEN",
+                f"the gripper is {width * 1000:.0f} mm open, its widest is {widest * 1000:.0f} mm",
+                width=width,
+            )

@@ -1,0 +1,152 @@
+"""Choosing where and how to set down what is held, and the motions for it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from momantu_bt.failure import Failure
+from momantu_bt.geometry import Array, Pose, Transform
+from momantu_bt.messages import JointTrajectory
+from momantu_bt.service import HeldObject
+from momantu_skills.manipulation.arm import Arm
+
+YAWS = 16
+"""Turns about the vertical in which an object is set down."""
+SEEDS = 12
+"""Starts of the inverse kinematics per candidate."""
+POSTURES = 2
+"""Postures kept per candidate, the quickest to reach."""
+ENOUGH = 4
+"""Candidates with which a way is searched."""
+TESTED = 150
+"""Postures whose lowering and retreat are tested at most."""
+SPOT_PENALTY = 0.5
+"""s per rank of a spot: the first are the better ones."""
+
+
+@dataclass(frozen=True, eq=False)
+class PlacePlan:
+    """What to execute. odom_from_object: where it will stand. Paths: (k, n) joints."""
+
+    odom_from_object: Transform
+    transit: list[JointTrajectory]
+    lower: JointTrajectory
+    retreat: Transform
+
+
+@dataclass(frozen=True, eq=False)
+class _Candidate:
+    odom_from_object: Transform
+    lower: Array
+    cost: float
+
+
+def plan_place(arm: Arm, held: HeldObject, spots: Sequence[Pose]) -> PlacePlan:
+    """A spot, a turn, the way above it and the way down.
+
+    Raises:
+        Failure: NO_PLACE_POSE when the hand cannot set it down upright on any spot, NO_PLAN when
+            no way leads above those where it could, START_IN_COLLISION.
+    """
+    candidates = _feasible(arm, held, spots)
+    transit = arm.route([c.lower[0] for c in candidates], held)
+    end = transit[-1].positions[-1] if transit else arm.joints
+    best = min(candidates, key=lambda c: float(np.abs(arm.turned(c.lower[0], end) - end).max()))
+    lower = arm.turned(best.lower, end)
+    return PlacePlan(
+        best.odom_from_object,
+        transit,
+        arm.trajectory(lower, arm.hand.lower_speed),
+        retreat_of(arm, held),
+    )
+
+
+def retreat_of(arm: Arm, held: HeldObject) -> Transform:
+    """tip_from_retreated: back along the fingers, out of reach of what was set down."""
+    return Transform((-arm.hand.approach, 0.0, 0.0))
+
+
+def _feasible(arm: Arm, held: HeldObject, spots: Sequence[Pose]) -> list[_Candidate]:
+    state = arm.state
+    carrying = arm.scene.world(state, held, 0.0, held_on_support=True)
+    opened = arm.scene.world(state, None, 0.0, width=arm.open_width)
+    lost = {"collides": 0, "lowering": 0, "retreat": 0}
+    found: list[_Candidate] = []
+    for count, (pose, q, cost) in enumerate(_postures(arm, held, spots)):
+        if len(found) >= ENOUGH or count >= TESTED:
+            break
+        if not carrying.free(q):
+            lost["collides"] += 1
+            continue
+        lower = _lowering(arm, q)
+        at_spot = None if lower is None else lower[: _steps(arm.hand.above, arm) + 1]
+        if lower is None or at_spot is None or not carrying.path_free(at_spot):
+            lost["lowering"] += 1
+            continue
+        back = arm.line(at_spot[-1], arm.group.tip_pose(at_spot[-1]) @ retreat_of(arm, held))
+        if back is None or not opened.path_free(back[1:]):
+            lost["retreat"] += 1
+            continue
+        found.append(_Candidate(pose, lower, cost))
+    if not found:
+        where = ", ".join(f"{n} at {what}" for what, n in lost.items() if n)
+        raise Failure(
+            "NO_PLACE_POSE",
+            f"the hand can set the {held.object.category} down upright on none of {len(spots)} "
+            f"spots: {where or 'no posture of the arm reaches them'}",
+            **lost,
+        )
+    return found
+
+
+def _postures(
+    arm: Arm, held: HeldObject, spots: Sequence[Pose]
+) -> Iterator[tuple[Transform, Array, float]]:
+    """(odom_from_object, joints above it (n,), cost in s), cheapest first."""
+    state, start, group = arm.state, arm.joints, arm.group
+    base_from_odom = state.odom_from_base.inverse()
+    object_from_tip = (arm.scene.model.tip_from_grasp @ held.grasp_from_object).inverse()
+    poses, penalties = [], []
+    for rank, spot in enumerate(spots):
+        for i in range(YAWS):
+            poses.append(_standing(spot, held, 2 * math.pi * i / YAWS))
+            penalties.append(SPOT_PENALTY * rank)
+    above = Transform((0.0, 0.0, arm.hand.above))
+    targets = [(base_from_odom @ above @ pose @ object_from_tip).matrix for pose in poses]
+    found, good = group.solve(np.array(targets), arm.seeds(start, SEEDS))
+    ranked: list[tuple[float, int, Array]] = []
+    for i, penalty in enumerate(penalties):
+        solved = group.nearest_turn(found[i][good[i]], start)
+        costs = np.max(np.abs(solved - start) / group.velocity, axis=1) + penalty
+        for j in np.argsort(costs, kind="stable")[:POSTURES]:
+            ranked.append((float(costs[j]), i, solved[j]))
+    ranked.sort(key=lambda item: (item[0], item[1]))
+    for cost, i, q in ranked:
+        yield poses[i], q, cost
+
+
+def _standing(spot: Pose, held: HeldObject, yaw: float) -> Transform:
+    """odom_from_object with the object upright on a spot, turned by `yaw`."""
+    x, y, z = spot.position
+    turn = yaw + spot.transform.yaw
+    return Transform(
+        (x, y, z + held.object.size[2] / 2), (math.cos(turn / 2), 0.0, 0.0, math.sin(turn / 2))
+    )
+
+
+def _lowering(arm: Arm, q: Array) -> Array | None:
+    """Joints (k, n) straight down from above the spot to where lowering gives up."""
+    tip = arm.group.tip_pose(q)
+    depth = arm.hand.above + arm.hand.below
+    return arm.line(q, Transform(tip.position - (0.0, 0.0, depth), tip.quaternion))
+
+
+def _steps(distance: float, arm: Arm) -> int:
+    """Points of a lowering path within `distance` m of its start."""
+    depth = arm.hand.above + arm.hand.below
+    count = math.ceil(depth / arm.hand.linear_step)
+    return math.floor(distance / (depth / count))

@@ -1,0 +1,148 @@
+"""place: set down what is held on a free spot, and make sure that it stands there."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from momantu_bt.failure import Failure
+from momantu_bt.geometry import Array, Pose
+from momantu_bt.messages import SupportPlane
+from momantu_bt.robot import CAMERA_CARRIER, Robot
+from momantu_bt.service import HeldObject
+from momantu_bt.skill import In, Needs, Run, Skill, compute
+
+if TYPE_CHECKING:
+    from momantu_skills.manipulation.arm import Arm
+    from momantu_skills.manipulation.placing import PlacePlan
+
+THINKING = 0.4
+"""s that choosing a spot and planning are given: twice the median."""
+
+
+class Place(Skill):
+    """Look, carry above a spot, lower until contact is felt, open, draw back, look again."""
+
+    plane: SupportPlane = In(doc="the surface, as measured; pose in odom, not old")
+    spots: tuple[Pose, ...] = In(doc="free spots on it, best first; odom, z up, on the surface")
+    failures = {
+        "NOTHING_HELD": "the hand holds nothing",
+        "STALE_POSE": "the surface was measured too long ago, or before the hand last touched it",
+        "NO_PLACE_POSE": "the hand cannot set it down upright on any of the spots from here",
+        "NO_PLAN": "no way leads above a spot",
+        "NO_CONTACT": "lowered past the surface's height, nothing was felt",
+        "LOST": "it is no longer in the hand, or not where it was set down",
+        "TOPPLED": "it was set down and does not stand upright",
+        "ARM_STUCK": "the arm or the gripper does not follow its commands",
+    }
+    uses = {"arm", "gripper", CAMERA_CARRIER}
+    planning_scene: Any = Needs()
+
+    def run(self, robot: Robot) -> Run:
+        """The whole skill; each step is a method below."""
+        from momantu_skills.manipulation.arm import Arm
+
+        arm = Arm(self, robot, self.planning_scene)
+        held = self._check_start(arm)
+        yield from arm.settle()
+        self.planning_scene.support(self.plane)
+        yield from self._look(arm, self.spots[0].position)
+        plan = yield from compute(lambda: self._plan(arm, held), THINKING)
+        for trajectory in plan.transit:
+            yield from arm.follow(trajectory, "carrying")
+        self._still_held(held)
+        yield from self._lower(arm, plan, held)
+        yield from self._let_go(arm, held)
+        yield from self._draw_back(arm, plan)
+        yield from self._look_again(arm, plan, held)
+
+    def _check_start(self, arm: Arm) -> HeldObject:
+        from momantu_skills.manipulation.freshness import check_fresh
+
+        held: HeldObject | None = self.planning_scene.held
+        if held is None:
+            raise Failure("NOTHING_HELD", "there is nothing in the hand to set down")
+        last, now = self.planning_scene.last_contact, self.clock.now()
+        check_fresh(self.plane.pose, "surface", now, last, arm.hand)
+        if not self.spots:
+            raise Failure("NO_PLACE_POSE", "the list of free spots is empty", spots=0)
+        check_fresh(self.spots[0], "free spot", now, last, arm.hand)
+        return held
+
+    def _look(self, arm: Arm, point: Array) -> Run:
+        """Take a picture of what stands around a point, as well as the camera can be turned."""
+        from momantu_skills.perception.looking import look_at
+
+        try:
+            yield from look_at(self, arm.robot, point)
+        except Failure as failure:
+            if failure.code != "OUT_OF_VIEW":
+                raise
+        self.planning_scene.observe(arm.robot)
+
+    def _plan(self, arm: Arm, held: HeldObject) -> PlacePlan:
+        from momantu_skills.manipulation.placing import plan_place
+
+        try:
+            return plan_place(arm, held, self.spots)
+        except Failure as failure:
+            if failure.code != "START_IN_COLLISION":
+                raise
+            raise Failure("NO_PLAN", failure.value.message, **failure.value.data) from None
+
+    def _still_held(self, held: HeldObject) -> None:
+        if self.planning_scene.held is None:
+            raise Failure("LOST", f"the {held.object.category} slipped out of the hand on the way")
+
+    def _lower(self, arm: Arm, plan: PlacePlan, held: HeldObject) -> Run:
+        """Straight down until the surface carries part of the weight."""
+        from momantu_skills.manipulation.hand import bump, rested_force
+
+        rest = yield from rested_force(arm.robot, self.frames, "feeling")
+        watch = bump(self.frames, rest, arm.hand.contact_force, vertical=True)
+        if watch is None:
+            raise Failure("NO_CONTACT", "this robot has no wrench sensor to feel the surface with")
+        reached_end = yield from arm.follow(plan.lower, "lowering", watch)
+        self._still_held(held)
+        if reached_end:
+            yield from arm.follow(arm.reversed(plan.lower), "raising")
+            raise Failure(
+                "NO_CONTACT",
+                f"nothing was felt down to {arm.hand.below * 1000:.0f} mm below the surface that "
+                "was measured",
+            )
+
+    def _let_go(self, arm: Arm, held: HeldObject) -> Run:
+        """Open no wider than needed: other things may stand near."""
+        from momantu_skills.manipulation.hand import open_hand
+
+        hand = arm.hand
+        width = min(arm.open_width, arm.state.gripper_width + hand.margin)
+        self.planning_scene.touched()
+        try:
+            yield from open_hand(arm.robot, self.clock, width, hand.force, hand.close_time)
+        except Failure as failure:
+            raise Failure("ARM_STUCK", failure.value.message, **failure.value.data) from None
+        self.planning_scene.released()
+
+    def _draw_back(self, arm: Arm, plan: PlacePlan) -> Run:
+        start = arm.joints
+        path = arm.line(start, arm.group.tip_pose(start) @ plan.retreat)
+        if path is None:
+            raise Failure("ARM_STUCK", "the hand cannot draw back along its fingers from here")
+        yield from arm.follow(arm.trajectory(path, arm.hand.lift_speed), "drawing back")
+
+    def _look_again(self, arm: Arm, plan: PlacePlan, held: HeldObject) -> Run:
+        """It must stand upright where it was set down."""
+        from momantu_skills.manipulation.looks import standing
+
+        pose = plan.odom_from_object
+        yield from self._look(arm, pose.position)
+        bottom = float(pose.position[2] - held.object.size[2] / 2)
+        seen = standing(arm.scene.points, pose, held.object, bottom)
+        what, where = held.object.category, np.round(pose.position, 3).tolist()
+        if seen == "toppled":
+            raise Failure("TOPPLED", f"the {what} lies where it was set down", position=where)
+        if seen == "gone":
+            raise Failure("LOST", f"the {what} is not where it was set down", position=where)
