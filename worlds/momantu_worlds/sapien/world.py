@@ -63,7 +63,7 @@ class SapienWorld:
         """Start a film at `path`."""
         from momantu_worlds.display.video import open_video
 
-        return open_video(self.simulator, path, title)
+        return open_video(self.simulator, self._episode, path, title)
 
     def open_view(self, port: int) -> View:
         """Serve the scene to a browser on this machine."""

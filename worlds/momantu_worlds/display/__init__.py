@@ -1,0 +1,1 @@
+"""Showing a simulation to people: films and a live view; nothing here changes a run."""

@@ -1,0 +1,104 @@
+"""Where the camera of a film stands: above and beside the robot, where no wall hides it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from momantu_bt.geometry import Array, Pose2D, Transform, wrap_angle
+from momantu_worlds.scenes.bodies import Body, Box
+
+PARALLEL = 1e-12
+"""m; a ray that advances less than this along an axis counts as parallel to it."""
+
+
+@dataclass(frozen=True, slots=True)
+class ChaseConfig:
+    """How a film looks at the robot."""
+
+    distance: float = 2.3
+    """m; from the robot, along the floor."""
+    height: float = 2.9
+    """m; above the floor, so above the walls."""
+    beside: float = math.radians(125)
+    """rad; preferred direction from the robot, left of its heading: over the shoulder."""
+    choices: int = 16
+    """Directions that are tried."""
+    rate: float = 0.8
+    """rad/s; how fast the camera goes round."""
+    lag: float = 0.6
+    """s; how slowly it follows what it looks at."""
+
+
+class Chase:
+    """A camera that follows a robot; to be asked with rising times."""
+
+    def __init__(self, bodies: Iterable[Body], config: ChaseConfig | None = None) -> None:
+        self._config = config or ChaseConfig()
+        boxes = [
+            ((body.map_from_body @ part.body_from_part).inverse(), part.geometry)
+            for body in bodies
+            if body.category == "wall"
+            for part in body.parts
+            if isinstance(part.geometry, Box)
+        ]
+        self._wall_from_map = np.array([transform.matrix for transform, _ in boxes])
+        self._half = np.array([box.size for _, box in boxes]) / 2
+        self._turn: float | None = None
+        self._focus = np.zeros(3)
+        self._time = 0.0
+
+    def pose(self, base: Pose2D, now: float) -> Transform:
+        """`map_from_camera`, x along its view, z up, for a robot at `base`."""
+        config = self._config
+        ahead = np.array([0.35 * math.cos(base.yaw), 0.35 * math.sin(base.yaw), 0.75])
+        wanted = np.array([base.x, base.y, 0.0]) + ahead
+        if self._turn is None:
+            self._turn, self._focus = self._best(wanted, base.yaw, None), wanted
+        else:
+            passed = now - self._time
+            self._focus = self._focus + (wanted - self._focus) * min(1.0, passed / config.lag)
+            left = wrap_angle(self._best(wanted, base.yaw, self._turn) - self._turn)
+            most = config.rate * passed
+            self._turn = wrap_angle(self._turn + max(-most, min(most, left)))
+        self._time = now
+        return looking(self._eye(self._focus, self._turn), self._focus)
+
+    def _eye(self, focus: Array, turn: float) -> Array:
+        config = self._config
+        out = config.distance * np.array([math.cos(turn), math.sin(turn), 0.0])
+        return np.array([focus[0], focus[1], config.height]) + out
+
+    def _best(self, focus: Array, heading: float, current: float | None) -> float:
+        """The direction with a free view that is nearest to the preferred and the current one."""
+
+        def cost(turn: float) -> float:
+            bad = abs(wrap_angle(turn - heading - self._config.beside))
+            if current is not None:
+                bad = 0.3 * bad + abs(wrap_angle(turn - current))
+            return bad + (10.0 if self._hidden(self._eye(focus, turn), focus) else 0.0)
+
+        turns = [2 * math.pi * i / self._config.choices for i in range(self._config.choices)]
+        return min(turns, key=cost)
+
+    def _hidden(self, eye: Array, focus: Array) -> bool:
+        """Whether a wall lies between; slab test of the segment against all walls' boxes."""
+        if not len(self._half):
+            return False
+        turn, shift = self._wall_from_map[:, :3, :3], self._wall_from_map[:, :3, 3]
+        start, ray = turn @ eye + shift, turn @ (focus - eye)
+        safe = np.where(np.abs(ray) < PARALLEL, PARALLEL, ray)
+        near, far = (-self._half - start) / safe, (self._half - start) / safe
+        enter, leave = np.minimum(near, far).max(axis=1), np.maximum(near, far).min(axis=1)
+        return bool(np.any(np.maximum(enter, 0.0) < np.minimum(leave, 1.0)))
+
+
+def looking(eye: Array, at: Array) -> Transform:
+    """A camera pose at `eye` (3,), its x towards `at` (3,), its z up; not straight up or down."""
+    forward = (at - eye) / np.linalg.norm(at - eye)
+    left = np.cross((0.0, 0.0, 1.0), forward)
+    left /= np.linalg.norm(left)
+    return Transform.from_rotation(np.stack([forward, left, np.cross(forward, left)], 1), eye)

@@ -1,0 +1,130 @@
+"""A live 3D view of a run in a browser on this machine; needs no Vulkan driver of its own."""
+
+from __future__ import annotations
+
+import socket
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import viser
+
+from momantu_bt.geometry import Transform
+from momantu_bt.world import WorldError
+from momantu_worlds.display.shapes import ColoredMesh, body_meshes, link_meshes, still_meshes
+from momantu_worlds.scenes.bodies import Body, Episode, Picture
+
+if TYPE_CHECKING:
+    from momantu_worlds.sapien.simulator import Simulator
+
+HOST = "127.0.0.1"
+"""Only browsers on this machine are served."""
+MOVED = 1e-4
+"""m or quaternion units; what moved less is not sent again."""
+EYE = (-9.0, -9.0, 14.0)
+"""m from the middle of the floor: where a browser looks from at first."""
+
+
+class BrowserView:
+    """Implements `momantu_bt.world.View`."""
+
+    def __init__(self, simulator: Simulator, episode: Episode, port: int) -> None:
+        """See `open_view`."""
+        self._simulator, self._port = simulator, port
+        self._server = viser.ViserServer(host=HOST, port=port, verbose=False)
+        self._server.scene.set_up_direction("+z")
+        self._server.initial_camera.position = EYE
+        self._server.initial_camera.look_at = (0.0, 0.0, 0.0)
+        self._server.scene.add_light_ambient("/light", intensity=0.6)
+        still = [body for body in episode.bodies if body.static]
+        self._meshes("/still", still_meshes(still))
+        for body in still:
+            self._pictures(body)
+        self._frames: dict[str, Any] = {}
+        for body in episode.bodies:
+            if not body.static:
+                self._frames[body.name] = self._frame(f"/things/{body.name}", body_meshes(body))
+        self._links: dict[str, Any] = {}
+        for name, link in simulator.model.links.items():
+            self._links[name] = self._frame(f"/robot/{name}", link_meshes(link))
+        self._sent: dict[str, Transform] = {}
+        self.update()
+
+    @property
+    def url(self) -> str:
+        """Where to look."""
+        return f"http://{HOST}:{self._port}"
+
+    def update(self) -> None:
+        """Show the world as it is now."""
+        truth = self._simulator.truth
+        with self._server.atomic():
+            for name, frame in self._frames.items():
+                self._put(f"body {name}", frame, truth.pose(name))
+            for name, frame in self._links.items():
+                self._put(f"link {name}", frame, truth.link(name))
+        self._server.flush()
+
+    def close(self) -> None:
+        """Stop serving; safe to call twice."""
+        server, self._server = self._server, None
+        if server is not None:
+            server.stop()
+
+    def _put(self, key: str, frame: Any, pose: Transform) -> None:
+        sent = self._sent.get(key)
+        if sent is not None and _close(sent, pose):
+            return
+        self._sent[key] = pose
+        frame.position, frame.wxyz = pose.position, pose.quaternion
+
+    def _frame(self, name: str, meshes: list[ColoredMesh]) -> Any:
+        frame = self._server.scene.add_frame(name, show_axes=False)
+        self._meshes(name, meshes)
+        return frame
+
+    def _meshes(self, name: str, meshes: list[ColoredMesh]) -> None:
+        for index, mesh in enumerate(meshes):
+            self._server.scene.add_mesh_simple(
+                f"{name}/{index}", mesh.vertices, mesh.faces, color=mesh.color, flat_shading=True
+            )
+
+    def _pictures(self, body: Body) -> None:
+        for index, part in enumerate(body.parts):
+            if isinstance(part.geometry, Picture):
+                pose = body.map_from_body @ part.body_from_part @ UPRIGHT
+                self._server.scene.add_image(
+                    f"/pictures/{body.name}/{index}",
+                    part.geometry.pixels,
+                    render_width=part.geometry.size[0],
+                    render_height=part.geometry.size[1],
+                    position=pose.position,
+                    wxyz=pose.quaternion,
+                )
+
+
+UPRIGHT = Transform((0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0))
+"""viser's images have y down and z into the picture; ours have y up and z out of it."""
+
+
+def _close(a: Transform, b: Transform) -> bool:
+    return bool(
+        np.abs(a.position - b.position).max() < MOVED
+        and np.abs(a.quaternion - b.quaternion).max() < MOVED
+    )
+
+
+def open_view(simulator: Simulator, episode: Episode, port: int) -> BrowserView:
+    """Serve a simulation to browsers on this machine.
+
+    Raises:
+        WorldError: something else listens at the port already.
+    """
+    with socket.socket() as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((HOST, port))
+        except OSError as error:
+            raise WorldError(
+                f"the view cannot be served at port {port}: {error.strerror}; choose another port"
+            ) from error
+    return BrowserView(simulator, episode, port)
