@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from momantu_bt.tree.check_codes import check_handlers
-from momantu_bt.tree.check_keys import KeyCheck
+from momantu_bt.tree.check_keys import check_keys
 from momantu_bt.tree.check_nodes import check_node, check_tree_ports
 from momantu_bt.tree.check_trees import (
     callees_first,
@@ -53,7 +53,7 @@ def check(
     if order is not None and all(shallow):
         check_parallel(context, order)
         check_handlers(context, order)
-        _check_keys(context, order)
+        check_keys(context, order, _root_keys(context))
     return problems.sorted()
 
 
@@ -99,15 +99,7 @@ def _check_tree_name(context: Context, tree: Tree) -> None:
         context.problems.error("bad-name", tree.place, message, "give the tree another name")
 
 
-def _check_keys(context: Context, order: list[Tree]) -> None:
-    root_keys = _root_keys(context)
-    demands: dict[tuple[str, str], set[str]] = {}
-    checks = [KeyCheck(context, tree, root_keys, demands) for tree in order]
-    for each in checks:
-        each.run()
-
-
-def _root_keys(context: Context) -> set[str]:
+def _root_keys(context: Context) -> frozenset[str]:
     """Every name that `$@name` can mean."""
     document = context.document
     names = {*document.values, *context.registry.services, ROBOT_KEY}
@@ -120,7 +112,7 @@ def _root_keys(context: Context) -> set[str]:
                     continue
                 if value.scope is Scope.ROOT or tree.name == document.main:
                     names.add(value.key)
-    return names
+    return frozenset(names)
 
 
 __all__ = ["NO_WORLD", "ROBOT_KEY", "check"]

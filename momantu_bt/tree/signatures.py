@@ -104,13 +104,9 @@ def report_unknown_node(context: Context, node: Node) -> None:
             context.problems.error("broken-plugin", node.place, str(error), "run momantu-bt doctor")
         return
     spellings = [spec.yaml[0] for spec in BUILT_IN.values()]
-    if name in BUILT_IN:
-        hint = f"did you mean {BUILT_IN[name].yaml[0]}?"
-    else:
-        known = [*context.document.trees, *context.registry.skills, *spellings]
-        near = nearest(name, known)
-        skills = [*context.document.trees, *context.registry.skills]
-        hint = f"did you mean {near}?" if near else valid_names(name, skills, "trees and skills")
+    skills = [*context.document.trees, *context.registry.skills]
+    near = nearest(name, [*skills, *spellings])
+    hint = f"did you mean {near}?" if near else valid_names(name, skills, "trees and skills")
     context.problems.error("unknown-node", node.place, f"no node is called {name!r}", hint)
 
 

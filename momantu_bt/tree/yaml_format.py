@@ -18,7 +18,7 @@ from momantu_bt.tree.yaml_source import (
     compose,
     plain_value,
 )
-from momantu_bt.tree.yaml_values import KEY, duplicate_keys, port_value
+from momantu_bt.tree.yaml_values import KEY, drop_duplicates, port_value
 
 VERSION = 1
 """What `momantu_bt:` says; a later one may read differently."""
@@ -60,7 +60,7 @@ class _Reader:
                 "not-a-tree", raw.place, "a tree file is a mapping", "begin with `momantu_bt: 1`"
             )
             return None
-        duplicate_keys(raw, self.problems)
+        drop_duplicates(raw, self.problems)
         having = {key.text: (key, value) for key, value in raw.entries}
         for key, _ in raw.entries:
             if key.text not in _TOP:
@@ -148,7 +148,7 @@ class _Reader:
 
     def mapping(self, raw: Raw, name: str, example: str) -> list[tuple[Scalar, Raw]]:
         if isinstance(raw, Entries):
-            duplicate_keys(raw, self.problems)
+            drop_duplicates(raw, self.problems)
             return raw.entries
         if not (isinstance(raw, Scalar) and raw.value is None):
             self.problems.error(
@@ -190,11 +190,11 @@ class _Reader:
         tree = Tree(key.text, Node("", key.place), key.place)
         body = raw
         if isinstance(raw, Entries):
+            drop_duplicates(raw, self.problems)
             header = {k.text: v for k, v in raw.entries if k.text in _HEADER}
             body = Entries(
                 [(k, v) for k, v in raw.entries if k.text not in _HEADER], raw.place, raw.flow
             )
-            duplicate_keys(raw, self.problems)
             for name, direction in (("inputs", "in"), ("outputs", "out")):
                 if name in header:
                     self.declarations(tree, header[name], direction)
@@ -232,7 +232,7 @@ class _Reader:
             hint = "write `name: text` or `name: {type: text, default: …}`"
             self.problems.error("wrong-value", raw.place, f"{key.text!r} needs a type", hint)
             return None
-        duplicate_keys(raw, self.problems)
+        drop_duplicates(raw, self.problems)
         having = {k.text: v for k, v in raw.entries}
         for name, _ in raw.entries:
             if name.text not in _DECLARATION:

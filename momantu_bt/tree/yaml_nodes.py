@@ -30,7 +30,7 @@ from momantu_bt.tree.model import (
 from momantu_bt.tree.problems import Problems, nearest
 from momantu_bt.tree.script import ScriptSyntaxError, canonical
 from momantu_bt.tree.yaml_source import Entries, Items, Raw, Scalar
-from momantu_bt.tree.yaml_values import duplicate_keys, port_value, reported_braces
+from momantu_bt.tree.yaml_values import drop_duplicates, port_value, reported_braces
 
 AGAIN = "again"
 ANY = "any"
@@ -84,7 +84,7 @@ class NodeReader:
     # a mapping: one node key and its modifiers
 
     def _mapping(self, raw: Entries) -> Node:
-        duplicate_keys(raw, self.problems)
+        drop_duplicates(raw, self.problems)
         chosen = self._node_key(raw)
         if chosen is None:
             written = ", ".join(key.text for key, _ in raw.entries)
@@ -204,6 +204,10 @@ class NodeReader:
             )
         if "$" in name:
             return self._broken("not-a-node", key.place, f"{name} is a wire, not a node")
+        if name in BUILT_IN or name == SUBTREE:
+            ours = BUILT_IN[name].yaml[0] if name in BUILT_IN else "the tree's name"
+            hint = f"did you mean {ours}?"
+            return self._broken("unknown-node", key.place, f"no node is called {name!r}", hint)
         spec = SPELLED.get(name)
         if spec is None:
             target = name if name in self.trees else None
@@ -238,7 +242,7 @@ class NodeReader:
                 self._port(node, name, value, value.place, spec)
 
     def _ports(self, node: Node, raw: Entries, spec: NodeSpec | None) -> None:
-        duplicate_keys(raw, self.problems)
+        drop_duplicates(raw, self.problems)
         for key, value in raw.entries:
             self._port(node, key.text, value, key.place, spec)
 
@@ -266,7 +270,7 @@ class NodeReader:
 
     def _split(self, node: Node, raw: Entries, spec: NodeSpec, kept: tuple[str, ...]) -> list[Raw]:
         """Ports of a mapping to the node; the values of the kept keys, `children` read."""
-        duplicate_keys(raw, self.problems)
+        drop_duplicates(raw, self.problems)
         values: list[Raw] = []
         for key, value in raw.entries:
             if key.text not in kept:
@@ -315,7 +319,7 @@ class NodeReader:
             hint = "under it, lines such as `CODE | OTHER_CODE: node`"
             self._error("wrong-value", raw.place, "`catch` is a mapping of codes to nodes", hint)
             return
-        duplicate_keys(raw, self.problems)
+        drop_duplicates(raw, self.problems)
         for key, value in raw.entries:
             codes = tuple(part.strip() for part in key.text.split("|"))
             for code in codes:

@@ -151,12 +151,20 @@ class _Builder:
             self.put_alias(event)
         elif isinstance(event, yaml_events.CollectionEndEvent):
             closed = self.stack.pop()
+            closed.raw.place = self.up_to(closed.raw.place, event)
             self.put(closed.raw, closed.anchor)
 
     def place(self, event: Any) -> Place:
         start, end = event.start_mark, event.end_mark
         length = end.column - start.column if end.line == start.line else 1
         return Place(self.file, start.line + 1, start.column + 1, max(1, length))
+
+    def up_to(self, place: Place, event: Any) -> Place:
+        """The whole list or mapping, where it is written on one line."""
+        mark = event.end_mark
+        if mark.line + 1 != place.line or mark.column < place.column:
+            return place
+        return Place(place.file, place.line, place.column, mark.column + 1 - place.column)
 
     def error(self, code: str, event: Any, message: str, hint: str = "") -> YamlSyntaxError:
         return YamlSyntaxError(Problem(code, message, self.place(event), hint))
@@ -253,10 +261,20 @@ def _in_our_words(error: MarkedYAMLError, text: str, file: str) -> Problem:
     for known, where, message, hint in _WORDS:
         if known in problem or known in context:
             mark = error.context_mark if where == "start" and error.context_mark else at
+            hint = _bare_node_above(text, at) or hint
             return Problem("syntax", message, _mark(mark, file), hint)
     if "cannot start any token" in problem:
         return _bad_start(problem, _mark(at, file))
     return Problem("syntax", f"this is not YAML: {problem or context}", _mark(at, file))
+
+
+def _bare_node_above(text: str, mark: StringMark | None) -> str:
+    """The hint for modifiers under a node that has no `:` yet."""
+    above = text.splitlines()[: mark.line if mark is not None else 0]
+    bare = re.fullmatch(r"\s*-\s+(\w+)\s*", above[-1]) if above else None
+    if bare is None:
+        return ""
+    return f"write `{bare[1]}:` when more follows below it"
 
 
 def _bad_start(problem: str, place: Place) -> Problem:
@@ -308,6 +326,7 @@ _WORDS = (
         "a backslash that means nothing here",
         "write it twice, or use 'single quotes'",
     ),
+    ("<document start>", "here", "a line cannot begin with `%`", "put it in quotes"),
     ("scanning an directive", "start", "a line cannot begin with `%`", "put it in quotes"),
     ("scanning a directive", "start", "a line cannot begin with `%`", "put it in quotes"),
 )

@@ -106,8 +106,8 @@ def _nested(raw: Raw, problems: Problems) -> Any:
         items = [_nested(item, problems) for item in raw.items]
         return _BROKEN if any(item is _BROKEN for item in items) else items
     if isinstance(raw, Entries):
+        drop_duplicates(raw, problems)
         values = {key.text: _nested(value, problems) for key, value in raw.entries}
-        duplicate_keys(raw, problems)
         return _BROKEN if any(value is _BROKEN for value in values.values()) else values
     value = _scalar(raw, "", problems)
     if isinstance(value, Literal):
@@ -122,16 +122,14 @@ def _nested(raw: Raw, problems: Problems) -> Any:
     return _BROKEN
 
 
-def duplicate_keys(raw: Entries, problems: Problems) -> None:
-    """Report every key of a mapping that stands there before."""
-    first: dict[str, Place] = {}
-    for key, _ in raw.entries:
+def drop_duplicates(raw: Entries, problems: Problems) -> None:
+    """Report every key of a mapping that stands there before, and keep the first of each."""
+    first: dict[str, tuple[Scalar, Raw]] = {}
+    for key, value in raw.entries:
         if key.text in first:
-            problems.error(
-                "duplicate-key",
-                key.place,
-                f"the key {key.text!r} stands here twice",
-                f"the first is in line {first[key.text].line}",
-            )
+            message = f"the key {key.text!r} stands here twice"
+            hint = f"the first is in line {first[key.text][0].place.line}"
+            problems.error("duplicate-key", key.place, message, hint)
         else:
-            first[key.text] = key.place
+            first[key.text] = (key, value)
+    raw.entries = list(first.values())

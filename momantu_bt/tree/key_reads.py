@@ -1,0 +1,148 @@
+"""Every read of a key, against what is known where it is read: value, type, part and name."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from momantu_bt.skill import Port
+from momantu_bt.tree.catalogue import SUBTREE, ScriptText
+from momantu_bt.tree.check_nodes import check_name
+from momantu_bt.tree.keys import Key, Known, part_type
+from momantu_bt.tree.model import (
+    BROKEN,
+    Literal,
+    Node,
+    Place,
+    PortValue,
+    Reference,
+    Scope,
+    Template,
+    Tree,
+)
+from momantu_bt.tree.problems import valid_names
+from momantu_bt.tree.signatures import Context, Signature
+from momantu_bt.tree.types import assignable, label
+from momantu_bt.tree.values import ConversionError, convert
+
+
+@dataclass(frozen=True, slots=True)
+class Written:
+    """A key that a node writes. said: the node, in the file's words."""
+
+    key: str
+    place: Place
+    said: str
+
+
+@dataclass(slots=True)
+class KeyReads:
+    """The reads of one tree, reported as they are met.
+
+    root_keys: names that `$@key` may read. demands: by tree and input, the kinds of names (place,
+    surface, named_pose) that nodes below expect there; trees that are run come before those that
+    run them. written: what has been written so far in the order of the file.
+    """
+
+    context: Context
+    tree: Tree
+    root_keys: frozenset[str]
+    demands: dict[tuple[str, str], set[str]]
+    seen: set[str] = field(default_factory=set)
+    written: list[Written] = field(default_factory=list)
+
+    def inputs(self, node: Node, signature: Signature, before: Known) -> None:
+        """All inputs of a node."""
+        for name, value in node.ports.items():
+            port = signature.ports.get(name)
+            if port is None or port.direction == "out" or port.type is ScriptText:
+                continue
+            place = node.port_places.get(name, node.place)
+            if isinstance(value, Reference):
+                self._wire(value, before, place, port, signature.said)
+            for reference in references(value):
+                if value is not reference:
+                    self.lookup(reference, before, place)
+            self._names(node, name, value, before, port)
+
+    def lookup(self, reference: Reference, before: Known, place: Place) -> Key | None:
+        """What is known of a key that is read here; None, and reported, where it may be empty."""
+        self.seen.add(reference.key)
+        if reference.key == BROKEN or not before.reached:
+            return None
+        if reference.scope is Scope.ROOT:
+            if reference.key not in self.root_keys:
+                message = f"the root's board has no key {reference.key!r}"
+                hint = valid_names(reference.key, sorted(self.root_keys), "keys")
+                self.context.problems.error("unknown-key", place, message, hint)
+            return None
+        key = before.get(reference.key)
+        if key is None:
+            self._report_unwritten(reference.key, before, place)
+        return key
+
+    def _report_unwritten(self, name: str, before: Known, place: Place) -> None:
+        writer = next((w for w in self.written if w.key == name), None)
+        if writer is not None:
+            message = f"${name} may have no value here"
+            hint = f"{writer.said} (line {writer.place.line}) writes it, but not on every way here"
+        else:
+            message = f"nothing writes ${name} before it is read here"
+            hint = valid_names(name, sorted(before.keys or {}), "keys that have a value here")
+        self.context.problems.error("read-before-write", place, message, hint)
+
+    def _wire(
+        self, reference: Reference, before: Known, place: Place, port: Port, said: str
+    ) -> None:
+        key = self.lookup(reference, before, place)
+        if key is None:
+            return
+        origin = f"it comes from line {key.place.line}"
+        if key.literal is not None and not reference.fields:
+            try:
+                convert(key.literal.value, port)
+            except ConversionError as error:
+                message = f"${reference.key} does not fit {port.name!r} of {said}: {error}"
+                self.context.problems.error("wrong-value", place, message, origin)
+            return
+        try:
+            type_ = part_type(key.type, reference.fields)
+        except KeyError as error:
+            part, valid = error.args
+            message = f"{label(key.type)} has no part {part!r}"
+            self.context.problems.error(
+                "unknown-part", place, message, valid_names(part, valid, "parts")
+            )
+            return
+        if not assignable(type_, port.type):
+            shown = ".".join((reference.key, *reference.fields))
+            message = f"${shown} is {label(type_)}; {port.name!r} of {said} takes "
+            self.context.problems.error("wrong-type", place, message + label(port.type), origin)
+
+    def _names(self, node: Node, name: str, value: PortValue, before: Known, port: Port) -> None:
+        """Names of places, surfaces and poses that reach a port by wire or through a subtree."""
+        kinds = {port.names} if port.names is not None else set()
+        if node.type == SUBTREE:
+            kinds |= self.demands.get((node.target or "", name), set())
+            if isinstance(value, Literal):
+                self._check_names(value, node.port_places.get(name, node.place), kinds)
+        if not isinstance(value, Reference) or value.fields or value.scope is Scope.ROOT:
+            return
+        key = before.get(value.key)
+        if key is not None and key.literal is not None:
+            self._check_names(key.literal, key.place, kinds)
+        elif kinds and value.key in self.tree.ports:
+            self.demands.setdefault((self.tree.name, value.key), set()).update(kinds)
+
+    def _check_names(self, value: Literal, place: Place, kinds: set[str]) -> None:
+        if isinstance(value.value, str):
+            for kind in sorted(kinds):
+                check_name(self.context, value.value, place, kind)
+
+
+def references(value: PortValue) -> list[Reference]:
+    """The keys that a port's value reads."""
+    if isinstance(value, Reference):
+        return [value]
+    if isinstance(value, Template):
+        return [part for part in value.parts if isinstance(part, Reference)]
+    return []

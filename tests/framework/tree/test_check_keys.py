@@ -1,0 +1,236 @@
+"""Keys and wires: what is read has been written on every way there, and fits."""
+
+from collections.abc import Callable
+
+import pytest
+
+from momantu_bt.tree.problems import Problem, Severity
+
+Expect = Callable[..., None]
+Fine = Callable[[str], None]
+SEE = "detect_object: {object: {category: can}, on: table_a, found: $it}"
+
+
+def main(*lines: str, values: str = "") -> str:
+    """A file's values and `trees:` with one tree `Main` of these lines."""
+    body = "".join(f"    {line}\n" for line in lines)
+    return (f"values: {values}\n" if values else "") + "trees:\n  Main:\n" + body
+
+
+def test_nobody_writes_the_key(expect: Expect) -> None:
+    expect("read-before-write", main("- pick: «$it»"), message="nothing writes $it")
+
+
+def test_a_mistyped_key(expect: Expect) -> None:
+    expect("read-before-write", main("- say: «$nam»", values="{name: a}"), hint="name?")
+
+
+def test_read_before_it_is_written(expect: Expect) -> None:
+    expect("read-before-write", main("- pick: «$it»", f"- {SEE}", "- pick: $it"))
+
+
+def test_written_on_one_way_only(expect: Expect) -> None:
+    body = main("- fallback:", f"    - {SEE}", "    - relocalize", "- pick: «$it»")
+    expect("read-before-write", body, message="may have no value", hint="(line 7) writes it")
+
+
+def test_written_on_every_way(fine: Fine) -> None:
+    fine(main("- fallback:", f"    - {SEE}", f"    - {SEE}", "- pick: $it"))
+
+
+def test_if_both_branches_write_it(fine: Fine) -> None:
+    fine(
+        main(
+            "- if: $n > 2",
+            f"  then: {{{SEE}}}",
+            f"  else: {{{SEE}}}",
+            "- pick: $it",
+            values="{n: 3}",
+        )
+    )
+
+
+def test_if_without_else_fails_when_it_does_not_hold(fine: Fine) -> None:
+    fine(main("- if: $n > 2", f"  then: {{{SEE}}}", "- pick: $it", values="{n: 3}"))
+
+
+def test_a_skipped_node_may_not_have_written(expect: Expect) -> None:
+    body = main(f"- {SEE}", "  skip_if: $n > 2", "- pick: «$it»", values="{n: 3}")
+    expect("read-before-write", body)
+
+
+def test_a_disabled_node_writes_nothing(expect: Expect) -> None:
+    expect("read-before-write", main(f"- {SEE}", "  disabled: true", "- pick: «$it»"))
+
+
+def test_a_forced_success_may_not_have_written(expect: Expect) -> None:
+    expect("read-before-write", main(f"- {SEE}", "  force: success", "- pick: «$it»"))
+
+
+def test_a_retried_node_has_written(fine: Fine) -> None:
+    fine(main(f"- {SEE}", "  retry: 3", "  timeout: 20 s", "- pick: $it"))
+
+
+def test_an_inverted_node_that_succeeds_has_not_written(expect: Expect) -> None:
+    expect("read-before-write", main(f"- {SEE}", "  invert:", "- pick: «$it»"))
+
+
+def test_siblings_in_parallel_do_not_write_for_each_other(expect: Expect) -> None:
+    body = main("- parallel:", f"    - {SEE}", "    - pick: «$it»")
+    expect("read-before-write", body)
+
+
+def test_parallel_success_of_all_has_written(fine: Fine) -> None:
+    fine(main("- parallel:", f"    - {SEE}", "    - wait: 1 s", "- pick: $it"))
+
+
+def test_recover_writes_what_try_writes(fine: Fine) -> None:
+    fine(
+        main(
+            "- recover:",
+            "    attempts: 2",
+            f"    try: {{{SEE}}}",
+            "    catch: {OBJECT_NOT_FOUND: again}",
+            "- pick: $it",
+        )
+    )
+
+
+def test_a_handler_reads_the_failure(fine: Fine) -> None:
+    fine(
+        main(
+            "- recover:",
+            "    attempts: 2",
+            "    try: relocalize",
+            '    catch: {any: {say: "lost: ${failure.message}"}}',
+        )
+    )
+
+
+def test_the_failure_is_known_to_handlers_alone(expect: Expect) -> None:
+    expect("read-before-write", main("- say: «$failure.code»"))
+
+
+def test_unset_takes_the_key_away(expect: Expect) -> None:
+    expect("read-before-write", main("- say: $a", "- unset: $a", "- say: «$a»", values="{a: x}"))
+
+
+def test_what_follows_fail_is_never_reached(fine: Fine) -> None:
+    fine(main("- fail: {code: NO_WAY}", "- say: $anything"))
+
+
+def test_wrong_type_along_a_wire(expect: Expect) -> None:
+    body = main(f"- {SEE}", "- say: «$it»")
+    expect("wrong-type", body, message="$it is detected_object; 'text' of say takes text")
+
+
+def test_wrong_type_of_a_part(expect: Expect) -> None:
+    body = main(f"- {SEE}", "- navigate: {side: «$it.pose»}")
+    expect("wrong-type", body, message="$it.pose is pose; 'side' of navigate takes int")
+
+
+def test_a_part_of_the_right_type(fine: Fine) -> None:
+    fine(main(f"- {SEE}", "- navigate: {within_reach_of: $it.pose}"))
+
+
+def test_unknown_part(expect: Expect) -> None:
+    body = main(f"- {SEE}", "- navigate: {within_reach_of: «$it.pos»}")
+    expect("unknown-part", body, hint="did you mean pose?")
+
+
+def test_a_whole_number_flows_into_a_number_but_not_back(fine: Fine, expect: Expect) -> None:
+    fine(main("- count: {number: $n}", "- navigate: {tolerance: $n}"))
+    tree = main("- Sub: {x: 1.5}") + "  Sub:\n    inputs: {x: number}\n    navigate: {side: «$x»}\n"
+    expect("wrong-type", tree)
+
+
+def test_a_value_that_does_not_fit(expect: Expect) -> None:
+    body = main("- navigate: {tolerance: «$near»}", values="{near: 3 s}")
+    expect("wrong-value", body, message="expected a length", hint="line 4")
+
+
+def test_a_value_with_its_unit_fits(fine: Fine) -> None:
+    fine(main("- navigate: {tolerance: $near}", values="{near: 3 cm}"))
+
+
+def test_a_name_behind_a_value_is_checked_at_the_value(expect: Expect) -> None:
+    body = main("- navigate: $to", values="{to: «tabel_a»}")
+    expect("unknown-place", body, hint="did you mean table_a?")
+
+
+def test_a_name_behind_two_subtrees_is_checked(expect: Expect) -> None:
+    tree = (
+        main("- Go: {to: $to}", values="{to: «tabel_a»}")
+        + "  Go:\n    inputs: {to: text}\n    Drive: {there: $to}\n"
+        + "  Drive:\n    inputs: {there: text}\n    navigate: $there\n"
+    )
+    expect("unknown-place", tree, hint="did you mean table_a?")
+
+
+def test_a_name_written_to_a_subtree_is_checked(expect: Expect) -> None:
+    tree = main("- Go: «tabel_a»") + "  Go:\n    inputs: {to: text}\n    navigate: $to\n"
+    expect("unknown-place", tree)
+
+
+def test_types_across_a_subtree(expect: Expect) -> None:
+    tree = main(f"- {SEE}", "- Sub: {x: «$it»}") + "  Sub:\n    inputs: {x: int}\n    say: '${x}'\n"
+    expect("wrong-type", tree, message="'x' of Sub takes int")
+
+
+def test_an_output_that_is_not_always_written(expect: Expect) -> None:
+    sub = f"  Sub:\n    outputs: {{it: «detected_object»}}\n    fallback: [{{{SEE}}}, relocalize]\n"
+    expect("unwritten-output", main("- Sub: {it: $it}", "- pick: $it") + sub)
+
+
+def test_an_output_of_another_type(expect: Expect) -> None:
+    sub = f"  Sub:\n    outputs: {{it: «pose»}}\n    sequence: [{{{SEE}}}]\n"
+    expect("wrong-type", main("- Sub") + sub, message="but detected_object comes")
+
+
+def test_keys_of_a_subtree_are_its_own(expect: Expect) -> None:
+    tree = main(f"- {SEE}", "- pick: $it", "- Sub") + "  Sub:\n    pick: «$it»\n"
+    expect("read-before-write", tree)
+
+
+def test_the_roots_board(fine: Fine, expect: Expect) -> None:
+    sub = "  Sub:\n    - say: $@name\n    - say: {text: a, pace: $@localization.quality}\n"
+    fine(main("- Sub", values="{name: a}") + sub)
+    expect("unknown-key", main("- say: «$@nam»", values="{name: a}"), hint="did you mean name?")
+
+
+def test_an_output_that_nobody_reads_is_a_warning(check: Callable[[str], list[Problem]]) -> None:
+    found = check("momantu_bt: 1\nworld: rooms\n" + main(f"- {SEE}"))
+    assert [(p.code, p.severity) for p in found] == [("unread-output", Severity.WARNING)]
+
+
+@pytest.mark.parametrize(
+    ("script", "code", "hint"),
+    [
+        ("$n > 1 and «$mm» > 2", "read-before-write", "keys that have a value here: n"),
+        ("$n > 2 «m»", "script", "did you mean $m"),
+        ('"$n > 2 «m»"', "script", "did you mean $m"),
+        ("«$n > 2 ? 3»", "script", ""),
+        ("$n == 1 or $n == 2 «and» $n == 3", "script", "write ($a and $b) or $c"),
+        ("«not» $n == 3", "script", "write not ($a == $b)"),
+    ],
+)
+def test_scripts_are_checked_where_they_stand(
+    expect: Expect, script: str, code: str, hint: str
+) -> None:
+    expect(code, main(f"- condition: {script}", values="{n: 1}"), hint=hint)
+
+
+def test_a_script_writes_keys(fine: Fine, expect: Expect) -> None:
+    fine(main("- script: $k := $n + 1", "- condition: $k > 1", values="{n: 1}"))
+    expect("read-before-write", main("- script: $k := «$m» + 1", "- condition: $k > 1"))
+
+
+def test_conditions_read_keys(expect: Expect) -> None:
+    expect("read-before-write", main("- relocalize:", "  skip_if: not «$known»"))
+
+
+def test_for_each_gives_its_item(fine: Fine, expect: Expect) -> None:
+    count = "- count: {poses: $stops}"
+    fine(main(count, "- for_each: {in: $stops, as: $stop, child: {navigate: {goal: $stop}}}"))
+    body = main(count, "- for_each: {in: $stops, as: $stop, child: {navigate: {side: «$stop»}}}")
+    expect("wrong-type", body, message="$stop is pose2d")

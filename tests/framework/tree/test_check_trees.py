@@ -1,0 +1,132 @@
+"""How trees call each other, what runs side by side, and what handlers can meet."""
+
+from collections.abc import Callable
+
+from momantu_bt.tree.check_trees import MAX_NESTING
+from momantu_bt.tree.problems import Problem, Severity
+
+Expect = Callable[..., None]
+Fine = Callable[[str], None]
+Check = Callable[[str], list[Problem]]
+
+
+def test_a_tree_that_runs_itself(expect: Expect) -> None:
+    body = "trees:\n  Main: [Sub]\n  Sub: [relocalize, «Main»]\n"
+    expect("recursion", body, message="Main -> Sub -> Main")
+
+
+def test_a_tree_that_nothing_runs_is_a_warning(check: Check) -> None:
+    text = "momantu_bt: 1\nmain: Main\ntrees:\n  Main: [{wait: 1}]\n  Sub: [{wait: 1}]\n"
+    assert [(p.code, p.severity) for p in check(text)] == [("unused-tree", Severity.WARNING)]
+
+
+def test_a_tree_named_like_a_skill(expect: Expect) -> None:
+    expect("bad-name", "trees:\n  Main: [pick: {}]\n  «pick»: [{wait: 1}]\n")
+
+
+def test_two_nodes_of_one_name(expect: Expect) -> None:
+    body = "trees:\n  Main:\n    - {wait: 1, name: a}\n    - {«wait»: 2, name: a}\n"
+    expect("duplicate-name", body, hint="line 6")
+
+
+def test_overlapping_uses_side_by_side(expect: Expect) -> None:
+    body = "trees:\n  Main:\n    parallel:\n      - reset_pose: home\n      - «reset_pose»: carry\n"
+    expect("overlapping-uses", body, message="both use arm")
+
+
+def test_overlapping_uses_inside_subtrees(expect: Expect) -> None:
+    body = (
+        "trees:\n  Main:\n    parallel_all:\n      - Drive\n      - «sequence»: [relocalize]\n"
+        "  Drive: [navigate: door]\n"
+    )
+    expect("overlapping-uses", body, message="both use base")
+
+
+def test_different_actuators_side_by_side(fine: Fine) -> None:
+    fine("trees:\n  Main:\n    parallel: [{reset_pose: home}, {navigate: door}]\n")
+
+
+def test_a_handler_for_a_code_that_cannot_arrive(expect: Expect) -> None:
+    body = (
+        "trees:\n  Main:\n    recover:\n      attempts: 2\n      try: {reset_pose: home}\n"
+        "      catch:\n        «GRASP_MISSED»: again\n"
+    )
+    expect("dead-handler", body, hint="it can fail with: NO_PLAN")
+
+
+def test_a_mistyped_code(expect: Expect) -> None:
+    body = (
+        "trees:\n  Main:\n    recover:\n      attempts: 2\n      try: {reset_pose: home}\n"
+        "      catch: {«NO_PLANS»: again}\n"
+    )
+    expect("dead-handler", body, hint="did you mean NO_PLAN?")
+
+
+def test_a_code_that_comes_through_a_subtree(fine: Fine) -> None:
+    fine(
+        "trees:\n  Main:\n    recover:\n      attempts: 2\n      try: Sub\n"
+        "      catch: {NO_PLAN: again, reset_pose.SKILL_ERROR: again, TIMEOUT | MINE: again}\n"
+        "  Sub:\n    - {reset_pose: home, timeout: 3 s}\n    - fail: MINE\n"
+    )
+
+
+def test_a_code_that_a_handler_has_taken_away(expect: Expect) -> None:
+    body = (
+        "trees:\n  Main:\n    recover:\n      attempts: 2\n"
+        "      try: {handle: {try: {reset_pose: home}, catch: {NO_PLAN: relocalize}}}\n"
+        "      catch: {«NO_PLAN»: again, NOT_LOCALIZED: again}\n"
+    )
+    expect("dead-handler", body)
+
+
+def test_two_handlers_for_one_code(expect: Expect) -> None:
+    body = (
+        "trees:\n  Main:\n    recover:\n      attempts: 2\n      try: {reset_pose: home}\n"
+        "      catch:\n        NO_PLAN: again\n        «any | NO_PLAN»: relocalize\n"
+    )
+    expect("dead-handler", body, hint="in line 10")
+
+
+def test_a_code_of_a_node_type_that_does_not_raise_it(expect: Expect) -> None:
+    body = (
+        "trees:\n  Main:\n    recover:\n      attempts: 2\n      try:\n"
+        "        - reset_pose: home\n        - relocalize\n"
+        "      catch: {«relocalize.NO_PLAN»: again}\n"
+    )
+    expect("dead-handler", body, message="fails with relocalize.NO_PLAN")
+
+
+def test_again_in_handle(expect: Expect) -> None:
+    body = "trees:\n  Main: [{handle: {try: relocalize, catch: {any: «again»}}}]\n"
+    expect("again", body)
+
+
+def test_unknown_world(check: Check) -> None:
+    text = "momantu_bt: 1\nworld: room\ntrees:\n  Main: [{wait: 1}]\n"
+    (problem,) = check(text)
+    assert (problem.code, problem.place.line, problem.place.column) == ("unknown-world", 2, 8)
+    assert problem.hint == "did you mean rooms?"
+
+
+def test_every_error_is_reported_at_once(check: Check) -> None:
+    text = (
+        "momantu_bt: 1\nworld: roms\nmain: Mian\ntrees:\n  Main:\n    - pik: $it\n"
+        "    - navigate: {side: x, sid: 1}\n    - wait: 3 m\n"
+    )
+    codes = [problem.code for problem in check(text)]
+    assert codes == [
+        "unknown-world",
+        "unknown-tree",
+        "unknown-node",
+        "wrong-value",
+        "unknown-port",
+        "wrong-value",
+    ]
+
+
+def test_too_many_nodes_within_nodes(check: Check) -> None:
+    modifiers = "".join(f", {m}: 2" for m in ("retry", "repeat", "timeout", "delay"))
+    node = "{wait: 1" + modifiers + "}"
+    for _ in range(MAX_NESTING // 5):
+        node = "{sequence: [" + node + "]" + modifiers + "}"
+    assert [p.code for p in check(f"momantu_bt: 1\ntrees:\n  Main: {node}\n")] == ["too-large"]
