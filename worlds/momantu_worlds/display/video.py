@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from fractions import Fraction
 from pathlib import Path
@@ -67,7 +66,7 @@ class Film:
         container, self._container = self._container, None
         container.mux(self._stream.encode(None))
         container.close()
-        os.replace(self._part, self._path)
+        self._part.replace(self._path)
 
 
 def open_video(simulator: Simulator, episode: Episode, path: Path, title: str) -> Film:

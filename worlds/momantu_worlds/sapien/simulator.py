@@ -30,6 +30,7 @@ class Simulator:
     """Physics, robot and ground truth of one episode.
 
     robot: the driver, which is all that skills may see. truth: for the referee and tests.
+    model: the robot in SAPIEN, for views.
     """
 
     def __init__(
@@ -74,6 +75,7 @@ class Simulator:
         )
         for name, sensor in self._sensors(description, model, still, moving, seed, render):
             self.robot.sensors[name] = sensor
+        self.model = model
         self._wrists = [s for s in self.robot.sensors.values() if isinstance(s, Wrench)]
 
     def now(self) -> float:
