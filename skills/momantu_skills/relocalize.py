@@ -15,6 +15,9 @@ if TYPE_CHECKING:
 
 WIDEN = (0.35, 0.35)
 """m and rad by which the estimate is doubted at first: the most that a robot usually drifts."""
+SURE = 0.9
+"""Fit that the neighbourhood of the old estimate must offer, or the whole map is searched: a wrong
+corner of a room can fit by 0.85."""
 LOOK = 1.6
 """s at rest that the service's scans after a reset take."""
 TURNS = (math.radians(120.0), math.radians(360.0))
@@ -43,7 +46,7 @@ class Relocalize(Skill):
 
     def run(self, robot: Robot) -> Run:
         """Local first, then global; each is judged at rest."""
-        from momantu_skills.navigation.confidence import is_localized, sigmas
+        from momantu_skills.navigation.confidence import QUALITY, is_localized, sigmas
 
         for stage in (1,) if self.everywhere else (0, 1):
             if stage == 0:
@@ -51,11 +54,12 @@ class Relocalize(Skill):
             else:
                 self.localization.spread()
             yield from self._rest(robot, LOOK)
-            if stage == 0 and is_localized(self.localization):
+            enough = (SURE, QUALITY)[stage]
+            if stage == 0 and is_localized(self.localization, enough):
                 return
             yield from self._turn(robot, TURNS[stage])
             yield from self._rest(robot, 0.5)
-            if is_localized(self.localization):
+            if is_localized(self.localization, enough):
                 return
         position, yaw = sigmas(self.localization.covariance)
         raise Failure(

@@ -11,8 +11,8 @@ POSITION_SIGMA = 0.15
 """m: half of the narrowest room for error in a doorway one metre wide."""
 YAW_SIGMA = 0.12
 """rad: 7 degrees."""
-QUALITY = 0.6
-"""Fit of the newest scan below which the estimate is doubted."""
+QUALITY = 0.7
+"""Fit of the newest scan below which the estimate is doubted; usual is 0.95 and more."""
 
 
 def sigmas(covariance: Array) -> tuple[float, float]:
@@ -22,7 +22,7 @@ def sigmas(covariance: Array) -> tuple[float, float]:
     return math.sqrt(max(widest, 0.0)), math.sqrt(max(float(covariance[2, 2]), 0.0))
 
 
-def is_localized(localization: Localization) -> bool:
-    """Whether the estimate is narrow and the newest scan agrees with it."""
+def is_localized(localization: Localization, quality: float = QUALITY) -> bool:
+    """Whether the estimate is narrow and the newest scan agrees with it by `quality` or more."""
     position, yaw = sigmas(localization.covariance)
-    return position < POSITION_SIGMA and yaw < YAW_SIGMA and localization.quality > QUALITY
+    return position < POSITION_SIGMA and yaw < YAW_SIGMA and localization.quality > quality

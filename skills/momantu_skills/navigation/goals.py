@@ -18,6 +18,10 @@ ON_SURFACE = 0.20
 """m by which a pose may lie beyond a surface's nominal edge and still be on it: tables move."""
 SHIFTS = (0.0, 0.1, -0.1, 0.2, -0.2, 0.3, -0.3)
 """m along the edge by which one may stand beside the point that is to be reached."""
+STRAIGHT = 0.25
+"""m: as far beside it as one may stand where that is straight ahead."""
+MANOEUVRE = 0.25
+"""Cost of not being straight ahead, m: a turn, a drive and a turn take as long as a metre's way."""
 RING = 16
 """Directions from which a pose in the open is approached."""
 
@@ -89,7 +93,10 @@ def _square_stands(
         c, s = math.cos(angle), math.sin(angle)
         out, along = c * target.x + s * target.y, -s * target.x + c * target.y
         closest = max(edge - out + config.stand_off, nearest)
-        for index, shift in enumerate(SHIFTS):
+        ahead = surface.map_from_surface.inverse() @ base
+        straight = -s * ahead.x + c * ahead.y - along
+        shifts = (*SHIFTS, straight) if abs(straight) <= STRAIGHT else SHIFTS
+        for index, shift in enumerate(shifts):
             for back in BACK:
                 away = max(closest + back, min(best, closest + 0.05))
                 distance = math.hypot(away, shift)
@@ -98,17 +105,18 @@ def _square_stands(
                 pose = surface.map_from_surface @ _facing(angle, out + away, along + shift)
                 cost = (
                     2.0 * abs(distance - best)
-                    + 6.0 * shift * shift
+                    + 3.0 * shift * shift
                     + 0.3 * number
                     + 0.3 * min(pose.distance_to(base), 3.0)
-                    + 0.3 * _sideways(base, pose)
+                    + (0.0 if _straight_ahead(base, pose) else MANOEUVRE)
                 )
-                yield Stand(pose, number * len(SHIFTS) + index, cost)
+                yield Stand(pose, number * (len(SHIFTS) + 1) + index, cost)
 
 
-def _sideways(base: Pose2D, pose: Pose2D) -> float:
-    """How far beside the base's own line a nearby pose lies, m: such a way needs a manoeuvre."""
-    return min(abs((pose.inverse() @ base).y), 0.5)
+def _straight_ahead(base: Pose2D, stand: Pose2D) -> bool:
+    """Whether the base only has to drive on to get there."""
+    seen = stand.inverse() @ base
+    return seen.x < 0.02 and abs(seen.y) < 0.03 and abs(seen.yaw) < 0.3
 
 
 def _edge(surface: Surface, angle: float) -> tuple[float, float]:
