@@ -7,8 +7,8 @@ folder, without root and without touching the system; this module takes them int
 
 from __future__ import annotations
 
-from momantu_bt.vulkan.apply import apply
-from momantu_bt.vulkan.choose import Choice, VulkanMissingError, choose, machine_state, remembered
+from momantu_bt.vulkan.choice import Choice, VulkanMissingError, choose, machine_state, remembered
+from momantu_bt.vulkan.use import apply
 
 __all__ = ["Choice", "VulkanMissingError", "ensure_vulkan"]
 

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from momantu_bt.vulkan.apt import AptError, PrivateApt, System, this_system
-from momantu_bt.vulkan.choose import Choice, VulkanMissingError, choose, machine_state, remembered
+from momantu_bt.vulkan.choice import Choice, VulkanMissingError, choose, machine_state, remembered
 from momantu_bt.vulkan.places import cache_folder, driver_folder
 from momantu_bt.vulkan.private import MANIFEST
 

@@ -38,7 +38,7 @@ class ProbeResult:
 
 _PROGRAM = """
 import sys
-from momantu_bt.vulkan.apply import apply
+from momantu_bt.vulkan.use import apply
 from momantu_bt.vulkan.probe import Way
 apply(Way(sys.argv[1]))
 import sapien

@@ -9,7 +9,7 @@ from pathlib import Path
 from momantu_bt.diagnosis import Diagnosis
 from momantu_bt.diagnosis.imports import import_cure, import_errors
 from momantu_bt.vulkan import VulkanMissingError, ensure_vulkan
-from momantu_bt.vulkan.choose import CURE
+from momantu_bt.vulkan.choice import CURE
 
 LIBRARIES = ("av", "trimesh", "embreex", "viser")
 FETCH_FILES = ("fetch.urdf", "fetch.srdf")

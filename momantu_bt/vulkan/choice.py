@@ -6,6 +6,7 @@ import hashlib
 import json
 import os
 import sys
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -101,7 +102,8 @@ def _remember(state: str, choice: Choice) -> None:
         fresh.write_text(json.dumps(dict(list(choices.items())[-_KEPT:]), indent=1), "utf-8")
         fresh.replace(file)
     except OSError:
-        fresh.unlink(missing_ok=True)
+        with suppress(OSError):
+            fresh.unlink(missing_ok=True)
 
 
 def _read_choices() -> dict[str, dict[str, str]]:
