@@ -8,9 +8,6 @@ from momantu_bt.messages import GripperCommand
 from momantu_bt.robot import EndEffector
 from momantu_worlds.sapien.config import STEP, Physics
 
-LEAST_FORCE = 5.0
-"""N; below it real finger gears do not turn."""
-
 
 class GripperDrive:
     """Two coupled fingers, each pressing with at most the force that was asked for.
@@ -55,7 +52,7 @@ class GripperDrive:
             raise ValueError(f"a force of {goal.max_force} N; the gripper has up to {strongest} N")
         self._goal = goal.width / 2
         if goal.max_force != self._force:
-            self._set_force(max(goal.max_force, LEAST_FORCE))
+            self._set_force(goal.max_force)
 
     def apply(self) -> None:
         """Move the target on by one physics step, at the fingers' speed."""

@@ -120,7 +120,8 @@ class JointDrive:
                 f"it is commanded to {self.position[worst] + self._offset[worst]:.3f}; plan from "
                 "the present state"
             )
-        path = Path(goal, columns, self.position, self._offset, self._acceleration)
+        start = self.position, self.velocity
+        path = Path(goal, columns, start, self._offset, self._acceleration)
         self._check_speed(goal, columns)
         self._path, self._goal = path, None
 
@@ -168,8 +169,8 @@ class JointDrive:
                 f"positions for {', '.join(goal.names)} with {len(goal.positions)} numbers; "
                 f"the joints are {', '.join(self.names)}"
             )
-        wanted = self._goal if self._goal is not None else self.position + self._offset
-        wanted = np.array(wanted)
+        here = self._goal is None or self._braking
+        wanted = np.array(self.position + self._offset if here else self._goal)
         for name, value in zip(goal.names, goal.positions, strict=True):
             wanted[self.names.index(name)] = value
         self._check_positions(wanted[None])

@@ -18,16 +18,17 @@ FASTEST_BRAKE = 20.0
 class Path:
     """A trajectory with its own time, which a pace of 0..1 lets pass more slowly.
 
-    columns: where the drive's joints stand in the trajectory. start (n,): the joints as commanded
-    now; where the first point lies beside it, the difference fades out over BLEND. offset (n,):
-    measured minus true angles; trajectories are measured, what comes out is true.
+    columns: where the drive's joints stand in the trajectory. start: the joints' positions and
+    velocities (n,) as commanded now; where the trajectory starts beside them, the difference fades
+    out over BLEND. offset (n,): measured minus true angles; trajectories are measured, what comes
+    out is true.
     """
 
     def __init__(
         self,
         trajectory: JointTrajectory,
         columns: list[int],
-        start: Array,
+        start: tuple[Array, Array],
         offset: Array,
         acceleration: Array,
     ) -> None:
@@ -35,7 +36,8 @@ class Path:
         self._times = np.asarray(trajectory.times, dtype=np.float64)
         self._positions = np.asarray(trajectory.positions, dtype=np.float64)[:, columns] - offset
         self._velocities = np.asarray(trajectory.velocities, dtype=np.float64)[:, columns]
-        self._start_error = start - self._positions[0]
+        self._position_error = start[0] - self._positions[0]
+        self._velocity_error = start[1] - self._velocities[0]
         self._acceleration = acceleration
         self.time = 0.0
         self.pace = 1.0
@@ -79,9 +81,18 @@ class Path:
         position = a + u * (va + u * (c + u * d))
         velocity = (va + u * (2.0 * c + 3.0 * u * d)) / h
         acceleration = (2.0 * c + 6.0 * u * d) / (h * h)
-        left = np.clip(1.0 - times / BLEND, 0.0, 1.0)[:, None]
-        position = position + self._start_error * (left * left * (3.0 - 2.0 * left))
+        if float(times[0]) < BLEND:
+            fade, slope = self._fade(times[:, None] / BLEND)
+            position, velocity = position + fade, velocity + slope
         return position, velocity, acceleration
+
+    def _fade(self, u: Array) -> tuple[Array, Array]:
+        """The start's difference at shares `u` (k, 1) of BLEND, and its rate: both reach 0 at 1."""
+        u = np.minimum(u, 1.0)
+        e, v = self._position_error, self._velocity_error * BLEND
+        fade = (1.0 - u) ** 2 * ((1.0 + 2.0 * u) * e + u * v)
+        slope = (1.0 - u) * ((1.0 - 3.0 * u) * v - 6.0 * u * e) / BLEND
+        return fade, slope
 
     def _brake(self) -> float:
         """Pace per second that no joint's acceleration limit forbids, 1/s."""
