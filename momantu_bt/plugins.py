@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import difflib
+from collections.abc import Callable, Iterable
+from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any
 
@@ -26,8 +28,14 @@ def installed(group: str) -> dict[str, EntryPoint]:
     Raises:
         PluginError: two packages give the same name different things; both are named.
     """
+    return dict(_installed(entry_points, group))
+
+
+@cache
+def _installed(find: Callable[..., Iterable[EntryPoint]], group: str) -> dict[str, EntryPoint]:
+    """As `installed`. What is installed does not change while a process runs; asking is slow."""
     found: dict[str, EntryPoint] = {}
-    for entry in sorted(entry_points(group=group), key=lambda e: (e.name, e.value)):
+    for entry in sorted(find(group=group), key=lambda e: (e.name, e.value)):
         other = found.get(entry.name)
         if other is not None and other.value != entry.value:
             raise PluginError(
