@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import av
 
+from momantu_bt.robot import read_camera
 from momantu_bt.world import TreeLine, WorldError
 from momantu_worlds.display.chase import Chase
 from momantu_worlds.display.frame import HEIGHT, SCENE, WIDTH, Image, compose
@@ -56,7 +57,7 @@ class Film:
     def _picture(self, lines: Sequence[TreeLine], headline: str) -> Image:
         now = self._simulator.now()
         scene = self._camera.take(self._chase.pose(self._simulator.truth.base(), now))
-        head = self._simulator.robot.read(self._head).color
+        head = read_camera(self._simulator.robot, self._head).color
         return compose(scene, head, lines, headline)
 
     def close(self) -> None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import io
 import socket
+from contextlib import redirect_stdout
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -30,7 +32,9 @@ class BrowserView:
     def __init__(self, simulator: Simulator, episode: Episode, port: int) -> None:
         """See `open_view`."""
         self._simulator, self._port = simulator, port
-        self._server = viser.ViserServer(host=HOST, port=port, verbose=False)
+        with redirect_stdout(io.StringIO()):  # it would announce itself in the terminal
+            self._server = viser.ViserServer(host=HOST, port=port, verbose=False)
+        self._open = True
         self._server.scene.set_up_direction("+z")
         self._server.initial_camera.position = EYE
         self._server.initial_camera.look_at = (0.0, 0.0, 0.0)
@@ -66,9 +70,10 @@ class BrowserView:
 
     def close(self) -> None:
         """Stop serving; safe to call twice."""
-        server, self._server = self._server, None
-        if server is not None:
-            server.stop()
+        if self._open:
+            self._open = False
+            with redirect_stdout(io.StringIO()):
+                self._server.stop()
 
     def _put(self, key: str, frame: Any, pose: Transform) -> None:
         sent = self._sent.get(key)

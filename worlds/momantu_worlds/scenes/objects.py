@@ -8,13 +8,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Literal, TypeAlias, get_args
 
 from momantu_bt.geometry import Transform
 from momantu_worlds.scenes.bodies import Color, Cylinder, Geometry, Part
 from momantu_worlds.scenes.lathe import lathe, shell_pieces, solid_piece
 from momantu_worlds.scenes.parts import block, shade
 
-OBJECT_KINDS = ("bottle", "box", "mug", "bowl", "can")
+ObjectKind: TypeAlias = Literal["bottle", "box", "mug", "bowl", "can"]
+OBJECT_KINDS: tuple[ObjectKind, ...] = get_args(ObjectKind)
 
 METAL: Color = (0.72, 0.73, 0.75)
 WALL = 0.005
@@ -31,7 +33,7 @@ class Thing:
     size: (3,) the box's edges, or (2 radius, 2 radius, height) of the round body alone.
     """
 
-    kind: str
+    kind: ObjectKind
     size: tuple[float, float, float]
     mass: float
     color: Color

@@ -13,12 +13,13 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array, Pose2D
 from momantu_bt.world import seeded
 from momantu_worlds.scenes.floor import STAND_OFF
 from momantu_worlds.scenes.layout import PlacedTable, PlacedThing
-from momantu_worlds.scenes.objects import Thing
+from momantu_worlds.scenes.objects import ObjectKind, Thing
 from momantu_worlds.scenes.tag36h11 import picture_edge
 from momantu_worlds.scenes.world_file import WorldFile
 
@@ -109,7 +110,7 @@ def place_things(
     return tuple(placed)
 
 
-def draw_thing(world: WorldFile, kind: str, draw: np.random.Generator) -> Thing:
+def draw_thing(world: WorldFile, kind: ObjectKind, draw: np.random.Generator) -> Thing:
     """A thing of some usual size, weight and colour; a can is never like the item."""
     color = _COLORS[int(draw.integers(len(_COLORS)))]
     if kind == "can":
@@ -226,7 +227,7 @@ def seen_share(
     return best
 
 
-def _behind(points: Array, eye: Array, disc: Disc) -> Array:
+def _behind(points: Array, eye: Array, disc: Disc) -> NDArray[np.bool_]:
     """Which segments from the eye to points (n, 3) pass through an upright cylinder."""
     ray = points - eye
     from_axis = eye[:2] - (disc.x, disc.y)

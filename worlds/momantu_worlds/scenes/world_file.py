@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from momantu_bt.geometry import Pose2D
 from momantu_worlds.scenes.furniture import Size3, usual_size
-from momantu_worlds.scenes.objects import OBJECT_KINDS
+from momantu_worlds.scenes.objects import OBJECT_KINDS, ObjectKind
 from momantu_worlds.scenes.tag36h11 import CODES
 from momantu_worlds.scenes.units import Angle, Force, Length, Mass, Size, Time
 
@@ -23,7 +23,6 @@ Count: TypeAlias = Annotated[int, Field(ge=0, le=50)]
 FurnitureKind: TypeAlias = Literal[
     "table", "desk", "chair", "sofa", "shelf", "crate", "cabinet", "plant", "figure"
 ]
-ObjectKind: TypeAlias = Literal["can", "bottle", "box", "mug", "bowl"]
 
 
 def pose2d(pose: tuple[float, float, float]) -> Pose2D:

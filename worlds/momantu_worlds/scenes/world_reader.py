@@ -11,7 +11,7 @@ from typing import Any, TypeAlias
 from pydantic import ValidationError
 from ruamel.yaml import YAML
 from ruamel.yaml.error import MarkedYAMLError
-from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
+from ruamel.yaml.nodes import MappingNode, Node, SequenceNode
 
 from momantu_bt.world import WorldError
 from momantu_worlds.scenes.world_file import WorldFile
@@ -124,7 +124,7 @@ class _Reading:
             found[key] = self.plain(value_node, (*place, key), depth + 1)
         return found
 
-    def _scalar(self, node: ScalarNode) -> Any:
+    def _scalar(self, node: Node) -> Any:
         tag = str(node.tag).rsplit(":", 1)[-1]
         text = str(node.value)
         try:
