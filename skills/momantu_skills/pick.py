@@ -19,6 +19,9 @@ THINKING = 0.4
 """s that choosing a grasp and planning are given: twice the median."""
 LEAST_WEIGHT = 0.5
 """N by which the wrist must be heavier with the object: four times the sensor's noise."""
+SQUEEZE = 0.03
+"""m less than the object's width that the fingers are asked to close to: enough for full force,
+and for missing it to show; closing all the way would make opening slower."""
 BUMP = 25.0
 """N on the wrist that stop the approach: enough to push a can aside, far from doing damage."""
 
@@ -133,8 +136,9 @@ class Pick(Skill):
 
         hand = arm.hand
         rest = yield from rested_force(arm.robot, self.frames, "feeling")
+        squeezed = max(0.0, plan.grasp.width - SQUEEZE)
         width = yield from move_gripper(
-            arm.robot, self.clock, 0.0, hand.force, hand.close_time, "closing"
+            arm.robot, self.clock, squeezed, hand.force, hand.close_time, "closing"
         )
         self.planning_scene.touched()
         effort = arm.state.gripper_effort

@@ -114,7 +114,10 @@ class Arm:
             found = self.planner.path(start, goals, world.free)
         if found is None:
             raise self._no_plan(world, goals)
-        return [*first, *self._checked(found, world)]
+        rounded = self.scene.world(
+            state, held, self.planning.corner_margin, width=width, cut=cut, extra=extra
+        )
+        return [*first, *self._checked(found, rounded)]
 
     def trajectory(self, path: Array, tip_speed: float | None = None) -> JointTrajectory:
         """The fastest trajectory along a path; see `timed`."""
@@ -183,10 +186,13 @@ class Arm:
         return path
 
     def _checked(self, path: Array, world: CollisionWorld) -> list[JointTrajectory]:
-        """One trajectory, or one per straight piece where the spline would cut a corner."""
-        whole = self.trajectory(path)
-        if len(path) == 2 or world.path_free(whole.positions):
-            return [whole]
+        """One trajectory that rounds corners where it may, or one per straight piece."""
+        if len(path) == 2:
+            return [self.trajectory(path)]
+        for radius in self.planning.rounding:
+            whole = timed(self.group, path, self.planning, rounding=radius)
+            if world.path_free(whole.positions):
+                return [whole]
         return [self.trajectory(path[i : i + 2]) for i in range(len(path) - 1)]
 
     def _no_plan(self, world: CollisionWorld, goals: Sequence[Array]) -> Failure:

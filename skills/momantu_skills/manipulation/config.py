@@ -42,11 +42,17 @@ class PlanningConfig:
     """Scaled rad between two collision checks of a motion; the hand then moves about 4 cm."""
     margin: float = 0.012
     """m; clearance that transits keep from surroundings: depth noise and half a voxel's corner."""
+    corner_margin: float = 0.006
+    """m; what must be left of it where a spline rounds a corner."""
     searches: int = 1500
     """Growths of a search tree after which it gives up: about 0.3 s."""
+    attempts: int = 3
+    """Searches, of which the quickest path is taken."""
+    rounding: tuple[float, ...] = (0.5, 0.25, 0.1)
+    """rad around a corner in which the spline may cut it, tried in turn: stops cost time."""
     range: float = 1.2
     """Scaled rad; longest branch of the tree."""
-    shortcut_rounds: int = 40
+    shortcut_rounds: int = 60
     """Random shortcuts tried on a path."""
     densify: float = 0.1
     """rad between waypoints given to the spline, so that it does not cut corners."""

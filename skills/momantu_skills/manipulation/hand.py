@@ -17,6 +17,8 @@ RESTING = 3
 """Ticks in a row without movement after which the fingers have come to rest."""
 MOVEMENT = 1.5e-3
 """m of change between two ticks that is movement: three sigma of the width's noise."""
+PRESSING = 0.7
+"""Share of the force limit at which the fingers press on something."""
 OPEN_TOLERANCE = 0.006
 """m from the asked opening at which the gripper counts as open."""
 
@@ -24,20 +26,23 @@ OPEN_TOLERANCE = 0.006
 def move_gripper(
     robot: Robot, clock: Clock, width: float, force: float, timeout: float, phase: str
 ) -> Generator[str, None, float]:
-    """Move the fingers until they rest at `width` or against something; the opening reached, m.
+    """Move the fingers until they are at `width` or press on something; the opening reached, m.
 
-    Never fails: what the opening means is the caller's to judge.
+    Never fails: what the opening means is the caller's to judge. Opening ends only at the width,
+    for it begins with letting the force go, during which nothing moves.
     """
     actuator = robot.description.end_effector.actuator
     goal = GripperCommand(width, force)
     began, still, last = clock.now(), 0, robot.state().gripper_width
+    closing = width < last
     while still < RESTING and clock.now() - began < timeout:
         robot.command(actuator, goal)
         yield phase
-        now = robot.state().gripper_width
-        started = abs(now - width) < OPEN_TOLERANCE or clock.now() - began > 0.3
-        still = still + 1 if started and abs(now - last) < MOVEMENT else 0
-        last = now
+        state = robot.state()
+        there = abs(state.gripper_width - width) < OPEN_TOLERANCE
+        pressing = closing and state.gripper_effort > PRESSING * force
+        resting = abs(state.gripper_width - last) < MOVEMENT and (there or pressing)
+        still, last = still + 1 if resting else 0, state.gripper_width
     return float(robot.state().gripper_width)
 
 

@@ -17,6 +17,8 @@ Valid = Callable[[Array], bool]
 
 ROOM = 0.4
 """Scaled rad that the first search may stray past start and goals on slow joints."""
+LEAST_GAIN = 0.01
+"""s that a shortcut must save."""
 WIDE = 1.3 * np.pi
 """rad around the start in which endless joints are searched."""
 
@@ -44,14 +46,20 @@ class Planner:
         if not ends:
             return None
         for tight in (True, False):
-            found = self._search(start, ends, valid, tight)
-            if found is not None:
-                return found
+            found = [self._search(start, ends, valid, tight) for _ in range(self.config.attempts)]
+            paths = [self._shortened(path, valid) for path in found if path is not None]
+            if paths:
+                return min(paths, key=self.length)
         return None
 
     def duration(self, start: Array, goal: Array) -> float:
         """Seconds a straight joint motion takes at full speed, accelerations left out."""
         return float(np.max(np.abs(goal - start) / self.group.velocity))
+
+    def length(self, path: Array) -> float:
+        """Seconds that the pieces of a path (k, n) take at full speed, one after the other."""
+        steps = np.abs(np.diff(path, axis=0)) / self.group.velocity
+        return float(steps.max(axis=1).sum())
 
     def straight(self, start: Array, goal: Array, valid: Valid) -> bool:
         """Whether the straight line in joint space is valid, both ends included."""
@@ -97,6 +105,22 @@ class Planner:
         simplifier.reduceVertices(path)
         return np.array([state[0:n] for state in path.getStates()]) / scale
 
+    def _shortened(self, path: Array, valid: Valid) -> Array:
+        """Replace what lies between two random points by a straight line wherever that is valid
+        and quicker (Geraerts and Overmars, "Creating High-quality Paths", 2007)."""
+        for _ in range(self.config.shortcut_rounds):
+            if len(path) == 2:
+                break
+            i, j = sorted(self.random.uniform(0.0, len(path) - 1.0, 2))
+            a, b = _at(path, i), _at(path, j)
+            between = path[int(i) + 1 : int(np.ceil(j))]
+            old = np.vstack([a, between, b])
+            if len(between) and self.duration(a, b) < self.length(old) - LEAST_GAIN:
+                if self.straight(a, b, valid):
+                    path = np.vstack([path[: int(i) + 1], a, b, path[int(np.ceil(j)) :]])
+                    path = _distinct(path)
+        return path
+
     def _bounds(
         self, start: Array, goals: Sequence[Array], tight: bool
     ) -> ob.RealVectorBounds:
@@ -113,6 +137,19 @@ class Planner:
             bounds.setLow(i, float(min(lower[i], ends[:, i].min()) * scale[i]) - 1e-6)
             bounds.setHigh(i, float(max(upper[i], ends[:, i].max()) * scale[i]) + 1e-6)
         return bounds
+
+
+def _at(path: Array, where: float) -> Array:
+    """The point at a fractional waypoint number."""
+    i = min(int(where), len(path) - 2)
+    return np.asarray(path[i] + (where - i) * (path[i + 1] - path[i]))
+
+
+def _distinct(path: Array) -> Array:
+    """Without waypoints that repeat the one before."""
+    keep = np.ones(len(path), dtype=bool)
+    keep[1:] = np.abs(np.diff(path, axis=0)).max(axis=1) > 1e-6
+    return path[keep]
 
 
 class _Counter:

@@ -31,17 +31,43 @@ def densified(path: Array, distance: float) -> Array:
     return np.vstack(pieces)
 
 
+def rounded(path: Array, distance: float, radius: float) -> Array:
+    """Like `densified`, without the points (k, n) within `radius` of a corner.
+
+    A spline through what is left goes round the corner instead of through it.
+    """
+    pieces = [path[:1]]
+    last = len(path) - 2
+    for i, (a, b) in enumerate(zip(path[:-1], path[1:], strict=True)):
+        length = float(np.max(np.abs(b - a)))
+        low = 0.0 if i == 0 else min(0.5, radius / max(length, SHORTEST))
+        high = 1.0 if i == last else max(0.5, 1.0 - radius / max(length, SHORTEST))
+        count = max(1, int(np.ceil((high - low) * length / distance)))
+        shares = np.linspace(low, high, count + 1) if high > low else np.array([low])
+        pieces.append(a + (shares[1:] if i == 0 else shares)[:, None] * (b - a))
+    return np.vstack(pieces)
+
+
 def timed(
-    group: Group, path: Array, config: PlanningConfig, tip_speed: float | None = None
+    group: Group,
+    path: Array,
+    config: PlanningConfig,
+    tip_speed: float | None = None,
+    rounding: float | None = None,
 ) -> JointTrajectory:
     """The fastest trajectory along waypoints (k, n), at rest at both ends.
 
-    tip_speed: the tip moves no faster than this, m/s. Raises ValueError when the path has no
+    tip_speed: the tip moves no faster than this, m/s. rounding: see `rounded`. Raises ValueError when the path has no
     timing within the limits, which only a path with a repeated jump can cause.
     Method: Pham and Pham, "A New Approach to Time-Optimal Path Parameterization Based on
     Reachability Analysis" (TOPP-RA), 2018.
     """
-    points = _distinct(densified(path, config.densify))
+    dense = (
+        densified(path, config.densify)
+        if rounding is None
+        else rounded(path, config.densify, rounding)
+    )
+    points = _distinct(dense)
     if len(points) < 2:
         return at_rest(group, path[-1])
     knots = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
