@@ -16,6 +16,7 @@ from momantu_bt.tree.model import Document, Place, Reference, Scope, Tree
 from momantu_bt.tree.problems import Problem, Problems, valid_names
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.signatures import Context
+from momantu_bt.world import WorldError
 
 NO_WORLD = "none"
 """As a world's name: run without one."""
@@ -84,6 +85,10 @@ def _look_up(context: Context, world: str | None, robot: str | None) -> None:
         return
     try:
         context.description = registry.description(robot)
+    except WorldError as error:
+        # its files are not installed, as without the extra [worlds]; trees are checked all the same
+        message = f"poses and actuators of {robot!r} are not checked: {error}"
+        context.problems.warning("robot-not-installed", _start(document), message)
     except Exception as error:  # a plug-in's code, which may raise anything
         message = f"the robot {robot!r} cannot be read: {type(error).__name__}: {error}"
         context.problems.error("broken-robot", _start(document), message)
