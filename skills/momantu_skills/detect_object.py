@@ -2,26 +2,35 @@
 
 from __future__ import annotations
 
+from functools import partial
+from typing import TYPE_CHECKING
+
 from momantu_bt.geometry import Array
 from momantu_bt.messages import DetectedObject, ObjectClass
 from momantu_bt.robot import CAMERA_CARRIER, Robot
 from momantu_bt.service import Localization, PlanningScene
 from momantu_bt.skill import Failure, In, Needs, Out, Run, Skill, compute
 
+if TYPE_CHECKING:
+    from momantu_skills.perception.detector import Detections, ObjectDetector
+    from momantu_skills.perception.surveys import SurfaceRegion
+    from momantu_skills.perception.views import Snapshot, View
+
 BUDGET = 0.1
-"""s granted to making sense of one look, and again to comparing them."""
+"""s granted to making sense of one look together with those before it."""
 
 
 class DetectObject(Skill):
-    """Look over a surface from several angles, measure what stands on it, and pick the asked one.
+    """Look over a surface, measure what stands on it, and pick out the asked thing.
 
+    Looks go from the surface's middle outwards until the thing is seen, then at the thing itself.
     The surface is measured too: tables stand up to 0.1 m and 5 degrees from where the site says,
     and 3 cm higher or lower.
     """
 
     object: ObjectClass = In(doc="what to find: its category and the sizes that are known")
     on: str = In(names="surface", doc="the surface that it stands on")
-    views: int = In(2, doc="how many looks at least; a wide surface takes more")
+    views: int = In(2, doc="from how many angles to see it before it counts as measured")
     found: DetectedObject = Out(doc="the best match; pose in odom, stamped")
     failures = {
         "OBJECT_NOT_FOUND": "nothing on the surface is the asked thing; data lists what is there",
@@ -31,39 +40,53 @@ class DetectObject(Skill):
     localization: Localization = Needs()
     planning_scene: PlanningScene = Needs()
 
-    def run(self, robot: Robot) -> Run:
-        """Sweep, measure, choose."""
-        from momantu_skills.perception.detector import GeometricDetector, ObjectDetector
-        from momantu_skills.perception.surveys import surface_region, survey
+    def __init__(self) -> None:
+        """Start with nothing seen."""
+        from momantu_skills.perception.detector import GeometricDetector
 
-        detector: ObjectDetector = GeometricDetector()
+        super().__init__()
+        self._detector: ObjectDetector = GeometricDetector()
+        self._views: list[View] = []
+
+    def run(self, robot: Robot) -> Run:
+        """Look and measure until the thing was seen in enough looks, or none is left."""
+        from momantu_skills.perception.surveys import beside, glance, looks_over, surface_region
+
         corners = self._corners()
         region = surface_region(corners)
-        views = yield from survey(
-            self,
-            robot,
-            corners,
-            region,
-            at_least=self.views,
-            budget=BUDGET,
-            unseen="SURFACE_NOT_SEEN",
-        )
-        low, high = region.support_heights
-        result = yield from compute(
-            lambda: detector.detect(views, low, high, self.object), budget=BUDGET
-        )
+        pending = looks_over(self, robot, corners, 1)
+        snapshots: list[Snapshot] = []
+        result: Detections | None = None
+        best: DetectedObject | None = None
+        while pending:
+            snapshot = yield from glance(self, robot, pending.pop(0))
+            if snapshot is None:
+                continue
+            snapshots.append(snapshot)
+            result = yield from compute(partial(self._measure, snapshots, region), budget=BUDGET)
+            best = None if result is None else self._asked_of(result)
+            if best is None:
+                continue
+            if len(snapshots) >= self.views:
+                break
+            camera = snapshot.odom_from_camera.position
+            pending.insert(0, beside(best.pose.position, camera, len(snapshots)))
         if result is None:
-            raise Failure(
-                "SURFACE_NOT_SEEN",
-                f"{len(views)} looks showed no level surface within {high - low:.2f} m around the "
-                f"height of {self.on}: is the robot in front of it?",
-                surface=self.on,
-                points=[len(view.points) for view in views],
-            )
-        best = next((t for t in result.things if t.score >= detector.accepted), None)
+            raise self._unseen(len(snapshots))
         if best is None:
             raise self._not_found(result.things)
         self.found = best
+
+    def _measure(self, snapshots: list[Snapshot], region: SurfaceRegion) -> Detections | None:
+        from momantu_skills.perception.views import see
+
+        for snapshot in snapshots[len(self._views) :]:
+            self._views.append(see(snapshot, region, self.planning_scene))
+        low, high = region.support_heights
+        return self._detector.detect(self._views, low, high, self.object)
+
+    def _asked_of(self, result: Detections) -> DetectedObject | None:
+        return next((t for t in result.things if t.score >= self._detector.accepted), None)
 
     def _corners(self) -> Array:
         from momantu_skills.perception.regions import surface_corners
@@ -75,6 +98,15 @@ class DetectObject(Skill):
                 "SURFACE_NOT_SEEN", f"the site has no surface {self.on!r}; surfaces: {known}"
             )
         return surface_corners(surface, self.frames)
+
+    def _unseen(self, looks: int) -> Failure:
+        return Failure(
+            "SURFACE_NOT_SEEN",
+            f"{looks} looks showed no level surface where {self.on} is said to be: is the robot "
+            "in front of it, and is anything in the way?",
+            surface=self.on,
+            looks=looks,
+        )
 
     def _not_found(self, things: tuple[DetectedObject, ...]) -> Failure:
         seen = [

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import TYPE_CHECKING
 
 from momantu_bt.frames import ODOM
@@ -14,9 +15,11 @@ from momantu_bt.skill import Failure, In, Needs, Out, Run, Skill, compute
 
 if TYPE_CHECKING:
     from momantu_skills.perception.surfaces import Surroundings
+    from momantu_skills.perception.surveys import SurfaceRegion
+    from momantu_skills.perception.views import Snapshot
 
-BUDGET = 0.1
-"""s granted to making sense of one look, and again to finding spots."""
+BUDGET = 0.2
+"""s granted to making sense of both looks and to finding spots."""
 LOOKS = 2
 """Looks to the left and right of the place: each sees behind what hides from the other."""
 HAND = 0.10
@@ -43,29 +46,41 @@ class DetectPlane(Skill):
 
     def run(self, robot: Robot) -> Run:
         """Look, measure, choose."""
-        from momantu_skills.perception.surfaces import surroundings
-        from momantu_skills.perception.surveys import place_region, survey
+        from momantu_skills.perception.surveys import glance, looks_over, place_region
 
         near = self.frames.lookup(ODOM, self.near.frame).apply(self.near.position)
         corners, region = place_region(near)
-        views = yield from survey(
-            self, robot, corners, region, at_least=LOOKS, budget=BUDGET, unseen="PLANE_NOT_FOUND"
-        )
-        base = self.frames.lookup(ODOM, robot.description.base_frame)
+        snapshots: list[Snapshot] = []
+        for point in looks_over(self, robot, corners, LOOKS):
+            snapshot = yield from glance(self, robot, point)
+            if snapshot is not None:
+                snapshots.append(snapshot)
         radius = self._radius()
         found = yield from compute(
-            lambda: surroundings(views, region, near, base, radius), budget=BUDGET
+            partial(self._measure, snapshots, region, near, radius), budget=BUDGET
         )
         if found is None:
             raise Failure(
                 "PLANE_NOT_FOUND",
-                f"{len(views)} looks showed no level surface at ({near[0]:.2f}, {near[1]:.2f}, "
-                f"{near[2]:.2f}) m in odom",
-                points=[len(view.points) for view in views],
+                f"{len(snapshots)} looks showed no level surface at ({near[0]:.2f}, "
+                f"{near[1]:.2f}, {near[2]:.2f}) m in odom",
+                looks=len(snapshots),
             )
         if not found.spots:
             raise self._full(found, radius, near)
         self.plane, self.spots = found.plane, found.spots
+
+    def _measure(
+        self, snapshots: list[Snapshot], region: SurfaceRegion, near: Array, radius: float
+    ) -> Surroundings | None:
+        from momantu_skills.perception.surfaces import surroundings
+        from momantu_skills.perception.views import see
+
+        views = [see(snapshot, region, self.planning_scene) for snapshot in snapshots]
+        if not views:
+            return None
+        base = snapshots[-1].odom_from_base
+        return surroundings(views, region, near, base, radius)
 
     def _radius(self) -> float:
         """Of the circle that what needs room fits in, whichever way it is turned, m."""

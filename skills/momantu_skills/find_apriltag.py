@@ -14,6 +14,7 @@ from momantu_bt.skill import Compute, Failure, In, Needs, Out, Run, Skill, compu
 
 if TYPE_CHECKING:
     from momantu_skills.perception.tag_poses import TagSighting
+    from momantu_skills.perception.views import Snapshot
 
 BUDGET = 0.05
 """s granted to searching one picture."""
@@ -38,58 +39,45 @@ class FindAprilTag(Skill):
 
     def run(self, robot: Robot) -> Run:
         """Sweep, look at it, average."""
-        from momantu_skills.perception.looking import look_at
+        from momantu_skills.perception.surveys import glance
         from momantu_skills.perception.tag_poses import average
 
         others: set[int] = set()
         for point in self._points(robot):
-            first = yield from self._glance(robot, point, others)
+            snapshot = yield from glance(self, robot, point)
+            first = None
+            if snapshot is not None:
+                first = yield from self._search(snapshot, others)
             if first is None:
                 continue
-            sightings = [first]
-            try:
-                yield from look_at(self, robot, first.odom_from_tag.position)
-            except Failure as failure:
-                if failure.code != "OUT_OF_VIEW":
-                    raise
-            sightings += yield from self._watch(robot, others)
+            sightings = [first, *(yield from self._watch(robot, first, others))]
             result = average(sightings)
             self.tag_pose = Pose(result.odom_from_tag, ODOM, result.stamp)
             self.tag_sigma = result.sigma
             return
         raise self._not_seen(others)
 
-    def _glance(
-        self, robot: Robot, point: Array, others: set[int]
-    ) -> Generator[str | Compute, Any, TagSighting | None]:
-        from momantu_skills.perception.looking import look_at
-        from momantu_skills.perception.surveys import OFF_AXIS
-
-        try:
-            yield from look_at(self, robot, point, within=OFF_AXIS)
-        except Failure as failure:
-            if failure.code != "OUT_OF_VIEW":
-                raise
-            return None
-        return (yield from self._search(robot, others))
-
     def _watch(
-        self, robot: Robot, others: set[int]
+        self, robot: Robot, first: TagSighting, others: set[int]
     ) -> Generator[str | Compute, Any, list[TagSighting]]:
+        """More pictures, with the tag in the middle of the view where that is possible."""
+        from momantu_skills.perception.surveys import glance
+        from momantu_skills.perception.views import take
+
         seen: list[TagSighting] = []
+        snapshot = yield from glance(self, robot, first.odom_from_tag.position)
         for _ in range(PICTURES):
-            sighting = yield from self._search(robot, others)
+            sighting = yield from self._search(snapshot or take(self, robot), others)
+            snapshot = None
             if sighting is not None:
                 seen.append(sighting)
         return seen
 
     def _search(
-        self, robot: Robot, others: set[int]
+        self, snapshot: Snapshot, others: set[int]
     ) -> Generator[str | Compute, Any, TagSighting | None]:
         from momantu_skills.perception.tag_poses import search
-        from momantu_skills.perception.views import take
 
-        snapshot = take(self, robot)
         ids, sighting = yield from compute(
             partial(search, snapshot, self.tag_id, self.edge), budget=BUDGET
         )
@@ -98,8 +86,7 @@ class FindAprilTag(Skill):
 
     def _points(self, robot: Robot) -> list[Array]:
         from momantu_skills.perception.regions import surface_corners
-        from momantu_skills.perception.surveys import around
-        from momantu_skills.perception.views import sweep
+        from momantu_skills.perception.surveys import around, looks_over
 
         if self.on is None:
             return around(self, robot)
@@ -107,10 +94,8 @@ class FindAprilTag(Skill):
         if surface is None:
             known = ", ".join(self.site.surfaces) or "none"
             raise Failure("TAG_NOT_SEEN", f"the site has no surface {self.on!r}; surfaces: {known}")
-        sensor = robot.description.camera()[1]
-        camera = self.frames.lookup(ODOM, sensor.frame).position
         corners = surface_corners(surface, self.frames)
-        return [corners.mean(axis=0), *sweep(corners, camera, sensor, LOOKS)]
+        return [corners.mean(axis=0), *looks_over(self, robot, corners, LOOKS)]
 
     def _not_seen(self, others: set[int]) -> Failure:
         where = f"on {self.on}" if self.on is not None else "around"

@@ -29,6 +29,8 @@ class PlaneConfig:
     """Largest distance from the plane: three sigma of the depth noise at 1.6 m."""
     cell: float = 0.02
     """Grid over which covered area is counted, so that near points do not outvote far ones."""
+    samples: int = 5000
+    """Points that the fit is made of; more do not make it better."""
     tilt: float = math.radians(2.0)
     """The most by which a level surface seems tilted: errors of mounting and joints."""
     least_area: float = 0.03
@@ -105,6 +107,7 @@ def measure_support(
 def find_plane(points: Array, low: float, high: float, config: PlaneConfig) -> Plane | None:
     """The level surface among points (n, 3) with the most area between two heights, m."""
     near = points[(points[:, 2] >= low) & (points[:, 2] <= high)]
+    near = near[:: max(1, len(near) // config.samples)]
     if len(near) < 50:
         return None
     height = _fullest_slice(near, low, config)

@@ -42,7 +42,7 @@ class Rectangle:
 
 
 def smallest_rectangle(points: Array) -> Rectangle:
-    """The rectangle of least area around points (n, 2), up to TRIM; a side lies along a hull edge.
+    """The rectangle of least area around points (n, 2), then trimmed by TRIM.
 
     (Freeman and Shapira 1975: the smallest rectangle shares an edge's direction with the hull.)
     """
@@ -52,10 +52,9 @@ def smallest_rectangle(points: Array) -> Rectangle:
         return Rectangle((low + high) / 2, 0.0, high - low)
     edges = np.roll(hull, -1, axis=0) - hull
     angles = np.unique(np.round(np.arctan2(edges[:, 1], edges[:, 0]) % (math.pi / 2), 3))
-    spans = [_span(points, float(angle)) for angle in angles]
-    areas = [float((high - low).prod()) for low, high in spans]
-    best = int(np.argmin(areas))
-    return _rectangle(float(angles[best]), *spans[best])
+    areas = [float(np.ptp(hull @ _axes(float(angle)), axis=0).prod()) for angle in angles]
+    yaw = float(angles[int(np.argmin(areas))])
+    return _rectangle(yaw, *_span(points, yaw))
 
 
 def fitted_to(rectangle: Rectangle, points: Array, faces: Array) -> Rectangle:

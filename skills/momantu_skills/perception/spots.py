@@ -29,7 +29,7 @@ class SpotConfig:
     """Least distance of the base to parts of the surface that no view showed."""
     on_top: float = 0.10
     """Nearer to the place asked than this the thing would stand on the tag itself."""
-    apart: float = 0.05
+    apart: float = 0.08
     """Least distance between two of the spots."""
     most: int = 8
     """Spots given back."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Generator
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,11 +13,10 @@ from momantu_bt.failure import Failure
 from momantu_bt.frames import ODOM
 from momantu_bt.geometry import Array
 from momantu_bt.robot import Robot
-from momantu_bt.service import PlanningScene
-from momantu_bt.skill import Compute, Skill, compute
+from momantu_bt.skill import Compute, Skill
 from momantu_skills.perception.looking import look_at
 from momantu_skills.perception.regions import Region, disc, grown
-from momantu_skills.perception.views import Snapshot, View, see, sweep, take
+from momantu_skills.perception.views import Snapshot, sweep, take
 
 BESIDE = 0.20
 """m by which a surface may lie beside where it is believed: 0.10 m of its own and localization."""
@@ -28,6 +26,8 @@ HEADROOM = 0.55
 """m above a surface within which things stand on it."""
 OFF_AXIS = math.radians(12.0)
 """How far from the middle of the picture a looked-at point may lie: it is still well inside."""
+SIDESTEP = 0.12
+"""m beside a thing where further looks at it go, so that it falls on other pixels."""
 NEAR, TABLE = 1.0, 0.6
 """m; distance and height of what is looked at where nothing is known: a table ahead."""
 AROUND = tuple(math.radians(angle) for angle in (0.0, 40.0, -40.0, 80.0, -80.0))
@@ -57,43 +57,24 @@ def surface_region(corners: Array) -> SurfaceRegion:
     return SurfaceRegion(grown(corners[:, :2], BESIDE), low, high + HEADROOM, (low, high))
 
 
-def survey(
-    skill: Skill,
-    robot: Robot,
-    corners: Array,
-    region: Region,
-    *,
-    at_least: int,
-    budget: float,
-    unseen: str,
-) -> Generator[str | Compute, Any, list[View]]:
-    """Look along a surface's outline (k, 3) in odom and return the views of `region`.
+def glance(
+    skill: Skill, robot: Robot, point_odom: Array
+) -> Generator[str | Compute, Any, Snapshot | None]:
+    """Look at a point (3,) in odom and take a picture; None when it cannot be looked at."""
+    try:
+        yield from look_at(skill, robot, point_odom, within=OFF_AXIS)
+    except Failure as failure:
+        if failure.code != "OUT_OF_VIEW":
+            raise
+        return None
+    return take(skill, robot)
 
-    Looks that the camera's carrier cannot take are left out. budget: s granted to each.
-    unseen: code of the failure when no look is possible.
 
-    Raises:
-        Failure: `unseen`, caused by the last look's OUT_OF_VIEW.
-    """
-    scene: PlanningScene = skill.services["planning_scene"]
-    description = robot.description
-    camera = skill.frames.lookup(ODOM, description.camera()[1].frame).position
-    points = sweep(corners, camera, description.camera()[1], at_least)
-    views: list[View] = []
-    refused: Failure | None = None
-    for point in points:
-        try:
-            yield from look_at(skill, robot, point, within=OFF_AXIS)
-        except Failure as failure:
-            if failure.code != "OUT_OF_VIEW":
-                raise
-            refused = failure
-            continue
-        snapshot: Snapshot = take(skill, robot)
-        views.append((yield from compute(partial(see, snapshot, region, scene), budget=budget)))
-    if not views:
-        raise Failure(unseen, "the camera cannot look there from here") from refused
-    return views
+def looks_over(skill: Skill, robot: Robot, corners: Array, at_least: int) -> list[Array]:
+    """Points (3,) in odom to look at so that a surface of these corners (k, 3) is seen whole."""
+    sensor = robot.description.camera()[1]
+    camera = skill.frames.lookup(ODOM, sensor.frame).position
+    return sweep(corners, camera, sensor, at_least)
 
 
 def around(skill: Skill, robot: Robot) -> list[Array]:
@@ -113,3 +94,13 @@ def place_region(near: Array) -> tuple[Array, SurfaceRegion]:
     low, high = float(near[2]) - PLACE_ERROR, float(near[2]) + PLACE_ERROR
     outline = disc(near[:2], PATCH)
     return corners, SurfaceRegion(outline, low, high + HEADROOM, (low, high))
+
+
+def beside(thing: Array, camera: Array, count: int) -> Array:
+    """Where to look (3,) for the `count`-th further view of a thing at (3,): at it, then beside."""
+    if count == 1:
+        return thing
+    away = thing[:2] - camera[:2]
+    across = np.array([-away[1], away[0]]) / max(float(np.hypot(*away)), 1e-9)
+    side = SIDESTEP * (1.0 if count % 2 == 0 else -1.0)
+    return np.array([*(thing[:2] + side * across), thing[2]])

@@ -61,7 +61,11 @@ def see(snapshot: Snapshot, region: Region, scene: PlanningScene, stride: int = 
     """The snapshot's points inside `region` that lie neither on the robot nor on what it holds."""
     image = snapshot.image
     optical = points_from_depth(image.depth, image.intrinsics, stride)
-    points = snapshot.odom_from_camera.apply(optical)
+    rotation, position = snapshot.odom_from_camera.rotation, snapshot.odom_from_camera.position
+    height = optical @ rotation[2] + position[2]
+    points = snapshot.odom_from_camera.apply(
+        optical[(height >= region.low) & (height <= region.high)]
+    )
     points = points[region.contains(points)]
     if len(points):
         base = snapshot.odom_from_base.inverse().apply(points)
