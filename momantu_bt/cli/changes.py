@@ -31,9 +31,9 @@ class ChangeLines:
 
     def ticked(self, run: Executor) -> None:
         """Tell this tick's changes."""
-        for node, status in run.context.changes:
+        for node, status, note in run.context.changes:
             if isinstance(node, Recover):
-                self._tell_note(run.context.now, node)
+                self._tell_note(run.context.now, node, note)
             elif isinstance(node, _TOLD):
                 self._tell(run.context.now, node, status)
 
@@ -50,8 +50,7 @@ class ChangeLines:
         words = f"fails: {_reason(node)}" if status is FAILURE else _WORDS[status.value]
         self._line(now, node, f"{text(node.model)} {words}")
 
-    def _tell_note(self, now: float, node: Recover) -> None:
-        note = node.note if node.shown is RUNNING else "try 1"
+    def _tell_note(self, now: float, node: Recover, note: str) -> None:
         before = self._notes.get(node.index, "try 1")
         self._notes[node.index] = note
         if note not in (before, "try 1"):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from momantu_bt.engine.actuators import Actuators
 from momantu_bt.engine.blackboard import Journal
@@ -27,13 +27,20 @@ class Body:
     services: Mapping[str, Any]
 
 
+class Change(NamedTuple):
+    """A node's status changed, or its note did while it was RUNNING."""
+
+    node: TreeNode
+    status: Status
+    note: str
+
+
 @dataclass(slots=True)
 class RunContext:
     """Shared by the nodes of one run.
 
     now: seconds of the world's clock at this tick. tick: its number, from 1.
-    writes: cells written in this tick, with what they held before. changes: nodes whose status
-    changed (or whose note did, while RUNNING), with the new status.
+    writes: cells written in this tick, with what they held before. changes: of statuses.
     remark: tells a person something that never influences the run.
     """
 
@@ -43,7 +50,7 @@ class RunContext:
     now: float = 0.0
     tick: int = 0
     writes: Journal = field(default_factory=list)
-    changes: list[tuple[TreeNode, Status]] = field(default_factory=list)
+    changes: list[Change] = field(default_factory=list)
     remark: Callable[[str], None] = print
 
     def begin_tick(self) -> None:

@@ -149,7 +149,7 @@ class Executor:
         self.fingerprint.add(
             state,
             issued,
-            [(node.index, status.value) for node, status in context.changes],
+            [(node.index, status.value) for node, status, _ in context.changes],
             self._written(),
         )
         for observer in self.observers:
@@ -169,6 +169,8 @@ class Executor:
 
     def _come_to_rest(self, status: str) -> Verdict | None:
         """Halt all, stop all, let the world go on until all stands; then ask the referee."""
+        self.context.changes.clear()
+        self.context.writes.clear()
         try:
             self.halt_all()
             if self.context.body is not None:

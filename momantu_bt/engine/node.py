@@ -15,7 +15,7 @@ import py_trees
 from py_trees.behaviour import Behaviour
 
 from momantu_bt.engine.conditions import Conditions
-from momantu_bt.engine.context import RunContext
+from momantu_bt.engine.context import Change, RunContext
 from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Status
 from momantu_bt.failure import FAILED, SCRIPT_ERROR, Failure, FailureValue
 from momantu_bt.tree.catalogue import BUILT_IN
@@ -143,7 +143,7 @@ class TreeNode(Behaviour):
     def show(self, status: Status) -> None:
         """Change what people see and note it in the journal; RUNNING again for a new `note`."""
         self.shown = status
-        self.context.changes.append((self, status))
+        self.context.changes.append(Change(self, status, self.note))
 
     # names and failures
 

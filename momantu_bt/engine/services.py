@@ -74,11 +74,11 @@ class Services:
                     other=other or self.running.__getitem__,
                 )
             )
-            self._due[name] = clock.now()
 
     def update(self, now: float) -> None:
-        """Update those whose time has come."""
+        """Update those whose time has come; the first time, all."""
         for name, service in self.running.items():
-            if now >= self._due.get(name, now) - CLOCK_SLACK:
-                self._due[name] = max(self._due.get(name, now) + 1.0 / service.rate, now)
+            due = self._due.get(name, now)
+            if now >= due - CLOCK_SLACK:
+                self._due[name] = max(due + 1.0 / service.rate, now)
                 service.update(self._robots[name], now)

@@ -200,7 +200,7 @@ class Session:
             value = values.get(port.name, MISSING)
             if value is MISSING:
                 raise TypeError(f"{self.kind.__name__} ended without giving output {port.name!r}")
-            values[port.name] = freeze(admit(value, port))
+            values[port.name] = admit(freeze(value), port)
 
     def _fail(self, failure: FailureValue) -> None:
         generator, self._generator = self._generator, None

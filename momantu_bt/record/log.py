@@ -42,7 +42,7 @@ class LogObserver:
 
     def ticked(self, run: Executor) -> None:
         """Write this tick's changes."""
-        for node, status in run.context.changes:
+        for node, status, note in run.context.changes:
             line: dict[str, Any] = {
                 "t": round(run.context.now, 9),
                 "node": node.index,
@@ -50,6 +50,8 @@ class LogObserver:
                 "place": node.place,
                 "status": status.value,
             }
+            if note:
+                line["note"] = note
             if status is FAILURE and node.failure is not None:
                 line["failure"] = plain(node.failure.as_dict())
             self._file.write(json.dumps(line, default=str) + "\n")

@@ -199,9 +199,7 @@ trees:
     retry: 1
 """
     failure = run_yaml(text, Act).failure
-    assert chain_text(failure) == (
-        "LOST, a 1 <- Put (tree.yaml:6) <- act (:9), 1 of 1 tries"
-    )
+    assert chain_text(failure) == ("LOST, a 1 <- Put (tree.yaml:6) <- act (:9), 1 of 1 tries")
 
 
 def test_for_each_runs_for_every_item_and_stops_at_a_failure(run_yaml):
