@@ -35,8 +35,8 @@ class LocalizationConfig:
     translation_noise: float = 0.12
     rotation_noise: float = 0.12
     turn_per_metre: float = 0.06
-    move: float = 0.05
-    turn: float = 0.04
+    move: float = 0.12
+    turn: float = 0.08
     rest_scans: int = 15
     rest_jitter: float = 0.006
     particles: tuple[int, int] = (400, 20_000)
@@ -75,9 +75,9 @@ class NavigationConfig:
     laser_reach: float = 6.0
     depth_reach: float = 3.0
     known_reach: float = 0.08
-    depth_every: float = 1.0
+    depth_every: float = 1.3
     obstacle_heights: tuple[float, float] = (0.06, 1.2)
-    stand_off: float = 0.46
+    stand_off: float = 0.42
     look_off: float = 0.60
     reach: tuple[float, float, float] = (0.50, 0.70, 0.95)
     patience: float = 6.0

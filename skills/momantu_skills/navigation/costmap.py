@@ -82,7 +82,7 @@ class Costmap:
         flat = cells[inside, 1] * columns + cells[inside, 0]
         return np.bincount(flat, minlength=rows * columns).reshape(rows, columns)
 
-    def refresh(self, center: Pose2D | None = None, radius: float = 3.0) -> None:
+    def refresh(self, center: Pose2D | None = None, radius: float = 2.5) -> None:
         """Measure the room anew: everywhere, or within a square about `center`."""
         rows, columns = self.grid.cells.shape
         window = pad = (slice(0, rows), slice(0, columns))

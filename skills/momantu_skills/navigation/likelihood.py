@@ -11,6 +11,12 @@ from momantu_bt.geometry import Array
 from momantu_skills.navigation.fields import Field, sample
 
 
+def likelihood_field(distance: Field, sigma: float, random_share: float) -> Field:
+    """Likelihood of a beam that ends at each cell, from the distance to the nearest surface, m."""
+    hit = np.exp(-0.5 * np.square(distance / np.float32(sigma)))
+    return np.asarray((1.0 - random_share) * hit + random_share, dtype=np.float32)
+
+
 @numba.njit(cache=True)
 def log_likelihoods(
     poses: Array,
@@ -19,19 +25,16 @@ def log_likelihoods(
     origin_x: float,
     origin_y: float,
     resolution: float,
-    sigma: float,
-    random_share: float,
-    cap: float,
+    outside: float,
 ) -> Array:
-    """Sum over beams of log(hit + random) for each pose.
+    """Sum over beams of the log of their likelihood, for each pose.
 
     poses: (n, 3) x, y, yaw in the map. points: (k, 2) beam ends in the base frame, m.
-    field: distance to the nearest surface, m, at most `cap`, which holds outside as well.
+    field: likelihood of a beam's end; `outside` holds off the grid.
     """
     n = poses.shape[0]
     k = points.shape[0]
     total = np.empty(n)
-    scale = -0.5 / (sigma * sigma)
     for i in range(n):
         c = math.cos(poses[i, 2]) / resolution
         s = math.sin(poses[i, 2]) / resolution
@@ -42,8 +45,7 @@ def log_likelihoods(
         for j in range(k):
             px = points[j, 0]
             py = points[j, 1]
-            d = sample(field, x + c * px - s * py, y + s * px + c * py, cap)
-            product *= (1.0 - random_share) * math.exp(scale * d * d) + random_share
+            product *= sample(field, x + c * px - s * py, y + s * px + c * py, outside)
             if product < 1e-100:
                 log += math.log(product)
                 product = 1.0

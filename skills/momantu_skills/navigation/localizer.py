@@ -11,7 +11,7 @@ from momantu_skills.navigation.belief import covariance, main_cluster
 from momantu_skills.navigation.config import LocalizationConfig
 from momantu_skills.navigation.fields import surface_distance
 from momantu_skills.navigation.fit import scan_fit
-from momantu_skills.navigation.likelihood import log_likelihoods
+from momantu_skills.navigation.likelihood import likelihood_field, log_likelihoods
 from momantu_skills.navigation.maps import FREE, OCCUPIED, GridMap
 from momantu_skills.navigation.resampling import kld_resample
 from momantu_skills.navigation.scans import Rays
@@ -38,6 +38,8 @@ class Localizer:
             raise ValueError("the map has no free cell, so a robot cannot be anywhere on it")
         self._search = False
         self._widening = 1.0
+        self._weighed_with = 0.0
+        self._likelihood = self._field
         self.reset(Pose2D(0.0, 0.0, 0.0), 0.0, 0.0)
 
     def reset(self, pose: Pose2D, sigma_position: float, sigma_yaw: float) -> None:
@@ -110,15 +112,17 @@ class Localizer:
 
     def _logs(self, points: Array) -> Array:
         config, grid = self._config, self._grid
+        if self._weighed_with != self._widening:
+            self._weighed_with = self._widening
+            sigma = config.hit_sigma * self._widening
+            self._likelihood = likelihood_field(self._field, sigma, config.random_share)
         result: Array = log_likelihoods(
             self._poses,
             points,
-            self._field,
+            self._likelihood,
             *grid.origin,
             grid.resolution,
-            config.hit_sigma * self._widening,
             config.random_share,
-            config.reach,
         )
         return result
 

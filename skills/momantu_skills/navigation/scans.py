@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.messages import LaserScan
 
-
 SPREAD = 0.12
 """m between hits that count as independent: beyond the noise of one, below any wall's length."""
 

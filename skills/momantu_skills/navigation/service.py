@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from momantu_bt.geometry import Array, Pose2D
+from momantu_bt.geometry import Array, Pose2D, Transform
 from momantu_bt.robot import Robot, read_laser
 from momantu_bt.service import Service, ServiceContext
 from momantu_skills.navigation.config import LocalizationConfig, configured
@@ -21,7 +21,8 @@ MOVING = 1e-4
 class LocalizationService(Service):
     """Adaptive Monte Carlo localization; see `LocalizationConfig` for the site's parameters.
 
-    Reads the laser when odometry has moved, and for a while at rest after a reset or a stop.
+    Reads the laser when odometry has moved, and for a while at rest after a reset or a stop. The
+    laser is taken to be fixed to the base.
     """
 
     rate: ClassVar[float] = 10.0
@@ -49,6 +50,7 @@ class LocalizationService(Service):
         self._odom_from_base: Pose2D | None = None
         self._since_scan = [0.0, 0.0]
         self._rest_scans = 0
+        self._base_from_laser: Transform | None = None
         self._told = False
         self.reset(context.site.start, *context.site.start_sigma)
 
@@ -88,7 +90,9 @@ class LocalizationService(Service):
         from momantu_skills.navigation.scans import Rays
 
         scan = read_laser(robot, self._laser)
-        return Rays.from_scan(scan, self._frames.lookup(self._base, scan.frame, scan.stamp))
+        if self._base_from_laser is None:
+            self._base_from_laser = self._frames.lookup(self._base, scan.frame, scan.stamp)
+        return Rays.from_scan(scan, self._base_from_laser)
 
     @property
     def map_from_base(self) -> Pose2D:

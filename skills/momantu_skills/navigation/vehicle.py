@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from momantu_bt.frames import MAP, ODOM
-from momantu_bt.geometry import Array, Pose2D
+from momantu_bt.geometry import Array, Pose2D, Transform
 from momantu_bt.messages import BaseVelocity, JointPositions
 from momantu_bt.robot import CAMERA_CARRIER, Robot, read_camera, read_laser
 from momantu_bt.service import Localization, PlanningScene
@@ -24,9 +24,11 @@ GAZE = (2.0, 0.0, 0.1)
 """Where the camera looks while driving, base frame, m: two metres ahead, at the floor."""
 HEAD_JOINTS = 3
 """A camera on more joints than this is carried by an arm, which stays where it is."""
+POSTURE_CHANGE = 0.02
+"""rad (or m) by which a joint must move before the footprint is asked for anew."""
 OUTLINE_CHANGE = 0.01
 """m by which the footprint must change before its discs are computed anew."""
-TURN_BETWEEN_LOOKS = 0.6
+TURN_BETWEEN_LOOKS = 0.8
 """rad of turning that counts like `depth_every` metres: about half of a camera's view."""
 AT_REST = 0.01
 """m/s and rad/s below which the base stands."""
@@ -34,6 +36,8 @@ AT_REST = 0.01
 
 class Vehicle:
     """Senses once per control period and drives for one. Poses are in the map unless named.
+
+    The laser is taken to be fixed to the base.
 
     base_discs: of the base alone, which every obstacle meets. discs: of arm and load as well.
     """
@@ -60,6 +64,8 @@ class Vehicle:
         self.base_discs = self.discs = discs(outline)
         self.half_width = half_width(outline)
         self._outline = outline
+        self._posture: Array | None = None
+        self._base_from_laser: Transform | None = None
         self._gaze = self._gaze_goal()
         self._looked: Pose2D | None = None
         self._hits = np.zeros((0, 2))
@@ -72,7 +78,7 @@ class Vehicle:
 
     def pose(self) -> Pose2D:
         """`map_from_base` of now."""
-        return Pose2D.from_transform(self._frames.lookup(MAP, self._base_frame))
+        return self.map_from_odom() @ self.odom_from_base()
 
     def odom_from_base(self) -> Pose2D:
         """Odometry of now."""
@@ -92,7 +98,9 @@ class Vehicle:
         pose = self.pose()
         self._follow_footprint()
         scan = read_laser(self._robot)
-        rays = Rays.from_scan(scan, self._frames.lookup(self._base_frame, scan.frame, scan.stamp))
+        if self._base_from_laser is None:
+            self._base_from_laser = self._frames.lookup(self._base_frame, scan.frame, scan.stamp)
+        rays = Rays.from_scan(scan, self._base_from_laser)
         self._hits = rays.points()
         self.costmap.see_laser(pose, rays)
         if depth and self._look_due(pose):
@@ -100,7 +108,12 @@ class Vehicle:
         self.costmap.refresh(pose)
 
     def _follow_footprint(self) -> None:
-        outline = np.asarray(self._scene.footprint(self._robot.state()))
+        state = self._robot.state()
+        before = self._posture
+        if before is not None and np.abs(state.positions - before).max() < POSTURE_CHANGE:
+            return
+        self._posture = state.positions
+        outline = np.asarray(self._scene.footprint(state))
         same = outline.shape == self._outline.shape
         if same and float(np.abs(outline - self._outline).max()) < OUTLINE_CHANGE:
             return
