@@ -155,11 +155,17 @@ def _ports(node: Node) -> str:
         scripts = [_script(str(v.value)) for v in node.ports.values() if isinstance(v, Literal)]
         return ", ".join(scripts)
     shown = [
-        f"{name} {value_text(value)}" if len(node.ports) > 1 else value_text(value)
+        value_text(value) if _is_bare(node, name) else f"{name} {value_text(value)}"
         for name, value in node.ports.items()
     ]
     words = ", ".join(shown)
     return words if len(words) <= _WIDEST else words[: _WIDEST - 1] + "…"
+
+
+def _is_bare(node: Node, port: str) -> bool:
+    """Whether the value was written without the port's name (`reset_pose: home`)."""
+    place = node.port_places.get(port)
+    return place is None or node.port_name_places.get(port) == place
 
 
 def _tries(value: PortValue) -> str:

@@ -63,6 +63,11 @@ class NodeReader:
         self._error(code, place, message, hint)
         return Node(BROKEN, place)
 
+    def _misfit(self, node: Node, value: Raw, message: str, hint: str = "") -> None:
+        """A value of the wrong form: the node is read no further."""
+        self._error("wrong-value", value.place, message, hint)
+        node.type = BROKEN
+
     def _node(self, raw: Raw) -> Node:
         if isinstance(raw, Items):
             return self._list(raw)
@@ -229,15 +234,17 @@ class NodeReader:
 
     def _leaf(self, node: Node, value: Raw, spec: NodeSpec | None) -> None:
         if isinstance(value, Entries):
-            if not reported_braces(value, self.problems):
+            if reported_braces(value, self.problems):
+                node.type = BROKEN
+            else:
                 self._ports(node, value, spec)
         elif isinstance(value, Items):
             hint = f"write `{_said(node)}: {{port: value}}`, or begin with `sequence:`"
-            self._error("wrong-value", value.place, f"{_said(node)} takes ports, no list", hint)
+            self._misfit(node, value, f"{_said(node)} takes ports, no list", hint)
         elif value.value is not None or value.quoted:
             name = FIRST_INPUT if spec is None else spec.first
             if name is None:
-                self._error("wrong-value", value.place, f"{_said(node)} takes no value")
+                self._misfit(node, value, f"{_said(node)} takes no value")
             else:
                 self._port(node, name, value, value.place, spec)
 
@@ -266,7 +273,7 @@ class NodeReader:
         elif isinstance(value, Entries):
             self._split(node, value, spec, ("children",))
         elif value.value is not None:
-            self._error("wrong-value", value.place, f"{_said(node)} takes a list of nodes")
+            self._misfit(node, value, f"{_said(node)} takes a list of nodes")
 
     def _split(self, node: Node, raw: Entries, spec: NodeSpec, kept: tuple[str, ...]) -> list[Raw]:
         """Ports of a mapping to the node; the values of the kept keys, `children` read."""
@@ -278,7 +285,7 @@ class NodeReader:
             elif key.text == "children" and isinstance(value, Items):
                 self._children(node, value)
             elif key.text == "children":
-                self._error("wrong-value", value.place, "`children` is a list of nodes")
+                self._misfit(node, value, "`children` is a list of nodes")
             else:
                 values.append(value)
         return values
@@ -286,7 +293,7 @@ class NodeReader:
     def _with_child(self, node: Node, value: Raw, spec: NodeSpec) -> None:
         if not isinstance(value, Entries):
             hint = f"write `{spec.yaml[0]}: {{…, child: …}}`, or put it beside a node"
-            self._error("wrong-value", value.place, f"{_said(node)} takes `child:`", hint)
+            self._misfit(node, value, f"{_said(node)} takes `child:`", hint)
             return
         for child in self._split(node, value, spec, ("child",)):
             self._waiting.append((child, node.children.append))
@@ -303,7 +310,7 @@ class NodeReader:
 
     def _with_handlers(self, node: Node, value: Raw, spec: NodeSpec) -> None:
         if not isinstance(value, Entries):
-            self._error("wrong-value", value.place, f"{_said(node)} takes `try:` and `catch:`")
+            self._misfit(node, value, f"{_said(node)} takes `try:` and `catch:`")
             return
         for raw in self._split(node, _without(value, "catch"), spec, ("try",)):
             self._waiting.append((raw, node.children.append))

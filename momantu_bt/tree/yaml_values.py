@@ -66,23 +66,22 @@ def _reference(match: re.Match[str]) -> Reference:
 
 def _parts(text: str, place: Place, problems: Problems) -> list[str | Reference] | None:
     parts: list[str | Reference] = []
+    plain = ""
     position = 0
     for match in _INSIDE.finditer(text):
-        if match.start() > position:
-            parts.append(text[position : match.start()])
+        plain += text[position : match.start()]
         position = match.end()
         if match[0] == "$$":
-            parts.append("$")
+            plain += "$"
         elif match[2]:
-            parts.append(_reference(match))
+            parts += [plain, _reference(match)] if plain else [_reference(match)]
+            plain = ""
         else:
-            problems.error(
-                "dollar", place, "`$` here is no wire", "write ${key} inside text, $$ for a dollar"
-            )
+            hint = "write ${key} inside text, $$ for a dollar"
+            problems.error("dollar", place, "`$` here is no wire", hint)
             return None
-    if position < len(text):
-        parts.append(text[position:])
-    return parts
+    plain += text[position:]
+    return [*parts, plain] if plain else parts
 
 
 def reported_braces(raw: Raw, problems: Problems) -> bool:

@@ -48,10 +48,10 @@ def test_a_run_tells_each_change_and_ends_with_one_line(tree, capsys):
     assert [line.split(" s ")[1].strip() for line in lines[:-1]] == [
         "wait $pause starts",
         "wait $pause done",
-        "Check $n fails: TOO_SMALL",
+        "Check k $n fails: TOO_SMALL",
         "recover: TOO_SMALL: script $n += 1",
         "recover: try 2",
-        "Check $n done",
+        "Check k $n done",
     ]
     assert lines[-1].startswith("tree succeeded after 0.2 s simulated")
 

@@ -1,0 +1,171 @@
+"""The command line: exit codes, messages without stack traces, and what it does not import."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from momantu_bt import __version__, plugins
+from momantu_bt.cli import VERBS, main
+from momantu_bt.world import WorldError
+
+TREES = Path(__file__).parents[3] / "trees"
+HEAVY = ("torch", "sapien", "cv2", "pinocchio", "ompl", "coal", "numba", "scipy", "toppra", "av")
+BAD = "momantu_bt: 1\ntrees:\n  Main:\n    - wit: 1 s\n    - wait: 1 m\n"
+GOOD = "momantu_bt: 1\ntrees:\n  Main:\n    - wait: 1 s\n      retry: 3\n"
+
+
+@pytest.fixture
+def tree(tmp_path: Path) -> Path:
+    """A file with a good tree."""
+    path = tmp_path / "good.yaml"
+    path.write_text(GOOD, encoding="utf-8")
+    return path
+
+
+@pytest.fixture
+def bad(tmp_path: Path) -> Path:
+    """A file with two errors."""
+    path = tmp_path / "bad.yaml"
+    path.write_text(BAD, encoding="utf-8")
+    return path
+
+
+def test_version(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["--version"]) == 0
+    assert capsys.readouterr().out.strip() == __version__
+
+
+def test_help_names_every_verb(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["--help"]) == 0
+    shown = capsys.readouterr().out
+    assert all(f"  {verb} " in shown for verb in VERBS)
+    assert main([]) == 2
+
+
+@pytest.mark.parametrize("verb", ["check", "show", "run", "doctor"])
+def test_help_of_a_verb_has_examples_on_lines_of_their_own(
+    capsys: pytest.CaptureFixture[str], verb: str
+) -> None:
+    assert main([verb, "--help"]) == 0
+    lines = [line.strip() for line in capsys.readouterr().out.splitlines()]
+    assert any(line.startswith(f"momantu-bt {verb}") for line in lines)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["chek"], "Did you mean 'check'?"),
+        (["check"], "Missing argument"),
+        (["check", "--wrld", "x", "y"], "--wrld"),
+        (["check", "nowhere.yaml"], "there is no file nowhere.yaml"),
+        (["show", "bring_objct"], "did you mean bring_object?"),
+        (["skills", "show", "navgate"], "did you mean 'navigate'?"),
+    ],
+)
+def test_wrong_arguments(
+    capsys: pytest.CaptureFixture[str], arguments: list[str], message: str
+) -> None:
+    assert main(arguments) == 2
+    said = capsys.readouterr()
+    assert message in said.err
+    assert "Traceback" not in said.err
+
+
+def test_check_of_a_good_tree(capsys: pytest.CaptureFixture[str], tree: Path) -> None:
+    assert main(["check", str(tree)]) == 0
+    assert "no errors in 1 trees with 3 nodes" in capsys.readouterr().out
+
+
+def test_check_reports_all_errors(capsys: pytest.CaptureFixture[str], bad: Path) -> None:
+    assert main(["check", str(bad)]) == 2
+    said = capsys.readouterr().err
+    assert f"{bad}:4:7: error: no node is called 'wit' [unknown-node]" in said
+    assert f"{bad}:5:13: error:" in said
+    assert "did you mean wait?" in said
+    assert said.endswith("2 errors\n")
+
+
+def test_check_as_json(capsys: pytest.CaptureFixture[str], tree: Path, bad: Path) -> None:
+    assert main(["check", "--json", str(tree), str(bad), "nowhere.yaml"]) == 2
+    report = json.loads(capsys.readouterr().out)
+    assert [each["ok"] for each in report["trees"]] == [True, False, False]
+    first = report["trees"][1]["problems"][0]
+    assert (first["code"], first["line"], first["column"]) == ("unknown-node", 4, 7)
+
+
+def test_show(capsys: pytest.CaptureFixture[str], tree: Path, bad: Path) -> None:
+    assert main(["show", str(tree)]) == 0
+    assert "wait 1 s  (3 tries)" in capsys.readouterr().out
+    assert main(["show", str(bad)]) == 2
+
+
+@pytest.mark.parametrize("kind", ["skills", "worlds", "robots"])
+def test_listings(capsys: pytest.CaptureFixture[str], kind: str) -> None:
+    assert main([kind, "--json"]) == 0
+    names = [each["name"] for each in json.loads(capsys.readouterr().out)]
+    assert main([kind]) == main([kind, "list"]) == 0
+    for name in names:
+        assert main([kind, "show", name, "--json"]) == 0
+        assert main([kind, "show", name]) == 0
+
+
+@pytest.mark.parametrize(
+    ("error", "code"),
+    [
+        (WorldError("no Vulkan driver"), 3),
+        (plugins.PluginError("two plug-ins are called 'a'"), 2),
+        (KeyboardInterrupt(), 130),
+        (ZeroDivisionError("oh"), 4),
+        (BrokenPipeError(), 1),
+    ],
+)
+def test_what_a_verb_raises_becomes_an_exit_code(
+    monkeypatch: pytest.MonkeyPatch,
+    capfd: pytest.CaptureFixture[str],
+    tree: Path,
+    error: BaseException,
+    code: int,
+) -> None:
+    def load(*arguments: object, **options: object) -> None:
+        raise error
+
+    monkeypatch.setattr("momantu_bt.cli.check.load", load)
+    monkeypatch.setattr("os.dup2", lambda *descriptors: None)
+    monkeypatch.delenv("MOMANTU_BT_TRACEBACK", raising=False)
+    assert main(["check", str(tree)]) == code
+    assert "Traceback" not in capfd.readouterr().err
+
+
+def test_a_verb_of_a_plug_in(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from importlib.metadata import EntryPoint
+
+    entry = EntryPoint("paths", "os.path:basename", plugins.COMMANDS)
+    having = {plugins.COMMANDS: {"paths": entry}}
+    monkeypatch.setattr(plugins, "installed", lambda group: having.get(group, {}))
+    assert main(["--help"]) == 0
+    assert "paths" in capsys.readouterr().out
+
+
+def test_check_loads_nothing_heavy() -> None:
+    program = (
+        "import sys; from momantu_bt.cli import main\n"
+        f"code = main(['check', {str(TREES / 'bring_object.yaml')!r}])\n"
+        f"print([name for name in {HEAVY!r} if name in sys.modules], code)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    )
+    assert done.stdout.splitlines()[-1] == "[] 0", done.stderr
+
+
+@pytest.mark.parametrize("name", ["bring_object", "bring_object_plain"])
+def test_the_bundled_trees_have_neither_errors_nor_warnings(
+    capsys: pytest.CaptureFixture[str], name: str
+) -> None:
+    assert main(["check", name]) == 0
+    assert capsys.readouterr().err == ""

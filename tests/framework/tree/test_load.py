@@ -1,0 +1,103 @@
+"""Finding, reading and checking files: names, near misses, and values from outside."""
+
+from pathlib import Path
+
+import pytest
+
+from momantu_bt.tree.load import TreeError, TreeNotFound, load, read_values
+from momantu_bt.tree.lookup import bundled, find
+from momantu_bt.tree.model import Literal
+from momantu_bt.tree.registry import Registry
+
+GOOD = "momantu_bt: 1\nworld: rooms\nvalues: {to: door}\ntrees:\n  Main: [navigate: $to]\n"
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder with one good tree, `fetch_it.yaml`; it is the working folder."""
+    (tmp_path / "fetch_it.yaml").write_text(GOOD, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_a_file_by_path(folder: Path, registry: Registry) -> None:
+    checked = load("fetch_it.yaml", registry)
+    assert checked.document.file == "fetch_it.yaml"
+    assert checked.document.trees["Main"].root.children[0].ports.keys() == {"in_front_of"}
+    assert checked.notes == []
+
+
+def test_bundled_trees_by_name() -> None:
+    assert {"bring_object", "bring_object_plain"} <= bundled().keys()
+    assert find("bring_object").name == "bring_object.yaml"
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("fetchit.yaml", "did you mean fetch_it.yaml?"),
+        ("bring_object.yml", "did you mean the bundled tree bring_object?"),
+        ("quite_other.yaml", "tree files there: fetch_it.yaml"),
+        ("no/such.yaml", "there is no folder no"),
+        ("bring_objct", "did you mean bring_object?"),
+        ("zzz", "bundled trees: bring_object"),
+        (".", "is a folder; tree files in it: fetch_it.yaml"),
+    ],
+)
+def test_a_near_miss_is_named(folder: Path, name: str, message: str) -> None:
+    with pytest.raises(TreeNotFound) as caught:
+        load(name, Registry())
+    assert message in str(caught.value)
+
+
+def test_a_file_that_is_not_utf8(folder: Path) -> None:
+    (folder / "bad.yaml").write_bytes(b"momantu_bt: 1\nmain: \xff\n")
+    with pytest.raises(TreeError, match="bad.yaml:2:7: the file is not UTF-8"):
+        load("bad.yaml", Registry())
+
+
+def test_errors_keep_a_tree_from_loading(folder: Path, registry: Registry) -> None:
+    (folder / "bad.yaml").write_text(GOOD.replace("navigate", "navigat"), encoding="utf-8")
+    with pytest.raises(TreeError) as caught:
+        load("bad.yaml", registry)
+    assert "unknown-node" in [problem.code for problem in caught.value.problems]
+    assert "navigat" in caught.value.source["bad.yaml"]
+
+
+def test_values_from_outside_replace_the_files_own_and_are_checked(
+    folder: Path, registry: Registry
+) -> None:
+    checked = load("fetch_it.yaml", registry, values={"to": "table_b", "more": 3})
+    assert checked.document.values == {"to": Literal("table_b"), "more": Literal(3)}
+    with pytest.raises(TreeError, match="has no place 'nowhere'"):
+        load("fetch_it.yaml", registry, values={"to": "nowhere"})
+
+
+def test_another_world_or_robot_by_argument(folder: Path, registry: Registry) -> None:
+    load("fetch_it.yaml", registry, world="none", values={"to": "anywhere"})
+    with pytest.raises(TreeError, match="no world is called 'moon'"):
+        load("fetch_it.yaml", registry, world="moon")
+    with pytest.raises(TreeError, match="no robot is called 'r2'"):
+        load("fetch_it.yaml", registry, robot="r2")
+
+
+def test_a_world_that_cannot_be_read_is_one_problem(folder: Path, registry: Registry) -> None:
+    class Broken:
+        default_robot = "toy"
+
+        def site(self) -> None:
+            raise RuntimeError("no floor plan")
+
+    broken = Registry(registry.skills, {"rooms": Broken()}, registry.robots)  # type: ignore
+    with pytest.raises(TreeError, match="cannot be read: RuntimeError: no floor plan"):
+        load("fetch_it.yaml", broken)
+
+
+def test_a_file_of_values(folder: Path) -> None:
+    (folder / "v.yaml").write_text("to: door\nn: 3\nd: 2 cm\n", encoding="utf-8")
+    assert read_values(folder / "v.yaml") == {"to": "door", "n": 3, "d": "2 cm"}
+    (folder / "w.yaml").write_text("[1]", encoding="utf-8")
+    with pytest.raises(TreeError, match="is a mapping"):
+        read_values(folder / "w.yaml")
+    with pytest.raises(TreeNotFound, match="cannot be read"):
+        read_values(folder / "x.yaml")
