@@ -40,17 +40,17 @@ class Camera:
     ) -> None:
         self._scene, self._link, self._name = scene, link, name
         self._sensor, self._seed, self._errors = sensor, seed, errors
-        self._link_from_camera = _mounting(seeded(seed, name, "mounting"), errors)
+        self.link_from_camera = _mounting(seeded(seed, name, "mounting"), errors)
         self._camera, self._entity = _component(sensor)
-        self._culling = Culling(own_links, sensor)
+        self.culling = Culling(own_links, sensor)
         self.intrinsics = _intrinsics(sensor)
         scene.add_entity(self._entity)
 
     def read(self, stamp: float) -> CameraImage:
         """A picture of now; runs the renderer."""
-        truth = transform_of(self._link.entity_pose) @ self._link_from_camera
+        truth = transform_of(self._link.entity_pose) @ self.link_from_camera
         self._entity.set_pose(pose_of(truth @ OPTICAL_FROM_SAPIEN))
-        unseen = self._culling.outside(truth)
+        unseen = self.culling.outside(truth)
         for body in unseen:
             body.disable()
         self._scene.update_render()
@@ -77,7 +77,7 @@ def noisy_color(
     color: NDArray[Any], random: np.random.Generator, errors: CameraErrors
 ) -> NDArray[np.uint8]:
     """Colour (h, w, 3) uint8 with even noise of the configured sigma added, grey levels."""
-    span = max(1, round(errors.color_noise * math.sqrt(3.0)))
+    span = round(errors.color_noise * math.sqrt(3.0))
     levels = (np.arange(256) % (2 * span + 1) - span).astype(np.int16)
     noise = levels[np.frombuffer(random.bytes(color.size), dtype=np.uint8)]
     noisy = color + noise.reshape(color.shape)
