@@ -137,12 +137,12 @@ def figure(size: Size3, color: Color) -> tuple[Part, ...]:
     """A standing person: legs, trunk, arms, head."""
     depth, width, height = size
     hip, neck = 0.48 * height, 0.84 * height
-    leg = 0.26 * width
+    leg = 0.2 * width
     skin: Color = (0.85, 0.66, 0.54)
     trousers = shade(color, 0.45)
     return (
-        column(leg, 0.0, hip, trousers, y=0.28 * width),
-        column(leg, 0.0, hip, trousers, y=-0.28 * width),
+        column(leg, 0.0, hip, trousers, y=0.27 * width),
+        column(leg, 0.0, hip, trousers, y=-0.27 * width),
         block((depth, 0.72 * width, neck - hip), (0, 0, (neck + hip) / 2), color),
         block((0.4 * depth, 0.13 * width, 0.36 * height), (0, 0.43 * width, 0.65 * height), color),
         block((0.4 * depth, 0.13 * width, 0.36 * height), (0, -0.43 * width, 0.65 * height), color),

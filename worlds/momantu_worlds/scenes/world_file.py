@@ -130,17 +130,11 @@ class Tag(_Part):
     """An AprilTag of the family 36h11, flat on a table; edge of its black square."""
 
     name: Name
-    id: int
+    id: Annotated[int, Field(ge=0, lt=len(CODES))]
     edge: Size
     on: Name
     at: Point
     shift: Annotated[Length, Field(ge=0)] = 0.0
-
-    @model_validator(mode="after")
-    def _known_id(self) -> Self:
-        if not 0 <= self.id < len(CODES):
-            raise ValueError(f"tag id {self.id} is not known; known: 0 to {len(CODES) - 1}")
-        return self
 
 
 class Distractors(_Part):

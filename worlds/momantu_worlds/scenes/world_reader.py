@@ -85,12 +85,25 @@ def parse_world(text: str, path: Path) -> WorldFile:
     try:
         world = WorldFile.model_validate(plain)
     except ValidationError as error:
-        problems = [reading.problem(dict(e)) for e in error.errors()]
-        raise WorldFileError(path, text, problems) from None
+        raise WorldFileError(path, text, _findings(reading, error)) from None
     problems = [Problem(*reading.at(place), message) for place, message in _dangling(world)]
     if problems:
         raise WorldFileError(path, text, problems)
     return world
+
+
+def _findings(reading: _Reading, error: ValidationError) -> list[Problem]:
+    """Every finding; a key that is missing because it is misspelt is reported once."""
+    findings = [dict(finding) for finding in error.errors()]
+    misspelt = {
+        (*place[:-1], _nearest(str(place[-1]), place[:-1]))
+        for place in (tuple(f["loc"]) for f in findings if f["type"] == "extra_forbidden")
+    }
+    return [
+        reading.problem(finding)
+        for finding in findings
+        if finding["type"] != "missing" or tuple(finding["loc"]) not in misspelt
+    ]
 
 
 class _Reading:
@@ -172,10 +185,15 @@ def _dotted(place: Place) -> str:
 
 def _unknown_key(name: str, place: Place) -> str:
     """Says what would have been right beside an unknown key."""
-    known = _known_keys(place[:-1])
-    near = difflib.get_close_matches(name, known, n=1)
-    hint = f"; did you mean {near[0]!r}?" if near else ""
-    return f"unknown key {name!r} in {_dotted(place[:-1])}{hint} Known keys: {', '.join(known)}"
+    near = _nearest(name, place[:-1])
+    hint = f"did you mean {near!r}? Keys" if near else "keys"
+    known = ", ".join(_known_keys(place[:-1]))
+    return f"unknown key {name!r} in {_dotted(place[:-1])}; {hint}: {known}"
+
+
+def _nearest(name: str, place: Place) -> str:
+    near = difflib.get_close_matches(name, _known_keys(place), n=1)
+    return near[0] if near else ""
 
 
 def _known_keys(place: Place) -> list[str]:

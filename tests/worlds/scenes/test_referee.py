@@ -1,0 +1,251 @@
+"""The referee: each demand, violated alone, costs the success and is named."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import pytest
+from momantu_worlds.scenes.bodies import Body, Box, Cylinder, Episode, Goal, Part
+from momantu_worlds.scenes.referee import Referee, tilt
+
+from momantu_bt.geometry import Pose2D, Transform, quaternion_from_axis_angle
+from momantu_bt.world import Site
+
+TABLE_TOP = 0.5
+TICK = 0.05
+
+
+@dataclass(frozen=True)
+class Touch:
+    first: str
+    second: str
+    force: float = 4.0
+
+
+@dataclass
+class FakeTruth:
+    """Ground truth that a test writes down."""
+
+    poses: dict[str, Transform]
+    touches: list[Touch]
+    gripper: Transform = field(default_factory=lambda: Transform((0.3, 0, 0.8)))
+    robot_links: frozenset[str] = frozenset({"gripper_link", "base_link"})
+    watching: bool = False
+
+    def pose(self, body: str) -> Transform:
+        return self.poses[body]
+
+    def link(self, name: str) -> Transform:
+        assert name == "gripper_link"
+        return self.gripper
+
+    def watch_contacts(self) -> None:
+        self.watching = True
+
+    def contacts(self) -> list[Touch]:
+        assert self.watching
+        return self.touches
+
+
+def body(name: str, part: Part, x: float, y: float, z: float, *, static: bool = False) -> Body:
+    return Body(name, name, Transform((x, y, z)), (part,), static=static, mass=0.3)
+
+
+TOP = Part(Box((0.8, 1.2, 0.04)), Transform((0, 0, TABLE_TOP - 0.02)))
+CAN = Part(Cylinder(0.035, 0.13), Transform((0, 0, 0.065)))
+GOAL = Goal(
+    item="can",
+    support="table_b",
+    marker="tag",
+    max_tilt=math.radians(5),
+    max_distance=0.4,
+    still_for=1.0,
+    min_gripper_distance=0.1,
+    max_others_tilt=math.radians(30),
+    max_others_shift=0.1,
+    max_force=150.0,
+)
+
+
+def episode() -> Episode:
+    bodies = (
+        body("table_b", TOP, 0, 0, 0, static=True),
+        body("tag", Part(Box((0.1, 0.1, 0.001))), 0.1, 0.1, TABLE_TOP, static=True),
+        body("can", CAN, 5, 5, 0.7),
+        body("mug", CAN, -0.2, -0.3, TABLE_TOP),
+    )
+    return Episode("test", 0, bodies, Pose2D(0, 0), (0, 0, 0), (), (), Site("test"), GOAL)
+
+
+def good_truth() -> FakeTruth:
+    """All demands met: the can stands on the table beside the tag, the hand is away."""
+    poses = {b.name: b.map_from_body for b in episode().bodies}
+    poses["can"] = Transform((0.1, -0.1, TABLE_TOP))
+    return FakeTruth(poses, [Touch("can", "table_b"), Touch("mug", "table_b")])
+
+
+def watch(truth: FakeTruth, seconds: float = 1.5) -> Referee:
+    referee = Referee(episode(), truth, "gripper_link")
+    for tick in range(1, round(seconds / TICK) + 1):
+        referee.observe(tick * TICK)
+    return referee
+
+
+def tilted(pose: Transform, degrees: float) -> Transform:
+    return Transform(pose.position, quaternion_from_axis_angle((1, 0, 0), math.radians(degrees)))
+
+
+def test_all_demands_met_is_success_with_the_numbers_behind_it():
+    verdict = watch(good_truth()).verdict()
+    assert verdict.success
+    assert verdict.unmet == ()
+    assert verdict.measures["distance"] == pytest.approx(0.2)
+    assert verdict.measures["force"] == 0.0
+
+
+def put(name: str, *, dx: float = 0, dy: float = 0, dz: float = 0, degrees: float = 0):
+    def change(truth: FakeTruth) -> None:
+        pose = truth.poses[name]
+        x, y, z = pose.position
+        truth.poses[name] = tilted(Transform((x + dx, y + dy, z + dz)), degrees)
+
+    return change
+
+
+def touch(*touches: Touch):
+    def change(truth: FakeTruth) -> None:
+        truth.touches += touches
+
+    return change
+
+
+def no_table(truth: FakeTruth) -> None:
+    truth.touches = [Touch("can", "mug")]
+
+
+def hand_near(truth: FakeTruth) -> None:
+    x, y, z = truth.poses["can"].position
+    truth.gripper = Transform((x + 0.035 + 0.09, y, z + 0.06))
+
+
+VIOLATIONS = [
+    (put("can", degrees=5.5), "can is tilted 5.5 deg, more than 5.0 deg"),
+    (put("can", dz=0.01), "can is 0.010 m above the top of table_b"),
+    (put("can", dx=0.27), "the base of can is not whole on the top of table_b"),
+    (put("can", dx=-0.37, dy=0.02), "can is 0.41 m from tag, more than 0.40 m"),
+    (no_table, "can does not touch table_b"),
+    (touch(Touch("can", "mug")), "can also touches mug"),
+    (touch(Touch("gripper_link", "can")), "can also touches gripper_link"),
+    (hand_near, "the gripper is 0.09 m from can, not more than 0.10 m"),
+    (put("mug", degrees=31), "mug was tilted by 31.0 deg"),
+    (put("mug", dx=0.08, dy=0.08), "mug was moved by 0.11 m"),
+    (
+        touch(Touch("base_link", "table_b", 151.0)),
+        "the robot pushed with 151 N (base_link on table_b), more than 150 N",
+    ),
+]
+
+
+@pytest.mark.parametrize(("violate", "sentence"), VIOLATIONS, ids=[s for _, s in VIOLATIONS])
+def test_a_violated_demand_is_named(violate, sentence):
+    truth = good_truth()
+    violate(truth)
+    verdict = watch(truth).verdict()
+    assert not verdict.success
+    assert sentence in verdict.unmet
+
+
+ALLOWED = [
+    put("can", degrees=4.5),
+    put("can", dx=0.26),
+    put("mug", degrees=29),
+    put("mug", dx=0.09),
+    touch(Touch("base_link", "table_b", 149.0)),
+    touch(Touch("base_link", "gripper_link", 500.0)),
+]
+
+
+@pytest.mark.parametrize("change", ALLOWED)
+def test_what_is_just_allowed_is_success(change):
+    truth = good_truth()
+    change(truth)
+    verdict = watch(truth).verdict()
+    assert verdict.success, verdict.unmet
+
+
+def test_squeezing_the_item_hard_is_no_bump():
+    truth = good_truth()
+    referee = Referee(episode(), truth, "gripper_link")
+    truth.touches = [Touch("gripper_link", "can", 400.0), Touch("can", "table_b")]
+    referee.observe(TICK)
+    assert referee.verdict().measures["force"] == 0.0
+
+
+def test_still_counts_from_the_last_move():
+    truth = good_truth()
+    referee = watch(truth, 1.0)
+    put("can", dx=0.003)(truth)
+    for tick in range(21, 36):
+        referee.observe(tick * TICK)
+    verdict = referee.verdict()
+    assert verdict.measures["still"] == pytest.approx(0.7)
+    assert "can has been still for 0.70 s, less than 1.00 s" in verdict.unmet
+    for tick in range(36, 42):
+        referee.observe(tick * TICK)
+    assert referee.verdict().success
+
+
+def test_a_slow_slide_is_not_still():
+    truth = good_truth()
+    referee = Referee(episode(), truth, "gripper_link")
+    for tick in range(1, 41):
+        put("can", dx=0.0002)(truth)  # 4 mm/s
+        referee.observe(tick * TICK)
+    assert not referee.verdict().success
+
+
+def test_what_happened_once_is_remembered():
+    truth = good_truth()
+    referee = Referee(episode(), truth, "gripper_link")
+    before = truth.poses["mug"]
+    put("mug", dx=0.2, degrees=40)(truth)
+    truth.touches.append(Touch("base_link", "mug", 200.0))
+    referee.observe(TICK)
+    truth.poses["mug"] = before
+    truth.touches.pop()
+    for tick in range(2, 40):
+        referee.observe(tick * TICK)
+    unmet = " ".join(referee.verdict().unmet)
+    assert "mug was tilted" in unmet
+    assert "mug was moved" in unmet
+    assert "200 N" in unmet
+
+
+def test_a_sleeping_item_still_touches_what_it_touched():
+    truth = good_truth()
+    referee = watch(truth)
+    truth.touches = []
+    referee.observe(2.0)
+    assert referee.verdict().success
+
+
+def test_an_item_that_never_touched_anything_is_not_on_the_table():
+    truth = good_truth()
+    truth.touches = []
+    assert "can does not touch table_b" in watch(truth).verdict().unmet
+
+
+def test_tilt_is_the_angle_of_the_axis_whatever_the_yaw():
+    for yaw in (0.0, 1.0, -2.5):
+        turned = Transform((0, 0, 0), quaternion_from_axis_angle((0, 0, 1), yaw))
+        leaning = Transform((0, 0, 0), quaternion_from_axis_angle((0, 1, 0), 0.3))
+        assert tilt(turned @ leaning) == pytest.approx(0.3)
+        assert tilt(turned) == pytest.approx(0.0, abs=1e-7)
+
+
+def test_an_episode_without_a_goal_cannot_be_judged():
+    whole = episode()
+    bare = Episode("bare", 0, whole.bodies, whole.start, (0, 0, 0), (), (), whole.site)
+    with pytest.raises(ValueError, match="no goal"):
+        Referee(bare, good_truth(), "gripper_link")
