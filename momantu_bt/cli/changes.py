@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
+from itertools import groupby
 
+from momantu_bt.engine.context import Change
 from momantu_bt.engine.executor import Executor
 from momantu_bt.engine.node import TreeNode
 from momantu_bt.engine.nodes.recovery import Recover
@@ -31,7 +33,7 @@ class ChangeLines:
 
     def ticked(self, run: Executor) -> None:
         """Tell this tick's changes."""
-        for node, status, note in run.context.changes:
+        for node, status, note in _parents_first(run.context.changes):
             if isinstance(node, Recover):
                 self._tell_note(run.context.now, node, note)
             elif isinstance(node, _TOLD):
@@ -57,7 +59,21 @@ class ChangeLines:
             self._line(now, node, f"{node.name}: {note}")
 
     def _line(self, now: float, node: TreeNode, words: str) -> None:
-        self._say(f"{now:8.2f} s {'  ' * min(node.depth // 2, 8)}{words}")
+        self._say(f"{now:8.2f} s {'  ' * _level(node)}{words}")
+
+
+def _parents_first(changes: Iterable[Change]) -> Iterator[Change]:
+    """Nodes that start in one tick in the order of the file, though the innermost is first."""
+    for starting, group in groupby(changes, key=lambda change: change.status is RUNNING):
+        together = list(group)
+        yield from sorted(together, key=lambda c: c.node.index) if starting else together
+
+
+def _level(node: TreeNode) -> int:
+    """How many subtrees it is in."""
+    parent = node.parent
+    above = _level(parent) if isinstance(parent, TreeNode) else 0
+    return above + isinstance(parent, SubTree)
 
 
 def _reason(node: TreeNode) -> str:

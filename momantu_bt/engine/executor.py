@@ -16,6 +16,7 @@ from momantu_bt.engine.services import Services
 from momantu_bt.engine.session import CLOCK_SLACK
 from momantu_bt.engine.status import FAILURE, RUNNING, Status
 from momantu_bt.failure import TIMEOUT, FailureValue
+from momantu_bt.messages import RobotState
 from momantu_bt.record import report as outcome
 from momantu_bt.record.fingerprint import Fingerprint
 from momantu_bt.world import Verdict, World
@@ -89,6 +90,7 @@ class Executor:
         self._stepper = stepper
         self._max_time = max_time
         self._realtime = realtime
+        self._state: RobotState | None = None
         self._error: str | None = None
         self._failure: FailureValue | None = None
 
@@ -134,7 +136,8 @@ class Executor:
         self.context.begin_tick()
         body = self.context.body
         if body is not None:
-            body.frames.add_state(body.actuators.robot.state())
+            self._state = body.actuators.robot.state()
+            body.frames.add_state(self._state)
         self.services.update(self.context.now)
         status = self.built.root.execute()
         self._note()
@@ -143,19 +146,16 @@ class Executor:
     def _note(self) -> None:
         """Fingerprint what happened, then show it to the observers."""
         context, body = self.context, self.context.body
-        state, issued = None, []
-        if body is not None:
-            state, issued = body.actuators.robot.state(), body.actuators.issued
+        issued = [] if body is None else body.actuators.issued
         self.fingerprint.add(
-            state,
+            self._state,
             issued,
             [(node.index, status.value) for node, status, _ in context.changes],
             self._written(),
         )
         for observer in self.observers:
             observer.ticked(self)
-        if body is not None:
-            issued.clear()
+        issued.clear()
 
     def _written(self) -> list[tuple[str, Any]]:
         return [(cell.name, cell.value) for cell, _ in self.context.writes]
@@ -194,6 +194,7 @@ class Executor:
             self._note()
             self._stepper.step()
             self.context.begin_tick()
+            self._state = self.world.robot.state()
         self._note()
 
     def halt_all(self) -> None:
