@@ -15,8 +15,8 @@ from momantu_bt.failure import (
     WRONG_TYPE,
 )
 from momantu_bt.tree.catalogue import SUBTREE
-from momantu_bt.tree.model import Handler, Literal, Node, Tree
-from momantu_bt.tree.problems import nearest
+from momantu_bt.tree.model import Handler, Literal, Node, Place, Tree
+from momantu_bt.tree.problems import nearest, within
 from momantu_bt.tree.signatures import Context
 from momantu_bt.tree.yaml_nodes import ANY
 
@@ -103,7 +103,9 @@ def _check(context: Context, node: Node, possible: Codes) -> None:
             if code in first:
                 message = f"{code} has a handler already"
                 hint = f"in line {first[code].place.line}; the first one is taken"
-                context.problems.error("dead-handler", handler.place, message, hint)
+                context.problems.error(
+                    "dead-handler", _place(context, handler, code), message, hint
+                )
             elif code != ANY and UNKNOWN not in possible and code not in possible:
                 _report_dead(context, handler, code, possible)
             first.setdefault(code, handler)
@@ -114,4 +116,8 @@ def _report_dead(context: Context, handler: Handler, code: str, possible: Codes)
     near = nearest(code, sorted(possible))
     message = f"nothing in `try` fails with {code}"
     hint = f"did you mean {near}?" if near else f"it can fail with: {', '.join(bare) or 'nothing'}"
-    context.problems.error("dead-handler", handler.place, message, hint)
+    context.problems.error("dead-handler", _place(context, handler, code), message, hint)
+
+
+def _place(context: Context, handler: Handler, code: str) -> Place:
+    return within(handler.place, code, context.document.source)

@@ -13,6 +13,7 @@ from momantu_bt.tree.key_flow import FLOWS, After
 from momantu_bt.tree.key_reads import KeyReads, Written, references
 from momantu_bt.tree.keys import NEVER, Key, Known, meet
 from momantu_bt.tree.model import Literal, Node, Place, Reference, Scope, Tree
+from momantu_bt.tree.problems import within
 from momantu_bt.tree.script import Script, ScriptSyntaxError, parse
 from momantu_bt.tree.signatures import Context, Signature
 from momantu_bt.tree.types import ValueType, assignable, label, origin
@@ -174,22 +175,13 @@ class _KeyCheck:
             if variable.key in own:
                 self.reads.seen.add(variable.key)
             else:
-                where = self.place_of(variable.key, place)
+                where = within(place, f"${variable.key}", self.context.document.source)
                 self.reads.lookup(_reference(variable.key), before, where)
         after = before
         for variable in script.writes:
             if not variable.key.startswith("@"):
                 after = after.having(variable.key, Key(object, place))
         return after
-
-    def place_of(self, key: str, script: Place) -> Place:
-        """Where a script on one line names a variable; else the script's place."""
-        lines = self.context.document.source.get(script.file, "").splitlines()
-        line = lines[script.line - 1] if script.line <= len(lines) else ""
-        column = line.find("$" + key, script.column - 1)
-        if column < 0:
-            return script
-        return Place(script.file, script.line, column + 1, len(key) + 1)
 
 
 def _literal_type(value: Literal) -> ValueType:

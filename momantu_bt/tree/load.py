@@ -106,4 +106,4 @@ def _text(path: Path) -> str:
 def _override(document: Document, values: Mapping[str, Any]) -> None:
     for name, value in values.items():
         document.values[name] = Literal(value)
-        document.value_places.setdefault(name, Place(document.file, 1, 1))
+        document.value_places[name] = Place(f"given value of {name}", 1, 1)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import IntEnum
@@ -109,6 +110,14 @@ def valid_names(word: str, candidates: Iterable[str], what: str) -> str:
     if near is not None:
         return f"did you mean {near}?"
     return f"{what}: {', '.join(names)}" if names else f"there are no {what}"
+
+
+def within(place: Place, word: str, source: Mapping[str, str]) -> Place:
+    """The stretch of a place's line that holds a word; the place itself where it does not."""
+    lines = source.get(place.file, "").splitlines()
+    line = lines[place.line - 1] if 0 < place.line <= len(lines) else ""
+    found = re.compile(rf"{re.escape(word)}(?!\w)").search(line, place.column - 1)
+    return place if found is None else Place(place.file, place.line, found.start() + 1, len(word))
 
 
 def show(problem: Problem, source: Mapping[str, str]) -> str:

@@ -115,8 +115,9 @@ def _unknown(name: str) -> str:
     folded = {known.lower(): known for known in _SCALE}
     near = folded.get(name.lower()) or _SPELLED_OUT.get(name.lower().rstrip("s"))
     near = near or next(iter(difflib.get_close_matches(name, _SCALE, n=1)), None)
-    hint = f", did you mean {near!r}?" if near else "."
-    return f"unknown unit {name!r}{hint} Units: {', '.join(_SCALE)}"
+    if near:
+        return f"unknown unit {name!r}, did you mean {near!r}?"
+    return f"unknown unit {name!r}. Units: {', '.join(_SCALE)}"
 
 
 _SPELLED_OUT = {

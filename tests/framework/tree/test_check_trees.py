@@ -82,7 +82,7 @@ def test_a_code_that_a_handler_has_taken_away(expect: Expect) -> None:
 def test_two_handlers_for_one_code(expect: Expect) -> None:
     body = (
         "trees:\n  Main:\n    recover:\n      attempts: 2\n      try: {reset_pose: home}\n"
-        "      catch:\n        NO_PLAN: again\n        «any | NO_PLAN»: relocalize\n"
+        "      catch:\n        NO_PLAN: again\n        any | «NO_PLAN»: relocalize\n"
     )
     expect("dead-handler", body, hint="in line 10")
 
