@@ -1,17 +1,20 @@
-"""A flat world for navigation: rectangles, a robot that drives and drifts, a laser that sees."""
+"""A flat world for navigation, and a robot that sees painted solids for perception."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from momantu_bt.geometry import Pose2D
 from momantu_bt.messages import CameraImage, LaserScan, RobotState, frozen
-from momantu_bt.testing import ScriptedRobot, ScriptedWorld, scripted_site
+from momantu_bt.service import HeldObject
+from momantu_bt.testing import ScriptedRobot, ScriptedWorld, scripted_site, small_robot
+from momantu_bt.testing.painting import Painter, Solid
 from momantu_bt.world import Surface, seeded
 
 Box = tuple[float, float, float, float]
@@ -187,3 +190,42 @@ def flat(tmp_path: Path) -> Flat:
 def flat_scene() -> Callable[[ScriptedWorld], FlatScene]:
     """`flat_scene(world)`: the planning scene that navigation needs."""
     return lambda world: FlatScene(world.robot.description.footprint)
+
+
+class SeenScene:
+    """A planning scene to which points in a box (low, high corners in the base) are the robot."""
+
+    last_contact = -math.inf
+
+    def __init__(self, held: HeldObject | None = None, robot: Sequence[Box3] = ()) -> None:
+        self.held, self.robot = held, robot
+
+    def is_robot(self, points: np.ndarray, state: RobotState) -> np.ndarray:
+        inside = np.zeros(len(points), dtype=bool)
+        for low, high in self.robot:
+            inside |= ((points >= low) & (points <= high)).all(axis=1)
+        return inside
+
+
+Box3 = tuple[tuple[float, float, float], tuple[float, float, float]]
+
+
+@pytest.fixture
+def seen_scene() -> type[SeenScene]:
+    """`seen_scene(held=…, robot=…)`: the planning scene that perception needs."""
+    return SeenScene
+
+
+@pytest.fixture
+def onlooker() -> Callable[..., ScriptedRobot]:
+    """`onlooker(solids, …)`: a robot at the origin, its camera 1.15 m high; see `Painter`."""
+
+    def build(solids: Sequence[Solid], **errors: Any) -> ScriptedRobot:
+        description = small_robot()
+        camera = description.sensors["camera"].model_copy(update={"width": 640, "height": 480})
+        description = description.model_copy(
+            update={"sensors": {**description.sensors, "camera": camera}}
+        )
+        return ScriptedRobot(description, readings={"camera": Painter(solids, **errors)})
+
+    return build

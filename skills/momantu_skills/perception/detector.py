@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
@@ -72,11 +73,8 @@ class GeometricDetector:
         if support is None:
             return None
         eyes = support.cameras - np.array([0.0, 0.0, support.height])
-        shapes = [
-            shape
-            for thing in things_on(support, self.segments)
-            for shape in self._shapes(thing, eyes, asked)
-        ]
+        things = _whole(things_on(support, self.segments), eyes)
+        shapes = [shape for thing in things for shape in self._shapes(thing, eyes, asked)]
         found = [self._object(shape, support, asked) for shape in shapes]
         found.sort(key=lambda thing: -thing.score)
         return Detections(support, tuple(found))
@@ -104,3 +102,27 @@ class GeometricDetector:
             score=worth,
             support_height=support.height,
         )
+
+
+def _whole(things: list[Thing], eyes: Array) -> list[Thing]:
+    """Things with the pieces put back that lie inside the round form of a larger one.
+
+    A look over the near rim of a bowl shows its far wall apart from it.
+    """
+    whole: list[Thing] = []
+    forms: list[Shape] = []
+    for thing in sorted(things, key=lambda thing: -len(thing.points)):
+        form = describe(thing, eyes)
+        inside = [n for n, other in enumerate(forms) if _within(form, other)]
+        if inside:
+            whole[inside[0]] = whole[inside[0]].joined_with(thing)
+            forms[inside[0]] = describe(whole[inside[0]], eyes)
+        else:
+            whole.append(thing)
+            forms.append(form)
+    return whole
+
+
+def _within(form: Shape, other: Shape) -> bool:
+    apart = math.dist(form.centre, other.centre)
+    return other.kind == "cylinder" and apart < 0.5 * other.size[0]

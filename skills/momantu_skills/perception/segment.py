@@ -53,6 +53,12 @@ class Thing:
             return highest
         return float(np.median(top))
 
+    def joined_with(self, other: Thing) -> Thing:
+        """Both as one."""
+        return Thing(
+            np.concatenate([self.points, other.points]), np.concatenate([self.side, other.side])
+        )
+
 
 def things_on(support: Support, config: SegmentConfig | None = None) -> list[Thing]:
     """Everything that stands on the surface, in the order of the grid cells it covers."""
