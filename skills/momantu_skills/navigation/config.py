@@ -70,8 +70,8 @@ class NavigationConfig:
     speed: float = 1.0
     margin: float = 0.03
     comfort: float = 0.12
-    near_speed: float = 0.25
-    far_clearance: float = 0.45
+    near_speed: float = 0.3
+    far_clearance: float = 0.4
     laser_reach: float = 6.0
     depth_reach: float = 3.0
     known_reach: float = 0.08

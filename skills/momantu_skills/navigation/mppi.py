@@ -35,7 +35,7 @@ class MppiConfig:
     temperature: float = 0.08
     collision: float = 60.0
     nearness: float = 1.0
-    haste: float = 4.0
+    haste: float = 25.0
     heading: float = 0.7
     smoothness: float = 0.05
 

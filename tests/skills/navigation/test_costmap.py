@@ -1,0 +1,125 @@
+"""The costmap marks what sensors see, forgets what they see through, and tells the room left."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from momantu_skills.navigation.config import NavigationConfig
+from momantu_skills.navigation.costmap import FAR, SURE, Costmap
+from momantu_skills.navigation.maps import OCCUPIED, GridMap
+from momantu_skills.navigation.scans import Rays
+
+from momantu_bt.geometry import Pose2D
+
+DISC = np.array([[0.0, 0.0, 0.2]])
+
+
+def _grid() -> GridMap:
+    """8 m x 6 m from (-4, -3), walled in."""
+    cells = np.zeros((120, 160), np.uint8)
+    cells[[0, -1], :] = OCCUPIED
+    cells[:, [0, -1]] = OCCUPIED
+    return GridMap(cells, 0.05, (-4.0, -3.0))
+
+
+def _costmap(overhang: GridMap | None = None) -> Costmap:
+    return Costmap(_grid(), overhang, NavigationConfig())
+
+
+def _rays(bearing: float, distance: float, *, hit: bool = True) -> Rays:
+    """A narrow bundle of beams towards a bearing."""
+    angles = bearing + np.linspace(-0.02, 0.02, 9)
+    ways = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    return Rays(np.zeros(2), ways, np.full(9, distance), np.full(9, hit))
+
+
+POSES = st.builds(Pose2D, st.floats(-1, 1), st.floats(-1, 1), st.floats(-math.pi, math.pi))
+
+
+@given(POSES, st.floats(0.4, 1.5), st.floats(-math.pi, math.pi))
+def test_a_hit_leaves_no_room_where_it_was(pose: Pose2D, far: float, bearing: float) -> None:
+    costmap = _costmap()
+    costmap.see_laser(pose, _rays(bearing, far))
+    costmap.refresh(pose)
+    there = pose @ Pose2D(far * math.cos(bearing), far * math.sin(bearing), 0.0)
+    assert costmap.room(there, DISC) < -0.1
+    assert costmap.room(pose, DISC) == pytest.approx(min(far, FAR) - 0.2, abs=0.08)
+
+
+def test_beams_through_a_mark_clear_it_after_a_few_scans() -> None:
+    costmap, pose = _costmap(), Pose2D(0.0, 0.0, 0.0)
+    costmap.see_laser(pose, _rays(0.0, 1.0))
+    for _ in range(SURE):
+        costmap.see_laser(pose, _rays(0.0, 2.5))
+    costmap.refresh()
+    assert costmap.room(Pose2D(1.0, 0.0, 0.0), DISC) > 0.3
+
+
+def test_beams_that_hit_nothing_clear_too() -> None:
+    costmap, pose = _costmap(), Pose2D(0.0, 0.0, 0.0)
+    costmap.see_laser(pose, _rays(0.0, 1.0))
+    for _ in range(SURE):
+        costmap.see_laser(pose, _rays(0.0, 25.0, hit=False))
+    costmap.refresh()
+    assert costmap.room(Pose2D(1.0, 0.0, 0.0), DISC) > 0.3
+
+
+def test_hits_beside_the_maps_walls_do_not_thicken_them() -> None:
+    costmap, pose = _costmap(), Pose2D(0.0, 0.0, 0.0)
+    before = costmap.field.copy()
+    costmap.see_laser(pose, _rays(math.pi / 2, 2.85))
+    costmap.refresh()
+    assert np.array_equal(costmap.field, before)
+
+
+def test_the_window_agrees_with_the_whole() -> None:
+    costmap, pose = _costmap(), Pose2D(0.5, 0.3, 0.4)
+    costmap.see_laser(pose, _rays(0.7, 1.1))
+    costmap.refresh(pose, radius=1.5)
+    window = costmap.field.copy()
+    costmap.refresh()
+    row, column = costmap.grid.index(pose.x, pose.y)
+    near = (slice(row - 30, row + 31), slice(column - 30, column + 31))
+    assert window[near] == pytest.approx(costmap.field[near], abs=1e-5)
+
+
+def test_overhang_of_another_grid_is_laid_over() -> None:
+    cells = np.full((4, 4), OCCUPIED, np.uint8)
+    costmap = _costmap(GridMap(cells, 0.05, (1.0, 0.5)))
+    assert costmap.room(Pose2D(1.1, 0.6, 0.0), DISC) < -0.1
+    assert costmap.room(Pose2D(-1.0, 0.6, 0.0), DISC) > 0.5
+
+
+def test_depth_needs_several_pixels_and_floor_clears() -> None:
+    costmap, spot = _costmap(), np.array([[1.02, 0.02]])
+    nothing = np.zeros((0, 2))
+    costmap.see_depth(spot.repeat(2, axis=0), nothing)
+    costmap.refresh()
+    assert costmap.room(Pose2D(1.0, 0.0, 0.0), DISC) > 0.5
+    costmap.see_depth(spot.repeat(5, axis=0), nothing)
+    costmap.refresh()
+    assert costmap.room(Pose2D(1.0, 0.0, 0.0), DISC) < 0.0
+    costmap.see_depth(nothing, spot.repeat(5, axis=0))
+    costmap.refresh()
+    assert costmap.room(Pose2D(1.0, 0.0, 0.0), DISC) > 0.5
+
+
+def test_points_off_the_map_are_left_out() -> None:
+    costmap = _costmap()
+    before = costmap.field.copy()
+    costmap.see_depth(np.full((9, 2), 50.0), np.full((9, 2), -50.0))
+    costmap.see_laser(Pose2D(3.9, 2.9, 0.0), _rays(0.5, 5.0))
+    costmap.refresh(Pose2D(60.0, 0.0, 0.0))
+    assert np.array_equal(costmap.field, before)
+    assert costmap.room(Pose2D(60.0, 0.0, 0.0), DISC) < 0.0
+
+
+def test_what_lies_behind_is_remembered() -> None:
+    costmap, pose = _costmap(), Pose2D(0.0, 0.0, 0.0)
+    costmap.see_laser(pose, _rays(0.0, 1.0))
+    costmap.see_laser(pose, _rays(math.pi, 1.0))
+    costmap.clear_ahead(pose)
+    assert costmap.room(Pose2D(1.0, 0.0, 0.0), DISC) > 0.3
+    assert costmap.room(Pose2D(-1.0, 0.0, 0.0), DISC) < 0.0
