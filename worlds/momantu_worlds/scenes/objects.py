@@ -21,6 +21,9 @@ OBJECT_KINDS: tuple[ObjectKind, ...] = get_args(ObjectKind)
 METAL: Color = (0.72, 0.73, 0.75)
 WALL = 0.005
 """m; thickness of a mug's or bowl's wall."""
+BASE = 0.011
+"""m; thickness of a hollow thing's bottom: a solid disc alone touches the table, so that resting
+costs the physics one pair of shapes; the wall begins above the reach of contacts."""
 SECTORS = 10
 """Convex pieces around a hollow thing's wall."""
 
@@ -107,7 +110,7 @@ def _handle(height: float) -> float:
 
 def _mug(thing: Thing) -> tuple[Part, ...]:
     r, h = thing.size[0] / 2, thing.height
-    hole, floor, out = r - WALL, WALL, _handle(thing.height)
+    hole, floor, out = r - WALL, BASE, _handle(thing.height)
     ring = [(0.0, 0.0), (r, 0.0), (r, h), (hole, h), (hole, floor), (0.0, floor)]
     bar, low, high = 0.010, 0.25 * h, 0.80 * h
     # the bars reach into the wall, so that nothing shows between
@@ -129,11 +132,13 @@ def _mug(thing: Thing) -> tuple[Part, ...]:
 def _bowl(thing: Thing) -> tuple[Part, ...]:
     r, h = thing.size[0] / 2, thing.height
     foot = 0.45 * r
-    outer = [(foot, 0.0), (0.80 * r, 0.45 * h), (r, h)]
-    inner = [(foot - WALL, WALL), (0.80 * r - WALL, 0.45 * h + 0.3 * WALL), (r - WALL, h)]
-    ring = [(0.0, 0.0), *outer, *reversed(inner), (0.0, WALL)]
+    belly, waist = 0.80 * r, 0.45 * h
+    low = foot + (belly - foot) * BASE / waist
+    outer = [(low, BASE), (belly, waist), (r, h)]
+    inner = [(low - WALL, BASE), (belly - WALL, waist), (r - WALL, h)]
+    ring = [(0.0, 0.0), (foot, 0.0), *outer, *reversed(inner), (0.0, BASE)]
     return (
         _look(lathe(ring), thing.color),
-        _touch(Cylinder(foot, WALL), WALL / 2),
+        _touch(Cylinder(low, BASE), BASE / 2),
         *(_touch(piece) for piece in shell_pieces(outer, inner, SECTORS)),
     )
