@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
+from momantu_bt.tree.catalogue import ScriptText
 from momantu_bt.tree.check_codes import check_handlers
 from momantu_bt.tree.check_keys import check_keys
 from momantu_bt.tree.check_nodes import check_node, check_tree_ports
@@ -12,9 +15,10 @@ from momantu_bt.tree.check_trees import (
     check_parallel,
     check_unused,
 )
-from momantu_bt.tree.model import Document, Place, Reference, Scope, Tree
+from momantu_bt.tree.model import Document, Literal, Node, Place, Reference, Scope, Tree
 from momantu_bt.tree.problems import Problem, Problems, valid_names
 from momantu_bt.tree.registry import Registry
+from momantu_bt.tree.script import parse
 from momantu_bt.tree.signatures import Context
 from momantu_bt.world import WorldError
 
@@ -60,38 +64,47 @@ def check(
 
 def _look_up(context: Context, world: str | None, robot: str | None) -> None:
     """The world's site and the robot's description; reports where there are none."""
-    document, registry = context.document, context.registry
-    name = world or document.world
-    place = document.world_place if world is None else None
+    name = world or context.document.world
     if name is not None and name != NO_WORLD:
-        if name not in registry.worlds:
-            hint = valid_names(name, registry.worlds, "worlds")
-            message = f"no world is called {name!r}"
-            context.problems.error("unknown-world", place or _start(document), message, hint)
-        else:
-            try:
-                entry = registry.worlds[name]
-                context.site = entry.site()
-                robot = robot or entry.default_robot
-            except Exception as error:  # a plug-in's code, which may raise anything
-                message = f"the world {name!r} cannot be read: {type(error).__name__}: {error}"
-                context.problems.error("broken-world", place or _start(document), message)
-    if robot is None:
-        return
-    if robot not in registry.robots:
-        hint = valid_names(robot, registry.robots, "robots")
-        message = f"no robot is called {robot!r}"
-        context.problems.error("unknown-robot", _start(document), message, hint)
+        place = context.document.world_place if world is None else None
+        default = _look_up_world(context, name, place or _start(context.document))
+        robot = robot or default
+    if robot is not None:
+        _look_up_robot(context, robot)
+
+
+def _look_up_world(context: Context, name: str, place: Place) -> str | None:
+    """Sets the context's site; returns the robot that the world is meant for."""
+    worlds = context.registry.worlds
+    if name not in worlds:
+        hint = valid_names(name, worlds, "worlds")
+        context.problems.error("unknown-world", place, f"no world is called {name!r}", hint)
+        return None
+    try:
+        entry = worlds[name]
+        context.site = entry.site()
+        return entry.default_robot
+    except Exception as error:  # a plug-in's code, which may raise anything
+        message = f"the world {name!r} cannot be read: {type(error).__name__}: {error}"
+        context.problems.error("broken-world", place, message)
+        return None
+
+
+def _look_up_robot(context: Context, name: str) -> None:
+    robots, place = context.registry.robots, _start(context.document)
+    if name not in robots:
+        hint = valid_names(name, robots, "robots")
+        context.problems.error("unknown-robot", place, f"no robot is called {name!r}", hint)
         return
     try:
-        context.description = registry.description(robot)
+        context.description = context.registry.description(name)
     except WorldError as error:
         # its files are not installed, as without the extra [worlds]; trees are checked all the same
-        message = f"poses and actuators of {robot!r} are not checked: {error}"
-        context.problems.warning("robot-not-installed", _start(document), message)
+        message = f"poses and actuators of {name!r} are not checked: {error}"
+        context.problems.warning("robot-not-installed", place, message)
     except Exception as error:  # a plug-in's code, which may raise anything
-        message = f"the robot {robot!r} cannot be read: {type(error).__name__}: {error}"
-        context.problems.error("broken-robot", _start(document), message)
+        message = f"the robot {name!r} cannot be read: {type(error).__name__}: {error}"
+        context.problems.error("broken-robot", place, message)
 
 
 def _start(document: Document) -> Place:
@@ -110,14 +123,27 @@ def _root_keys(context: Context) -> frozenset[str]:
     names = {*document.values, *context.registry.services, ROBOT_KEY}
     for tree in document.trees.values():
         for node in tree.root.walk():
-            signature = context.signature(node)
-            for port, value in node.ports.items():
-                known = signature.ports.get(port) if signature is not None else None
-                if not isinstance(value, Reference) or known is None or known.direction != "out":
-                    continue
-                if value.scope is Scope.ROOT or tree.name == document.main:
-                    names.add(value.key)
+            for scope, key in _written_by(context, node):
+                if scope is Scope.ROOT or tree.name == document.main:
+                    names.add(key)
     return frozenset(names)
+
+
+def _written_by(context: Context, node: Node) -> Iterator[tuple[Scope, str]]:
+    """Keys that a node's outputs and scripts write, and on which board."""
+    signature = context.signature(node)
+    ports = signature.ports if signature is not None else {}
+    scripts = list(node.conditions.values())
+    for name, value in node.ports.items():
+        port = ports.get(name)
+        if port is not None and port.direction == "out" and isinstance(value, Reference):
+            yield value.scope, value.key
+        elif port is not None and port.type is ScriptText and isinstance(value, Literal):
+            scripts.append(str(value.value))
+    for script in scripts:
+        for variable in parse(script).writes:
+            root = variable.key.startswith("@")
+            yield (Scope.ROOT if root else Scope.LOCAL), variable.key.removeprefix("@")
 
 
 __all__ = ["NO_WORLD", "ROBOT_KEY", "check"]

@@ -195,6 +195,7 @@ def test_keys_of_a_subtree_are_its_own(expect: Expect) -> None:
 def test_the_roots_board(fine: Fine, expect: Expect) -> None:
     sub = "  Sub:\n    - say: $@name\n    - say: {text: a, pace: $@localization.quality}\n"
     fine(main("- Sub", values="{name: a}") + sub)
+    fine(main("- script: $made := 1", "- Sub") + "  Sub: [{navigate: {side: $@made}}]\n")
     expect("unknown-key", main("- say: «$@nam»", values="{name: a}"), hint="did you mean name?")
 
 

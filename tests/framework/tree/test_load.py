@@ -8,6 +8,7 @@ from momantu_bt.tree.load import TreeError, TreeNotFound, load, read_values
 from momantu_bt.tree.lookup import bundled, find
 from momantu_bt.tree.model import Literal
 from momantu_bt.tree.registry import Registry
+from momantu_bt.world import WorldError
 
 GOOD = "momantu_bt: 1\nworld: rooms\nvalues: {to: door}\ntrees:\n  Main: [navigate: $to]\n"
 
@@ -91,6 +92,15 @@ def test_a_world_that_cannot_be_read_is_one_problem(folder: Path, registry: Regi
     broken = Registry(registry.skills, {"rooms": Broken()}, registry.robots)  # type: ignore
     with pytest.raises(TreeError, match="cannot be read: RuntimeError: no floor plan"):
         load("fetch_it.yaml", broken)
+
+
+def test_a_robot_whose_files_are_missing_is_a_warning(folder: Path, registry: Registry) -> None:
+    def missing() -> None:
+        raise WorldError("the extra [worlds] is not installed")
+
+    bare = Registry(registry.skills, registry.worlds, {"toy": missing})
+    notes = load("fetch_it.yaml", bare).notes
+    assert [note.code for note in notes] == ["robot-not-installed"]
 
 
 def test_a_file_of_values(folder: Path) -> None:
