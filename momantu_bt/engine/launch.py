@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 from momantu_bt.engine.actuators import Actuators
 from momantu_bt.engine.blackboard import Board, ReadOnlyCell
@@ -15,6 +15,8 @@ from momantu_bt.engine.context import Body, RunContext
 from momantu_bt.engine.executor import Ending, Executor, Observer
 from momantu_bt.engine.interrupts import Interrupts
 from momantu_bt.engine.no_world import NoWorld
+from momantu_bt.engine.node import TreeNode
+from momantu_bt.engine.nodes.skill import SkillLeaf
 from momantu_bt.engine.services import Services, in_order
 from momantu_bt.frames import FrameBuffer
 from momantu_bt.record.report import NodeReport, Report
@@ -182,7 +184,8 @@ def _report(
     )
 
 
-def _node_report(node: Any) -> NodeReport:
+def _node_report(node: TreeNode) -> NodeReport:
+    slow = node if isinstance(node, SkillLeaf) else None
     return NodeReport(
         name=node.name,
         type=node.model.target or node.model.type,
@@ -191,4 +194,6 @@ def _node_report(node: Any) -> NodeReport:
         runs=node.runs,
         failures=node.failures,
         seconds=round(node.seconds, 9),
+        slow_ticks=0 if slow is None else slow.slow_steps,
+        slowest_s=0.0 if slow is None else round(slow.slowest, 4),
     )

@@ -46,6 +46,7 @@ class Session:
     """Runs one skill instance. Call `step` once a tick until it no longer returns RUNNING.
 
     status: of the newest step. phase: what the skill last yielded. failure: set with FAILURE.
+    took: wall time of the newest step, s, declared work left out.
     outputs: what has been written so far; all of them with SUCCESS.
     """
 
@@ -61,7 +62,7 @@ class Session:
         self.status = Status.IDLE
         self.phase = ""
         self.failure: FailureValue | None = None
-        self.slowest = 0.0
+        self.took = 0.0
         self._context = context
         self._inputs = dict(inputs)
         self._generator: Run | None = None
@@ -79,6 +80,7 @@ class Session:
 
     def step(self, live_inputs: Mapping[str, Any] | None = None) -> Status:
         """Run to the skill's next `yield`, or to its end."""
+        self.took = 0.0
         try:
             if self._generator is None:
                 self._generator = self._begin()
@@ -166,7 +168,7 @@ class Session:
                     ValueError(f"compute with a budget of {said.budget} s; thinking is never free")
                 )
         finally:
-            self.slowest = time.perf_counter() - started
+            self.took = time.perf_counter() - started
         self.status = RUNNING
         if isinstance(said, Compute):
             self._waiting = _compute(said, now)

@@ -20,7 +20,11 @@ EXIT_SUCCESS, EXIT_FAILURE, EXIT_ERROR, EXIT_INTERRUPTED = 0, 1, 4, 130
 
 @dataclass(frozen=True, slots=True)
 class NodeReport:
-    """One node: how often it was ticked, started and failed, and its active simulated seconds."""
+    """One node: how often it was ticked, started and failed, and its active simulated seconds.
+
+    slow_ticks: in how many ticks its skill worked longer than 20 ms of wall time without
+    declaring it; slowest_s: the longest of them.
+    """
 
     name: str
     type: str
@@ -29,6 +33,8 @@ class NodeReport:
     runs: int
     failures: int
     seconds: float
+    slow_ticks: int = 0
+    slowest_s: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,7 +21,8 @@ class SkillLeaf(TreeNode):
 
     Inputs are read at the start (live ones at each tick), outputs written with SUCCESS (live
     ones when assigned). Halting closes the generator and stops what the skill owns.
-    slow_steps: ticks in which the skill worked longer than SLOW_STEP without declaring it.
+    slow_steps: ticks in which the skill worked longer than SLOW_STEP without declaring it;
+    slowest: the longest, s.
     """
 
     def __init__(
@@ -107,6 +108,6 @@ class SkillLeaf(TreeNode):
                 cell.write(values[name])
 
     def _note_time(self, session: Session) -> None:
-        if session.slowest > SLOW_STEP:
+        if session.took > SLOW_STEP:
             self.slow_steps += 1
-            self.slowest = max(self.slowest, session.slowest)
+            self.slowest = max(self.slowest, session.took)
