@@ -19,6 +19,7 @@ LIMITS = (
     JointLimit(velocity=0.5, acceleration=1.5),
 )
 OFFSET = np.array([0.002, -0.001])
+EFFORTS = np.array([30.0, 0.5])
 
 
 class FakeJoint:
@@ -40,9 +41,10 @@ class Bench:
 
     def __init__(self) -> None:
         self.joints = [FakeJoint(), FakeJoint()]
-        self.drive = JointDrive(NAMES, self.joints, LIMITS, OFFSET)
+        self.drive = JointDrive(NAMES, self.joints, LIMITS, OFFSET, EFFORTS)
         self.drive.place(np.zeros(2))
         self.now = 0.0
+        self.blocked: np.ndarray | None = None
         self.positions = [np.zeros(2)]
         self.speeds = [np.zeros(2)]
 
@@ -50,7 +52,8 @@ class Bench:
         for _ in range(count):
             if goal is not None:
                 self.drive.command(goal, self.now)
-            self.drive.begin_tick(self.now)
+            true = self.positions[-1] if self.blocked is None else self.blocked
+            self.drive.begin_tick(self.now, true)
             for index in range(SUB_STEPS):
                 self.drive.apply(index)
                 self.positions.append(np.array([j.target for j in self.joints]))
@@ -121,6 +124,27 @@ def test_stop_brakes_a_trajectory_and_the_same_command_resumes_it() -> None:
     assert np.all((here > 0.1) & (here < 0.7))
     bench.tick(90, trajectory)
     assert np.allclose(bench.positions[-1], 0.8 - OFFSET)
+
+
+def test_a_blocked_joint_gives_way_and_takes_a_new_goal() -> None:
+    bench = Bench()
+    trajectory = ramp(0.8, 4.0)
+    bench.tick(30, trajectory)
+    bench.blocked = bench.positions[-1] - np.array([0.02, 0.0])
+    bench.tick(5, trajectory)
+    assert np.all(bench.positions[-1] == bench.blocked)
+    assert np.all(bench.speeds[-1] == 0.0)
+    bench.blocked = None
+    bench.tick(100, JointPositions(NAMES, (0.1, 0.2)))
+    assert np.allclose(bench.positions[-1], np.array([0.1, 0.2]) - OFFSET)
+
+
+def test_a_weak_joint_never_gives_way() -> None:
+    bench = Bench()
+    bench.tick(20, JointPositions(NAMES, (0.0, 0.8)))
+    bench.blocked = bench.positions[-1] - np.array([0.0, 0.1])
+    bench.tick(80, JointPositions(NAMES, (0.0, 0.8)))
+    assert bench.positions[-1][1] == pytest.approx(0.8 - OFFSET[1])
 
 
 @pytest.mark.parametrize(

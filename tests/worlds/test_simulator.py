@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import subprocess
 import sys
@@ -12,6 +13,7 @@ from momantu_worlds.robots import fetch
 from momantu_worlds.sapien.simulator import Simulator
 from momantu_worlds.scenes.plain import WALL_FACE, plain_episode
 
+from momantu_bt.geometry import Pose2D
 from momantu_bt.messages import BaseVelocity, GripperCommand, JointPositions, JointTrajectory
 
 FETCH = fetch()
@@ -90,6 +92,24 @@ def test_joint_speed_limits_are_kept_in_physics() -> None:
         fastest = np.maximum(fastest, speeds)
     assert np.all(fastest <= 1.05 * limits + 0.01)
     assert np.any(fastest > 0.5 * limits)
+
+
+def test_a_blocked_arm_gives_way_before_it_hurts() -> None:
+    episode = dataclasses.replace(plain_episode(), start=Pose2D(0.45, 0.3, 0.0))
+    low = {**FETCH.named_poses["carry"], "torso_lift_joint": 0.35}
+    simulator = Simulator(FETCH, episode, 0, render=False, pose=low)
+    simulator.truth.watch_contacts()
+    down = JointPositions(("torso_lift_joint",), (0.1,))
+    forces = []
+    for _ in range(80):
+        run(simulator, 1, arm=down)
+        hand = [
+            c.force for c in simulator.truth.contacts() if c.first in simulator.truth.robot_links
+        ]
+        forces.append(sum(hand))
+    assert max(forces) > 5.0
+    assert max(forces) < 150.0
+    assert simulator.robot.state().position("torso_lift_joint") > 0.15
 
 
 def test_a_closed_hand_feels_nothing_and_an_open_one_has_its_width() -> None:

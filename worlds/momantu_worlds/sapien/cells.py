@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import trimesh
 from numpy.typing import NDArray
-from trimesh.intersections import slice_faces_plane
+from trimesh import intersections
 
 from momantu_worlds.robots.loading import Cuts
 
@@ -30,5 +30,6 @@ def _halves(vertices: Any, faces: Any, axis: int, place: float) -> list[tuple[An
     """The triangles on either side of a plane across an axis, those it crosses cut."""
     origin, normal = np.zeros(3), np.zeros(3)
     origin[axis], normal[axis] = place, 1.0
-    sides = [slice_faces_plane(vertices, faces, n, origin) for n in (normal, -normal)]
+    cut: Any = intersections.slice_faces_plane
+    sides = [cut(vertices, faces, n, origin) for n in (normal, -normal)]
     return [(side[0], side[1]) for side in sides if len(side[1])]

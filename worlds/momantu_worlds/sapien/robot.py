@@ -72,6 +72,10 @@ class SimulatedRobot:
             for name, actuator in description.actuators.items()
             if actuator.kind is ActuatorKind.JOINTS
         }
+        self._driven = [
+            (drive, [model.index[name] for name in drive.names])
+            for drive in self.joint_drives.values()
+        ]
         self.gripper = self._gripper_drive(config)
         self._place(start, pose)
 
@@ -120,8 +124,9 @@ class SimulatedRobot:
         """Prepare the drives for the physics steps of the coming tick."""
         now = self._now()
         self.base.begin_tick(now)
-        for drive in self.joint_drives.values():
-            drive.begin_tick(now)
+        true = self._model.positions()
+        for drive, columns in self._driven:
+            drive.begin_tick(now, true[columns])
 
     def apply(self, index: int) -> None:
         """Set every drive's target for physics step `index` of this tick."""
@@ -185,6 +190,7 @@ class SimulatedRobot:
             [self._model.joints[name] for name in actuator.joints],
             [self._description.joint_limits[name] for name in actuator.joints],
             self._encoders.offsets[places],
+            self._efforts[places],
         )
 
     def _gripper_drive(self, config: SimulatorConfig) -> GripperDrive:
