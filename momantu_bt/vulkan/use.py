@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import warnings
 
+from momantu_bt.openmp import ensure_openmp
 from momantu_bt.vulkan.private import ICD_VARIABLE, installed_driver, is_ours, preload
 from momantu_bt.vulkan.probe import Way
 
@@ -20,6 +21,8 @@ def apply(way: Way) -> None:
     """
     # One rasteriser thread: two runs side by side are faster, and none disturbs the other's time.
     os.environ.setdefault(SOFTWARE_THREADS_VARIABLE, "1")
+    # SAPIEN takes Pinocchio along where it is installed, and warns where it cannot be loaded.
+    ensure_openmp()
     # SAPIEN says so on every machine without a system-wide loader, and uses the one it brings.
     warnings.filterwarnings("ignore", message="Failed to find system libvulkan")
     if way is not Way.PRIVATE and is_ours(os.environ.get(ICD_VARIABLE)):
