@@ -100,24 +100,34 @@ class Arm:
         Raises:
             Failure: NO_PLAN or START_IN_COLLISION.
         """
+        def world(clearance: float) -> CollisionWorld:
+            return self.scene.world(
+                state, held, clearance, width=width, cut=cut, extra=extra
+            )
+
         state, start = self.state, self.joints
-        margin = self.planning.margin
-        world = self.scene.world(state, held, margin, width=width, cut=cut, extra=extra)
         first: list[JointTrajectory] = []
+        for margin in self.planning.margins:
+            transit = world(margin)
+            if not transit.free(start) and not first:
+                path = self._escape(state, start, held, transit)
+                first.append(self.trajectory(path, self.hand.approach_speed))
+                start = path[-1]
+            found = self._path(transit, held, start, goals)
+            if found is not None:
+                return [*first, *self._checked(found, world(margin / 2))]
+        raise self._no_plan(transit, goals)
+
+    def _path(
+        self, world: CollisionWorld, held: HeldObject | None, start: Array, goals: Sequence[Array]
+    ) -> Array | None:
+        """A path on which what is held stays upright, or any path where there is no such one."""
         if not world.free(start):
-            path = self._escape(state, start, held, world)
-            first.append(self.trajectory(path, self.hand.approach_speed))
-            start = path[-1]
-        valid = self._upright(world, held, start, goals)
-        found = self.planner.path(start, goals, valid)
+            return None
+        found = self.planner.path(start, goals, self._upright(world, held, start, goals))
         if found is None and held is not None:
             found = self.planner.path(start, goals, world.free)
-        if found is None:
-            raise self._no_plan(world, goals)
-        rounded = self.scene.world(
-            state, held, self.planning.corner_margin, width=width, cut=cut, extra=extra
-        )
-        return [*first, *self._checked(found, rounded)]
+        return found
 
     def trajectory(self, path: Array, tip_speed: float | None = None) -> JointTrajectory:
         """The fastest trajectory along a path; see `timed`."""
@@ -165,10 +175,15 @@ class Arm:
         """Free, and what is held leans no more than configured, or than start and goals ask."""
         if held is None:
             return world.free
-        thing = held
-        ends = [self.lean(thing, q) for q in (start, *goals)]
-        limit = max(self.planning.tilt, max(ends) + 0.1)
-        return lambda q: self.lean(thing, q) <= limit and world.free(q)
+        ends = [self.lean(held, q) for q in (start, *goals)]
+        least = math.cos(min(math.pi, max(self.planning.tilt, max(ends) + 0.1)))
+        axis = (self.scene.model.tip_from_grasp @ held.grasp_from_object).rotation[:, 2]
+
+        def valid(q: Array) -> bool:
+            upward = float(self.group.tip_matrix(q)[2, :3] @ axis)
+            return upward >= least and world.free(q)
+
+        return valid
 
     def _escape(
         self, state: RobotState, start: Array, held: HeldObject | None, world: CollisionWorld

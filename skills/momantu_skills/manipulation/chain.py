@@ -177,5 +177,3 @@ def trace(  # type: ignore[no-untyped-def]
             return path, i
         path[i] = q
     return path, len(targets)
-
-

@@ -72,9 +72,7 @@ class BodyPairs:
         return product(self.links[one], self.links[other])
 
     def _moving_links(self) -> tuple[str, ...]:
-        first = min(
-            int(self.model.pin.getJointId(name)) for name in self.model.group.names
-        )
+        first = min(int(self.model.pin.getJointId(name)) for name in self.model.group.names)
         below = set(self.model.pin.subtrees[first])
         frames = self.model.pin.frames
         return tuple(
@@ -183,9 +181,7 @@ class CollisionWorld:
     def touching(self, q: Array) -> list[tuple[str, str]]:
         """Names of all pairs that touch at joints (n,), for messages and tests."""
         self._q[self._index] = q
-        pin.computeCollisions(
-            self._pin, self._data, self._geometry, self._shapes, self._q, False
-        )
+        pin.computeCollisions(self._pin, self._data, self._geometry, self._shapes, self._q, False)
         objects = self._geometry.geometryObjects
         return [
             (str(objects[int(pair.first)].name), str(objects[int(pair.second)].name))
@@ -215,7 +211,10 @@ class CollisionWorld:
         tip = model.description.groups["arm"].tip
         frame = model.pin.frames[int(model.pin.getFrameId(tip))]
         shape = pin.GeometryObject(
-            "held", frame.parentJoint, int(model.pin.getFrameId(tip)), frame.placement,
+            "held",
+            frame.parentJoint,
+            int(model.pin.getFrameId(tip)),
+            frame.placement,
             convex(attached.corners),
         )
         return int(self._geometry.addGeometryObject(shape))

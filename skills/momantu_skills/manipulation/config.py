@@ -40,10 +40,10 @@ class PlanningConfig:
 
     step: float = 0.06
     """Scaled rad between two collision checks of a motion; the hand then moves about 4 cm."""
-    margin: float = 0.012
-    """m; clearance that transits keep from surroundings: depth noise and half a voxel's corner."""
-    corner_margin: float = 0.006
-    """m; what must be left of it where a spline rounds a corner."""
+    margins: tuple[float, ...] = (0.012, 0.004)
+    """m; clearance that transits keep from surroundings, tried in turn: depth noise and half a
+    cell's corner; then what is left of it where things stand close. Half of it is enough where a
+    spline rounds a corner."""
     searches: int = 1500
     """Growths of a search tree after which it gives up: about 0.3 s."""
     attempts: int = 3

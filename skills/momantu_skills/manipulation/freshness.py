@@ -8,9 +8,7 @@ from momantu_bt.geometry import Pose
 from momantu_skills.manipulation.config import HandConfig
 
 
-def check_fresh(
-    pose: Pose, what: str, now: float, last_contact: float, config: HandConfig
-) -> None:
+def check_fresh(pose: Pose, what: str, now: float, last_contact: float, config: HandConfig) -> None:
     """Refuse poses in another frame, too old, or older than the last contact.
 
     Raises:

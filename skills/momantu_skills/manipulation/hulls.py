@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import lru_cache
 from itertools import product
 
 import coal
@@ -41,7 +42,13 @@ def _directions(count: int) -> Array:
 
 
 def convex(points: Array) -> coal.Convex:
-    """A coal shape of the convex hull of points (n, 3)."""
+    """A coal shape of the convex hull of points (n, 3); the same points give the same shape."""
+    return _convex(np.ascontiguousarray(points, dtype=np.float64).tobytes())
+
+
+@lru_cache(maxsize=256)
+def _convex(data: bytes) -> coal.Convex:
+    points = np.frombuffer(data).reshape(-1, 3)
     hull = ConvexHull(points)
     order = {int(v): i for i, v in enumerate(hull.vertices)}
     vertices, triangles = coal.StdVec_Vec3s(), coal.StdVec_Triangle()
@@ -50,7 +57,9 @@ def convex(points: Array) -> coal.Convex:
     for simplex, equation in zip(hull.simplices, hull.equations, strict=True):
         a, b, c = (int(i) for i in simplex)
         outward = np.cross(points[b] - points[a], points[c] - points[a]) @ equation[:3] > 0
-        triangles.append(coal.Triangle(order[a], *((order[b], order[c]) if outward else (order[c], order[b]))))
+        triangles.append(
+            coal.Triangle(order[a], *((order[b], order[c]) if outward else (order[c], order[b])))
+        )
     return coal.Convex(vertices, triangles)
 
 

@@ -52,4 +52,8 @@ def standing(points: Array, pose: Transform, thing: DetectedObject, support: flo
     near = near[near[:, 2] < top + TOP]
     if len(near) < SOME:
         return "gone"
-    return "toppled" if float(np.quantile(near[:, 2], 0.98)) < support + LYING * (top - support) else "gone"
+    return (
+        "toppled"
+        if float(np.quantile(near[:, 2], 0.98)) < support + LYING * (top - support)
+        else "gone"
+    )

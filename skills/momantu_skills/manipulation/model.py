@@ -222,7 +222,9 @@ def _assemble(
         upper=np.array([np.inf if m.upper is None else m.upper for m in limits]),
         velocity=np.array([m.velocity for m in limits]),
         acceleration=np.array([m.acceleration for m in limits]),
-        origins=np.ascontiguousarray([b @ own for b, (own, _) in zip(before, origins, strict=True)]),
+        origins=np.ascontiguousarray(
+            [b @ own for b, (own, _) in zip(before, origins, strict=True)]
+        ),
         axes=np.ascontiguousarray(unit),
         slides=np.array(slides),
         tip=np.ascontiguousarray(origins[-1][1]),

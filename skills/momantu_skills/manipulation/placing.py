@@ -16,7 +16,7 @@ from momantu_skills.manipulation.arm import Arm
 
 YAWS = 16
 """Turns about the vertical in which an object is set down."""
-SEEDS = 12
+SEEDS = 6
 """Starts of the inverse kinematics per candidate."""
 POSTURES = 2
 """Postures kept per candidate, the quickest to reach."""

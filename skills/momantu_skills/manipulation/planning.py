@@ -81,9 +81,7 @@ class Planner:
         information = ob.SpaceInformation(space)
         n = len(start)
         information.setStateValidityChecker(lambda state: valid(np.array(state[0:n]) / scale))
-        information.setStateValidityCheckingResolution(
-            self.config.step / space.getMaximumExtent()
-        )
+        information.setStateValidityCheckingResolution(self.config.step / space.getMaximumExtent())
         information.setup()
         ou.RNG.setSeed(int(self.random.integers(1, 2**31)))
         problem = ob.ProblemDefinition(information)
@@ -121,9 +119,7 @@ class Planner:
                     path = _distinct(path)
         return path
 
-    def _bounds(
-        self, start: Array, goals: Sequence[Array], tight: bool
-    ) -> ob.RealVectorBounds:
+    def _bounds(self, start: Array, goals: Sequence[Array], tight: bool) -> ob.RealVectorBounds:
         scale = self.group.scale
         ends = np.vstack([start, *goals])
         lower = np.where(self.group.endless, start - WIDE, self.group.lower)

@@ -82,9 +82,7 @@ class Scene:
         """Points (n, 3) in odom of the picture, without the robot, within its reach."""
         optical = points_from_depth(image.depth, image.intrinsics, self.config.pixel_stride)
         base_points = (odom_from_base.inverse() @ odom_from_camera).apply(optical)
-        base_points = base_points[
-            np.linalg.norm(base_points[:, :2], axis=1) < self.config.reach
-        ]
+        base_points = base_points[np.linalg.norm(base_points[:, :2], axis=1) < self.config.reach]
         own = self.is_robot(base_points, robot.state(), held)
         return odom_from_base.apply(base_points[~own])
 
@@ -114,9 +112,7 @@ class Scene:
     def support_below(self, thing: DetectedObject) -> Support:
         """The surface that an object stands on, as far as the newest picture shows it."""
         centre = thing.pose.position[:2]
-        found = support_around(
-            self.points, centre, thing.support_height, self.config.surface_band
-        )
+        found = support_around(self.points, centre, thing.support_height, self.config.surface_band)
         if found is None:
             angles = np.linspace(0.0, 2 * np.pi, 12, endpoint=False)
             ring = np.stack([np.cos(angles), np.sin(angles)], axis=1)
@@ -197,7 +193,10 @@ class Scene:
             self.body,
             self.model.configuration(state, width),
             obstacles=[
-                *(s.obstacle(base_from_odom, f"support {i}") for i, s in enumerate(around.supports)),
+                *(
+                    s.obstacle(base_from_odom, f"support {i}")
+                    for i, s in enumerate(around.supports)
+                ),
                 *extra,
             ],
             cells=cells,

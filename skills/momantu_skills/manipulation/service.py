@@ -90,4 +90,3 @@ def _scene(context: ServiceContext, config: SceneConfig) -> Scene:
     from momantu_skills.manipulation.scene import Scene
 
     return Scene(context.description, config)
-

@@ -77,9 +77,7 @@ def timed(
         constraint.JointAccelerationConstraint(_both(group.acceleration * config.speed)),
     ]
     grid = np.linspace(0.0, knots[-1], max(30, PER_WAYPOINT * len(points)))
-    solver = algorithm.TOPPRA(
-        limits, spline, gridpoints=grid, parametrizer="ParametrizeConstAccel"
-    )
+    solver = algorithm.TOPPRA(limits, spline, gridpoints=grid, parametrizer="ParametrizeConstAccel")
     result = solver.compute_trajectory()
     if result is None:
         raise ValueError(f"no timing within the limits for a path of {len(path)} waypoints")
@@ -117,6 +115,4 @@ def _both(limit: Array) -> Array:
 
 
 def _trajectory(group: Group, times: Array, positions: Array, velocities: Array) -> JointTrajectory:
-    return JointTrajectory(
-        group.names, frozen(times), frozen(positions), frozen(velocities)
-    )
+    return JointTrajectory(group.names, frozen(times), frozen(positions), frozen(velocities))
