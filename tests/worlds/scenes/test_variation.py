@@ -25,7 +25,7 @@ from momantu_worlds.scenes.variation import vary
 from momantu_bt.geometry import Pose2D, wrap_angle
 
 WORLD = load_world("four_rooms")
-SEEDS = range(40)
+SEEDS = range(30)
 ROUNDING = 1e-9
 
 

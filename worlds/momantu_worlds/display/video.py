@@ -34,6 +34,7 @@ class Film:
         """See `open_video`."""
         self._simulator, self._path = simulator, path
         self._part = path.with_name(f".{path.stem}.part{path.suffix or '.mp4'}")
+        self._part.touch()  # the encoder would open it with the first frame, too late to refuse
         self._chase = Chase(episode.bodies)
         self._camera = ViewCamera(simulator.scene, *SCENE, FIELD_OF_VIEW)
         self._head = simulator.robot.description.camera()[0]

@@ -230,7 +230,6 @@ class WorldFile(_Part):
 
     momantu_world: Literal[1]
     name: Name
-    robot: Name
     floor: Floor
     walls: Walls
     doorways: dict[Name, Doorway] = {}

@@ -94,11 +94,12 @@ def parse_world(text: str, path: Path) -> WorldFile:
 
 def _findings(reading: _Reading, error: ValidationError) -> list[Problem]:
     """Every finding; a key that is missing because it is misspelt is reported once."""
-    findings = [dict(finding) for finding in error.errors()]
-    misspelt = {
-        (*place[:-1], _nearest(str(place[-1]), place[:-1]))
-        for place in (tuple(f["loc"]) for f in findings if f["type"] == "extra_forbidden")
-    }
+    findings: list[dict[str, Any]] = [dict(finding) for finding in error.errors()]
+    misspelt = set()
+    for finding in findings:
+        place = tuple(finding["loc"])
+        if finding["type"] == "extra_forbidden":
+            misspelt.add((*place[:-1], _nearest(str(place[-1]), place[:-1])))
     return [
         reading.problem(finding)
         for finding in findings

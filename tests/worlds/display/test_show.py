@@ -1,0 +1,110 @@
+"""Films and views show a simulation and change nothing in it."""
+
+import hashlib
+import urllib.request
+
+import av
+import numpy as np
+import pytest
+from momantu_worlds.display.shapes import body_meshes, link_meshes, merged, still_meshes
+from momantu_worlds.display.video import open_video
+from momantu_worlds.display.view import open_view
+from momantu_worlds.robots import fetch
+from momantu_worlds.sapien.simulator import Simulator
+from momantu_worlds.scenes.plain import plain_episode
+
+from momantu_bt.messages import BaseVelocity
+from momantu_bt.world import TreeLine, WorldError
+
+LINES = [TreeLine(0, "Bring", "RUNNING"), TreeLine(1, "navigate", "RUNNING")]
+PORT = 18923
+
+
+def drive(simulator: Simulator, ticks: int, after=lambda tick: None) -> str:
+    """Drive a curve; a digest of every state on the way."""
+    digest = hashlib.sha256()
+    for tick in range(ticks):
+        simulator.robot.command("base", BaseVelocity(0.3, 0.8))
+        simulator.step()
+        digest.update(simulator.state_bytes())
+        after(tick)
+    return digest.hexdigest()
+
+
+@pytest.fixture
+def simulator():
+    made = Simulator(fetch(), plain_episode(), 0)
+    yield made
+    made.close()
+
+
+def test_a_run_is_the_same_with_film_and_view_or_without(simulator, tmp_path):
+    film = open_video(simulator, plain_episode(), tmp_path / "film.mp4", "a run")
+    view = open_view(simulator, plain_episode(), PORT)
+
+    def show(tick: int) -> None:
+        if tick % 5 == 0:
+            film.add(LINES, f"{simulator.now():.1f} s")
+            view.update()
+
+    shown = drive(simulator, 20, show)
+    page = urllib.request.urlopen(view.url, timeout=10)
+    assert page.status == 200
+    for thing in (film, film, view, view):
+        thing.close()
+    plain = Simulator(fetch(), plain_episode(), 0)
+    assert drive(plain, 20) == shown
+    with av.open(str(tmp_path / "film.mp4")) as container:
+        frames = [frame.to_ndarray(format="rgb24") for frame in container.decode(video=0)]
+    assert [f.shape for f in frames] == [(720, 1280, 3)] * 4
+    assert np.abs(frames[0].astype(int) - frames[-1].astype(int)).max() > 50
+    assert [path.name for path in tmp_path.iterdir()] == ["film.mp4"]
+
+
+def test_a_film_carries_the_simulations_time(simulator, tmp_path):
+    film = open_video(simulator, plain_episode(), tmp_path / "film.mp4", "a run")
+    times = []
+    for _ in range(3):
+        simulator.step()
+        simulator.step()
+        film.add([], "")
+        times.append(simulator.now())
+    film.close()
+    with av.open(str(tmp_path / "film.mp4")) as container:
+        stamps = [float(frame.time) for frame in container.decode(video=0)]
+    assert np.allclose(np.diff(stamps), np.diff(times), atol=0.002)
+
+
+def test_a_film_that_cannot_be_written_is_a_world_error(simulator, tmp_path):
+    with pytest.raises(WorldError, match="cannot be written"):
+        open_video(simulator, plain_episode(), tmp_path / "no" / "film.mp4", "a run")
+
+
+def test_a_port_in_use_is_a_world_error(simulator):
+    view = open_view(simulator, plain_episode(), PORT + 1)
+    with pytest.raises(WorldError, match="choose another port"):
+        open_view(simulator, plain_episode(), PORT + 1)
+    view.close()
+
+
+def test_meshes_of_one_colour_are_joined_without_losing_a_triangle():
+    bodies = plain_episode().bodies
+    whole = [mesh for body in bodies for mesh in body_meshes(body)]
+    joined = still_meshes(bodies)
+    assert sum(len(m.faces) for m in joined) == sum(len(m.faces) for m in whole)
+    assert len({m.color for m in joined}) == len(joined)
+    assert all(m.faces.max() < len(m.vertices) for m in joined)
+    assert merged([]) == []
+
+
+def test_the_robots_links_are_there_to_be_seen(simulator):
+    meshes = {name: link_meshes(link) for name, link in simulator.model.links.items()}
+    assert meshes["gripper_link"]
+    heights = [
+        simulator.truth.link(name).apply(mesh.vertices)[:, 2]
+        for name, parts in meshes.items()
+        for mesh in parts
+    ]
+    every = np.concatenate(heights)
+    assert -0.02 < every.min() < 0.1
+    assert 0.8 < every.max() < 1.3
