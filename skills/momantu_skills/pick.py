@@ -120,7 +120,9 @@ class Pick(Skill):
                 arm.robot.command(effector.actuator, opened)
                 yield phase
         yield from self._gripper_or_stuck(
-            open_hand(arm.robot, self.clock, effector.max_width, arm.hand.force, arm.hand.close_time)
+            open_hand(
+                arm.robot, self.clock, effector.max_width, arm.hand.force, arm.hand.close_time
+            )
         )
         rest = yield from rested_force(arm.robot, self.frames, "feeling", 3)
         watch = bump(self.frames, rest, BUMP)
@@ -173,7 +175,9 @@ class Pick(Skill):
         loaded = yield from rested_force(arm.robot, self.frames, "weighing")
         weight = None if rest is None or loaded is None else float(rest[2] - loaded[2])
         if self.planning_scene.held is None or (weight is not None and weight < LEAST_WEIGHT):
-            text = "the fingers lost it" if weight is None else f"the hand is {weight:.1f} N heavier"
+            text = (
+                "the fingers lost it" if weight is None else f"the hand is {weight:.1f} N heavier"
+            )
             yield from self._let_go(arm)
             raise Failure("SLIPPED", f"after lifting, {text}", weight=weight)
 
