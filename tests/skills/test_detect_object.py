@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from momantu_skills.detect_object import DetectObject
 
 from momantu_bt.geometry import Pose2D, Transform, quaternion_from_rpy
 from momantu_bt.messages import DetectedObject, ObjectClass
 from momantu_bt.testing import ScriptedRobot, SkillResult, run_skill, scripted_site
 from momantu_bt.testing.painting import Block, Round, Solid
 from momantu_bt.world import Surface
-from momantu_skills.detect_object import DetectObject
 
 TOP = 0.72
 """m; the table is 2 cm lower than the site says, and 6 cm beside."""

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from momantu_skills.detect_plane import DetectPlane
 
 from momantu_bt.geometry import Pose, Pose2D, Transform, quaternion_from_rpy
 from momantu_bt.messages import DetectedObject, SupportPlane
 from momantu_bt.service import HeldObject
 from momantu_bt.testing import ScriptedRobot, SkillResult, run_skill
 from momantu_bt.testing.painting import Block, Round, Solid
-from momantu_skills.detect_plane import DetectPlane
 
 TOP = 0.5
 TABLE = Block((0.6, 1.2, 0.03), (1.0, 0.0, TOP - 0.015))

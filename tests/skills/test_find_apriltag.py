@@ -9,12 +9,12 @@ from typing import Any
 import cv2
 import numpy as np
 import pytest
+from momantu_skills.find_apriltag import FindAprilTag
 
 from momantu_bt.geometry import Pose2D, Transform, quaternion_from_rpy
 from momantu_bt.testing import ScriptedRobot, SkillResult, run_skill, scripted_site
 from momantu_bt.testing.painting import Block, Card, Round, Solid
 from momantu_bt.world import Surface
-from momantu_skills.find_apriltag import FindAprilTag
 
 TOP, EDGE = 0.52, 0.15
 TABLE = Block((0.6, 1.2, 0.03), (1.05, 0.0, TOP - 0.015))

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from momantu_skills.look import Look
 
 from momantu_bt.geometry import Pose, Pose2D, Transform
 from momantu_bt.testing import ScriptedRobot, run_skill, small_robot
-from momantu_skills.look import Look
 
 
 def off_axis(robot: ScriptedRobot, point: Any) -> float:
