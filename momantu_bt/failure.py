@@ -27,7 +27,7 @@ WRONG_TYPE = "WRONG_TYPE"
 FAILED = "FAILED"
 """A node failed without saying more (AlwaysFailure, a false condition, a guard)."""
 HALTED = "HALTED"
-"""Not a failure of its own: what was running when a time limit ended it."""
+"""Never fails a node: what was running when a time limit ended it, as the TIMEOUT's cause."""
 SENSOR_DEAD = "SENSOR_DEAD"
 """A sensor does not answer; `data["sensor"]` names it."""
 SCRIPT_ERROR = "SCRIPT_ERROR"
@@ -43,7 +43,6 @@ ENGINE_CODES: Mapping[str, str] = MappingProxyType(
         INPUT_MISSING: "an input reads a key that holds no value",
         WRONG_TYPE: "a value at a port is not of the port's type",
         FAILED: "the node failed without saying more",
-        HALTED: "the node was running when a time limit ended it",
         SENSOR_DEAD: "a sensor does not answer",
         SCRIPT_ERROR: "a script or a condition could not be evaluated",
     }
@@ -77,7 +76,7 @@ class FailureValue:
     node_type: str = ""
 
     def chain(self) -> Iterator[FailureValue]:
-        """This failure, then its causes, outermost first."""
+        """Yield the failure, then its causes, outermost first."""
         link: FailureValue | None = self
         while link is not None:
             yield link
@@ -103,7 +102,7 @@ class FailureValue:
 
 
 class Failure(Exception):
-    """Raised by a skill to fail: `raise Failure("OBJECT_NOT_FOUND", "no can on table_a", seen=3)`."""
+    """Raised by a skill to fail: `raise Failure("OBJECT_NOT_FOUND", "no can here", seen=3)`."""
 
     def __init__(self, code: str, message: str = "", /, **data: Any) -> None:
         if not CODE.fullmatch(code):
