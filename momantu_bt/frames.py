@@ -87,6 +87,17 @@ class KinematicTree:
         Raises:
             Failure: FRAME_UNKNOWN, with the known frames.
         """
+        matrix = np.eye(4)
+        for joint in self.chain(frame):
+            matrix = matrix @ joint.transform(positions.get(joint.name, 0.0))
+        return Transform.from_matrix(matrix)
+
+    def chain(self, frame: str) -> tuple[Joint, ...]:
+        """The joints from the base to a frame, fixed ones included.
+
+        Raises:
+            Failure: FRAME_UNKNOWN, with the known frames.
+        """
         chain = self._chain(frame)
         if chain is None:
             raise Failure(
@@ -94,10 +105,7 @@ class KinematicTree:
                 f"the robot has no frame {frame!r}; frames: {', '.join(self.frames())}",
                 frame=frame,
             )
-        matrix = np.eye(4)
-        for joint in chain:
-            matrix = matrix @ joint.transform(positions.get(joint.name, 0.0))
-        return Transform.from_matrix(matrix)
+        return tuple(chain)
 
     def _chain(self, frame: str) -> list[Joint] | None:
         chain: list[Joint] = []

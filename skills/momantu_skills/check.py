@@ -92,7 +92,7 @@ class Check(Skill):
             )
 
     def _distance(self, here: Pose2D) -> float:
-        """m from `here` to a place, or to the nearest edge of a surface (0 above it)."""
+        """Metres from `here` to a place, or to the nearest edge of a surface (0 above it)."""
         if self.place in self.site.places:
             return here.distance_to(self.site.places[self.place])
         if self.place in self.site.surfaces:

@@ -9,7 +9,7 @@ from momantu_bt.failure import Failure
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.messages import DetectedObject
 from momantu_bt.robot import CAMERA_CARRIER, Robot
-from momantu_bt.skill import In, Needs, Run, Skill, compute
+from momantu_bt.skill import Compute, In, Needs, Run, Skill, compute
 
 if TYPE_CHECKING:
     from momantu_skills.manipulation.arm import Arm
@@ -132,7 +132,7 @@ class Pick(Skill):
             yield from self._draw_back(arm)
             raise Failure("GRASP_MISSED", "the hand met something before it was around the object")
 
-    def _close(self, arm: Arm, plan: PickPlan) -> Generator[str, None, Array | None]:
+    def _close(self, arm: Arm, plan: PickPlan) -> Generator[str | Compute, Any, Array | None]:
         """Close with a force limit and judge the opening; the wrist's force before that."""
         from momantu_skills.manipulation.hand import move_gripper, rested_force
 

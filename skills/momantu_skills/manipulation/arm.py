@@ -100,10 +100,9 @@ class Arm:
         Raises:
             Failure: NO_PLAN or START_IN_COLLISION.
         """
+
         def world(clearance: float) -> CollisionWorld:
-            return self.scene.world(
-                state, held, clearance, width=width, cut=cut, extra=extra
-            )
+            return self.scene.world(state, held, clearance, width=width, cut=cut, extra=extra)
 
         state, start = self.state, self.joints
         first: list[JointTrajectory] = []

@@ -10,7 +10,6 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-
 DAMPING = 1e-4
 """Damped least squares' lambda squared, in m2 of weighted joint motion: keeps steps near
 singular arms short and costs a few iterations elsewhere."""

@@ -37,8 +37,11 @@ OFF_CENTRE_PENALTY = 4.0
 
 @dataclass(frozen=True, eq=False)
 class Grasp:
-    """object_from_grasp: the grasp frame's pose when the fingers close. width: between the pads
-    then, m. penalty: seconds it may cost more than another grasp and still be as good."""
+    """One way to hold an object.
+
+    object_from_grasp: the grasp frame's pose when the fingers close. width: between the pads
+    then, m. penalty: seconds that another grasp may cost more and still be preferred.
+    """
 
     object_from_grasp: Transform
     width: float
@@ -102,8 +105,10 @@ def _from_side(
 def _setback(
     surface: Array, centre: Array, rotation: Array, hand: EndEffector, palm: Array
 ) -> float | None:
-    """m the grasp frame stays behind the object's axis so that the palm clears it; None if the
-    pads would then no longer reach past the axis."""
+    """How far the grasp frame stays behind the object's axis so that the palm clears it, m.
+
+    None if the pads would then no longer reach past the axis.
+    """
     local = (surface - centre) @ rotation
     reach_y, reach_z = np.abs(palm[:, 1]).max(), np.abs(palm[:, 2]).max()
     before = local[(np.abs(local[:, 1]) <= reach_y) & (np.abs(local[:, 2]) <= reach_z)]

@@ -12,7 +12,7 @@ INSIDE = 0.012
 ABOVE = 0.012
 """m above the support below which points are the support's."""
 SOME = 25
-"""Points (every fourth pixel each way) that show that something is there: a can shows 150 at 1 m."""
+"""Points (every fourth pixel each way) that show something: of a can there are 150 at 1 m."""
 TOP = 0.02
 """m below the expected top in which an upright object shows points."""
 AROUND = 0.12
@@ -30,7 +30,7 @@ def points_of(points: Array, pose: Transform, thing: DetectedObject, support: fl
     else:
         within = (np.abs(local[:, :2]) <= half[:2]).all(axis=1)
     within &= (np.abs(local[:, 2]) <= half[2]) & (points[:, 2] > support + ABOVE)
-    return points[within]
+    return np.asarray(points[within])
 
 
 def stands_there(points: Array, pose: Transform, thing: DetectedObject, support: float) -> bool:
@@ -39,7 +39,7 @@ def stands_there(points: Array, pose: Transform, thing: DetectedObject, support:
 
 
 def standing(points: Array, pose: Transform, thing: DetectedObject, support: float) -> str:
-    """ "upright", "toppled" or "gone": what the points (n, 3) show around a spot.
+    """What the points (n, 3) show around a spot: "upright", "toppled" or "gone".
 
     pose: `odom_from_object` of the object standing upright there.
     """

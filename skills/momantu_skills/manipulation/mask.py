@@ -55,4 +55,4 @@ class LinkMask:
 def floor_outline(corners: Array) -> Array:
     """Convex outline (k, 2), counter-clockwise, of corners (n, 3) projected onto the floor."""
     flat = corners[:, :2]
-    return flat[ConvexHull(flat).vertices]
+    return np.asarray(flat[ConvexHull(flat).vertices])

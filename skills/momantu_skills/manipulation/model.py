@@ -8,9 +8,9 @@ from functools import lru_cache
 
 import numpy as np
 import pinocchio as pin
-from lxml import etree
 from numpy.typing import NDArray
 
+from momantu_bt.frames import Joint
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.messages import RobotState
 from momantu_bt.robot import RobotDescription
@@ -73,14 +73,14 @@ class Group:
 
         Returns joints (m, s, n) within the limits, and success (m, s).
         """
-        found, good = chain.solve(
+        found, good = chain.solve(  # type: ignore[call-arg]
             *self._kernel(), np.ascontiguousarray(targets), seeds, rounds, NEAR, TURN
         )
         return found, good
 
     def trace(self, targets: Array, start: Array) -> tuple[Array, int]:
         """Joints along poses (k, 4, 4) a centimetre apart: (reached, n), and how many there are."""
-        path, reached = chain.trace(
+        path, reached = chain.trace(  # type: ignore[call-arg]
             *self._kernel(), np.ascontiguousarray(targets), np.array(start), NEAR, TURN, JUMP
         )
         return path[:reached], int(reached)
@@ -111,7 +111,7 @@ class ArmModel:
         self.urdf = base_urdf(description)
         self.pin: pin.Model = pin.buildModelFromXML(self.urdf.text)
         self.hulls = link_hulls(self.urdf.parts)
-        self.group = _chain_of(self.urdf.text, description, group)
+        self.group = _chain_of(description, group)
         self._index = {
             name: int(self.pin.joints[self.pin.getJointId(name)].idx_q)
             for name in list(self.pin.names)[1:]
@@ -124,7 +124,7 @@ class ArmModel:
     def joints(self, state: RobotState) -> Array:
         """Joints of the planning group (n,) as measured, clipped into their limits."""
         q = np.array([state.position(name) for name in self.group.names])
-        return np.clip(q, self.group.lower, self.group.upper)
+        return np.asarray(np.clip(q, self.group.lower, self.group.upper))
 
     def configuration(self, state: RobotState, width: float | None = None) -> Array:
         """All joints (nq,) in pinocchio's order; fingers from a width, the measured one if None."""
@@ -181,59 +181,28 @@ def _cached(key: _Key) -> ArmModel:
     return ArmModel(key.description)
 
 
-def _chain_of(text: str, description: RobotDescription, name: str) -> Group:
-    """Read the joints of a group from a base-rooted URDF; fixed joints merge into origins."""
+def _chain_of(description: RobotDescription, name: str) -> Group:
+    """Read the joints of a group from the URDF; joints that do not belong to it merge into it."""
     group = description.groups[name]
-    above = {str(j.find("child").get("link")): j for j in etree.fromstring(text).findall("joint")}
-    origins, axes, slides, joints = [], [], [], []
+    joints: list[Joint] = []
+    origins: list[Array] = []
     after = np.eye(4)
-    link = group.tip
-    while link != description.base_frame:
-        joint = above[link]
-        origin = joint.find("origin")
-        fixed = _origin(origin).matrix
-        if joint.get("name") in group.joints:
-            joints.append(str(joint.get("name")))
-            axis = joint.find("axis")
-            axes.append([float(v) for v in ("1 0 0" if axis is None else axis.get("xyz")).split()])
-            slides.append(joint.get("type") == "prismatic")
-            origins.append((fixed, after))
+    for joint in description.kinematics().chain(group.tip):
+        after = after @ joint.parent_from_joint.matrix
+        if joint.name in group.joints:
+            joints.append(joint)
+            origins.append(after)
             after = np.eye(4)
-        else:
-            after = fixed @ after
-        link = str(joint.find("parent").get("link"))
-    return _assemble(description, joints[::-1], origins[::-1], axes[::-1], slides[::-1], after)
-
-
-def _assemble(
-    description: RobotDescription,
-    joints: list[str],
-    origins: list[tuple[Array, Array]],
-    axes: list[list[float]],
-    slides: list[bool],
-    first: Array,
-) -> Group:
-    limits = [description.joint_limits[name] for name in joints]
-    before = [first] + [after for _, after in origins[:-1]]
-    unit = np.array(axes) / np.linalg.norm(np.array(axes), axis=1, keepdims=True)
+    limits = [description.joint_limits[joint.name] for joint in joints]
+    axes = np.array([joint.axis for joint in joints])
     return Group(
-        names=tuple(joints),
+        names=tuple(joint.name for joint in joints),
         lower=np.array([-np.inf if m.lower is None else m.lower for m in limits]),
         upper=np.array([np.inf if m.upper is None else m.upper for m in limits]),
         velocity=np.array([m.velocity for m in limits]),
         acceleration=np.array([m.acceleration for m in limits]),
-        origins=np.ascontiguousarray(
-            [b @ own for b, (own, _) in zip(before, origins, strict=True)]
-        ),
-        axes=np.ascontiguousarray(unit),
-        slides=np.array(slides),
-        tip=np.ascontiguousarray(origins[-1][1]),
+        origins=np.ascontiguousarray(origins),
+        axes=axes / np.linalg.norm(axes, axis=1, keepdims=True),
+        slides=np.array([joint.kind == "prismatic" for joint in joints]),
+        tip=after,
     )
-
-
-def _origin(element: etree._Element | None) -> Transform:
-    if element is None:
-        return Transform()
-    xyz = [float(v) for v in element.get("xyz", "0 0 0").split()]
-    rpy = [float(v) for v in element.get("rpy", "0 0 0").split()]
-    return Transform.from_rpy(xyz, rpy)

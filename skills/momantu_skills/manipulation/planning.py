@@ -104,8 +104,10 @@ class Planner:
         return np.array([state[0:n] for state in path.getStates()]) / scale
 
     def _shortened(self, path: Array, valid: Valid) -> Array:
-        """Replace what lies between two random points by a straight line wherever that is valid
-        and quicker (Geraerts and Overmars, "Creating High-quality Paths", 2007)."""
+        """Straight lines between random points of the path wherever they are valid and quicker.
+
+        After Geraerts and Overmars, "Creating High-quality Paths for Motion Planning", 2007.
+        """
         for _ in range(self.config.shortcut_rounds):
             if len(path) == 2:
                 break
@@ -113,10 +115,9 @@ class Planner:
             a, b = _at(path, i), _at(path, j)
             between = path[int(i) + 1 : int(np.ceil(j))]
             old = np.vstack([a, between, b])
-            if len(between) and self.duration(a, b) < self.length(old) - LEAST_GAIN:
-                if self.straight(a, b, valid):
-                    path = np.vstack([path[: int(i) + 1], a, b, path[int(np.ceil(j)) :]])
-                    path = _distinct(path)
+            quicker = self.duration(a, b) < self.length(old) - LEAST_GAIN
+            if len(between) and quicker and self.straight(a, b, valid):
+                path = _distinct(np.vstack([path[: int(i) + 1], a, b, path[int(np.ceil(j)) :]]))
         return path
 
     def _bounds(self, start: Array, goals: Sequence[Array], tight: bool) -> ob.RealVectorBounds:

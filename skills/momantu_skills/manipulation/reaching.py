@@ -152,16 +152,20 @@ class _Check:
     def __call__(self, grasp: Grasp, q: Array, cost: float) -> Reach | None:
         arm = self._arm
         if not self._open.free(q):
-            return self._lose("hand collides")
+            self.lost["hand collides"] += 1
+            return None
         base_from_tip = arm.group.tip_pose(q)
         back = base_from_tip @ Transform((-arm.hand.approach, 0.0, 0.0))
         approach = arm.line(q, back)
         if approach is None or not self._open.path_free(approach):
-            return self._lose("approach")
-        above = Transform(base_from_tip.position + (0.0, 0.0, self._lift), base_from_tip.quaternion)
+            self.lost["approach"] += 1
+            return None
+        x, y, z = base_from_tip.position
+        above = Transform((x, y, z + self._lift), base_from_tip.quaternion)
         lift = arm.line(q, above)
         if lift is None or not self._carrying(grasp).path_free(lift):
-            return self._lose("lift")
+            self.lost["lift"] += 1
+            return None
         return Reach(grasp, approach[::-1], lift, cost)
 
     def _carrying(self, grasp: Grasp) -> CollisionWorld:
@@ -169,9 +173,6 @@ class _Check:
         return self._arm.scene.world(
             self._state, held, 0.0, width=grasp.width, held_on_support=True, cut=self._cut
         )
-
-    def _lose(self, where: str) -> None:
-        self.lost[where] += 1
 
     def summary(self) -> str:
         """How many postures failed where, for a message."""

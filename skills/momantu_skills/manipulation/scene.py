@@ -68,7 +68,7 @@ class Scene:
             for support in self.surroundings.supports
             if _distance(support.outline, odom_from_base) < FORGET
         ]
-        cells = np.unique(np.round(np.vstack([old, new]), 4), axis=0)
+        cells: Array = np.unique(np.round(np.vstack([old, new]), 4), axis=0)
         self.surroundings = Surroundings(cells, tuple(near), image.stamp)
 
     def _seen(

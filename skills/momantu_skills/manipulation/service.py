@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from momantu_bt.frames import FrameBuffer
 from momantu_bt.geometry import Array, Transform
@@ -24,7 +24,7 @@ class PlanningSceneService(Service):
     """
 
     rate = 20.0
-    publishes: Mapping[str, type] = {"holding": str}
+    publishes: ClassVar[Mapping[str, type]] = {"holding": str}
 
     def start(self, context: ServiceContext) -> None:
         """Build the robot's model. Parameters: any field of SceneConfig."""
@@ -54,7 +54,7 @@ class PlanningSceneService(Service):
         return self.holding.last_contact
 
     def grasped(self, thing: DetectedObject, grasp_from_object: Transform) -> None:
-        """Say what the gripper has just closed on; it counts as held while width and effort agree."""
+        """Say what the gripper has just closed on; held while width and effort agree."""
         held = HeldObject(thing, grasp_from_object)
         self.holding.claim(held, self._state.gripper_width, self._state.stamp)
 

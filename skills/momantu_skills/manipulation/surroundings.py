@@ -109,7 +109,7 @@ def _connected(flat: Array, centre: Array) -> Array | None:
     if len(seen) < LEAST_CELLS:
         return None
     inside = np.array([(int(a), int(b)) in seen for a, b in keys])
-    return flat[inside]
+    return np.asarray(flat[inside])
 
 
 def support_of_plane(plane: SupportPlane) -> Support:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from itertools import pairwise
 
 import numpy as np
 import toppra
@@ -25,7 +26,7 @@ toppra.setup_logging("ERROR")
 def densified(path: Array, distance: float) -> Array:
     """The same polyline (k, n) with waypoints at most `distance` (largest joint) apart."""
     pieces = [path[:1]]
-    for a, b in zip(path[:-1], path[1:], strict=True):
+    for a, b in pairwise(path):
         count = max(1, int(np.ceil(float(np.max(np.abs(b - a))) / distance)))
         pieces.append(a + np.linspace(0.0, 1.0, count + 1)[1:, None] * (b - a))
     return np.vstack(pieces)
@@ -38,7 +39,7 @@ def rounded(path: Array, distance: float, radius: float) -> Array:
     """
     pieces = [path[:1]]
     last = len(path) - 2
-    for i, (a, b) in enumerate(zip(path[:-1], path[1:], strict=True)):
+    for i, (a, b) in enumerate(pairwise(path)):
         length = float(np.max(np.abs(b - a)))
         low = 0.0 if i == 0 else min(0.5, radius / max(length, SHORTEST))
         high = 1.0 if i == last else max(0.5, 1.0 - radius / max(length, SHORTEST))
@@ -57,10 +58,12 @@ def timed(
 ) -> JointTrajectory:
     """The fastest trajectory along waypoints (k, n), at rest at both ends.
 
-    tip_speed: the tip moves no faster than this, m/s. rounding: see `rounded`. Raises ValueError when the path has no
-    timing within the limits, which only a path with a repeated jump can cause.
+    tip_speed: the tip moves no faster than this, m/s. rounding: see `rounded`.
     Method: Pham and Pham, "A New Approach to Time-Optimal Path Parameterization Based on
     Reachability Analysis" (TOPP-RA), 2018.
+
+    Raises:
+        ValueError: no timing within the limits; only a path that jumps back can cause it.
     """
     dense = (
         densified(path, config.densify)

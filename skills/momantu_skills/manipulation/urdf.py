@@ -50,7 +50,7 @@ def base_urdf(description: RobotDescription) -> BaseUrdf:
     keep = _links_below(root, description.base_frame)
     continuous: list[str] = []
     for joint in root.findall("joint"):
-        if joint.find("child").get("link") not in keep - {description.base_frame}:
+        if _linked(joint, "child") not in keep - {description.base_frame}:
             root.remove(joint)
         elif joint.get("type") == "continuous":
             continuous.append(str(joint.get("name")))
@@ -65,8 +65,7 @@ def base_urdf(description: RobotDescription) -> BaseUrdf:
 def _links_below(root: etree._Element, base: str) -> set[str]:
     children: dict[str, list[str]] = {}
     for joint in root.findall("joint"):
-        parent, child = joint.find("parent").get("link"), joint.find("child").get("link")
-        children.setdefault(str(parent), []).append(str(child))
+        children.setdefault(_linked(joint, "parent"), []).append(_linked(joint, "child"))
     keep, waiting = {base}, [base]
     while waiting:
         for child in children.get(waiting.pop(), []):
@@ -74,6 +73,11 @@ def _links_below(root: etree._Element, base: str) -> set[str]:
                 keep.add(child)
                 waiting.append(child)
     return keep
+
+
+def _linked(joint: etree._Element, end: str) -> str:
+    element = joint.find(end)
+    return "" if element is None else str(element.get("link"))
 
 
 def _make_revolute(joint: etree._Element) -> None:
@@ -92,7 +96,9 @@ def _parts(link: etree._Element, description: RobotDescription) -> list[Collisio
         xyz = _numbers("0 0 0" if origin is None else origin.get("xyz", "0 0 0"))
         rpy = _numbers("0 0 0" if origin is None else origin.get("rpy", "0 0 0"))
         place = Transform.from_rpy(xyz, rpy)
-        shape = collision.find("geometry")[0]
+        shape = collision.find("geometry/*")
+        if shape is None:
+            continue
         name = str(link.get("name"))
         if shape.tag == "mesh":
             path = _mesh_path(str(shape.get("filename")), description)
