@@ -27,7 +27,7 @@ def test_the_files_in_the_package_are_the_drawn_ones(tmp_path):
         for suffix in (".yaml", ".pgm"):
             fresh = (tmp_path / file.name).with_suffix(suffix).read_bytes()
             assert file.with_suffix(suffix).read_bytes() == fresh, (
-                "the world file was changed; run python -m momantu_worlds.scenes.floor_plan"
+                "the world file was changed; run python -m momantu_worlds.scenes four_rooms"
             )
 
 

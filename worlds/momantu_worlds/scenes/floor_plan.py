@@ -20,6 +20,7 @@ from momantu_worlds.scenes.bodies import Box, Cylinder, Part
 from momantu_worlds.scenes.floor import wall_rectangles
 from momantu_worlds.scenes.furniture import furniture
 from momantu_worlds.scenes.plane_geometry import Rectangle
+from momantu_worlds.scenes.sites import put
 from momantu_worlds.scenes.world_file import WorldFile
 
 OCCUPIED, UNKNOWN, FREE = 0, 205, 254
@@ -140,16 +141,16 @@ def save_plan(plan: FloorPlan, yaml_file: Path) -> None:
     """Write a plan as map_server's YAML beside a binary PGM of the same name."""
     picture = yaml_file.with_suffix(".pgm")
     rows, columns = plan.pixels.shape
-    picture.write_bytes(f"P5\n{columns} {rows}\n255\n".encode() + plan.pixels.tobytes())
-    yaml_file.write_text(
+    put(picture, f"P5\n{columns} {rows}\n255\n".encode() + plan.pixels.tobytes())
+    text = (
         f"image: {picture.name}\n"
         f"resolution: {plan.resolution:g}\n"
         f"origin: [{plan.origin[0]:g}, {plan.origin[1]:g}, 0]\n"
         "negate: 0\n"
         f"occupied_thresh: {OCCUPIED_ABOVE}\n"
-        f"free_thresh: {FREE_BELOW}\n",
-        encoding="utf-8",
+        f"free_thresh: {FREE_BELOW}\n"
     )
+    put(yaml_file, text.encode())
 
 
 def cells_of(plan: FloorPlan, x: float, y: float) -> tuple[int, int]:
@@ -157,17 +158,3 @@ def cells_of(plan: FloorPlan, x: float, y: float) -> tuple[int, int]:
     column = math.floor((x - plan.origin[0]) / plan.resolution)
     row = plan.pixels.shape[0] - 1 - math.floor((y - plan.origin[1]) / plan.resolution)
     return row, column
-
-
-def main() -> None:
-    """Draw the maps of `four_rooms` anew: `python -m momantu_worlds.scenes.floor_plan`."""
-    from momantu_worlds.scenes.loading import load_world, map_files
-
-    files = map_files("four_rooms")
-    for plan, file in zip(draw_plans(load_world("four_rooms")), files, strict=True):
-        file.parent.mkdir(exist_ok=True)
-        save_plan(plan, file)
-
-
-if __name__ == "__main__":
-    main()
