@@ -14,7 +14,6 @@ from momantu_bt.engine.nodes.subtree import SubTree
 from momantu_bt.engine.nodes.timing import Sleep
 from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, Status
 from momantu_bt.record.chain import chain_text
-from momantu_bt.tree.printing import text
 
 _WORDS = {"RUNNING": "starts", "SUCCESS": "done", "IDLE": "halted", "SKIPPED": "skipped"}
 _TOLD = (SkillLeaf, SubTree, Sleep)
@@ -50,7 +49,7 @@ class ChangeLines:
         if status is IDLE and not running:
             return
         words = f"fails: {_reason(node)}" if status is FAILURE else _WORDS[status.value]
-        self._line(now, node, f"{text(node.model)} {words}")
+        self._line(now, node, f"{node.label} {words}")
 
     def _tell_note(self, now: float, node: Recover, note: str) -> None:
         before = self._notes.get(node.index, "try 1")

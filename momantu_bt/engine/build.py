@@ -228,7 +228,7 @@ class _Builder:
         )
         given = self._given(tree, values, board, inner)
         child = self.node(tree.root, inner, f"{path}.0")
-        return SubTree(model, self.context, (child,), conditions, given=given)
+        return SubTree(model, self.context, (child,), conditions, given=given, wires=wires)
 
     def _given(
         self, tree: Tree, values: Mapping[str, PortValue], outer: Board, inner: Board

@@ -20,6 +20,7 @@ from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, S
 from momantu_bt.failure import FAILED, SCRIPT_ERROR, Failure, FailureValue
 from momantu_bt.tree.catalogue import BUILT_IN
 from momantu_bt.tree.model import Node
+from momantu_bt.tree.printing import text
 from momantu_bt.tree.script import ScriptError
 
 PyTreesStatus: TypeAlias = py_trees.common.Status
@@ -36,7 +37,8 @@ _AS_PY_TREES: Mapping[Status, PyTreesStatus] = {
 class TreeNode(Behaviour):
     """One node of a running tree. Subclasses write `step`, and `clear` for what they remember.
 
-    model: what the tree file says. index: its number in the order of the file.
+    model: what the tree file says. label: the same in one line, with values once it has started.
+    index: its number in the order of the file.
     runs, failures, ticks, seconds: how often it started, failed, was ticked, and for how long
     it was active by the world's clock.
     """
@@ -52,6 +54,7 @@ class TreeNode(Behaviour):
         self.shown = IDLE
         super().__init__(_name(model))
         self.model = model
+        self.label = text(model)
         self.context = context
         self.kids = tuple(children)
         self.children = list(children)

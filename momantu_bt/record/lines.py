@@ -5,7 +5,6 @@ from __future__ import annotations
 from momantu_bt.engine.node import Decorator, TreeNode
 from momantu_bt.engine.nodes.subtree import SubTree
 from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, SUCCESS
-from momantu_bt.tree.printing import text
 from momantu_bt.world import TreeLine
 
 
@@ -50,7 +49,7 @@ def _below(node: TreeNode) -> tuple[TreeNode, ...]:
 
 
 def _with_notes(outer: TreeNode, inner: TreeNode, notes: list[str]) -> str:
-    words = text(inner.model)
+    words = inner.label
     if outer.shown is RUNNING:
         words = ", ".join([words, *filter(None, notes)])
     if outer.shown is FAILURE and outer.failure is not None:
@@ -59,9 +58,9 @@ def _with_notes(outer: TreeNode, inner: TreeNode, notes: list[str]) -> str:
 
 
 def running_text(root: TreeNode) -> str:
-    """What runs deepest: `navigate $at, follow`; or how the tree ended."""
+    """What runs deepest: `navigate table_a, follow`; or how the tree ended."""
     if root.shown is SUCCESS or root.shown is FAILURE:
         return root.shown.value
     running = [n for n in (root, *root.below) if n.shown is RUNNING]
     deepest = max(running, key=lambda n: n.depth, default=root)
-    return ", ".join(filter(None, (text(deepest.model), deepest.note)))
+    return ", ".join(filter(None, (deepest.label, deepest.note)))

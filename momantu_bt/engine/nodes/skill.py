@@ -7,6 +7,7 @@ from typing import Any
 
 from momantu_bt.engine.blackboard import Cell
 from momantu_bt.engine.context import Body
+from momantu_bt.engine.label import label
 from momantu_bt.engine.node import TreeNode
 from momantu_bt.engine.ports import Inputs
 from momantu_bt.engine.session import SLOW_STEP, Session, SkillContext
@@ -93,7 +94,9 @@ class SkillLeaf(TreeNode):
             services=body.services,
         )
         lease = body.actuators.lease(self.name, self.kind.uses)
-        return Session(self.kind, self.inputs.all(), lease, context)
+        inputs = self.inputs.all()
+        self.label = label(self.model, inputs)
+        return Session(self.kind, inputs, lease, context)
 
     def _write(self, session: Session, names: list[str]) -> None:
         if not names:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from momantu_bt.engine.blackboard import Cell
+from momantu_bt.engine.label import label
 from momantu_bt.engine.node import Decorator
 from momantu_bt.engine.ports import Reader
 from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, Status
@@ -20,16 +21,24 @@ class SubTree(Decorator):
     """
 
     def __init__(
-        self, *arguments: Any, given: Mapping[str, tuple[Cell, Reader]], **named: Any
+        self,
+        *arguments: Any,
+        given: Mapping[str, tuple[Cell, Reader]],
+        wires: Mapping[str, Cell],
+        **named: Any,
     ) -> None:
         super().__init__(*arguments, **named)
         self.given = dict(given)
+        self.wires = dict(wires)
 
     def step(self) -> Status:
         """Tick the tree inside."""
         if self.state is IDLE:
             for cell, read in self.given.values():
                 cell.write(read())
+            values = {name: cell.value for name, (cell, _) in self.given.items()}
+            values |= {name: cell.value for name, cell in self.wires.items()}
+            self.label = label(self.model, values)
             self.state = RUNNING
         status = self.child.execute()
         if status is FAILURE:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from momantu_bt.engine.label import label
 from momantu_bt.engine.node import Decorator, TreeNode
 from momantu_bt.engine.ports import Inputs
 from momantu_bt.engine.session import CLOCK_SLACK
@@ -93,5 +94,7 @@ class Sleep(TreeNode):
     def step(self) -> Status:
         """Wait; the duration is read at the start."""
         if self.state is not RUNNING:
-            self.until = self.context.now + self.inputs["duration"]
+            duration: float = self.inputs["duration"]
+            self.until = self.context.now + duration
+            self.label = label(self.model, {"duration": f"{duration:g} s"})
         return SUCCESS if self.context.now >= self.until - CLOCK_SLACK else RUNNING

@@ -45,13 +45,13 @@ def run(*words):
 def test_a_run_tells_each_change_and_ends_with_one_line(tree, capsys):
     assert run(tree) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert [line.split(" s ")[1].strip() for line in lines[:-1]] == [
-        "wait $pause starts",
-        "wait $pause done",
-        "Check k $n fails: TOO_SMALL",
+    assert [line.split(" s ", 1)[1].strip() for line in lines[:-1]] == [
+        "wait 0.1 s starts",
+        "wait 0.1 s done",
+        "Check k 1 fails: TOO_SMALL",
         "recover: TOO_SMALL: script $n += 1",
         "recover: try 2",
-        "Check k $n done",
+        "Check k 2 done",
     ]
     assert lines[-1].startswith("tree succeeded after 0.2 s simulated")
 
