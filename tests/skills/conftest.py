@@ -24,7 +24,7 @@ Box = tuple[float, float, float, float]
 class FlatRobot(ScriptedRobot):
     """Stands truly at `truth`; its odometry starts at 0 and drifts, its laser is noisy.
 
-    solid: function of points (n, 2) in the map that gives the distance to the nearest thing, m.
+    boxes: what stands in the world. nearest: least distance of the base's outline to any, m.
     """
 
     def __init__(self, truth: Pose2D, seed: int = 0, drift: float = 0.02) -> None:
@@ -32,6 +32,10 @@ class FlatRobot(ScriptedRobot):
         self.truth, self.seed, self.drift = truth, seed, drift
         self.boxes: list[Box] = []
         self.nearest = math.inf
+        self.last_scan: LaserScan | None = None
+        self.mount = self.description.kinematics().base_from_frame(
+            self.description.laser()[1].frame, self.joints
+        )
         self.readings = {"laser": _scan, "camera": _blind}
 
     def advance(self, seconds: float) -> None:
@@ -54,7 +58,7 @@ class FlatRobot(ScriptedRobot):
             dx = np.maximum(np.maximum(x0 - points[:, 0], points[:, 0] - x1), 0.0)
             dy = np.maximum(np.maximum(y0 - points[:, 1], points[:, 1] - y1), 0.0)
             best = np.minimum(best, np.hypot(dx, dy))
-        return best
+        return np.asarray(best)
 
 
 def _pairs(corners: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
@@ -68,29 +72,38 @@ def _placed(pose: Pose2D, points: np.ndarray) -> np.ndarray:
 
 def _scan(robot: ScriptedRobot) -> LaserScan:
     assert isinstance(robot, FlatRobot)
+    if robot.last_scan is not None and robot.last_scan.stamp == robot.time:
+        return robot.last_scan
     sensor = robot.description.laser()[1]
-    mount = robot.description.kinematics().base_from_frame(sensor.frame, robot.joints)
     angles = np.linspace(sensor.angle_min, sensor.angle_max, sensor.beams)
     flat = np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
-    ways = flat @ mount.rotation.T
+    ways = (flat @ robot.mount.rotation.T)[:, :2]
     c, s = math.cos(robot.truth.yaw), math.sin(robot.truth.yaw)
-    ways = ways[:, :2] @ np.array([[c, s], [-s, c]])
-    start = _placed(robot.truth, mount.position[None, :2])
-    ranges = np.zeros(len(angles))
-    for _ in range(80):
-        ranges += np.minimum(robot.distance(start + ways * ranges[:, None]), 30.0)
+    start = _placed(robot.truth, robot.mount.position[None, :2])[0]
+    ranges = _cast(start, ways @ np.array([[c, s], [-s, c]]), np.array(robot.boxes))
     noise = seeded(robot.seed, "laser", robot.time).normal(0.0, 0.015, len(ranges))
     ranges = np.where(ranges < sensor.range_max, ranges + noise, sensor.range_max)
-    step = (sensor.angle_max - sensor.angle_min) / (sensor.beams - 1)
-    return LaserScan(
+    robot.last_scan = LaserScan(
         stamp=robot.time,
         frame=sensor.frame,
         angle_min=sensor.angle_min,
-        angle_increment=step,
+        angle_increment=(sensor.angle_max - sensor.angle_min) / (sensor.beams - 1),
         range_min=sensor.range_min,
         range_max=sensor.range_max,
         ranges=frozen(ranges),
     )
+    return robot.last_scan
+
+
+def _cast(start: np.ndarray, ways: np.ndarray, boxes: np.ndarray) -> np.ndarray:
+    """Distance (n,) along rays (n, 2) to the first of boxes (k, 4), by slabs."""
+    with np.errstate(divide="ignore"):
+        low = (boxes[:, None, :2] - start) / ways[None]
+        high = (boxes[:, None, 2:] - start) / ways[None]
+    enter = np.minimum(low, high).max(axis=2)
+    leave = np.maximum(low, high).min(axis=2)
+    met = (enter <= leave) & (leave > 0.0)
+    return np.where(met, np.maximum(enter, 0.0), 1e9).min(axis=0)
 
 
 def _blind(robot: ScriptedRobot) -> CameraImage:

@@ -10,8 +10,8 @@ SLACK = 0.015
 """m by which a disc may stick out of the outline; without it corners ask for endless discs."""
 SPACING = 0.02
 """m between the points of the outline's inside that must be covered."""
-MOST = 8
-"""Discs at most: enough for a base with an outstretched arm."""
+MOST = 12
+"""Discs at most: enough for a rectangular base, or a round one with an outstretched arm."""
 
 
 def discs(outline: Array) -> Array:

@@ -16,6 +16,8 @@ HARD_MARGIN = 0.02
 """m that must remain between the footprint and any hit of the newest scan."""
 NEAR = 1.6
 """m: hits farther than this cannot be reached before the next scan."""
+NOISE = 0.002
+"""m by which a hit that is within the margin already may come nearer: rounding, not motion."""
 STEP = 0.05
 """s per step of the look ahead."""
 
@@ -30,8 +32,8 @@ def safe_share(
     """The largest of 1, 3/4, 1/2, 1/4, 0 by which a command may be driven without touching a hit.
 
     command, speed: (m/s, rad/s) wanted and measured. discs: footprint (m, 3). hits: (n, 2) of the
-    newest scan; both in the base frame. What is already touched is let be: only ways that bring
-    it nearer are forbidden.
+    newest scan; both in the base frame. What is within the margin already is let be: only ways
+    that bring it nearer are forbidden.
     """
     near = hits[np.hypot(hits[:, 0], hits[:, 1]) < NEAR]
     bounds = np.array([limits.linear_acceleration, limits.angular_acceleration])
@@ -44,7 +46,9 @@ def safe_share(
 
 @numba.njit(cache=True)
 def _clear(wanted: Array, bounds: Array, discs: Array, hits: Array) -> bool:
-    now = _least(0.0, 0.0, 0.0, discs, hits)
+    allowed = np.empty(hits.shape[0])
+    for j in range(hits.shape[0]):
+        allowed[j] = min(HARD_MARGIN, _away(0.0, 0.0, 1.0, 0.0, discs, hits[j]) - NOISE)
     x = y = yaw = 0.0
     v = wanted[2]
     w = wanted[3]
@@ -58,22 +62,22 @@ def _clear(wanted: Array, bounds: Array, discs: Array, hits: Array) -> bool:
         x += v * math.cos(yaw) * STEP
         y += v * math.sin(yaw) * STEP
         t += STEP
-        least = _least(x, y, yaw, discs, hits)
-        if least < HARD_MARGIN and least < now - 0.002:
-            return False
+        c = math.cos(yaw)
+        s = math.sin(yaw)
+        for j in range(hits.shape[0]):
+            if _away(x, y, c, s, discs, hits[j]) < allowed[j]:
+                return False
         if t > REACTION and abs(v) < 1e-9 and abs(w) < 1e-9:
             break
     return True
 
 
 @numba.njit(cache=True)
-def _least(x: float, y: float, yaw: float, discs: Array, hits: Array) -> float:
+def _away(x: float, y: float, c: float, s: float, discs: Array, hit: Array) -> float:
+    """Distance from a hit to the footprint at (x, y), heading (cos, sin)."""
     least = 1e9
-    c = math.cos(yaw)
-    s = math.sin(yaw)
     for i in range(discs.shape[0]):
         px = x + c * discs[i, 0] - s * discs[i, 1]
         py = y + s * discs[i, 0] + c * discs[i, 1]
-        for j in range(hits.shape[0]):
-            least = min(least, math.hypot(hits[j, 0] - px, hits[j, 1] - py) - discs[i, 2])
+        least = min(least, math.hypot(hit[0] - px, hit[1] - py) - discs[i, 2])
     return least

@@ -25,6 +25,8 @@ SURE_WITHIN = 2.5
 RECOVERABLE = ("PATH_BLOCKED", "NO_PROGRESS", "GOAL_BLOCKED", "NO_PATH")
 LOCAL = 1.5
 """m from the goal within which it is reached by manoeuvres instead of by a planned way."""
+PATIENCE = (1.0, 3.0, 6.0)
+"""s that recoveries wait: what stands in the way may be on its way."""
 WALK = 3.0
 """m: nearer goals that were seen are kept in odometry's frame, which does not jump."""
 
@@ -137,4 +139,4 @@ def _recover(vehicle: Vehicle, attempt: int) -> Trip:
         yield from back_off(vehicle, 0.3, "recover")
     if attempt >= 2:
         yield from turn_to(vehicle, vehicle.pose().yaw + 2.0, "recover")
-    yield from vehicle.wait(1.0, "recover")
+    yield from vehicle.wait(PATIENCE[min(attempt, len(PATIENCE) - 1)], "recover")

@@ -1,0 +1,211 @@
+"""navigate: gets there without touching anything, or says why not; each code is provoked."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from momantu_skills.navigate import Navigate
+from momantu_skills.navigation.service import LocalizationService
+
+from momantu_bt.geometry import Pose, Pose2D, Transform, wrap_angle
+from momantu_bt.messages import BaseVelocity
+from momantu_bt.testing import ScriptedWorld
+from momantu_bt.testing.skill_run import SkillResult, run_skill
+
+Drive = Callable[..., SkillResult]
+FRONT = Pose2D(3.0, 0.2, 0.0)
+"""Before the desk of the flat world."""
+
+
+@pytest.fixture
+def drive(flat_scene: Any) -> Drive:
+    """`drive(world, in_front_of=…)` with localization and a planning scene."""
+
+    def run(world: ScriptedWorld, *, on_tick: Any = None, **inputs: Any) -> SkillResult:
+        services = {"localization": LocalizationService(), "planning_scene": flat_scene(world)}
+        return run_skill(
+            Navigate, world=world, services=services, inputs=inputs, max_time=150.0, on_tick=on_tick
+        )
+
+    return run
+
+
+def _off(world: Any, goal: Pose2D) -> tuple[float, float]:
+    left = goal.inverse() @ world.robot.truth
+    return math.hypot(left.x, left.y), abs(left.yaw)
+
+
+def _arrived(result: SkillResult, world: Any, goal: Pose2D, slack: float = 0.04) -> None:
+    """Within tolerance by the robot's belief, and nearly so in truth; untouched and at rest."""
+    assert result.status == "SUCCESS", result.explain()
+    distance, angle = _off(world, goal)
+    assert distance < 0.05 + slack
+    assert angle < 0.05 + slack
+    assert world.robot.nearest > 0.02
+    assert abs(world.robot.linear) < 0.02
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_from_random_starts_to_random_goals(flat: Any, drive: Drive, seed: int) -> None:
+    random = np.random.default_rng(seed)
+    start = Pose2D(random.uniform(-3.2, 0.2), random.uniform(-1.5, 2.2), random.uniform(-3, 3))
+    goal = Pose2D(random.uniform(1.8, 2.9), random.uniform(-2.2, 2.2), random.uniform(-3, 3))
+    world = flat(start, believed=start @ Pose2D(0.15, -0.12, 0.15), seed=seed)
+    _arrived(drive(world, goal=goal), world, goal)
+
+
+def test_in_front_of_a_surface_it_stands_square(flat: Any, drive: Drive) -> None:
+    world = flat()
+    _arrived(drive(world, in_front_of="desk"), world, FRONT)
+
+
+def test_in_front_of_a_place_is_the_place(flat: Any, drive: Drive) -> None:
+    world = flat()
+    _arrived(drive(world, in_front_of="left"), world, world.site.places["left"])
+
+
+def test_side_is_another_stand_that_looks_at_the_same(flat: Any, drive: Drive) -> None:
+    world = flat(FRONT)
+    result = drive(world, in_front_of="desk", side=1)
+    assert result.status == "SUCCESS", result.explain()
+    assert world.robot.truth.distance_to(FRONT) > 0.3
+    middle = world.robot.truth.inverse() @ Pose2D(3.9, 0.2, 0.0)
+    assert abs(math.atan2(middle.y, middle.x)) < 0.12
+
+
+def test_within_reach_keeps_what_was_seen_in_odometry(flat: Any, drive: Drive) -> None:
+    """The pose is given in odom, which lies elsewhere than the map."""
+    world = flat(FRONT)
+    can = Pose2D(3.75, 0.5, 0.0)
+    odom_from_map = world.robot.base @ world.robot.truth.inverse()
+    seen = (odom_from_map @ can).transform(0.7)
+    result = drive(world, within_reach_of=Pose(seen, "odom", 0.0))
+    assert result.status == "SUCCESS", result.explain()
+    here = world.robot.truth.inverse() @ can
+    assert 0.45 < here.x < 0.95
+    assert abs(here.y) < 0.3
+    assert abs(world.robot.truth.yaw) < 0.1
+    assert world.robot.nearest > 0.02
+
+
+def test_what_the_map_does_not_know_is_driven_round(flat: Any, drive: Drive) -> None:
+    world = flat(hidden=[(-0.9, 0.1, -0.4, 0.6), (2.0, -0.4, 2.3, 0.5)])
+    _arrived(drive(world, in_front_of="desk"), world, FRONT)
+
+
+def test_a_desk_that_was_moved_towards_the_robot_is_not_touched(flat: Any, drive: Drive) -> None:
+    world = flat(desk=(3.5, -0.35, 4.1, 0.85))
+    _arrived(drive(world, in_front_of="desk"), world, FRONT, slack=0.12)
+
+
+def test_at_the_goal_already_it_hardly_moves(flat: Any, drive: Drive) -> None:
+    world = flat(FRONT)
+    result = drive(world, goal=FRONT)
+    assert result.status == "SUCCESS", result.explain()
+    assert result.duration < 3.0
+
+
+def test_something_that_appears_in_the_doorway_is_waited_for(flat: Any, drive: Drive) -> None:
+    """Recovery looks again; meanwhile the way has become free."""
+    world = flat()
+
+    def person(session: Any, place: Any) -> None:
+        standing = 2.0 < place.now() < 12.0
+        place.robot.boxes = [b for b in place.robot.boxes if b != (0.9, 0.5, 1.2, 1.4)]
+        if standing and place.robot.truth.x < 0.2:
+            place.robot.boxes.append((0.9, 0.5, 1.2, 1.4))
+
+    result = drive(world, in_front_of="desk", on_tick=person)
+    _arrived(result, world, FRONT)
+
+
+def test_the_base_brakes_when_halted(flat: Any, flat_scene: Any) -> None:
+    world = flat()
+    services = {"localization": LocalizationService(), "planning_scene": flat_scene(world)}
+    result = run_skill(
+        Navigate, world=world, services=services, inputs={"in_front_of": "desk"}, max_time=4.0
+    )
+    assert result.status == "HALTED"
+    assert world.robot.commands[-1][2] is None or world.robot.commands[-1][2] == BaseVelocity(0, 0)
+
+
+def test_same_seed_same_drive(flat: Any, drive: Drive) -> None:
+    ends = []
+    for _ in range(2):
+        world = flat(believed=Pose2D(-1.9, 0.1, 0.1))
+        drive(world, goal=Pose2D(-2.0, 1.2, 1.0))
+        ends.append((world.robot.truth, world.now()))
+    assert ends[0] == ends[1]
+
+
+# each code
+
+
+@pytest.mark.parametrize(
+    ("inputs", "says"),
+    [
+        ({}, "it got none"),
+        ({"in_front_of": "desk", "goal": FRONT}, "in_front_of, goal"),
+        ({"in_front_of": "dusk"}, "no place 'dusk'; places: left, right, desk"),
+        ({"goal": Pose2D(50.0, 0.0, 0.0)}, "not on the map, which spans x -4.5 to 6.5"),
+        ({"goal": Pose2D(math.nan, 0.0, 0.0)}, "not on the map"),
+        ({"goal": FRONT, "tolerance": 0.0}, "must be above 0"),
+        ({"goal": FRONT, "side": -1}, "at least 0"),
+    ],
+)
+def test_bad_goal(flat: Any, drive: Drive, inputs: dict[str, Any], says: str) -> None:
+    result = drive(flat(), **inputs)
+    assert result.code == "BAD_GOAL", result.explain()
+    assert says in result.failure.message  # type: ignore[union-attr]
+    assert result.duration < 0.2
+
+
+def test_goal_blocked(flat: Any, drive: Drive) -> None:
+    result = drive(flat(), goal=Pose2D(3.9, 0.2, 0.0), recovery=False)
+    assert result.code == "GOAL_BLOCKED", result.explain()
+
+
+def test_no_path(flat: Any, drive: Drive) -> None:
+    """The doorway is closed on the map itself."""
+    world = flat(known=[(0.9, 0.3, 1.2, 1.6)])
+    result = drive(world, in_front_of="desk", recovery=False)
+    assert result.code == "NO_PATH", result.explain()
+
+
+@pytest.mark.parametrize("recovery", [False, True])
+def test_path_blocked_ends_in_bounded_time(flat: Any, drive: Drive, recovery: bool) -> None:
+    """Something that the map does not know closes the doorway."""
+    world = flat(hidden=[(0.9, 0.3, 1.2, 1.6)])
+    result = drive(world, in_front_of="desk", recovery=recovery)
+    assert result.code == "PATH_BLOCKED", result.explain()
+    assert result.duration < (60.0 if recovery else 20.0)
+    assert world.robot.nearest > 0.02
+    assert abs(world.robot.linear) < 0.02
+
+
+def test_no_progress_when_the_base_does_not_move(flat: Any, drive: Drive) -> None:
+    world = flat()
+    world.robot.frozen.add("base")
+    result = drive(world, in_front_of="desk", recovery=False)
+    assert result.code == "NO_PROGRESS", result.explain()
+    assert result.duration < 20.0
+
+
+def test_not_localized(flat: Any, drive: Drive) -> None:
+    """Told to be in a cupboard's corner of the other room, the scans fit nothing near."""
+    world = flat(Pose2D(-2.0, 0.0, 0.0), believed=Pose2D(5.4, -2.4, 2.0))
+    result = drive(world, in_front_of="desk")
+    assert result.code == "NOT_LOCALIZED", result.explain()
+    assert world.robot.truth == Pose2D(-2.0, 0.0, 0.0)
+
+
+def test_a_pose_in_the_open_is_faced_at_best_reach(flat: Any, drive: Drive) -> None:
+    world = flat(Pose2D(-2.0, 0.0, 0.0))
+    spot = Pose(Transform((-0.5, 0.0, 0.3)), "map", 0.0)
+    result = drive(world, within_reach_of=spot)
+    assert result.status == "SUCCESS", result.explain()
+    here = world.robot.truth.inverse() @ Pose2D(-0.5, 0.0, 0.0)
+    assert math.hypot(here.x, here.y) == pytest.approx(0.7, abs=0.1)
+    assert abs(wrap_angle(math.atan2(here.y, here.x))) < 0.15
