@@ -1,0 +1,49 @@
+"""What holds for each bundled skill: it is documented, and each of its failures is provoked."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from momantu_bt.skill import Skill
+from momantu_bt.tree.registry import Registry
+
+INSTALLED = Registry.installed()
+BUNDLED = {
+    name: kind
+    for name, kind in INSTALLED.skills.items()
+    if kind.__module__.startswith("momantu_skills.")
+}
+HERE = Path(__file__).parent
+
+
+@pytest.fixture(params=sorted(BUNDLED))
+def skill(request: pytest.FixtureRequest) -> tuple[str, type[Skill]]:
+    return request.param, BUNDLED[request.param]
+
+
+def test_it_has_a_test_file_that_names_each_failure_code(skill: tuple[str, type[Skill]]) -> None:
+    name, kind = skill
+    text = (HERE / f"test_{name}.py").read_text(encoding="utf-8")
+    untested = [code for code in kind.failures if not re.search(rf"\b{code}\b", text)]
+    assert not untested, f"tests/skills/test_{name}.py provokes no {', '.join(untested)}"
+
+
+def test_it_is_documented(skill: tuple[str, type[Skill]]) -> None:
+    _, kind = skill
+    assert kind.__doc__
+    assert all(port.doc for port in kind.ports.values())
+    assert all(" " in sentence for sentence in kind.failures.values())
+
+
+def test_numbers_have_units_or_count(skill: tuple[str, type[Skill]]) -> None:
+    _, kind = skill
+    bare = [p.name for p in kind.ports.values() if p.type is float and p.unit is None]
+    assert not bare, f"{kind.__name__}: {', '.join(bare)} has no unit"
+
+
+def test_no_bundled_skill_names_a_robot_or_a_world(skill: tuple[str, type[Skill]]) -> None:
+    folder = Path(__import__(skill[1].__module__.split(".")[0]).__file__ or "").parent
+    for source in folder.rglob("*.py"):
+        words = set(re.findall(r"[a-z_]+", source.read_text(encoding="utf-8").lower()))
+        assert not words & {"fetch", "four_rooms", "sapien"}, source
