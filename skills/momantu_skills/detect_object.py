@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from momantu_skills.perception.surveys import SurfaceRegion
     from momantu_skills.perception.views import Snapshot, View
 
+LOOKS = 3
+"""Fewest looks over a surface before a thing is said not to be there."""
 BUDGET = 0.1
 """s granted to making sense of one look together with those before it."""
 
@@ -54,7 +56,7 @@ class DetectObject(Skill):
 
         corners = self._corners()
         region = surface_region(corners)
-        pending = looks_over(self, robot, corners, 1)
+        pending = looks_over(self, robot, corners, LOOKS)
         snapshots: list[Snapshot] = []
         result: Detections | None = None
         best: DetectedObject | None = None

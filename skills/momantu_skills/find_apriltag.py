@@ -20,8 +20,9 @@ BUDGET = 0.05
 """s granted to searching one picture."""
 PICTURES = 4
 """Pictures that are averaged once the tag is in the middle of the view."""
-LOOKS = 2
-"""Fewest looks over a surface; the second sees what a thing hides from the first."""
+LOOKS = 4
+"""Fewest looks over a surface after the one at its middle: a camera that turns also moves a
+little, and sees past what hid the tag."""
 
 
 class FindAprilTag(Skill):
