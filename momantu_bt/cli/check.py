@@ -12,6 +12,8 @@ from momantu_bt.tree.load import Checked, TreeError, TreeNotFound, load
 from momantu_bt.tree.problems import Problem, Severity, show
 
 EXIT_WRONG_INPUT = 2
+MOST_SHOWN = 50
+"""Problems printed in full; a terminal holds no more, and the rest often follow from them."""
 
 
 def check(
@@ -60,8 +62,10 @@ def report(problems: Sequence[Problem], source: Mapping[str, str]) -> None:
     """Print problems to standard error, each with its line and a caret, and count them."""
     if not problems:
         return
-    for problem in problems:
+    for problem in problems[:MOST_SHOWN]:
         typer.echo(show(problem, source), err=True)
+    if len(problems) > MOST_SHOWN:
+        typer.echo(f"… and {len(problems) - MOST_SHOWN} more (--json has them all)", err=True)
     counts = [
         f"{count} {severity.name.lower()}{'s' if count > 1 else ''}"
         for severity in Severity

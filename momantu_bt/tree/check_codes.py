@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from momantu_bt.failure import (
-    ACTUATOR_BUSY,
+    ENGINE_CODES,
     FAILED,
-    FRAME_UNKNOWN,
+    HALTED,
     INPUT_MISSING,
-    SERVICE_MISSING,
-    SKILL_ERROR,
+    SCRIPT_ERROR,
     TIMEOUT,
     WRONG_TYPE,
 )
@@ -20,16 +19,7 @@ from momantu_bt.tree.problems import nearest, within
 from momantu_bt.tree.signatures import Context
 from momantu_bt.tree.yaml_nodes import ANY
 
-_ANY_SKILL = frozenset(
-    {
-        SKILL_ERROR,
-        ACTUATOR_BUSY,
-        FRAME_UNKNOWN,
-        SERVICE_MISSING,
-        INPUT_MISSING,
-        WRONG_TYPE,
-    }
-)
+_ANY_SKILL = frozenset(ENGINE_CODES) - {TIMEOUT, FAILED, HALTED, SCRIPT_ERROR}
 """What the engine makes of a skill's end beside the codes that it declares."""
 
 Codes = frozenset[str]
@@ -57,8 +47,8 @@ def _codes(
         *(of_node[id(h.node)] for h in node.handlers if h.node is not None)
     )
     found = _own(context, node, below, handled, of_tree)
-    if "fail_if" in node.conditions:
-        found |= {FAILED}
+    if node.conditions:
+        found |= {FAILED, SCRIPT_ERROR} if "fail_if" in node.conditions else {SCRIPT_ERROR}
     return frozenset() if node.disabled else found
 
 
@@ -81,7 +71,7 @@ def _own(
     if signature.skill is not None:
         own = {*signature.skill.failures, *_ANY_SKILL}
         return frozenset(own | {f"{node.type}.{code}" for code in own})
-    return below | handled | {FAILED, INPUT_MISSING, WRONG_TYPE}
+    return below | handled | {FAILED, INPUT_MISSING, WRONG_TYPE, SCRIPT_ERROR}
 
 
 def _raised(node: Node) -> Codes:

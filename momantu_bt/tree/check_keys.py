@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from typing import get_args
 
-from momantu_bt.tree.catalogue import POST_SCRIPTS, PRE_CONDITIONS, ScriptText
-from momantu_bt.tree.key_flow import FLOWS, After
+from momantu_bt.tree.catalogue import PRE_CONDITIONS, ScriptText
+from momantu_bt.tree.key_flow import FLOWS, After, removed
 from momantu_bt.tree.key_reads import KeyReads, Written, references
 from momantu_bt.tree.keys import NEVER, Key, Known, meet
 from momantu_bt.tree.model import Literal, Node, Place, Reference, Scope, Tree
@@ -35,7 +35,7 @@ class _KeyCheck:
         self.ports = self.context.tree_signature(self.tree).ports
 
     def run(self) -> None:
-        success, _ = self.node(self.tree.root, self.start())
+        success = self.node(self.tree.root, self.start()).passed
         for name, port in self.ports.items():
             if port.direction == "out":
                 self.reads.seen.add(name)
@@ -71,34 +71,41 @@ class _KeyCheck:
 
     def node(self, node: Node, before: Known) -> After:
         if node.disabled:
-            return before, NEVER
+            return After(NEVER, NEVER, before)
+        # `while` and `on_halt` come at any tick, also after something below has taken a key away
+        anytime = before.lacking(removed(node))
         for name in PRE_CONDITIONS:
             if name in node.conditions:
-                self.condition(node, name, before)
-        success, failure = self.inside(node, before)
-        if "fail_if" in node.conditions:
+                self.condition(node, name, anytime if name == "while" else before)
+        after = self.inside(node, before)
+        if not node.conditions:
+            return after
+        success, failure, skipped = after
+        if not node.conditions.keys().isdisjoint(PRE_CONDITIONS):
+            # a condition may fail the node by its value, or because it cannot be evaluated
             failure = meet(failure, before)
-        if not node.conditions.keys().isdisjoint(("succeed_if", "skip_if", "while")):
+        if "succeed_if" in node.conditions:
             success = meet(success, before)
-        for name in POST_SCRIPTS:
-            if name in node.conditions:
-                success, failure = self.post_script(node, name, before, success, failure)
-        return success, failure
+        if not node.conditions.keys().isdisjoint(("skip_if", "while")):
+            skipped = meet(skipped, anytime)
+        if "on_halt" in node.conditions:
+            self.condition(node, "on_halt", anytime)
+        return self.post_scripts(node, After(success, failure, skipped))
 
     def condition(self, node: Node, name: str, known: Known) -> Known:
         place = node.condition_places.get(name, node.place)
         return self.script(node.conditions[name], known, place)
 
-    def post_script(
-        self, node: Node, name: str, before: Known, success: Known, failure: Known
-    ) -> After:
-        if name == "on_halt":
-            self.condition(node, name, before)
-        if name in ("on_success", "after"):
-            success = self.condition(node, name, success)
-        if name in ("on_failure", "after"):
-            failure = self.condition(node, name, failure)
-        return success, failure
+    def post_scripts(self, node: Node, after: After) -> After:
+        success, failure, skipped = after
+        for name in ("on_success", "after"):
+            if name in node.conditions:
+                failure = meet(failure, success)
+                success = self.condition(node, name, success)
+        for name in ("on_failure", "after"):
+            if name in node.conditions:
+                failure = self.condition(node, name, failure)
+        return After(success, failure, skipped)
 
     def inside(self, node: Node, before: Known) -> After:
         signature = self.context.signature(node)
@@ -106,7 +113,7 @@ class _KeyCheck:
             for value in node.ports.values():
                 # an unknown node may read or write: what it names is not called unread
                 self.reads.seen.update(reference.key for reference in references(value))
-            return before, before
+            return After(before, before)
         self.reads.inputs(node, signature, before)
         for name, port in signature.ports.items():
             code = node.ports.get(name)
@@ -121,13 +128,14 @@ class _KeyCheck:
     def leaf(self, node: Node, signature: Signature, before: Known) -> After:
         key = node.ports.get("key")
         if node.type == "UnsetBlackboard":
-            return (before.lacking([key.key]) if isinstance(key, Reference) else before), before
+            gone = before.lacking([key.key]) if isinstance(key, Reference) else before
+            return After(gone, before)
         after = self.outputs(node, signature, before)
         if node.type == "AlwaysSuccess":
-            return after, NEVER
+            return After(after, NEVER)
         if node.type in ("AlwaysFailure", "Fail"):
-            return NEVER, before
-        return after, before
+            return After(NEVER, before)
+        return After(after, before)
 
     def outputs(self, node: Node, signature: Signature, before: Known) -> Known:
         after = before

@@ -1,19 +1,31 @@
 """What is known after each built-in node with children, from what its children leave known.
 
-`walk(child, before)` gives what is known after the child's success and after its failure.
+`walk(child, before)` gives what is known after each end that the child can have.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 from momantu_bt.failure import FailureValue
 from momantu_bt.tree.keys import NEVER, Key, Known, meet
-from momantu_bt.tree.model import Literal, Node
+from momantu_bt.tree.model import Literal, Node, Reference, Scope
 
-After: TypeAlias = tuple[Known, Known]
-"""What is known after success, and after failure."""
+
+class After(NamedTuple):
+    """What is known after success, after failure, and where the node was skipped."""
+
+    success: Known
+    failure: Known
+    skipped: Known = NEVER
+
+    @property
+    def passed(self) -> Known:
+        """After an end that a sequence goes on from."""
+        return meet(self.success, self.skipped)
+
+
 Walk: TypeAlias = Callable[[Node, Known], After]
 Flow: TypeAlias = Callable[[Walk, Node, Known], After]
 
@@ -21,123 +33,159 @@ FAILURE_KEY = "failure"
 """What a handler reads as `$failure`."""
 
 
+def removed(*nodes: Node) -> set[str]:
+    """Keys of the tree's board that a node, or something below it, takes away."""
+    keys: set[str] = set()
+    for root in nodes:
+        for node in root.walk():
+            key = node.ports.get("key") if node.type == "UnsetBlackboard" else None
+            if isinstance(key, Reference) and key.scope is Scope.LOCAL:
+                keys.add(key.key)
+    return keys
+
+
 def _in_turn(walk: Walk, node: Node, before: Known) -> After:
-    failures = [NEVER]
+    known, failures, all_skipped = before, [NEVER], True
     for child in node.children:
-        before, failed = walk(child, before)
-        failures.append(failed)
-    return before, meet(*failures)
+        after = walk(child, known)
+        known = after.passed
+        failures.append(after.failure)
+        all_skipped = all_skipped and after.skipped.reached
+    return After(known, meet(*failures), known if all_skipped else NEVER)
 
 
 def _until_success(walk: Walk, node: Node, before: Known) -> After:
-    successes = [NEVER]
+    known, successes, all_skipped = before, [NEVER], True
     for child in node.children:
-        succeeded, before = walk(child, before)
-        successes.append(succeeded)
-    return meet(*successes), before
+        after = walk(child, known)
+        known = meet(after.failure, after.skipped)
+        successes.append(after.success)
+        all_skipped = all_skipped and after.skipped.reached
+    return After(meet(*successes), known, known if all_skipped else NEVER)
+
+
+def _again(flow: Flow) -> Flow:
+    """Children may be asked again after a later one has run: what that takes away is not known."""
+
+    def known_each_time(walk: Walk, node: Node, before: Known) -> After:
+        return flow(walk, node, before.lacking(removed(node)))
+
+    return known_each_time
 
 
 def _any_first(walk: Walk, node: Node, before: Known) -> After:
-    results = [walk(child, before) for child in node.children]
-    return meet(NEVER, *(success for success, _ in results)), before
+    ends = [walk(child, before) for child in node.children]
+    skipped = before if any(end.skipped.reached for end in ends) else NEVER
+    return After(meet(NEVER, *(end.success for end in ends)), before, skipped)
 
 
 def _together(walk: Walk, node: Node, before: Known) -> After:
-    results = [walk(child, before) for child in node.children]
+    ends = [walk(child, before) for child in node.children]
+    skipped = before if all(end.skipped.reached for end in ends) else NEVER
     all_succeed = node.ports.get("success_count", Literal(-1)) == Literal(-1)
     if node.type != "Parallel" or not all_succeed:
-        return before, before
+        return After(before, before, skipped)
     success = before
-    for succeeded, _ in results:
-        for name, key in (succeeded.keys or {}).items():
+    for end in ends:
+        for name, key in (end.passed.keys or {}).items():
             success = success.having(name, key)
-    return success, before
+    return After(success.lacking(removed(node)), before, skipped)
 
 
 def _branches(walk: Walk, node: Node, before: Known) -> After:
     if not node.children:
-        return before, before
-    yes, no = walk(node.children[0], before)
-    results = [
-        walk(child, known) for child, known in zip(node.children[1:3], (yes, no), strict=False)
-    ]
-    failures = [failure for _, failure in results]
-    if len(results) < 2:
-        failures.append(no)
-    return meet(NEVER, *(success for success, _ in results)), meet(*failures)
+        return After(before, before)
+    asked = walk(node.children[0], before)
+    starts = (asked.success, asked.failure)
+    ends = [walk(c, known) for c, known in zip(node.children[1:3], starts, strict=False)]
+    failures = [end.failure for end in ends]
+    if len(ends) < 2:
+        failures.append(asked.failure)
+    skipped = meet(asked.skipped, *(end.skipped for end in ends))
+    return After(meet(NEVER, *(end.success for end in ends)), meet(*failures), skipped)
 
 
 def _recover(walk: Walk, node: Node, before: Known) -> After:
-    success, failure = _child(walk, node, before)
+    tried = _child(walk, node, before)
     handled = [
-        walk(handler.node, failure.having(FAILURE_KEY, Key(FailureValue, handler.place)))
+        walk(handler.node, tried.failure.having(FAILURE_KEY, Key(FailureValue, handler.place)))
         for handler in node.handlers
         if handler.node is not None
     ]
-    failed = meet(failure, *(failure for _, failure in handled))
-    if node.type == "Handle":
-        return meet(success, *(success for success, _ in handled)), failed
-    return success, failed
+    failed = meet(tried.failure, *(end.failure for end in handled))
+    if node.type == "Recover":
+        return After(tried.success, failed, tried.skipped)
+    success = meet(tried.success, *(end.success for end in handled))
+    return After(success, failed, meet(tried.skipped, *(end.skipped for end in handled)))
 
 
 def _child(walk: Walk, node: Node, before: Known) -> After:
-    return walk(node.children[0], before) if node.children else (before, before)
+    return walk(node.children[0], before) if node.children else After(before, before)
 
 
 def _inverter(walk: Walk, node: Node, before: Known) -> After:
-    success, failure = _child(walk, node, before)
-    return failure, success
+    end = _child(walk, node, before)
+    return After(end.failure, end.success, end.skipped)
 
 
 def _force_success(walk: Walk, node: Node, before: Known) -> After:
-    return meet(*_child(walk, node, before)), NEVER
+    end = _child(walk, node, before)
+    return After(meet(end.success, end.failure), NEVER, end.skipped)
 
 
 def _force_failure(walk: Walk, node: Node, before: Known) -> After:
-    return NEVER, meet(*_child(walk, node, before))
+    end = _child(walk, node, before)
+    return After(NEVER, meet(end.success, end.failure), end.skipped)
 
 
 def _until_failure(walk: Walk, node: Node, before: Known) -> After:
-    return NEVER, _child(walk, node, before)[1]
+    end = _child(walk, node, before)
+    return After(NEVER, end.failure, end.skipped)
 
 
 def _perhaps(walk: Walk, node: Node, before: Known) -> After:
-    """The child may not run at all, and the node succeeds or fails all the same."""
-    success, failure = _child(walk, node, before)
-    return meet(success, before), meet(failure, before)
+    """The child may not run at all, and the node may end in any way all the same."""
+    end = _child(walk, node, before)
+    return After(meet(end.success, before), meet(end.failure, before), meet(end.skipped, before))
+
+
+def _once(walk: Walk, node: Node, before: Known) -> After:
+    """Later, the child is skipped and what it wrote is still there, or its end is repeated."""
+    end = _child(walk, node, before)
+    return After(end.success, meet(end.failure, before), before)
 
 
 def _around(walk: Walk, node: Node, before: Known) -> After:
     """The child may be ended early, and the node fails then."""
-    success, failure = _child(walk, node, before)
-    return success, meet(failure, before)
+    end = _child(walk, node, before)
+    return After(end.success, meet(end.failure, before), end.skipped)
 
 
 FLOWS: Mapping[str, Flow] = {
     "Sequence": _in_turn,
     "AsyncSequence": _in_turn,
     "SequenceWithMemory": _in_turn,
-    "ReactiveSequence": _in_turn,
+    "ReactiveSequence": _again(_in_turn),
     "Fallback": _until_success,
     "AsyncFallback": _until_success,
-    "ReactiveFallback": _until_success,
-    "RoundRobin": _any_first,
-    "Parallel": _together,
-    "ParallelAll": _together,
+    "ReactiveFallback": _again(_until_success),
+    "RoundRobin": _again(_any_first),
+    "Parallel": _again(_together),
+    "ParallelAll": _again(_together),
     "IfThenElse": _branches,
-    "WhileDoElse": _branches,
-    "Recover": _recover,
+    "WhileDoElse": _again(_branches),
+    "Recover": _again(_recover),
     "Handle": _recover,
     "Inverter": _inverter,
     "ForceSuccess": _force_success,
     "ForceFailure": _force_failure,
-    "KeepRunningUntilFailure": _until_failure,
+    "KeepRunningUntilFailure": _again(_until_failure),
     "Precondition": _perhaps,
-    "ForEach": _perhaps,
-    "RetryUntilSuccessful": _around,
-    "Repeat": _around,
-    "Timeout": _around,
+    "ForEach": _again(_perhaps),
+    "RetryUntilSuccessful": _again(_around),
+    "Repeat": _again(_around),
+    "Timeout": _again(_around),
     "Delay": _around,
-    "RunOnce": _around,
+    "RunOnce": _once,
 }
 """By canonical type."""

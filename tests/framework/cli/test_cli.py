@@ -9,6 +9,7 @@ import pytest
 
 from momantu_bt import __version__, plugins
 from momantu_bt.cli import VERBS, main
+from momantu_bt.cli.check import MOST_SHOWN
 from momantu_bt.world import WorldError
 
 TREES = Path(__file__).parents[3] / "trees"
@@ -94,6 +95,16 @@ def test_check_as_json(capsys: pytest.CaptureFixture[str], tree: Path, bad: Path
     assert [each["ok"] for each in report["trees"]] == [True, False, False]
     first = report["trees"][1]["problems"][0]
     assert (first["code"], first["line"], first["column"]) == ("unknown-node", 4, 7)
+
+
+def test_very_many_errors_are_counted(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    path = tmp_path / "many.yaml"
+    path.write_text("momantu_bt: 1\ntrees:\n  Main:\n" + "    - wit\n" * 60, encoding="utf-8")
+    assert main(["check", str(path)]) == 2
+    said = capsys.readouterr().err
+    assert said.count("unknown-node") == MOST_SHOWN
+    assert "and 10 more" in said
+    assert said.endswith("60 errors\n")
 
 
 def test_show(capsys: pytest.CaptureFixture[str], tree: Path, bad: Path) -> None:

@@ -1,0 +1,109 @@
+"""What the checker lets through, the engine can run: no key is missing, nothing is unknown."""
+
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, reject, settings
+from hypothesis import strategies as st
+
+import momantu_bt
+from momantu_bt.engine.node import TreeNode
+from momantu_bt.failure import INPUT_MISSING
+from momantu_bt.tree.catalogue import BUILT_IN
+from momantu_bt.tree.load import TreeError
+from momantu_bt.tree.registry import Registry
+
+KEYS = st.sampled_from(["a", "b", "c"])
+LEAVES = st.one_of(
+    KEYS.map(lambda k: f"{{set: {{key: ${k}, value: 1}}}}"),
+    st.tuples(KEYS, KEYS).map(lambda t: f"{{set: {{key: ${t[0]}, value: ${t[1]}}}}}"),
+    KEYS.map(lambda k: f"{{unset: ${k}}}"),
+    KEYS.map(lambda k: f"{{condition: ${k} > 1}}"),
+    KEYS.map(lambda k: f"{{script: '${k} := 2'}}"),
+    KEYS.map(lambda k: f"{{fail: {{code: OH, message: '${{{k}}}'}}}}"),
+    st.sampled_from(["succeed", "always_failure", "{fail: OH}", "{wait: 0.1}"]),
+)
+MODIFIERS = st.one_of(
+    st.sampled_from(["invert: ", "force: success", "force: failure", "disabled: true"]),
+    st.sampled_from(["retry: 2", "repeat: 2", "timeout: 0.1", "run_once: "]),
+    st.tuples(st.sampled_from(["skip_if", "fail_if", "succeed_if", "while"]), KEYS).map(
+        lambda t: f"{t[0]}: ${t[1]} > 1"
+    ),
+    st.tuples(st.sampled_from(["on_success", "on_failure", "after"]), KEYS).map(
+        lambda t: f"{t[0]}: '${t[1]} := 3'"
+    ),
+)
+
+
+def _listed(node: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
+    kinds = [
+        "sequence",
+        "fallback",
+        "round_robin",
+        "parallel",
+        "parallel_all",
+        "reactive_sequence",
+        "reactive_fallback",
+        "sequence_with_memory",
+    ]
+    children = st.lists(node, min_size=1, max_size=3).map(", ".join)
+    return st.tuples(st.sampled_from(kinds), children).map(lambda t: f"{{{t[0]}: [{t[1]}]}}")
+
+
+def _branched(node: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
+    return st.one_of(
+        st.tuples(KEYS, node, node).map(
+            lambda t: f"{{if: ${t[0]} > 1, then: {t[1]}, else: {t[2]}}}"
+        ),
+        st.tuples(node, node).map(lambda t: f"{{if: {t[0]}, then: {t[1]}}}"),
+        st.tuples(node, node).map(
+            lambda t: f"{{recover: {{attempts: 2, try: {t[0]}, catch: {{any: {t[1]}}}}}}}"
+        ),
+        st.tuples(node, node).map(lambda t: f"{{handle: {{try: {t[0]}, catch: {{any: {t[1]}}}}}}}"),
+        st.tuples(node, MODIFIERS)
+        .filter(lambda t: t[0].startswith("{") and t[1].split(":")[0] + ":" not in t[0])
+        .map(lambda t: f"{t[0][:-1]}, {t[1]}}}"),
+    )
+
+
+NODES = st.recursive(LEAVES, lambda n: st.one_of(_listed(n), _branched(n)), max_leaves=10)
+
+
+@st.composite
+def trees(draw: st.DrawFn) -> str:
+    """A file in which only $c has no value at first."""
+    nodes = ", ".join(draw(st.lists(NODES, min_size=1, max_size=5)))
+    return f"momantu_bt: 1\nvalues: {{a: 1, b: 3}}\ntrees:\n  Main: [{nodes}]\n"
+
+
+@settings(max_examples=120, suppress_health_check=list(HealthCheck))
+@given(trees())
+def test_a_checked_tree_never_misses_a_key(
+    tmp_path_factory: pytest.TempPathFactory, text: str
+) -> None:
+    path: Path = tmp_path_factory.getbasetemp() / "generated.yaml"
+    path.write_text(text, encoding="utf-8")
+    missing: list[str] = []
+    fail = TreeNode._broken
+
+    def noting(self: TreeNode, error: Exception) -> object:
+        if getattr(error, "code", "") == INPUT_MISSING or "has no value" in str(error):
+            missing.append(f"{self.name}: {error}")
+        return fail(self, error)  # type: ignore[arg-type]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(TreeNode, "_broken", noting)
+        try:
+            report = momantu_bt.run(path, world="none", max_time=1.0, registry=Registry())
+        except TreeError:
+            reject()
+    assert missing == []
+    assert report.error is None
+
+
+def test_the_engine_has_every_built_in_node() -> None:
+    from momantu_bt.engine import build
+
+    special = {"ForEach", "SetBlackboard", "UnsetBlackboard", "Precondition", "Script"}
+    special |= {"ScriptCondition", "Recover", "Handle"}
+    assert {*build.PLAIN, *build.WITH_INPUTS, *special} == set(BUILT_IN)
