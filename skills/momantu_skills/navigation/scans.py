@@ -38,7 +38,7 @@ class Rays:
         return cls(
             base_from_laser.position[:2].copy(),
             np.ascontiguousarray(directions / lengths),
-            np.ascontiguousarray(scan.ranges, dtype=np.float64),
+            np.array(scan.ranges, dtype=np.float64),
             np.asarray(good & np.isfinite(scan.ranges)),
         )
 

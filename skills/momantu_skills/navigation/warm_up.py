@@ -1,0 +1,49 @@
+"""Compile navigation's kernels once, so that no run waits for them: ten seconds on one core.
+
+`python -m momantu_skills.navigation.warm_up` is quick where the compiled kernels are there already.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from momantu_bt.geometry import Pose2D
+from momantu_bt.robot import BaseLimits
+from momantu_skills.navigation import approach
+from momantu_skills.navigation.config import LocalizationConfig, NavigationConfig
+from momantu_skills.navigation.costmap import Costmap
+from momantu_skills.navigation.guard import safe_share
+from momantu_skills.navigation.localizer import Localizer
+from momantu_skills.navigation.maps import OCCUPIED, GridMap
+from momantu_skills.navigation.mppi import Mppi
+from momantu_skills.navigation.planner import plan
+from momantu_skills.navigation.scans import Rays
+
+
+def compile_kernels() -> None:
+    """Call every kernel with the types that it is called with on the robot."""
+    cells = np.zeros((60, 60), np.uint8)
+    cells[[0, -1], :] = cells[:, [0, -1]] = OCCUPIED
+    cells.setflags(write=False)
+    grid = GridMap(cells, 0.05, (0.0, 0.0))
+    config = NavigationConfig()
+    limits = BaseLimits(linear=1.0, angular=1.0, linear_acceleration=1.0, angular_acceleration=1.0)
+    here, goal, disc = Pose2D(1.0, 1.0), Pose2D(2.0, 1.5), np.array([[0.0, 0.0, 0.2]])
+    ways = np.array([[1.0, 0.0], [0.0, 1.0]])
+    rays = Rays(np.zeros(2), ways, np.array([1.9, 1.9]), np.ones(2, np.bool_))
+    costmap = Costmap(grid, None, config)
+    costmap.see_laser(here, rays)
+    random = np.random.default_rng(0)
+    localizer = Localizer(grid, LocalizationConfig(), random)
+    localizer.reset(here, 0.1, 0.1)
+    localizer.observe(rays)
+    way = plan(costmap, here, goal, 0.25, config.comfort)
+    if way is not None:
+        Mppi(limits, config, random).command(here, (0.0, 0.0), costmap, disc, way)
+    approach.simulate(here, (0.0, 0.0), goal, limits, costmap, disc)
+    approach.command(here, goal, limits)
+    safe_share((0.5, 0.1), (0.0, 0.0), limits, disc, rays.points())
+
+
+if __name__ == "__main__":
+    compile_kernels()
