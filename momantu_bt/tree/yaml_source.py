@@ -326,7 +326,7 @@ _WORDS = (
         "a backslash that means nothing here",
         "write it twice, or use 'single quotes'",
     ),
-    ("<document start>", "here", "a line cannot begin with `%`", "put it in quotes"),
+    ("<document start>", "here", "this follows the end of the file's value", "write one mapping"),
     ("scanning an directive", "start", "a line cannot begin with `%`", "put it in quotes"),
     ("scanning a directive", "start", "a line cannot begin with `%`", "put it in quotes"),
 )
