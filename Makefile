@@ -12,6 +12,8 @@ BIN := .venv/bin
 ARGS ?=
 # Options for pytest, such as `make test TESTS="tests/skills -k navigate"`.
 TESTS ?=
+# Processes that run tests; each takes up to 1.5 GB.
+JOBS ?= 2
 
 .PHONY: help setup demo test lint clean
 help:
@@ -34,7 +36,7 @@ lint: setup
 
 # One thread per process: the numerical libraries would otherwise quarrel over few cores.
 test: lint
-	OMP_NUM_THREADS=1 LP_NUM_THREADS=1 $(BIN)/pytest -q $(TESTS)
+	OMP_NUM_THREADS=1 LP_NUM_THREADS=1 $(BIN)/pytest -q -n $(JOBS) --dist loadfile $(TESTS)
 
 clean:
 	rm -rf .venv build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
