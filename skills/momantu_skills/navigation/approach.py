@@ -59,7 +59,9 @@ class Arrival:
 
 def command(pose: Pose2D, goal: Pose2D, limits: BaseLimits) -> tuple[float, float] | None:
     """Next (m/s, rad/s) towards the goal; None at the goal's line, where the base must stop."""
-    v, w = _law(pose.x, pose.y, pose.yaw, goal.x, goal.y, goal.yaw, limits.angular)
+    x, y, yaw = float(pose.x), float(pose.y), float(pose.yaw)
+    goal_x, goal_y, goal_yaw = float(goal.x), float(goal.y), float(goal.yaw)
+    v, w = _law(x, y, yaw, goal_x, goal_y, goal_yaw, limits.angular)
     return None if v == 0.0 else (float(v), float(w))
 
 
@@ -72,8 +74,8 @@ def simulate(
     discs: Array,
 ) -> Arrival:
     """Where the law leads from a pose and a measured (m/s, rad/s), and how much room it leaves."""
-    start = np.array([pose.x, pose.y, pose.yaw, *speed])
-    end = np.array([goal.x, goal.y, goal.yaw])
+    start = np.array([pose.x, pose.y, pose.yaw, *speed], dtype=np.float64)
+    end = np.array([goal.x, goal.y, goal.yaw], dtype=np.float64)
     bounds = np.array([limits.angular, limits.linear_acceleration, limits.angular_acceleration])
     return Arrival(*_simulate(start, end, bounds, costmap.field, costmap.frame, discs))
 

@@ -59,7 +59,7 @@ class Costmap:
             self._laser,
             self._from_known,
             self.frame,
-            np.array([map_from_base.x, map_from_base.y, map_from_base.yaw]),
+            np.array([map_from_base.x, map_from_base.y, map_from_base.yaw], dtype=np.float64),
             rays.origin,
             rays.directions,
             rays.ranges,
@@ -105,7 +105,8 @@ class Costmap:
         known: by the map's layers alone.
         """
         field = self.known_field if known else self.field
-        return float(room(field, self.frame, discs, pose.x, pose.y, pose.yaw))
+        x, y, yaw = float(pose.x), float(pose.y), float(pose.yaw)
+        return float(room(field, self.frame, discs, x, y, yaw))
 
 
 def _square(row: int, column: int, reach: int, rows: int, columns: int) -> tuple[slice, slice]:

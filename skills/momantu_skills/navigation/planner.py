@@ -64,7 +64,8 @@ def plan(
     cost = _march(slowness, row, column, start_row, start_column, costmap.grid.resolution)
     if cost[start_row, start_column] >= UNREACHED:
         return None
-    path = _descend(cost, costmap.frame, start.x, start.y, goal.x, goal.y)
+    ends = (float(c) for c in (start.x, start.y, goal.x, goal.y))
+    path = _descend(cost, costmap.frame, *ends)
     return Plan(cost, path, (goal.x, goal.y))
 
 

@@ -33,6 +33,7 @@ def compile_kernels() -> None:
     rays = Rays(np.zeros(2), ways, np.array([1.9, 1.9]), np.ones(2, np.bool_))
     costmap = Costmap(grid, None, config)
     costmap.see_laser(here, rays)
+    costmap.room(here, disc)
     random = np.random.default_rng(0)
     localizer = Localizer(grid, LocalizationConfig(), random)
     localizer.reset(here, 0.1, 0.1)
