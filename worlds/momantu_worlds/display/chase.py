@@ -23,8 +23,11 @@ class ChaseConfig:
     """m; from the robot, along the floor."""
     height: float = 2.9
     """m; above the floor, so above the walls."""
-    beside: float = math.radians(125)
-    """rad; preferred direction from the robot, left of its heading: over the shoulder."""
+    beside: float = math.radians(105)
+    """rad; preferred direction from the robot, left or right of its heading: beside and a little
+    behind, so that the hand is seen at work and the way ahead as well."""
+    loyalty: float = 0.4
+    """How much a direction counts that the camera has already, against the preferred one."""
     choices: int = 16
     """Directions that are tried."""
     rate: float = 0.8
@@ -74,14 +77,15 @@ class Chase:
 
     def _best(self, focus: Array, heading: float, current: float | None) -> float:
         """The direction with a free view that is nearest to the preferred and the current one."""
+        config = self._config
 
         def cost(turn: float) -> float:
-            bad = abs(wrap_angle(turn - heading - self._config.beside))
+            bad = abs(abs(wrap_angle(turn - heading)) - config.beside)
             if current is not None:
-                bad = 0.3 * bad + abs(wrap_angle(turn - current))
+                bad += config.loyalty * abs(wrap_angle(turn - current))
             return bad + (10.0 if self._hidden(self._eye(focus, turn), focus) else 0.0)
 
-        turns = [2 * math.pi * i / self._config.choices for i in range(self._config.choices)]
+        turns = [2 * math.pi * i / config.choices for i in range(config.choices)]
         return min(turns, key=cost)
 
     def _hidden(self, eye: Array, focus: Array) -> bool:
