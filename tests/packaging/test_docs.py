@@ -9,8 +9,7 @@ from types import ModuleType
 
 import pytest
 
-from momantu_bt.cli import VERBS
-from momantu_bt.failure import CODE
+from momantu_bt.cli import VERBS, main
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -45,10 +44,14 @@ def test_the_worked_skill_passes_its_own_test(monkeypatch: pytest.MonkeyPatch) -
         test()
 
 
-def test_the_readme_quotes_the_tree_as_it_is() -> None:
-    (quoted,) = blocks(ROOT / "README.md", "yaml")
-    tree = (ROOT / "trees" / "bring_object.yaml").read_text(encoding="utf-8")
-    for code in CODE.finditer(quoted):
-        assert code.group() in tree
-    indented = "".join(f"  {line}\n" for line in quoted.splitlines())
-    assert indented in tree
+def test_the_readmes_tree_is_free_of_mistakes(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (subtree,) = blocks(ROOT / "README.md", "yaml")
+    name = subtree.partition(":")[0]
+    document = ["momantu_bt: 1", "world: four_rooms", "main: Main", "trees:"]
+    document += ["  Main:", f"    - {name}: {{surface: table_a}}"]
+    document += [f"  {line}" for line in subtree.splitlines()]
+    file = tmp_path / "readme.yaml"
+    file.write_text("\n".join(document) + "\n", encoding="utf-8")
+    assert main(["check", str(file)]) == 0, capsys.readouterr()
