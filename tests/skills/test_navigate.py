@@ -107,6 +107,14 @@ def test_at_the_goal_already_it_hardly_moves(flat: Any, drive: Drive) -> None:
     assert result.duration < 3.0
 
 
+def test_a_stand_straight_behind_is_backed_into(flat: Any, drive: Drive) -> None:
+    world = flat(FRONT)
+    result = drive(world, goal=Pose2D(2.7, 0.2, 0.0))
+    _arrived(result, world, Pose2D(2.7, 0.2, 0.0))
+    assert result.phases[0:2] == ("back off", "settle"), result.phases
+    assert result.duration < 6.0
+
+
 def test_something_that_appears_in_the_doorway_is_waited_for(flat: Any, drive: Drive) -> None:
     """Recovery looks again; meanwhile the way has become free."""
     world = flat()

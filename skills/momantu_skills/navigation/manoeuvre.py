@@ -37,10 +37,13 @@ SWITCH = 0.5
 def prepare(vehicle: Vehicle, goal: Pose2D, distance: float) -> Move:
     """Do what makes a goal (map) reachable by `run_in` within `distance` m.
 
-    Nothing, a retreat, or turning towards the goal, driving there and turning again, whichever
-    is quickest; False when none has room.
+    Backing into it when it lies straight behind; else nothing, a retreat, or turning towards the
+    goal, driving there and turning again, whichever is quickest; False when none has room.
     """
     vehicle.sense()
+    behind = straight_behind(vehicle, goal, distance)
+    if behind is not None:
+        return (yield from back_off(vehicle, behind))
     retreat = quickest_retreat(vehicle, goal, distance)
     bearing = hop_bearing(vehicle, goal)
     if bearing is not None and (
@@ -50,6 +53,15 @@ def prepare(vehicle: Vehicle, goal: Pose2D, distance: float) -> Move:
     if retreat is None or retreat.back == 0.0:
         return retreat is not None
     return (yield from back_off(vehicle, retreat.back))
+
+
+def straight_behind(vehicle: Vehicle, goal: Pose2D, distance: float) -> float | None:
+    """How far behind the base the goal lies, m, when backing up leads into it, else None."""
+    here = vehicle.pose().inverse() @ goal
+    aligned = abs(here.y) < AIM * distance and abs(here.yaw) < TURN_AT_END
+    if not (aligned and -FARTHEST_BACK < here.x < -AIM * distance):
+        return None
+    return -here.x if clear_behind(vehicle, vehicle.pose(), -here.x) else None
 
 
 @dataclass(frozen=True, slots=True)

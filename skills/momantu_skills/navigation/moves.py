@@ -25,6 +25,8 @@ CREEP_BRAKE = 0.4
 """m/s2 of planned braking."""
 CREEP_DONE = 0.01
 """m."""
+BACK_STEP = 0.1
+"""m between the places that are checked behind the base."""
 SWEEP = 9
 """Headings at which a turn is checked: every 20 degrees of a half turn."""
 STALL = 3.0
@@ -101,11 +103,13 @@ def creep(vehicle: Vehicle, target: Pose2D, phase: str = "creep") -> Move:
 
 def clear_behind(vehicle: Vehicle, pose: Pose2D, distance: float) -> bool:
     """Whether the base (and its load) can back up that far, or at least does not come nearer."""
+    steps = max(1, math.ceil(distance / BACK_STEP))
     for whole in (False, True):
-        before = vehicle.room(pose, whole=whole)
-        after = vehicle.room(pose @ Pose2D(-distance, 0.0, 0.0), whole=whole)
-        if after < vehicle.config.margin and after < before - 1e-3:
-            return False
+        least = min(vehicle.config.margin, vehicle.room(pose, whole=whole) - 1e-3)
+        for k in range(steps):
+            behind = pose @ Pose2D(-distance * (k + 1) / steps, 0.0, 0.0)
+            if vehicle.room(behind, whole=whole) < least:
+                return False
     return True
 
 
