@@ -33,7 +33,9 @@ class DetectPlane(Skill):
     size: tuple[float, ...] | None = In(
         None, unit="m", doc="x, y (and z) of what needs room; default: what is held"
     )
-    plane: SupportPlane = Out(doc="the surface; its frame lies at `near`, axes along odom's")
+    plane: SupportPlane = Out(
+        doc="the surface as seen within 0.6 m of `near`, where its frame lies, axes along odom's"
+    )
     spots: tuple[Pose, ...] = Out(
         doc="free spots, best first, on the surface, x away from the robot, z up; odom"
     )

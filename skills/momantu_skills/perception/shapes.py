@@ -9,7 +9,7 @@ import numpy as np
 
 from momantu_bt.geometry import Array
 from momantu_skills.perception.rectangles import Rectangle, fitted_to, smallest_rectangle
-from momantu_skills.perception.revolution import SLICE, Revolution, fit_revolution
+from momantu_skills.perception.revolution import Revolution, fit_revolution
 from momantu_skills.perception.segment import Thing
 
 ROUND_MISFIT = 0.004
@@ -148,7 +148,7 @@ def _has_handle(thing: Thing, body: Revolution) -> bool:
 
 
 def _box(thing: Thing, rectangle: Rectangle, side: Array) -> Shape:
-    misfit = float(np.median(rectangle.distances(side[:, :2]))) if len(side) else SLICE
+    misfit = float(np.median(rectangle.distances(side[:, :2]))) if len(side) else 0.0
     return Shape(
         "box",
         "box",
