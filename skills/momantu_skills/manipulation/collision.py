@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import combinations, product
 
 import coal
@@ -113,6 +114,12 @@ class BodyPairs:
             pin.computeCollisions(self.model.pin, data, geometry, shapes, q, False)
             touching += [result.isCollision() for result in shapes.collisionResults]
         return tuple(p for p, n in zip(pairs, touching, strict=True) if n < ALWAYS * SAMPLES)
+
+
+@lru_cache(maxsize=4)
+def body_pairs(model: ArmModel) -> BodyPairs:
+    """The shapes and pairs of a model; built once per process."""
+    return BodyPairs(model)
 
 
 class CollisionWorld:

@@ -12,7 +12,7 @@ from momantu_bt.geometry import Array, Transform
 from momantu_bt.messages import CameraImage, DetectedObject, RobotState, SupportPlane
 from momantu_bt.robot import Robot, RobotDescription, read_camera
 from momantu_bt.service import HeldObject
-from momantu_skills.manipulation.collision import Attached, BodyPairs, CollisionWorld, Obstacle
+from momantu_skills.manipulation.collision import Attached, CollisionWorld, Obstacle, body_pairs
 from momantu_skills.manipulation.config import SceneConfig
 from momantu_skills.manipulation.mask import LinkMask, floor_outline
 from momantu_skills.manipulation.model import arm_model
@@ -46,7 +46,7 @@ class Scene:
     def __init__(self, description: RobotDescription, config: SceneConfig) -> None:
         self.config = config
         self.model = arm_model(description)
-        self.body = BodyPairs(self.model)
+        self.body = body_pairs(self.model)
         self.surroundings = Surroundings()
         self.points: Array = np.empty((0, 3))
         self._mask = LinkMask(self.model.hulls, config.robot_padding)

@@ -1,0 +1,69 @@
+"""check: each question is answered from the robot's beliefs, both ways."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from momantu_skills.check import Check
+
+from momantu_bt.geometry import Pose2D
+from momantu_bt.testing import ScriptedRobot, run_skill
+
+
+def check(what: str, *, robot: Any = None, place: str = "", **beliefs: Any) -> Any:
+    localization = SimpleNamespace(
+        map_from_base=beliefs.get("at", Pose2D(0.0, 0.0)),
+        covariance=np.diag([1.0, 1.0, 1.0]) * beliefs.get("sigma", 0.01) ** 2,
+        quality=beliefs.get("quality", 0.9),
+    )
+    held = SimpleNamespace(object=SimpleNamespace(category="can"))
+    scene = SimpleNamespace(held=held if beliefs.get("holding") else None)
+    services = {"localization": localization, "planning_scene": scene}
+    inputs = {"what": what, "place": place}
+    return run_skill(Check, robot=robot or ScriptedRobot(), inputs=inputs, services=services)
+
+
+@pytest.mark.parametrize(
+    ("what", "beliefs"),
+    [
+        ("holding", {"holding": True}),
+        ("not_holding", {}),
+        ("localized", {}),
+        ("near", {"place": "start"}),
+        ("near", {"place": "table_a", "at": Pose2D(1.0, 0.3)}),
+        ("near", {"place": "table_a", "at": Pose2D(2.1, 0.3)}),
+        ("gripper_open", {}),
+    ],
+)
+def test_what_holds(what: str, beliefs: Any) -> None:
+    result = check(what, **beliefs)
+    assert result.status == "SUCCESS", result.explain()
+    assert result.ticks == 1
+
+
+@pytest.mark.parametrize(
+    ("what", "beliefs", "code"),
+    [
+        ("holding", {}, "NOT_HOLDING"),
+        ("not_holding", {"holding": True}, "HOLDING"),
+        ("localized", {"sigma": 0.5}, "NOT_LOCALIZED"),
+        ("localized", {"quality": 0.1}, "NOT_LOCALIZED"),
+        ("near", {"place": "start", "at": Pose2D(3.0, 0.0)}, "NOT_NEAR"),
+        ("near", {"place": "table_a", "at": Pose2D(-0.5, 0.0)}, "NOT_NEAR"),
+        ("near", {"place": "shelf"}, "BAD_QUESTION"),
+        ("hoding", {}, "BAD_QUESTION"),
+    ],
+)
+def test_what_does_not_hold(what: str, beliefs: Any, code: str) -> None:
+    assert check(what, **beliefs).code == code
+
+
+def test_a_closed_gripper_is_not_open() -> None:
+    assert check("gripper_open", robot=ScriptedRobot(gripper_width=0.01)).code == "NOT_OPEN"
+
+
+def test_a_misspelt_question_is_answered_with_the_nearest() -> None:
+    assert "did you mean 'holding'" in check("hoding").failure.message

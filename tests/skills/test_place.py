@@ -1,0 +1,154 @@
+"""place: what is held ends upright on a spot, or the skill says why not."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from momantu_skills.place import Place
+
+from momantu_bt.geometry import Pose, Transform
+from momantu_bt.messages import SupportPlane
+from momantu_bt.testing import run_skill
+from momantu_bt.testing.painting import Block
+
+HAND_FROM_CAN = Transform((0.007, 0.0, 0.0))
+"""Gripped from the side: upright while the hand is level."""
+
+
+def plane(stamp: float = 0.0, height: float = 0.72) -> SupportPlane:
+    outline = ((-0.4, -0.7), (0.4, -0.7), (0.4, 0.7), (-0.4, 0.7))
+    return SupportPlane(Pose(Transform((0.9, 0.0, height)), "odom", stamp), outline)
+
+
+def spots(*places: tuple[float, float], height: float = 0.72, stamp: float = 0.0) -> Any:
+    return tuple(Pose(Transform((x, y, height)), "odom", stamp) for x, y in places)
+
+
+@pytest.fixture
+def holding(tabletop: Any, scene_of: Any) -> Any:
+    """Fetch in the pose for carrying, with the can in its hand and a scene that knows it."""
+
+    def build() -> tuple[Any, Any]:
+        robot = tabletop(pose="carry")
+        thing = robot.detected()
+        robot.hold(HAND_FROM_CAN)
+        robot.advance(0.05)
+        scene = scene_of(robot)
+        scene.grasped(thing, HAND_FROM_CAN)
+        scene.holding.last_contact = -math.inf
+        return robot, scene
+
+    return build
+
+
+def place(robot: Any, scene: Any, where: Any = None, top: Any = None, **more: Any) -> Any:
+    inputs = {"plane": top or plane(), "spots": where if where is not None else spots((0.7, 0.0))}
+    services = {"planning_scene": scene}
+    return run_skill(
+        Place, robot=robot, inputs=inputs, services=services, frames=scene.frames, **more
+    )
+
+
+@pytest.mark.parametrize("spot", [(0.65, -0.2), (0.8, 0.15)])
+def test_the_can_stands_on_the_spot(holding: Any, spot: tuple[float, float]) -> None:
+    robot, scene = holding()
+    result = place(robot, scene, spots(spot))
+    assert result.status == "SUCCESS", result.explain()
+    assert np.linalg.norm(robot.can.position[:2] - spot) < 0.01
+    assert robot.can.rotation[2, 2] > math.cos(math.radians(2))
+    assert scene.held is None
+    gap = np.linalg.norm(robot.odom_from_hand.position - robot.can.position)
+    assert gap > 0.1
+
+
+def test_contact_ends_the_lowering_when_the_surface_is_higher(holding: Any) -> None:
+    robot, scene = holding()
+    result = place(robot, scene, spots((0.7, 0.0), height=0.71), plane(height=0.71))
+    assert result.status == "SUCCESS", result.explain()
+
+
+def test_a_later_spot_serves_when_the_first_is_taken(holding: Any) -> None:
+    robot, scene = holding()
+    robot.others = [Block((0.1, 0.1, 0.2), (0.7, 0.0, 0.82))]
+    result = place(robot, scene, spots((0.7, 0.0), (0.7, -0.25)))
+    assert result.status == "SUCCESS", result.explain()
+    assert np.linalg.norm(robot.can.position[:2] - (0.7, -0.25)) < 0.01
+
+
+def test_nothing_held(tabletop: Any, scene_of: Any) -> None:
+    robot = tabletop()
+    assert place(robot, scene_of(robot)).code == "NOTHING_HELD"
+
+
+def test_an_old_surface_is_stale(holding: Any) -> None:
+    robot, scene = holding()
+    assert place(robot, scene, top=plane(stamp=-100.0)).code == "STALE_POSE"
+
+
+def test_a_surface_from_before_the_last_contact_is_stale(holding: Any) -> None:
+    robot, scene = holding()
+    scene.touched()
+    assert place(robot, scene, top=plane(stamp=-1.0)).code == "STALE_POSE"
+
+
+def test_spots_out_of_reach_are_no_place(holding: Any) -> None:
+    robot, scene = holding()
+    assert place(robot, scene, spots((1.25, 0.6))).code == "NO_PLACE_POSE"
+
+
+def test_no_spots_are_no_place(holding: Any) -> None:
+    robot, scene = holding()
+    assert place(robot, scene, ()).code == "NO_PLACE_POSE"
+
+
+def test_no_way_is_no_plan(holding: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    from momantu_skills.manipulation.planning import Planner
+
+    robot, scene = holding()
+    monkeypatch.setattr(Planner, "path", lambda *_: None)
+    assert place(robot, scene).code == "NO_PLAN"
+
+
+def test_a_surface_that_is_not_felt_is_no_contact(holding: Any) -> None:
+    robot, scene = holding()
+    robot.surface_felt = False
+    result = place(robot, scene)
+    assert result.code == "NO_CONTACT"
+    assert scene.held is not None
+    assert robot.can.position[2] - 0.065 > 0.72
+
+
+def test_what_falls_on_the_way_is_lost(holding: Any) -> None:
+    robot, scene = holding()
+
+    def drop(session: Any, world: Any) -> None:
+        if robot.time > 1.5 and robot.hand_from_can is not None:
+            robot.object_width = robot.hand_from_can = robot.can = None
+
+    result = place(robot, scene, on_tick=drop)
+    assert result.code == "LOST"
+    assert "on the way" in result.failure.message
+
+
+def test_what_is_gone_from_the_spot_is_lost(holding: Any) -> None:
+    robot, scene = holding()
+    robot.stays_hidden = True
+    result = place(robot, scene)
+    assert result.code == "LOST"
+    assert "not where" in result.failure.message
+
+
+def test_what_lies_there_has_toppled(holding: Any) -> None:
+    robot, scene = holding()
+    robot.topples = True
+    assert place(robot, scene).code == "TOPPLED"
+
+
+@pytest.mark.parametrize("actuator", ["arm", "gripper"])
+def test_what_does_not_move_is_stuck(holding: Any, actuator: str) -> None:
+    robot, scene = holding()
+    robot.frozen.add(actuator)
+    assert place(robot, scene).code == "ARM_STUCK"
