@@ -11,6 +11,8 @@ import numpy as np
 from momantu_bt.geometry import Array, Pose2D, Transform, wrap_angle
 from momantu_worlds.scenes.bodies import Body, Box
 
+BASE_HEIGHT = 0.25
+"""m; of the middle of a robot's base above the floor."""
 PARALLEL = 1e-12
 """m; a ray that advances less than this along an axis counts as parallel to it."""
 
@@ -32,6 +34,8 @@ class ChaseConfig:
     """Directions that are tried."""
     rate: float = 0.8
     """rad/s; how fast the camera goes round."""
+    hurry: float = 4.0
+    """How many times faster it goes round while a wall hides the robot."""
     lag: float = 0.6
     """s; how slowly it follows what it looks at."""
 
@@ -65,7 +69,8 @@ class Chase:
             passed = now - self._time
             self._focus = self._focus + (wanted - self._focus) * min(1.0, passed / config.lag)
             left = wrap_angle(self._best(wanted, base.yaw, self._turn) - self._turn)
-            most = config.rate * passed
+            hidden = self._hidden(self._eye(self._focus, self._turn), self._focus)
+            most = config.rate * passed * (config.hurry if hidden else 1.0)
             self._turn = wrap_angle(self._turn + max(-most, min(most, left)))
         self._time = now
         return looking(self._eye(self._focus, self._turn), self._focus)
@@ -89,9 +94,12 @@ class Chase:
         return min(turns, key=cost)
 
     def _hidden(self, eye: Array, focus: Array) -> bool:
-        """Whether a wall lies between; slab test of the segment against all walls' boxes."""
-        if not len(self._half):
-            return False
+        """Whether a wall lies between the eye and what it looks at, or the robot's base below."""
+        base = np.array([focus[0], focus[1], BASE_HEIGHT])
+        return len(self._half) > 0 and (self._between(eye, focus) or self._between(eye, base))
+
+    def _between(self, eye: Array, focus: Array) -> bool:
+        """Slab test of a segment against all walls' boxes."""
         turn, shift = self._wall_from_map[:, :3, :3], self._wall_from_map[:, :3, 3]
         start, ray = turn @ eye + shift, turn @ (focus - eye)
         safe = np.where(np.abs(ray) < PARALLEL, PARALLEL, ray)
