@@ -15,6 +15,7 @@ from typing import Any
 
 import typer
 
+import momantu_bt.cli.threads  # noqa: F401 - before numpy, which the next imports load
 from momantu_bt import __version__, plugins
 from momantu_bt.world import WorldError
 

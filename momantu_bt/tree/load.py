@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,11 +10,14 @@ from typing import Any
 
 from momantu_bt.tree.check import check
 from momantu_bt.tree.lookup import TreeNotFound, find
-from momantu_bt.tree.model import Document, Literal, Place
-from momantu_bt.tree.problems import Problem, Problems, TreeError, errors
+from momantu_bt.tree.model import Document, Literal, Place, Reference, Template
+from momantu_bt.tree.problems import Problem, Problems, TreeError, errors, valid_names
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.yaml_format import read
 from momantu_bt.tree.yaml_source import MAX_BYTES, YamlSyntaxError, compose, plain_value
+
+WORD = re.compile(r"[A-Za-z_]\w*")
+"""What can be a key in a script."""
 
 __all__ = ["Checked", "TreeError", "TreeNotFound", "load", "read_file", "read_values"]
 
@@ -44,7 +48,7 @@ def load(
         TreeError: the file has errors; all of them are in it.
     """
     document, problems = read_file(find(tree))
-    _override(document, values or {})
+    _override(document, values or {}, problems)
     found = check(
         document,
         registry if registry is not None else Registry.installed(),
@@ -103,7 +107,28 @@ def _text(path: Path) -> str:
         raise TreeError([problem], {}) from None
 
 
-def _override(document: Document, values: Mapping[str, Any]) -> None:
+def _override(document: Document, values: Mapping[str, Any], problems: Problems) -> None:
+    known = {*document.values, *_keys_read(document)}
     for name, value in values.items():
+        place = Place(f"given value of {name}", 1, 1)
+        if name not in known:
+            hint = valid_names(name, document.values or known, "its values")
+            problems.error("unknown-value", place, f"the tree has no value {name!r}", hint)
         document.values[name] = Literal(value)
-        document.value_places[name] = Place(f"given value of {name}", 1, 1)
+        document.value_places[name] = place
+
+
+def _keys_read(document: Document) -> set[str]:
+    """Names of all keys that a port or a condition of the document mentions."""
+    names: set[str] = set()
+    for tree in document.trees.values():
+        for node in tree.root.walk():
+            for value in node.ports.values():
+                parts = value.parts if isinstance(value, Template) else (value,)
+                names |= {part.key for part in parts if isinstance(part, Reference)}
+            for script in node.conditions.values():
+                names |= set(WORD.findall(script))
+            code = node.ports.get("code")
+            if isinstance(code, Literal):
+                names |= set(WORD.findall(str(code.value)))
+    return names

@@ -68,10 +68,24 @@ def test_errors_keep_a_tree_from_loading(folder: Path, registry: Registry) -> No
 def test_values_from_outside_replace_the_files_own_and_are_checked(
     folder: Path, registry: Registry
 ) -> None:
-    checked = load("fetch_it.yaml", registry, values={"to": "table_b", "more": 3})
-    assert checked.document.values == {"to": Literal("table_b"), "more": Literal(3)}
+    checked = load("fetch_it.yaml", registry, values={"to": "table_b"})
+    assert checked.document.values == {"to": Literal("table_b")}
     with pytest.raises(TreeError, match="has no place 'nowhere'"):
         load("fetch_it.yaml", registry, values={"to": "nowhere"})
+
+
+def test_a_given_value_that_nothing_reads_is_an_error(folder: Path, registry: Registry) -> None:
+    with pytest.raises(TreeError, match="the tree has no value 'too'") as caught:
+        load("fetch_it.yaml", registry, values={"too": "table_b"})
+    assert "did you mean to?" in caught.value.problems[0].hint
+
+
+def test_a_given_value_may_fill_a_key_that_the_file_leaves_open(
+    folder: Path, registry: Registry
+) -> None:
+    (folder / "open.yaml").write_text(GOOD.replace("values: {to: door}\n", ""), encoding="utf-8")
+    checked = load("open.yaml", registry, values={"to": "table_b"})
+    assert checked.document.values == {"to": Literal("table_b")}
 
 
 def test_another_world_or_robot_by_argument(folder: Path, registry: Registry) -> None:
