@@ -87,7 +87,9 @@ def choose(state: str) -> Choice:
             return choice
         failed.append((way, result))
     reasons = "; ".join(f"{way.value}: {result.reason}" for way, result in failed)
-    raise VulkanMissingError(f"SAPIEN finds no Vulkan device to render with ({reasons}). {CURE}")
+    raise VulkanMissingError(
+        f"SAPIEN finds no Vulkan device to render with ({reasons}). To mend it, {CURE}"
+    )
 
 
 def _remember(state: str, choice: Choice) -> None:

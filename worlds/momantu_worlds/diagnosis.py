@@ -36,7 +36,8 @@ def _vulkan() -> Diagnosis:
     try:
         choice = ensure_vulkan()
     except (VulkanMissingError, OSError) as error:
-        return Diagnosis("Vulkan", False, str(error), CURE, lambda: install().device)
+        reason = str(error).partition(". ")[0]
+        return Diagnosis("Vulkan", False, reason, CURE, lambda: install().device)
     kind = "software" if "llvmpipe" in choice.device or "SwiftShader" in choice.device else "GPU"
     whose = {"system": "the machine's driver", "system_driver": "the machine's driver, our libX11"}
     origin = whose.get(choice.way.value, "the driver in your cache folder")
