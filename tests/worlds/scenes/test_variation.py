@@ -23,6 +23,7 @@ from momantu_worlds.scenes.tag36h11 import picture_edge
 from momantu_worlds.scenes.variation import vary
 
 from momantu_bt.geometry import Pose2D, wrap_angle
+from momantu_bt.world import WorldError
 
 WORLD = load_world("four_rooms")
 SEEDS = range(30)
@@ -158,7 +159,7 @@ def test_furniture_moves_a_little_and_extras_keep_out_of_the_way(seed):
         assert abs(known[name].pose.x - WORLD.furniture[name].pose.x) <= 0.2
         assert abs(known[name].pose.y - WORLD.furniture[name].pose.y) <= 0.2
     extras = [p for p in drawn.pieces if not p.known]
-    assert len(extras) <= WORLD.unknown.extra.most
+    assert WORLD.unknown.extra.least <= len(extras) <= WORLD.unknown.extra.most
     for extra in extras:
         own = footprint(extra.piece, extra.pose)
         others = [o for o in obstacles(drawn) if o.pose != extra.pose]
@@ -208,3 +209,18 @@ def test_the_site_of_an_episode_tells_nothing_but_the_file_and_a_rough_start():
     assert first.places == second.places
     assert first.start != second.start
     assert first.surfaces["table_a"].map_from_surface == Pose2D(*WORLD.tables["table_a"].at)
+
+
+def test_a_world_that_a_robot_cannot_pass_is_refused():
+    narrow = WORLD.model_copy(update={"unknown": WORLD.unknown.model_copy(update={"passage": 0.9})})
+    with pytest.raises(WorldError, match="a disc of 0.9 m does not get from the start"):
+        vary(narrow, 0)
+
+
+def test_a_start_inside_a_sofa_is_refused():
+    at = WORLD.furniture["sofa_south_west"].at
+    inside = WORLD.model_copy(
+        update={"start": WORLD.start.model_copy(update={"at": at, "shift": 0.0})}
+    )
+    with pytest.raises(WorldError, match="no free place to start"):
+        vary(inside, 0)

@@ -80,9 +80,11 @@ def place_furniture(
     for change in (*_moves(world, seed), *_extras(world, seed)):
         for piece in change:
             others = [footprint(p.piece, p.pose) for n, p in placed.items() if n != piece.name]
-            if _fits(world, piece, others, tables, start):
-                if _passable(world, {**placed, piece.name: piece}.values(), tables, start):
-                    placed[piece.name] = piece
+            then = {**placed, piece.name: piece}
+            if _fits(world, piece, others, tables, start) and _passable(
+                world, then.values(), tables, start
+            ):
+                placed = then
                 break
     if placed == known and not _passable(world, known.values(), tables, start):
         raise WorldError(
