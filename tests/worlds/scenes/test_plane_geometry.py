@@ -60,9 +60,14 @@ def test_corners_lie_on_the_border_and_the_middle_inside(a):
     assert gap(a, a) == 0.0
 
 
-@given(rectangles, rectangles, st.floats(0.01, 1))
+@given(rectangles, rectangles, st.floats(0, 1))
 def test_clear_of_agrees_with_gap(a, b, least):
-    assert clear_of(a, [b], least) == (gap(a, b) >= least)
+    assert clear_of(a, [b], least) == (gap(a, b) >= least and gap(a, b) > 0)
+
+
+def test_what_overlaps_is_not_clear_even_when_no_gap_is_asked():
+    a = Rectangle(Pose2D(0, 0), (1, 1))
+    assert not clear_of(a, [a], 0.0)
 
 
 @pytest.mark.parametrize(("radius", "through"), [(0.3, True), (0.45, True), (0.6, False)])

@@ -59,12 +59,14 @@ def _separated(a: Array, b: Array) -> bool:
 
 
 def clear_of(rectangle: Rectangle, others: Iterable[Rectangle], least: float) -> bool:
-    """Whether the gap to every other rectangle is at least `least` m."""
+    """Whether nothing is touched and the gap to every other rectangle is at least `least` m."""
     reach = math.hypot(*rectangle.size) / 2 + least
     for other in others:
         far = reach + math.hypot(*other.size) / 2
-        if rectangle.pose.distance_to(other.pose) < far and gap(rectangle, other) < least:
-            return False
+        if rectangle.pose.distance_to(other.pose) < far:
+            between = gap(rectangle, other)
+            if between == 0.0 or between < least:
+                return False
     return True
 
 
