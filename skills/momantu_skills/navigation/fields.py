@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-import cv2
 import numba
 import numpy as np
 from numpy.typing import NDArray
@@ -15,13 +14,60 @@ Field = NDArray[np.float32]
 def clearance(blocked: NDArray[np.bool_], resolution: float) -> Field:
     """Distance in m from each cell's centre to the nearest blocked cell's face, 0 inside.
 
-    blocked: (rows, columns). Exact Euclidean distance between centres, less half a cell.
+    blocked: (rows, columns). Exact Euclidean distance between centres, less half a cell; beyond
+    the grid's diagonal where nothing is blocked. The same to the last bit on every machine, which
+    a library's vectorised square roots are not.
     """
-    free = np.ascontiguousarray(~blocked).view(np.uint8)
-    if free.all():
-        return np.full(blocked.shape, np.float32(math.hypot(*blocked.shape) * resolution))
-    cells = cv2.distanceTransform(free, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+    cells = np.sqrt(_squared_cells(np.ascontiguousarray(blocked)).astype(np.float64))
     return np.asarray(np.maximum((cells - 0.5) * resolution, 0.0), dtype=np.float32)
+
+
+@numba.njit(cache=True)
+def _squared_cells(blocked: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """Squared distance in cells to the nearest blocked one (Meijster, Roerdink, Hesselink 2000)."""
+    rows, columns = blocked.shape
+    beyond = rows + columns
+    down = np.empty((rows, columns), dtype=np.int64)
+    for r in range(rows):
+        for c in range(columns):
+            above = down[r - 1, c] + 1 if r > 0 else beyond
+            down[r, c] = 0 if blocked[r, c] else min(above, beyond)
+    for r in range(rows - 2, -1, -1):
+        for c in range(columns):
+            down[r, c] = min(down[r, c], down[r + 1, c] + 1)
+    squared = np.empty((rows, columns), dtype=np.int64)
+    site = np.empty(columns, dtype=np.int64)
+    begin = np.empty(columns, dtype=np.int64)
+    for r in range(rows):
+        g = down[r]
+        top = 0
+        site[0] = 0
+        begin[0] = 0
+        for c in range(1, columns):
+            while top >= 0 and _at(g, site[top], begin[top]) > _at(g, c, begin[top]):
+                top -= 1
+            if top < 0:
+                top = 0
+                site[0] = c
+                continue
+            i = site[top]
+            meet = 1 + (c * c - i * i + g[c] * g[c] - g[i] * g[i]) // (2 * (c - i))
+            if meet < columns:
+                top += 1
+                site[top] = c
+                begin[top] = meet
+        for c in range(columns - 1, -1, -1):
+            squared[r, c] = _at(g, site[top], c)
+            if c == begin[top]:
+                top -= 1
+    return squared
+
+
+@numba.njit(cache=True, inline="always")
+def _at(g: NDArray[np.int64], i: int, c: int) -> int:
+    """Squared distance from column c to the nearest blocked cell of column i."""
+    squared: int = (c - i) * (c - i) + g[i] * g[i]
+    return squared
 
 
 def surface_distance(occupied: NDArray[np.bool_], resolution: float, cap: float) -> Field:
