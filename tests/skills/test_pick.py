@@ -182,6 +182,6 @@ def test_it_is_held_upright_in_the_pose_for_carrying(tabletop: Any, scene_of: An
     robot = tabletop()
     scene = scene_of(robot)
     assert pick(robot, scene, robot.detected()).status == "SUCCESS"
-    robot.joints |= {k: v for k, v in robot.description.named_poses["carry"].items()}
+    robot.joints |= robot.description.named_poses["carry"]
     robot.advance(0.05)
     assert math.acos(robot.can.rotation[2, 2]) < math.radians(20)

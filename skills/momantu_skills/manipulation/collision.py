@@ -22,6 +22,8 @@ LONGEST_HULL = 0.4
 the arm folded before it. Checks against a mesh are slower, and few."""
 SAMPLES = 200
 """Random postures in which pairs of links that always touch are looked for."""
+SELF_MARGIN = 0.008
+"""m; clearance between the robot's own links on transits, for a path is only checked at points."""
 ALWAYS = 0.95
 """Share of the postures in which a pair touches because its hulls overlap for good."""
 
@@ -59,6 +61,7 @@ class BodyPairs:
                 self._add(link, shape, place)
         self.moving = self._moving_links()
         self.pairs = self._sometimes_apart(self._worthwhile())
+        self.close = self._always_close()
 
     def _add(self, link: str, shape: coal.CollisionGeometry, link_from_shape: Transform) -> None:
         identity = self.model.frame_ids[link]
@@ -115,6 +118,22 @@ class BodyPairs:
             touching += [result.isCollision() for result in shapes.collisionResults]
         return tuple(p for p, n in zip(pairs, touching, strict=True) if n < ALWAYS * SAMPLES)
 
+    def _always_close(self) -> frozenset[tuple[int, int]]:
+        """Pairs of `pairs` that are nearer than SELF_MARGIN in one of the named poses."""
+        geometry = self.geometry.copy()
+        for a, b in self.pairs:
+            geometry.addCollisionPair(pin.CollisionPair(a, b))
+        data, shapes = self.model.pin.createData(), geometry.createData()
+        for index in range(len(self.pairs)):
+            shapes.collisionRequests[index].security_margin = SELF_MARGIN
+        close: set[tuple[int, int]] = set()
+        for pose in self.model.description.named_poses.values():
+            q = self.model.posture(pose, 0.0)
+            pin.computeCollisions(self.model.pin, data, geometry, shapes, q, False)
+            results = zip(self.pairs, shapes.collisionResults, strict=True)
+            close |= {pair for pair, result in results if result.isCollision()}
+        return frozenset(close)
+
 
 @lru_cache(maxsize=4)
 def body_pairs(model: ArmModel) -> BodyPairs:
@@ -165,12 +184,14 @@ class CollisionWorld:
     def _finish(
         self, pairs: Iterable[tuple[int, int]], near: Iterable[tuple[int, int]], margin: float
     ) -> None:
-        for a, b in [*pairs, *near]:
+        own = min(margin, SELF_MARGIN)
+        kept = [(pair, 0.0 if pair in self.body.close else own) for pair in pairs]
+        kept += [(pair, margin) for pair in near]
+        for (a, b), _ in kept:
             self._geometry.addCollisionPair(pin.CollisionPair(a, b))
         self._shapes = self._geometry.createData()
-        for a, b in near:
-            index = self._geometry.findCollisionPair(pin.CollisionPair(a, b))
-            self._shapes.collisionRequests[index].security_margin = margin
+        for index, (_, clearance) in enumerate(kept):
+            self._shapes.collisionRequests[index].security_margin = clearance
         self._manager = pin.BroadPhaseManager_DynamicAABBTreeCollisionManager(
             self._pin, self._geometry, self._shapes
         )

@@ -128,9 +128,10 @@ class ArmModel:
 
     def configuration(self, state: RobotState, width: float | None = None) -> Array:
         """All joints (nq,) in pinocchio's order; fingers from a width, the measured one if None."""
-        return self._full(state.joints(), state.gripper_width if width is None else width)
+        return self.posture(state.joints(), state.gripper_width if width is None else width)
 
-    def _full(self, joints: Mapping[str, float], width: float) -> Array:
+    def posture(self, joints: Mapping[str, float], width: float) -> Array:
+        """All joints (nq,) from those given, the others at 0, and the gripper's opening in m."""
         q = np.zeros(self.pin.nq)
         for name, value in joints.items():
             if name in self._index:

@@ -36,7 +36,7 @@ FLOOR_BAND = 0.06
 """m above the floor below which points are the floor."""
 Cut: TypeAlias = tuple[Transform, tuple[float, float, float]]
 """A box: `odom_from_box`, and half its edges in m."""
-SEEN_THROUGH = 0.05
+SEEN_THROUGH = 0.03
 """m; an old cell is gone when the picture shows something that much behind it."""
 
 

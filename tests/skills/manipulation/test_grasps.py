@@ -1,0 +1,105 @@
+"""Grasps: the fingers straddle the object, the palm clears it, and there are many directions."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from momantu_skills.manipulation.grasps import Grasp, grasps_for
+from momantu_skills.manipulation.model import arm_model
+from momantu_skills.manipulation.solids import object_corners
+from momantu_worlds.robots import fetch
+
+from momantu_bt.geometry import Pose, Transform
+from momantu_bt.messages import DetectedObject
+
+HAND = fetch().end_effector
+PALM = arm_model(fetch()).hulls[HAND.frame]
+
+
+def thing(shape: str, size: tuple[float, float, float]) -> DetectedObject:
+    pose = Pose(Transform((0.8, 0.0, 0.8)), "odom", 0.0)
+    return DetectedObject("thing", pose, size, shape, 0.9, 0.8 - size[2] / 2)
+
+
+def grasps(shape: str, size: tuple[float, float, float]) -> list[Grasp]:
+    return grasps_for(thing(shape, size), HAND, PALM)
+
+
+def across(grasp: Grasp, size: tuple[float, float, float], shape: str) -> float:
+    """Extent of the object along the closing direction, between the pads."""
+    corners = object_corners(thing(shape, size))
+    return float(np.ptp(grasp.object_from_grasp.inverse().apply(corners)[:, 1]))
+
+
+CANS = st.tuples(st.floats(0.04, 0.08), st.floats(0.08, 0.2))
+
+
+@settings(max_examples=25)
+@given(CANS)
+def test_a_can_is_grasped_from_all_around_and_from_above(can: tuple[float, float]) -> None:
+    size = (can[0], can[0], can[1])
+    found = grasps("cylinder", size)
+    ways = np.array([grasp.object_from_grasp.rotation[:, 0] for grasp in found])
+    level = ways[np.abs(ways[:, 2]) < 0.1]
+    headings = np.sort(np.unique(np.round(np.arctan2(level[:, 1], level[:, 0]), 3)))
+    assert np.diff(headings).max() < 0.3
+    assert (ways[:, 2] < -0.99).any()
+
+
+@settings(max_examples=25)
+@given(CANS)
+def test_the_axis_lies_between_the_pads(can: tuple[float, float]) -> None:
+    size = (can[0], can[0], can[1])
+    for grasp in grasps("cylinder", size):
+        r, p = grasp.object_from_grasp.rotation, grasp.object_from_grasp.position
+        line = np.array([[0.0, 0.0, z] for z in np.linspace(-size[2] / 2, size[2] / 2, 60)])
+        local = (line - p) @ r
+        assert np.abs(local[:, 1]).max() < 1e-9 or abs(r[2, 0]) > 0.99
+        between = (np.abs(local[:, 0]) < HAND.pad_length / 2) & (np.abs(local[:, 2]) < 0.02)
+        assert between.any()
+        assert grasp.width == pytest.approx(can[0])
+
+
+@settings(max_examples=25)
+@given(CANS)
+def test_the_palm_clears_the_object(can: tuple[float, float]) -> None:
+    size = (can[0], can[0], can[1])
+    for grasp in grasps("cylinder", size):
+        corners = grasp.object_from_grasp.inverse().apply(object_corners(thing("box", size)))
+        if abs(grasp.object_from_grasp.rotation[2, 0]) > 0.99:
+            assert corners[:, 0].min() > -HAND.hand_clearance
+    level = [g for g in grasps("cylinder", size) if abs(g.object_from_grasp.rotation[2, 0]) < 0.01]
+    for grasp in level:
+        assert can[0] / 2 - np.linalg.norm(grasp.object_from_grasp.position[:2]) <= (
+            HAND.hand_clearance - 0.003
+        )
+
+
+@pytest.mark.parametrize("size", [(0.05, 0.15, 0.1), (0.15, 0.05, 0.1), (0.06, 0.06, 0.2)])
+def test_a_box_is_held_across_narrow_faces(size: tuple[float, float, float]) -> None:
+    found = grasps("box", size)
+    assert found
+    for grasp in found:
+        assert across(grasp, size, "box") == pytest.approx(grasp.width)
+        assert grasp.width <= HAND.max_width - 0.014
+
+
+def test_what_is_wider_than_the_gripper_has_no_grasps() -> None:
+    assert grasps("cylinder", (0.12, 0.12, 0.1)) == []
+    assert grasps("box", (0.12, 0.12, 0.1)) == []
+
+
+def test_every_grasp_has_its_twin_turned_by_half_a_turn() -> None:
+    found = grasps("cylinder", (0.07, 0.07, 0.13))
+    for one, other in zip(found[::2], found[1::2], strict=True):
+        a, b = one.object_from_grasp, other.object_from_grasp
+        assert a.position == pytest.approx(b.position)
+        assert a.rotation[:, 0] == pytest.approx(b.rotation[:, 0])
+        assert a.rotation[:, 1] == pytest.approx(-b.rotation[:, 1])
+
+
+def test_level_grasps_are_preferred_to_those_from_above() -> None:
+    best = min(grasps("cylinder", (0.07, 0.07, 0.13)), key=lambda grasp: grasp.penalty)
+    assert abs(best.object_from_grasp.rotation[2, 0]) < 1e-9
