@@ -10,7 +10,7 @@ from typing import get_args
 
 from momantu_bt.tree.catalogue import PRE_CONDITIONS, ScriptText
 from momantu_bt.tree.key_flow import FLOWS, After, removed
-from momantu_bt.tree.key_reads import KeyReads, Written, references
+from momantu_bt.tree.key_reads import Demand, KeyReads, Written, references
 from momantu_bt.tree.keys import NEVER, Key, Known, meet
 from momantu_bt.tree.model import Literal, Node, Place, Reference, Scope, Tree
 from momantu_bt.tree.problems import within
@@ -24,7 +24,7 @@ def check_keys(context: Context, order: list[Tree], root_keys: frozenset[str]) -
 
     root_keys: every name that `$@name` can mean.
     """
-    demands: dict[tuple[str, str], set[str]] = {}
+    demands: dict[tuple[str, str], set[Demand]] = {}
     for tree in order:
         _KeyCheck(KeyReads(context, tree, root_keys, demands)).run()
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TypeAlias
 
 from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue import SUBTREE, ScriptText
@@ -22,7 +23,12 @@ from momantu_bt.tree.model import (
 from momantu_bt.tree.problems import valid_names
 from momantu_bt.tree.signatures import Context, Signature
 from momantu_bt.tree.types import assignable, label
+from momantu_bt.tree.units import UnitError, in_unit
 from momantu_bt.tree.values import ConversionError, convert
+
+
+Demand: TypeAlias = tuple[str, str]
+"""What a text must be: ("names", "place"), or a quantity in a unit: ("unit", "m")."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,15 +44,14 @@ class Written:
 class KeyReads:
     """The reads of one tree, reported as they are met.
 
-    root_keys: names that `$@key` may read. demands: by tree and input, the kinds of names (place,
-    surface, named_pose) that nodes below expect there; trees that are run come before those that
-    run them. written: what has been written so far in the order of the file.
+    root_keys: names that `$@key` may read. demands: by tree and input, what nodes below expect of
+    a text there; trees that are run come before those that run them. written: what has been written so far in the order of the file.
     """
 
     context: Context
     tree: Tree
     root_keys: frozenset[str]
-    demands: dict[tuple[str, str], set[str]]
+    demands: dict[tuple[str, str], set[Demand]]
     seen: set[str] = field(default_factory=set)
     written: list[Written] = field(default_factory=list)
 
@@ -62,7 +67,7 @@ class KeyReads:
             for reference in references(value):
                 if value is not reference:
                     self.lookup(reference, before, place)
-            self._names(node, name, value, before, port)
+            self._demands(node, name, value, before, port)
 
     def lookup(self, reference: Reference, before: Known, place: Place) -> Key | None:
         """What is known of a key that is read here; None, and reported, where it may be empty."""
@@ -118,25 +123,39 @@ class KeyReads:
             message = f"${shown} is {label(type_)}; {port.name!r} of {said} takes "
             self.context.problems.error("wrong-type", place, message + label(port.type), origin)
 
-    def _names(self, node: Node, name: str, value: PortValue, before: Known, port: Port) -> None:
-        """Names of places, surfaces and poses that reach a port by wire or through a subtree."""
-        kinds = {port.names} if port.names is not None else set()
+    def _demands(self, node: Node, name: str, value: PortValue, before: Known, port: Port) -> None:
+        """Names and quantities that reach a port by wire or through a subtree."""
+        demands = {("names", port.names)} if port.names is not None else set()
+        if port.unit is not None:
+            demands.add(("unit", port.unit))
         if node.type == SUBTREE:
-            kinds |= self.demands.get((node.target or "", name), set())
+            demands |= self.demands.get((node.target or "", name), set())
             if isinstance(value, Literal):
-                self._check_names(value, node.port_places.get(name, node.place), kinds)
+                self._check_demands(value, node.port_places.get(name, node.place), demands)
         if not isinstance(value, Reference) or value.fields or value.scope is Scope.ROOT:
             return
         key = before.get(value.key)
         if key is not None and key.literal is not None:
-            self._check_names(key.literal, key.place, kinds)
-        elif kinds and value.key in self.tree.ports:
-            self.demands.setdefault((self.tree.name, value.key), set()).update(kinds)
+            if node.type != SUBTREE:  # the wire's own check has converted it with the port's unit
+                demands = {demand for demand in demands if demand[0] == "names"}
+            self._check_demands(key.literal, key.place, demands)
+        elif demands and value.key in self.tree.ports:
+            self.demands.setdefault((self.tree.name, value.key), set()).update(demands)
 
-    def _check_names(self, value: Literal, place: Place, kinds: set[str]) -> None:
-        if isinstance(value.value, str):
-            for kind in sorted(kinds):
-                check_name(self.context, value.value, place, kind)
+    def _check_demands(self, value: Literal, place: Place, demands: set[Demand]) -> None:
+        if not isinstance(value.value, str):
+            return
+        for kind, what in sorted(demands):
+            if kind == "names":
+                check_name(self.context, value.value, place, what)
+            else:
+                self._check_unit(value.value, place, what)
+
+    def _check_unit(self, text: str, place: Place, unit: str) -> None:
+        try:
+            in_unit(text, unit)
+        except UnitError as error:
+            self.context.problems.error("wrong-value", place, str(error))
 
 
 def references(value: PortValue) -> list[Reference]:

@@ -172,6 +172,27 @@ def test_a_name_written_to_a_subtree_is_checked(expect: Expect) -> None:
     expect("unknown-place", tree)
 
 
+@pytest.mark.parametrize(
+    "tree",
+    [
+        main("- Go: {far: $far}", values="{far: «5 kg»}"),
+        main("- Go: {far: «5 kg»}"),
+        main("- Go: {far: «5 min»}"),
+    ],
+)
+def test_a_unit_behind_two_subtrees_is_checked(expect: Expect, tree: str) -> None:
+    tree += "  Go:\n    inputs: {far: number}\n    Drive: {within: $far}\n"
+    tree += "  Drive:\n    inputs: {within: number}\n    navigate: {goal: {x: 1, y: 2}, "
+    tree += "tolerance: $within}\n"
+    expect("wrong-value", tree, message="expected a length, in: mm, cm, m")
+
+
+def test_a_right_unit_behind_a_subtree_is_fine(fine: Fine) -> None:
+    tree = main("- Go: {far: 50 mm}")
+    tree += "  Go:\n    inputs: {far: number}\n    navigate: {in_front_of: table_a, "
+    fine(tree + "tolerance: $far}\n")
+
+
 def test_types_across_a_subtree(expect: Expect) -> None:
     tree = main(f"- {SEE}", "- Sub: {x: «$it»}") + "  Sub:\n    inputs: {x: int}\n    say: '${x}'\n"
     expect("wrong-type", tree, message="'x' of Sub takes int")
