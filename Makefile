@@ -26,7 +26,8 @@ setup:
 	@$(PYTHON) setup/environment.py
 
 demo: setup
-	@$(BIN)/momantu-bt run trees/bring_object.yaml $(ARGS)
+	@mkdir -p runs
+	@$(BIN)/momantu-bt run trees/bring_object.yaml --report runs/demo.json $(ARGS)
 
 lint: setup
 	$(BIN)/ruff check .

@@ -26,7 +26,6 @@ from momantu_bt.tree.types import assignable, label
 from momantu_bt.tree.units import UnitError, in_unit
 from momantu_bt.tree.values import ConversionError, convert
 
-
 Demand: TypeAlias = tuple[str, str]
 """What a text must be: ("names", "place"), or a quantity in a unit: ("unit", "m")."""
 
@@ -45,7 +44,8 @@ class KeyReads:
     """The reads of one tree, reported as they are met.
 
     root_keys: names that `$@key` may read. demands: by tree and input, what nodes below expect of
-    a text there; trees that are run come before those that run them. written: what has been written so far in the order of the file.
+    a text there; trees that are run come before those that run them. written: what has been written
+    so far in the order of the file.
     """
 
     context: Context
