@@ -70,6 +70,8 @@ class HandConfig:
 
     approach: float = 0.10
     """m of straight line before a grasp."""
+    near_margin: float = 0.006
+    """m; clearance from all but the object while the hand is at it: camera mounting error."""
     approach_speed: float = 0.10
     """m/s on that line: what is met by error is pushed softly."""
     lift_speed: float = 0.15

@@ -207,3 +207,23 @@ def _chain_of(description: RobotDescription, name: str) -> Group:
         slides=np.array([joint.kind == "prismatic" for joint in joints]),
         tip=after,
     )
+
+
+def compile_kernels() -> None:
+    """Compile the kernels of `chain` into numba's cache: some 10 s once, instead of at a run."""
+    eye = np.eye(4)
+    group = Group(
+        names=("slide", "turn"),
+        lower=np.array([0.0, -np.inf]),
+        upper=np.array([1.0, np.inf]),
+        velocity=np.ones(2),
+        acceleration=np.ones(2),
+        origins=np.stack([eye, eye]),
+        axes=np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0]]),
+        slides=np.array([True, False]),
+        tip=eye,
+    )
+    here = np.array([0.5, 0.0])
+    target = group.tip_matrix(here)[None]
+    group.solve(target, here[None])
+    group.trace(target, here)

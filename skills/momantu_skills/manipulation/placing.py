@@ -22,7 +22,7 @@ POSTURES = 2
 """Postures kept per candidate, the quickest to reach."""
 ENOUGH = 4
 """Candidates with which a way is searched."""
-TESTED = 150
+TESTED = 900
 """Postures whose lowering and retreat are tested at most."""
 SPOT_PENALTY = 0.5
 """s per rank of a spot: the first are the better ones."""
@@ -72,8 +72,9 @@ def retreat_of(arm: Arm, held: HeldObject) -> Transform:
 
 def _feasible(arm: Arm, held: HeldObject, spots: Sequence[Pose]) -> list[_Candidate]:
     state = arm.state
-    carrying = arm.scene.world(state, held, 0.0, held_on_support=True)
-    opened = arm.scene.world(state, None, 0.0, width=arm.open_width)
+    margin = arm.hand.near_margin
+    carrying = arm.scene.world(state, held, margin, held_on_support=True)
+    opened = arm.scene.world(state, None, margin, width=arm.open_width)
     lost = {"collides": 0, "lowering": 0, "retreat": 0}
     found: list[_Candidate] = []
     for count, (pose, q, cost) in enumerate(_postures(arm, held, spots)):

@@ -25,7 +25,7 @@ POSTURES = 3
 """Postures kept per grasp, the quickest to reach."""
 ENOUGH = 5
 """Grasps with which a way is searched: the planner takes the first it can reach."""
-TESTED = 150
+TESTED = 900
 """Postures whose approach and lift are tested at most."""
 CUT = (0.025, 0.025, 0.03)
 """m around the object in which cells are its own: detection error and a cell's diagonal."""
@@ -146,7 +146,8 @@ class _Check:
         self._state: RobotState = arm.state
         cut = (thing.pose.transform, _cut(thing))
         self._cut = cut
-        self._open = arm.scene.world(self._state, None, 0.0, width=arm.open_width, cut=cut)
+        margin = arm.hand.near_margin
+        self._open = arm.scene.world(self._state, None, margin, width=arm.open_width, cut=cut)
         self.lost = {"hand collides": 0, "approach": 0, "lift": 0}
 
     def __call__(self, grasp: Grasp, q: Array, cost: float) -> Reach | None:
@@ -171,7 +172,12 @@ class _Check:
     def _carrying(self, grasp: Grasp) -> CollisionWorld:
         held = HeldObject(self._thing, grasp.object_from_grasp.inverse())
         return self._arm.scene.world(
-            self._state, held, 0.0, width=grasp.width, held_on_support=True, cut=self._cut
+            self._state,
+            held,
+            self._arm.hand.near_margin,
+            width=grasp.width,
+            held_on_support=True,
+            cut=self._cut,
         )
 
     def summary(self) -> str:

@@ -21,8 +21,11 @@ from momantu_skills.manipulation.surroundings import (
     Support,
     Surroundings,
     cells_of,
+    merged,
+    same_surface,
     support_around,
     support_of_plane,
+    within,
 )
 from momantu_skills.perception.cloud import points_from_depth
 
@@ -49,6 +52,7 @@ class Scene:
         self.body = body_pairs(self.model)
         self.surroundings = Surroundings()
         self.points: Array = np.empty((0, 3))
+        self.known: tuple[Support, ...] = ()
         self._mask = LinkMask(self.model.hulls, config.robot_padding)
 
     # seeing
@@ -117,10 +121,12 @@ class Scene:
             angles = np.linspace(0.0, 2 * np.pi, 12, endpoint=False)
             ring = np.stack([np.cos(angles), np.sin(angles)], axis=1)
             found = Support(centre + DISC * ring, thing.support_height)
-        self._remember(found)
-        return found
+        return self._remember(found)
 
-    def _remember(self, support: Support) -> None:
+    def _remember(self, support: Support) -> Support:
+        for known in self.known:
+            if same_surface(support, known):
+                support = merged(support, known)
         centre = support.outline.mean(axis=0)
         others = [
             other
@@ -131,6 +137,7 @@ class Scene:
         self.surroundings = Surroundings(
             self.surroundings.cells, (*others, support), self.surroundings.stamp
         )
+        return support
 
     # the robot's own body
 
@@ -188,15 +195,13 @@ class Scene:
         cells = around.cells
         for support in around.supports:
             cells = cells[~self._covered(cells, support)]
+        supports = (*around.supports, *self._unseen(state.odom_from_base))
         attached = None if held is None else Attached(self.held_corners(held))
         return CollisionWorld(
             self.body,
             self.model.configuration(state, width),
             obstacles=[
-                *(
-                    s.obstacle(base_from_odom, f"support {i}")
-                    for i, s in enumerate(around.supports)
-                ),
+                *(s.obstacle(base_from_odom, f"support {i}") for i, s in enumerate(supports)),
                 *extra,
             ],
             cells=cells,
@@ -207,19 +212,20 @@ class Scene:
             held_on_support=held_on_support,
         )
 
+    def _unseen(self, odom_from_base: Transform) -> list[Support]:
+        """Surfaces near the base that the site names and that no picture has shown yet."""
+        seen = self.surroundings.supports
+        return [
+            known
+            for known in self.known
+            if _distance(known.outline, odom_from_base) < FORGET
+            and not any(same_surface(other, known) for other in seen)
+        ]
+
     def _covered(self, cells: Array, support: Support) -> NDArray[np.bool_]:
         """(n,) which cells are the support's own: inside its outline, not above its top."""
         low = cells[:, 2] < support.height + self.config.surface_band + self.config.voxel / 2
         return np.asarray(low & within(cells[:, :2], support.outline, self.config.voxel))
-
-
-def within(points: Array, outline: Array, margin: float = 0.0) -> NDArray[np.bool_]:
-    """(n,) which points (n, 2) lie in a convex counter-clockwise outline, or `margin` around it."""
-    inside = np.ones(len(points), dtype=bool)
-    for a, b in zip(outline, np.roll(outline, -1, axis=0), strict=True):
-        edge = (b - a) / max(float(np.linalg.norm(b - a)), 1e-9)
-        inside &= (points - a) @ np.array([edge[1], -edge[0]]) <= margin
-    return inside
 
 
 def _distance(outline: Array, odom_from_base: Transform) -> float:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from momantu_bt.frames import FrameBuffer
+from momantu_bt.failure import FRAME_UNKNOWN, Failure
+from momantu_bt.frames import MAP, ODOM, FrameBuffer
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.messages import DetectedObject, RobotState, SupportPlane
 from momantu_bt.robot import Robot
@@ -15,6 +16,7 @@ from momantu_skills.manipulation.holding import Holding
 
 if TYPE_CHECKING:
     from momantu_skills.manipulation.scene import Scene
+    from momantu_skills.manipulation.surroundings import Support
 
 
 class PlanningSceneService(Service):
@@ -30,6 +32,7 @@ class PlanningSceneService(Service):
         """Build the robot's model. Parameters: any field of SceneConfig."""
         self.config = SceneConfig(**context.parameters)
         self.frames: FrameBuffer = context.frames
+        self.site = context.site
         self.holding = Holding(self.config)
         self.scene: Scene = _scene(context, self.config)
 
@@ -71,11 +74,25 @@ class PlanningSceneService(Service):
 
         What the newest picture shows replaces what older ones showed of the same region.
         """
+        self.scene.known = self._known()
         self.scene.observe(robot, self.frames, self.held)
 
     def support(self, plane: SupportPlane) -> None:
         """Take over a measured surface."""
+        self.scene.known = self._known()
         self.scene.add_support(plane)
+
+    def _known(self) -> tuple[Support, ...]:
+        """The site's surfaces in odom; none while nobody knows where the robot is."""
+        from momantu_skills.manipulation.surroundings import known_support
+
+        try:
+            odom_from_map = self.frames.lookup(ODOM, MAP)
+        except Failure as failure:
+            if failure.code != FRAME_UNKNOWN:
+                raise
+            return ()
+        return tuple(known_support(s, odom_from_map) for s in self.site.surfaces.values())
 
     def footprint(self, state: RobotState) -> Array:
         """Convex outline (k, 2) of base, arm and held object on the floor, base frame, m."""

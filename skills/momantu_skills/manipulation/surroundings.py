@@ -11,11 +11,18 @@ from scipy.spatial import ConvexHull, QhullError
 
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.messages import SupportPlane
+from momantu_bt.world import Surface
 from momantu_skills.manipulation.collision import Obstacle
 from momantu_skills.manipulation.config import SceneConfig
 
 GRID = 0.05
 """m; raster in which the points of one surface are taken to hang together."""
+KNOWN_ERROR = 0.12
+"""m by which furniture may stand beside where the site says; so much narrower it is believed."""
+KNOWN_HEIGHT = 0.03
+"""m by which it may be higher."""
+BESIDE = 0.25
+"""m outside a known surface at which the middle of a seen patch still belongs to it."""
 SUPPORT_DEPTH = 0.5
 """m below a support's top that no arm goes: nothing reaches under a table here."""
 LEAST_CELLS = 6
@@ -110,6 +117,37 @@ def _connected(flat: Array, centre: Array) -> Array | None:
         return None
     inside = np.array([(int(a), int(b)) in seen for a, b in keys])
     return np.asarray(flat[inside])
+
+
+def known_support(surface: Surface, odom_from_map: Transform) -> Support:
+    """What is sure to be there of a surface that the site names, in odom."""
+    half = np.maximum(np.array(surface.size) / 2 - KNOWN_ERROR, 0.05)
+    corners = [(-half[0], -half[1], 0.0), (half[0], -half[1], 0.0), (*half, 0.0)]
+    corners.append((-half[0], half[1], 0.0))
+    odom_from_surface = odom_from_map @ surface.map_from_surface.transform(surface.height)
+    placed = odom_from_surface.apply(corners)
+    return Support(placed[:, :2], float(placed[:, 2].mean()) + KNOWN_HEIGHT)
+
+
+def same_surface(seen: Support, known: Support) -> bool:
+    """Whether a patch that was seen is part of a surface that the site names."""
+    near = within(seen.outline.mean(axis=0)[None], known.outline, BESIDE + KNOWN_ERROR)
+    return abs(seen.height + KNOWN_HEIGHT - known.height) < 2 * KNOWN_HEIGHT and bool(near[0])
+
+
+def merged(seen: Support, known: Support) -> Support:
+    """What was seen, and what must be there beyond the picture's border, at the height seen."""
+    corners = np.vstack([seen.outline, known.outline])
+    return Support(corners[ConvexHull(corners).vertices], seen.height)
+
+
+def within(points: Array, outline: Array, margin: float = 0.0) -> NDArray[np.bool_]:
+    """(n,) which points (n, 2) lie in a convex counter-clockwise outline, or `margin` around it."""
+    inside = np.ones(len(points), dtype=bool)
+    for a, b in zip(outline, np.roll(outline, -1, axis=0), strict=True):
+        edge = (b - a) / max(float(np.linalg.norm(b - a)), 1e-9)
+        inside &= (points - a) @ np.array([edge[1], -edge[0]]) <= margin
+    return inside
 
 
 def support_of_plane(plane: SupportPlane) -> Support:
