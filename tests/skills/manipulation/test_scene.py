@@ -14,15 +14,21 @@ from momantu_skills.manipulation.holding import Holding
 from momantu_skills.manipulation.mask import LinkMask, floor_outline
 from momantu_skills.manipulation.model import ArmModel
 from momantu_skills.manipulation.surroundings import (
+    Support,
     Surroundings,
     cells_of,
+    known_support,
+    merged,
+    same_surface,
     support_around,
     support_of_plane,
+    within,
 )
 
 from momantu_bt.geometry import Pose, Pose2D, Transform
 from momantu_bt.messages import DetectedObject, RobotState, SupportPlane
 from momantu_bt.service import HeldObject
+from momantu_bt.world import Surface
 
 CONFIG = SceneConfig()
 CAN = DetectedObject(
@@ -191,6 +197,47 @@ def test_a_plane_becomes_the_same_support_in_odom() -> None:
     assert support.outline == pytest.approx(
         np.array([[1.0, 2.0], [1.0, 2.4], [0.8, 2.4], [0.8, 2.0]])
     )
+
+
+def square(x: tuple[float, float], y: tuple[float, float]) -> np.ndarray:
+    return np.array([(x[0], y[0]), (x[1], y[0]), (x[1], y[1]), (x[0], y[1])])
+
+
+def test_a_known_surface_reaches_beyond_the_picture_at_the_height_seen() -> None:
+    surface = Surface(Pose2D(1.0, 0.0, 0.0), (0.8, 1.6), 0.7, (math.pi,))
+    known = known_support(surface, Transform())
+    seen = Support(square((0.62, 1.2), (-0.3, 0.3)), 0.69)
+    assert same_surface(seen, known)
+    whole = merged(seen, known)
+    assert whole.height == 0.69
+    assert within(np.array([[1.0, 0.6], [1.0, -0.6], [0.63, 0.0]]), whole.outline).all()
+    assert not within(np.array([[0.55, 0.0], [1.0, 0.9]]), whole.outline).any()
+
+
+@pytest.mark.parametrize(
+    "seen",
+    [
+        Support(square((0.62, 1.2), (-0.3, 0.3)), 0.5),
+        Support(square((2.6, 3.2), (-0.3, 0.3)), 0.7),
+    ],
+)
+def test_another_patch_is_not_the_known_surface(seen: Support) -> None:
+    surface = Surface(Pose2D(1.0, 0.0, 0.0), (0.8, 1.6), 0.7, (math.pi,))
+    assert not same_surface(seen, known_support(surface, Transform()))
+
+
+def test_surfaces_that_no_picture_showed_are_kept_clear_of(tabletop: Any, scene_of: Any) -> None:
+    """The site has table_a at (2, 0); the hand is in it once localization says so."""
+    robot = tabletop(can=None, pose="carry")
+    scene = scene_of(robot)
+    scene.frames.add_state(robot.state())
+    q = scene.scene.model.joints(robot.state())
+    robot.table = 0.01
+    for ahead, free in ((0.0, True), (1.6, False)):
+        scene.frames.set_map_from_odom(Transform((ahead, 0.0, -0.15)), robot.now())
+        scene.observe(robot)
+        world = scene.scene.world(robot.state(), None, 0.0)
+        assert world.free(q) is free, world.touching(q)
 
 
 def test_a_picture_replaces_what_it_sees_through(tabletop: Any, scene_of: Any) -> None:
