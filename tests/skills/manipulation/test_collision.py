@@ -28,7 +28,7 @@ def rest(model: ArmModel) -> np.ndarray:
 
 def around_hand(model: ArmModel, q: np.ndarray, half: float, above: float = 0.0) -> np.ndarray:
     centre = model.group.tip_pose(q).position + np.array((0.0, 0.0, above))
-    return centre + half * np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+    return np.asarray(centre) + half * np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
 
 
 @pytest.mark.parametrize("pose", ["home", "ready", "carry", "look_around"])

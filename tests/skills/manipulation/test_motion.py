@@ -78,7 +78,7 @@ def test_an_arm_that_stays_behind_is_stuck_and_stopped(swing: Any) -> None:
 
 def test_a_watch_ends_it_early(swing: Any) -> None:
     robot, trajectory = swing
-    watched = follow(robot, robot, "arm", trajectory, until=lambda r: r.now() > 0.5)
+    watched = follow(robot, robot, "arm", trajectory, until=lambda _: robot.now() > 0.5)
     assert run(watched, robot) is False
     assert robot.now() < 1.0
     assert robot.joints["shoulder_pan_joint"] < trajectory.positions[-1][1] - 0.1

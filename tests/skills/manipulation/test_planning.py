@@ -52,7 +52,7 @@ def above_table(model: ArmModel, world: CollisionWorld, seed: int) -> np.ndarray
         found, good = GROUP.solve(target[None], random.uniform(lower, upper, (8, len(lower))))
         for q in found[0][good[0]]:
             if world.free(q):
-                return q
+                return np.asarray(q)
     raise AssertionError("no free posture above the table")
 
 
