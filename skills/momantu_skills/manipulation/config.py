@@ -46,7 +46,7 @@ class PlanningConfig:
     spline rounds a corner."""
     searches: int = 1500
     """Growths of a search tree after which it gives up: about 0.3 s."""
-    attempts: int = 3
+    attempts: int = 2
     """Searches, of which the quickest path is taken."""
     rounding: tuple[float, ...] = (0.5, 0.25, 0.1)
     """rad around a corner in which the spline may cut it, tried in turn: stops cost time."""

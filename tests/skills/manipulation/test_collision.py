@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 import pytest
 from momantu_skills.manipulation.collision import (
@@ -28,7 +30,8 @@ def rest(model: ArmModel) -> np.ndarray:
 
 def around_hand(model: ArmModel, q: np.ndarray, half: float, above: float = 0.0) -> np.ndarray:
     centre = model.group.tip_pose(q).position + np.array((0.0, 0.0, above))
-    return np.asarray(centre) + half * np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+    corners = np.array(list(product((-1, 1), repeat=3)))
+    return np.asarray(centre) + half * corners
 
 
 @pytest.mark.parametrize("pose", ["home", "ready", "carry", "look_around"])
