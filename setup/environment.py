@@ -48,7 +48,7 @@ def main() -> None:
         print(REASONS, flush=True)
         _make_venv()
         _install_packages()
-        _call([str(VENV_PYTHON), "-m", "momantu_skills.navigation.warm_up"])
+        _call([str(VENV_PYTHON), "-m", "momantu_skills.warm_up"])
         STAMP.write_text(wanted, encoding="utf-8")
     if _call([str(VENV_PYTHON), "-m", "momantu_bt.vulkan.install", "--quiet"]) != 0:
         raise SetupError("everything but rendering is installed; see the line above")

@@ -17,11 +17,12 @@ from momantu_skills.manipulation.config import SceneConfig
 
 GRID = 0.05
 """m; raster in which the points of one surface are taken to hang together."""
-KNOWN_ERROR = 0.12
-"""m by which furniture may stand beside where the site says; so much narrower it is believed."""
+EDGE = 0.03
+"""m by which a top may reach beyond what was seen of it: pictures have holes at edges, and what
+lies beyond their border is taken from the site, beside which furniture stands a little."""
 KNOWN_HEIGHT = 0.03
 """m by which it may be higher."""
-BESIDE = 0.25
+BESIDE = 0.37
 """m outside a known surface at which the middle of a seen patch still belongs to it."""
 SUPPORT_DEPTH = 0.5
 """m below a support's top that no arm goes: nothing reaches under a table here."""
@@ -37,8 +38,9 @@ class Support:
     height: float
 
     def obstacle(self, base_from_odom: Transform, name: str) -> Obstacle:
-        """The solid below the top, in base."""
-        low = np.column_stack([self.outline, np.full(len(self.outline), self.height)])
+        """The solid below the top, in base, wider than the outline by `EDGE`."""
+        wide = _wider(self.outline, EDGE)
+        low = np.column_stack([wide, np.full(len(wide), self.height)])
         corners = np.vstack([low, low - (0.0, 0.0, SUPPORT_DEPTH)])
         return Obstacle(name, base_from_odom.apply(corners), support=True)
 
@@ -119,9 +121,17 @@ def _connected(flat: Array, centre: Array) -> Array | None:
     return np.asarray(flat[inside])
 
 
+def _wider(outline: Array, by: float) -> Array:
+    """A convex outline (k, 2) grown by `by` m to all sides: its Minkowski sum with an octagon."""
+    angles = np.arange(8) * (np.pi / 4)
+    octagon = by * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    corners = (outline[:, None] + octagon).reshape(-1, 2)
+    return np.asarray(corners[ConvexHull(corners).vertices])
+
+
 def known_support(surface: Surface, odom_from_map: Transform) -> Support:
-    """What is sure to be there of a surface that the site names, in odom."""
-    half = np.maximum(np.array(surface.size) / 2 - KNOWN_ERROR, 0.05)
+    """What the site says of a surface that it names, in odom."""
+    half = np.array(surface.size) / 2
     corners = [(-half[0], -half[1], 0.0), (half[0], -half[1], 0.0), (*half, 0.0)]
     corners.append((-half[0], half[1], 0.0))
     odom_from_surface = odom_from_map @ surface.map_from_surface.transform(surface.height)
@@ -131,7 +141,7 @@ def known_support(surface: Surface, odom_from_map: Transform) -> Support:
 
 def same_surface(seen: Support, known: Support) -> bool:
     """Whether a patch that was seen is part of a surface that the site names."""
-    near = within(seen.outline.mean(axis=0)[None], known.outline, BESIDE + KNOWN_ERROR)
+    near = within(seen.outline.mean(axis=0)[None], known.outline, BESIDE)
     return abs(seen.height + KNOWN_HEIGHT - known.height) < 2 * KNOWN_HEIGHT and bool(near[0])
 
 

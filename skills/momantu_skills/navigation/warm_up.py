@@ -1,7 +1,4 @@
-"""Compile navigation's kernels once, so that no run waits for them: ten seconds on one core.
-
-`python -m momantu_skills.navigation.warm_up` is quick where the compiled kernels are there already.
-"""
+"""Compile navigation's kernels once, so that no run waits for them: ten seconds on one core."""
 
 from __future__ import annotations
 
@@ -44,7 +41,3 @@ def compile_kernels() -> None:
     approach.simulate(here, (0.0, 0.0), goal, limits, costmap, disc)
     approach.command(here, goal, limits)
     safe_share((0.5, 0.1), (0.0, 0.0), limits, disc, rays.points())
-
-
-if __name__ == "__main__":
-    compile_kernels()

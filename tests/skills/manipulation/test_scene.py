@@ -14,6 +14,7 @@ from momantu_skills.manipulation.holding import Holding
 from momantu_skills.manipulation.mask import LinkMask, floor_outline
 from momantu_skills.manipulation.model import ArmModel
 from momantu_skills.manipulation.surroundings import (
+    EDGE,
     Support,
     Surroundings,
     cells_of,
@@ -181,6 +182,14 @@ def test_a_support_is_the_patch_below_the_object_not_another_at_its_height() -> 
     solid = found.obstacle(Transform(), "support")
     assert solid.support
     assert solid.corners[:, 2].max() == pytest.approx(0.72)
+
+
+def test_a_support_keeps_the_arm_off_the_edge_that_pictures_miss() -> None:
+    top = Support(square((0.6, 1.0), (-0.3, 0.3)), 0.72)
+    corners = top.obstacle(Transform(), "support").corners
+    for axis, (low, high) in enumerate(((0.6, 1.0), (-0.3, 0.3))):
+        assert corners[:, axis].min() == pytest.approx(low - EDGE)
+        assert corners[:, axis].max() == pytest.approx(high + EDGE)
 
 
 def test_too_few_points_are_no_support() -> None:
