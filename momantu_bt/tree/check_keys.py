@@ -177,14 +177,11 @@ class _KeyCheck:
         return self.script_keys(script, before, place)
 
     def script_keys(self, script: Script, before: Known, place: Place) -> Known:
-        """Reads of a script, but for keys that it writes itself, and what it leaves written."""
-        own = {variable.key for variable in script.writes}
-        for variable in script.reads:
-            if variable.key in own:
-                self.reads.seen.add(variable.key)
-            else:
-                where = within(place, f"${variable.key}", self.context.document.source)
-                self.reads.lookup(_reference(variable.key), before, where)
+        """Keys that a script needs, those that it reads, and what it leaves written."""
+        self.reads.seen.update(variable.key for variable in script.reads)
+        for variable in script.needs:
+            where = within(place, f"${variable.key}", self.context.document.source)
+            self.reads.lookup(_reference(variable.key), before, where)
         after = before
         for variable in script.writes:
             if not variable.key.startswith("@"):

@@ -16,7 +16,7 @@ from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.yaml_format import read
 from momantu_bt.tree.yaml_source import MAX_BYTES, YamlSyntaxError, compose, plain_value
 
-WORD = re.compile(r"[A-Za-z_]\w*")
+WORD = re.compile(r"[^\W\d]\w*")
 """What can be a key in a script."""
 
 __all__ = ["Checked", "TreeError", "TreeNotFound", "load", "read_file", "read_values"]

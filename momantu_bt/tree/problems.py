@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import re
+import unicodedata
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import IntEnum
@@ -112,9 +113,14 @@ def valid_names(word: str, candidates: Iterable[str], what: str) -> str:
     return f"{what}: {', '.join(names)}" if names else f"there are no {what}"
 
 
+def lines_of(text: str) -> list[str]:
+    """A text's lines as YAML counts them; some characters that end lines elsewhere do not here."""
+    return re.split(r"\r\n|\r|\n", text)
+
+
 def within(place: Place, word: str, source: Mapping[str, str]) -> Place:
     """The stretch of a place's line that holds a word; the place itself where it does not."""
-    lines = source.get(place.file, "").splitlines()
+    lines = lines_of(source.get(place.file, ""))
     line = lines[place.line - 1] if 0 < place.line <= len(lines) else ""
     found = re.compile(rf"{re.escape(word)}(?!\w)").search(line, place.column - 1)
     return place if found is None else Place(place.file, place.line, found.start() + 1, len(word))
@@ -130,16 +136,24 @@ def show(problem: Problem, source: Mapping[str, str]) -> str:
     place = problem.place
     word = problem.severity.name.lower()
     head = f"{place}: {word}: {problem.message} [{problem.code}]"
-    lines = source.get(place.file, "").splitlines()
+    lines = lines_of(source.get(place.file, ""))
     if not 0 < place.line <= len(lines):
         return head + (f"\n  {problem.hint}" if problem.hint else "")
     text = lines[place.line - 1]
     number = str(place.line)
     shown, column = _window(text, place.column - 1)
-    length = max(1, min(place.length, len(shown) - column))
-    gap = "".join("\t" if c == "\t" else " " for c in shown[:column])
-    caret = f"  {' ' * len(number)} | {gap}{'^' * length}"
+    marked = shown[column : column + max(1, place.length)]
+    gap = "".join("\t" if c == "\t" else " " * _cells(c) for c in shown[:column])
+    caret = f"  {' ' * len(number)} | {gap}{'^' * max(1, sum(map(_cells, marked)))}"
+    shown = "".join(c if c == "\t" or c.isprintable() else "\ufffd" for c in shown)
     return f"{head}\n  {number} | {shown}\n{caret}{' ' + problem.hint if problem.hint else ''}"
+
+
+def _cells(character: str) -> int:
+    """How many cells of a terminal a character takes."""
+    if unicodedata.category(character) in ("Mn", "Me"):
+        return 0
+    return 2 if unicodedata.east_asian_width(character) in "WF" else 1
 
 
 def _window(text: str, column: int) -> tuple[str, int]:

@@ -51,12 +51,14 @@ class Script:
     """A script ready to run. text: its canonical spelling.
 
     reads: variables it reads, writes: keys it assigns, both in the order of the text.
+    needs: variables that must have a value before it runs; what it creates first is not among them.
     """
 
     text: str
     statements: tuple[Expression, ...]
     reads: tuple[Variable, ...]
     writes: tuple[Variable, ...]
+    needs: tuple[Variable, ...]
 
     def run(self, board: Board) -> object:
         """Run all statements; the value of the last one (None when there is none).
@@ -104,6 +106,8 @@ class _Parser:
         self.depth = 0
         self.reads: list[Variable] = []
         self.writes: list[Variable] = []
+        self.needs: list[Variable] = []
+        self.made: frozenset[str] = frozenset()
 
     @property
     def now(self) -> Token:
@@ -127,11 +131,17 @@ class _Parser:
                 raise self.unexpected("`;`, an operator or the end")
         if not statements:
             raise ScriptSyntaxError("an empty script", 0)
-        return Script(self.text, tuple(statements), tuple(self.reads), tuple(self.writes))
+        return Script(
+            self.text,
+            tuple(statements),
+            tuple(self.reads),
+            tuple(self.writes),
+            tuple(self.needs),
+        )
 
     def statement(self) -> Expression:
         start = self.now
-        reads = len(self.reads)
+        reads, needs = len(self.reads), len(self.needs)
         left = self.choice()
         operator = self.accept(*_ASSIGN)
         if operator is None:
@@ -142,18 +152,25 @@ class _Parser:
             )
         if operator.text in (":=", "="):
             del self.reads[reads:]
+        if operator.text == ":=":
+            del self.needs[needs:]
         value = self.choice()
         self.writes.append(left)
+        self.made |= {left.key}
         return Assignment(left, operator.text, value)
 
     def choice(self) -> Expression:
         condition = self.logic()
         if self.accept("?") is None:
             return condition
+        made = self.made
         yes = self.nested()
         if self.accept(":") is None:
             raise self.unexpected("`:`")
-        return Choice(condition, yes, self.logic())
+        made_by_yes, self.made = self.made, made
+        no = self.logic()
+        self.made &= made_by_yes
+        return Choice(condition, yes, no)
 
     def logic(self) -> Expression:
         first = self.comparison()
@@ -239,6 +256,8 @@ class _Parser:
             key, *parts = token.text.split(".")
             variable = Variable(key, tuple(parts), token.offset, token.length)
             self.reads.append(variable)
+            if key not in self.made:
+                self.needs.append(variable)
             return variable
         self.index -= 1
         raise self.unexpected("a variable, a number, a text in quotes or `(`")

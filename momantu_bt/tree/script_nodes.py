@@ -193,7 +193,7 @@ def _number(value: Any, operator: str) -> Any:
 
 def _integer(value: Any, operator: str) -> int:
     number = _number(value, operator)
-    if float(number) != int(number):
+    if not isinstance(number, int) and not number.is_integer():
         raise ScriptError(f"{operator} needs whole numbers, not {number}")
     return int(number)
 
@@ -218,7 +218,10 @@ def apply(operator: str, left: Any, right: Any) -> Any:
     _number(right, operator)
     if operator == "/" and right == 0:
         raise ScriptError("a division by zero")
-    return _OPERATIONS[operator](left, right)
+    try:
+        return _OPERATIONS[operator](left, right)
+    except OverflowError:
+        raise ScriptError(f"the numbers are too large for {operator}") from None
 
 
 _OPERATIONS: dict[str, Callable[[Any, Any], Any]] = {
@@ -251,7 +254,10 @@ def _compare(operator: str, left: Any, right: Any) -> bool:
 
 def _same(left: Any, right: Any) -> bool:
     if isinstance(left, bool | int | float) and isinstance(right, bool | int | float):
-        return abs(left - right) <= EPSILON
+        try:
+            return left == right or abs(left - right) <= EPSILON
+        except OverflowError:  # a whole number beyond every float
+            return False
     return bool(left == right)
 
 

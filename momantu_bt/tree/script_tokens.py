@@ -69,6 +69,9 @@ def _token(match: re.Match[str], dollar: bool) -> Token:
     if kind == "dollar":
         if not dollar:
             raise ScriptSyntaxError("`$` does not belong here", offset, len(text), "write the name")
+        if text[1:] in ("true", "false"):
+            hint = f"write {text[1:]}"
+            raise ScriptSyntaxError(f"{text} is a value, no key", offset, len(text), hint)
         return Token("name", text[1:], offset, len(text))
     if kind == "name" and dollar:
         if text in _WORDS:
@@ -103,6 +106,15 @@ def _stray(text: str, position: int) -> ScriptSyntaxError:
     return ScriptSyntaxError(f"{character!r} means nothing here", position)
 
 
+def _apart(before: list[str], word: str, following: str) -> str:
+    """A word that replaces a sign, with the spaces that keep it apart from its neighbours."""
+    last = "".join(before)[-1:]
+    if word == "not":
+        return word + ("" if following.isspace() else " ")
+    left = "" if last.isspace() else " "
+    return left + word + ("" if following.isspace() else " ")
+
+
 def respell(text: str, found: list[Token], *, dollar: bool) -> str:
     """The same script in the other spelling, spaces and brackets kept.
 
@@ -117,7 +129,7 @@ def respell(text: str, found: list[Token], *, dollar: bool) -> str:
         if token.kind == "name" and token.text not in ("true", "false"):
             pieces.append(("$" if dollar else "") + token.text)
         elif token.kind == "operator" and dollar and token.text in words:
-            pieces.append(words[token.text] + (" " if token.text == "!" else ""))
+            pieces.append(_apart(pieces, words[token.text], text[position : position + 1]))
         elif token.kind == "operator" and token.word:
             pieces.append(token.text)
             while token.text == "!" and text[position : position + 1] == " ":

@@ -86,7 +86,7 @@ def assignable(source: ValueType, target: ValueType) -> bool:
 
     Errs on the side of yes where only the value can tell: `any`, unions, choices of texts.
     """
-    if source in (object, Any) or target in (object, Any):
+    if source == target or source in (object, Any) or target in (object, Any):
         return True
     if is_union(source):
         return any(assignable(member, target) for member in members(source))

@@ -65,7 +65,7 @@ def quantity(text: str) -> Quantity | None:
     Several parts are added when they are of one kind: `1 min 30 s`.
 
     Raises:
-        UnitError: it looks like one, but a unit is unknown or the kinds differ.
+        UnitError: it looks like one, but a unit is unknown, the kinds differ or it is too large.
     """
     parts = _parts(text)
     if not parts:
@@ -79,6 +79,8 @@ def quantity(text: str) -> Quantity | None:
             raise UnitError(f"{text!r} adds {_WHAT[kind]} and {_WHAT[si]}")
         kind = si
         total += number * times / divided
+    if not math.isfinite(total):
+        raise UnitError(f"{text!r} is too large for a number")
     return Quantity(total, kind)
 
 

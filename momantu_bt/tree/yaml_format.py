@@ -126,14 +126,20 @@ class _Reader:
         for key, raw in self.mapping(entry[1], "values", "key: value"):
             if not self.is_key(key):
                 continue
-            found = port_value(raw, key.text, self.problems)
-            if isinstance(found, Literal):
+            found = self.written_out(raw, "one of `values`")
+            if found is not None:
                 document.values[key.text] = found
                 document.value_places[key.text] = raw.place
-            elif found is not None:
-                self.problems.error(
-                    "wire-inside", raw.place, "`values` are written out; a wire has no place here"
-                )
+
+    def written_out(self, raw: Raw, what: str) -> Literal | None:
+        """A value without wires; None where a problem was reported."""
+        found = port_value(raw, "", self.problems)
+        if found is None or isinstance(found, Literal):
+            return found
+        hint = "write the value; in a text, $$ is a dollar"
+        message = f"{what} is written out; a wire has no place here"
+        self.problems.error("wire-inside", raw.place, message, hint)
+        return None
 
     def is_key(self, key: Scalar) -> bool:
         if isinstance(key.value, str) and KEY.fullmatch(key.text):
@@ -242,12 +248,13 @@ class _Reader:
                 self.problems.error("unknown-key", name.place, message, hint)
         type_ = having.get("type")
         default = having.get("default")
+        found = None if default is None else self.written_out(default, "a default")
         return PortDeclaration(
             key.text,
             direction,
             type_.text if isinstance(type_, Scalar) else "any",
             type_.place if type_ is not None else raw.place,
-            None if default is None else Literal(plain_value(default)),
+            found,
             str(plain_value(having["doc"])) if "doc" in having else "",
         )
 

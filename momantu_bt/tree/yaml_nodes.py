@@ -312,6 +312,7 @@ class NodeReader:
         if not isinstance(value, Entries):
             self._misfit(node, value, f"{_said(node)} takes `try:` and `catch:`")
             return
+        drop_duplicates(value, self.problems)
         for raw in self._split(node, _without(value, "catch"), spec, ("try",)):
             self._waiting.append((raw, node.children.append))
         having = {key.text: raw for key, raw in value.entries}
@@ -384,7 +385,10 @@ def _as_condition(value: Raw) -> Raw | None:
 
 def _within(value: Scalar, error: ScriptSyntaxError) -> Place:
     place = value.place
-    offset = error.offset + (1 if value.quoted else 0)
-    if offset >= place.length and place.length > 1:
+    quotes = 1 if value.quoted else 0
+    if place.length != len(value.text) + 2 * quotes:
+        return place  # several lines, or escapes: an offset in the text is none in the file
+    offset = error.offset + quotes
+    if offset >= place.length:
         return place
     return Place(place.file, place.line, place.column + offset, error.length)

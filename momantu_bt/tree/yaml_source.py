@@ -6,6 +6,7 @@ Every key of a mapping is kept, so that all duplicates can be reported; booleans
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias
@@ -16,7 +17,7 @@ from ruamel.yaml.error import MarkedYAMLError, StringMark
 from ruamel.yaml.reader import ReaderError
 
 from momantu_bt.tree.model import Place
-from momantu_bt.tree.problems import Problem
+from momantu_bt.tree.problems import Problem, lines_of
 
 MAX_BYTES = 1_000_000
 MAX_DEPTH = 100
@@ -99,8 +100,8 @@ def compose(text: str, file: str) -> Raw:
     except MarkedYAMLError as error:
         raise YamlSyntaxError(_in_our_words(error, text, file)) from None
     except ReaderError as error:
-        line = text.count("\n", 0, error.position) + 1
-        column = error.position - (text.rfind("\n", 0, error.position) + 1) + 1
+        before = lines_of(text[: error.position])
+        line, column = len(before), len(before[-1]) + 1
         message = f"the character U+{ord(text[error.position]):04X} cannot stand in a tree file"
         raise YamlSyntaxError(
             Problem("syntax", message, Place(file, line, column), "remove it")
@@ -179,7 +180,14 @@ class _Builder:
     def scalar(self, event: Any) -> Scalar:
         quoted = event.style is not None
         value = event.value if quoted else resolve(event.value)
-        return Scalar(value, str(event.value), quoted, self.place(event))
+        return Scalar(value, str(event.value), quoted, self.scalar_place(event))
+
+    def scalar_place(self, event: Any) -> Place:
+        """Of the scalar; of its key where nothing is written, as YAML ends that on a later line."""
+        place = self.place(event)
+        key = self.stack[-1].key if self.stack else None
+        missing = event.style is None and event.value == "" and key is not None
+        return key.place if key is not None and missing and key.place.line != place.line else place
 
     def open(self, raw: Items | Entries, event: Any) -> None:
         if len(self.stack) >= MAX_DEPTH:
@@ -247,7 +255,10 @@ def resolve(text: str) -> Any:
         return text
     if _INT.fullmatch(text):
         return int(text, 0) if text[:2] in ("0x", "0o") else int(text)
-    return float(text) if _FLOAT.fullmatch(text) else text
+    if not _FLOAT.fullmatch(text):
+        return text
+    number = float(text)
+    return number if math.isfinite(number) else text
 
 
 def _bound(place: Place, message: str) -> YamlSyntaxError:
@@ -270,7 +281,7 @@ def _in_our_words(error: MarkedYAMLError, text: str, file: str) -> Problem:
 
 def _bare_node_above(text: str, mark: StringMark | None) -> str:
     """The hint for modifiers under a node that has no `:` yet."""
-    above = text.splitlines()[: mark.line if mark is not None else 0]
+    above = lines_of(text)[: mark.line if mark is not None else 0]
     bare = re.fullmatch(r"\s*-\s+(\w+)\s*", above[-1]) if above else None
     if bare is None:
         return ""
