@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from momantu_bt.tree.check import NO_WORLD
 from momantu_bt.tree.load import load
 from momantu_bt.tree.printing import lines, value_text
 
@@ -25,7 +26,7 @@ def show(
       momantu-bt show trees/bring_object.yaml
     """
     document = load(tree, world=world).document
-    typer.echo(f"{document.file}: {document.main}" + _where(document.world))
+    typer.echo(f"{document.file}: {document.main}" + _where(world or document.world))
     for name, value in document.values.items():
         typer.echo(f"{INDENT}{name} = {value_text(value)}")
     for line in lines(document):
@@ -35,4 +36,4 @@ def show(
 
 
 def _where(world: str | None) -> str:
-    return f" in {world}" if world is not None else ""
+    return "" if world in (None, NO_WORLD) else f" in {world}"

@@ -35,8 +35,11 @@ def find(name: str) -> Path:
         TreeNotFound: with the nearest name there is.
     """
     path = Path(name)
-    if path.is_file():
-        return path
+    try:
+        if path.is_file():
+            return path
+    except OSError as error:
+        raise TreeNotFound(f"{name} cannot be read: {error.strerror}") from None
     having = bundled()
     if name in having:
         return having[name]

@@ -85,7 +85,7 @@ class _Reader:
                 "the file does not say which language it is in",
                 f"begin with `momantu_bt: {VERSION}`",
             )
-        elif not isinstance(entry[1], Scalar) or entry[1].value != VERSION:
+        elif not isinstance(entry[1], Scalar) or entry[1].text != str(VERSION):
             self.problems.error(
                 "wrong-version",
                 entry[1].place,
@@ -214,13 +214,8 @@ class _Reader:
 
     def declarations(self, tree: Tree, raw: Raw, direction: str) -> None:
         if isinstance(raw, Items):
-            bare = [item for item in raw.items if isinstance(item, Scalar)]
-            entries: list[tuple[Scalar, Raw]] = [
-                (item, Scalar("any", "any", False, item.place)) for item in bare
-            ]
-        else:
-            entries = self.mapping(raw, f"{direction}puts", "name: type")
-        for key, value in entries:
+            raw = self.untyped(raw, f"{direction}puts")
+        for key, value in self.mapping(raw, f"{direction}puts", "name: type"):
             if not self.is_key(key):
                 continue
             if key.text in tree.ports and tree.ports[key.text].direction != direction:
@@ -230,6 +225,17 @@ class _Reader:
             found = self.declaration(key, value, direction)
             if found is not None:
                 tree.ports[key.text] = found
+
+    def untyped(self, raw: Items, name: str) -> Entries:
+        """`[a, b]` as `{a: any, b: any}`."""
+        entries: list[tuple[Scalar, Raw]] = []
+        for item in raw.items:
+            if isinstance(item, Scalar):
+                entries.append((item, Scalar("any", "any", False, item.place)))
+            else:
+                hint = f"write `{name}: {{name: type}}`"
+                self.problems.error("wrong-value", item.place, f"`{name}` lists names", hint)
+        return Entries(entries, raw.place)
 
     def declaration(self, key: Scalar, raw: Raw, direction: str) -> PortDeclaration | None:
         if isinstance(raw, Scalar) and isinstance(raw.value, str):
@@ -247,6 +253,9 @@ class _Reader:
                 message = f"an input or output has no {name.text!r}"
                 self.problems.error("unknown-key", name.place, message, hint)
         type_ = having.get("type")
+        if type_ is not None and not isinstance(type_, Scalar):
+            hint = "such as `type: text` or `type: list of int`"
+            self.problems.error("wrong-value", type_.place, "`type` is the name of a type", hint)
         default = having.get("default")
         found = None if default is None else self.written_out(default, "a default")
         return PortDeclaration(

@@ -329,18 +329,22 @@ class NodeReader:
             return
         drop_duplicates(raw, self.problems)
         for key, value in raw.entries:
-            codes = tuple(part.strip() for part in key.text.split("|"))
-            for code in codes:
-                if not _HANDLER_CODE.fullmatch(code):
-                    hint = "codes are upper-case words, `A | B` several, `any` the rest"
-                    self._error("bad-code", key.place, f"{code!r} is no failure code", hint)
-            handler = Handler(codes, None, key.place)
+            handler = Handler(self._codes(key), None, key.place)
             node.handlers.append(handler)
             if isinstance(value, Scalar) and value.text == AGAIN:
                 if node.type != "Recover":
                     self._error("again", value.place, "`again` has a meaning in `recover` alone")
                 continue
             self._waiting.append((value, _handler_setter(handler)))
+
+    def _codes(self, key: Scalar) -> tuple[str, ...]:
+        """What a handler is for, without what cannot be a code."""
+        codes = tuple(part.strip() for part in key.text.split("|"))
+        wrong = [code for code in codes if not _HANDLER_CODE.fullmatch(code)]
+        for code in wrong:
+            hint = "codes are upper-case words, `A | B` several, `any` the rest"
+            self._error("bad-code", key.place, f"{code!r} is no failure code", hint)
+        return tuple(code for code in codes if code not in wrong)
 
 
 def _handler_setter(handler: Handler) -> Put:
