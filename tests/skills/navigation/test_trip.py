@@ -1,0 +1,164 @@
+"""Whole trips: they arrive, keep their frame, recover as often as allowed, and then give up."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from momantu_skills.navigation import trip
+from momantu_skills.navigation.goals import Stand
+from momantu_skills.navigation.mppi import Mppi
+from momantu_skills.navigation.trip import Destination, be_sure, travel
+
+from momantu_bt.failure import Failure
+from momantu_bt.geometry import Pose2D
+
+TOLERANCE = (0.05, 0.05)
+
+
+class Belief:
+    """A localization that is as sure as it is told to be."""
+
+    def __init__(self, sigma: float = 0.01, quality: float = 1.0) -> None:
+        self.covariance, self.quality = np.eye(3) * sigma**2, quality
+
+
+def _base(obedient: Any, start: Pose2D, *boxes: Any, belief: Belief | None = None) -> Any:
+    base = obedient(start, boxes)
+    base.localization = belief or Belief()
+    return base
+
+
+def _mppi(base: Any) -> Mppi:
+    return Mppi(base.limits, base.config, np.random.default_rng(0))
+
+
+def _to(*poses: Pose2D, **more: Any) -> Destination:
+    stands = [Stand(pose, n, float(n)) for n, pose in enumerate(poses)]
+    return Destination(lambda: stands, TOLERANCE, **more)
+
+
+def _travel(base: Any, run_move: Any, to: Destination, *, recovery: bool = True) -> None:
+    run_move(travel(base, _mppi(base), to, recovery=recovery))
+
+
+def _code(base: Any, run_move: Any, to: Destination, *, recovery: bool) -> str:
+    with pytest.raises(Failure) as caught:
+        _travel(base, run_move, to, recovery=recovery)
+    assert base.stands()
+    return caught.value.code
+
+
+STARTS = st.builds(Pose2D, st.floats(0.8, 3.0), st.floats(0.8, 5.2), st.floats(-3.1, 3.1))
+GOALS = st.builds(Pose2D, st.floats(5.0, 7.0), st.floats(0.8, 5.2), st.floats(-3.1, 3.1))
+DOOR = ((3.9, 0.0, 4.1, 2.4), (3.9, 3.6, 4.1, 6.0))
+
+
+@settings(max_examples=10)
+@given(STARTS, GOALS)
+def test_a_trip_through_a_door_arrives_and_touches_nothing(
+    obedient: Any, run_move: Any, start: Pose2D, goal: Pose2D
+) -> None:
+    base = _base(obedient, start, *DOOR)
+    _travel(base, run_move, _to(goal))
+    end = goal.inverse() @ base.pose()
+    assert math.hypot(end.x, end.y) <= TOLERANCE[0]
+    assert abs(end.yaw) <= TOLERANCE[1]
+    assert base.least > 0.0
+    assert base.stands()
+
+
+def test_at_the_goal_nothing_is_done(obedient: Any, run_move: Any) -> None:
+    base = _base(obedient, Pose2D(3.0, 3.0, 0.3))
+    _travel(base, run_move, _to(Pose2D(3.02, 3.0, 0.32)))
+    assert base.phases == []
+
+
+@pytest.mark.parametrize("side", [0, 1, 2, 3])
+def test_side_counts_through_the_stands_and_starts_again(
+    obedient: Any, run_move: Any, side: int
+) -> None:
+    stands = [Pose2D(4.0, 3.0, 0.0), Pose2D(3.0, 4.0, 1.5), Pose2D(3.0, 2.0, -1.5)]
+    base = _base(obedient, Pose2D(2.6, 3.0, 0.0))
+    _travel(base, run_move, _to(*stands, side=side))
+    assert base.pose().distance_to(stands[side % 3]) <= TOLERANCE[0]
+
+
+@pytest.mark.parametrize("in_odom", [False, True])
+def test_a_goal_that_was_seen_stays_in_odometrys_frame(
+    obedient: Any, run_move: Any, in_odom: bool
+) -> None:
+    """Localization corrects itself by 0.2 m on the way."""
+    base = _base(obedient, Pose2D(2.0, 3.0, 0.0))
+    goal = Pose2D(4.0, 3.0, 0.0)
+    odom_from_goal = base.map_from_odom().inverse() @ goal
+    to = Destination(lambda: [Stand(goal, 0, 0.0)], TOLERANCE, in_odom=in_odom)
+
+    def correct() -> None:
+        if base.at.x > 0.3:
+            base.shift = Pose2D(0.0, 0.2, 0.0)
+
+    run_move(travel(base, _mppi(base), to, recovery=False), correct)
+    in_odometry = base.at.distance_to(odom_from_goal)
+    in_map = base.pose().distance_to(goal)
+    assert (in_odometry if in_odom else in_map) <= TOLERANCE[0]
+    assert (in_map if in_odom else in_odometry) > 0.1
+
+
+@pytest.mark.parametrize(("recovery", "times"), [(False, 0), (True, 3)])
+def test_a_goal_in_a_wall_is_tried_as_often_as_allowed(
+    obedient: Any, run_move: Any, recovery: bool, times: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    recovered: list[int] = []
+    original = trip._recover
+
+    def counted(vehicle: Any, attempt: int) -> Any:
+        recovered.append(attempt)
+        return original(vehicle, attempt)
+
+    monkeypatch.setattr(trip, "_recover", counted)
+    base = _base(obedient, Pose2D(2.0, 3.0, 0.0), (5.0, 2.0, 6.0, 4.0))
+    assert _code(base, run_move, _to(Pose2D(5.5, 3.0, 0.0)), recovery=recovery) == "GOAL_BLOCKED"
+    assert recovered == list(range(times))
+    assert base.now() < 60.0
+
+
+def test_a_room_without_a_door_is_no_path(obedient: Any, run_move: Any) -> None:
+    base = _base(obedient, Pose2D(2.0, 3.0, 0.0), (3.9, 0.0, 4.1, 6.0))
+    assert _code(base, run_move, _to(Pose2D(6.0, 3.0, 0.0)), recovery=False) == "NO_PATH"
+
+
+def test_a_base_that_does_not_come_along_makes_no_progress(obedient: Any, run_move: Any) -> None:
+    base = _base(obedient, Pose2D(1.5, 3.0, 0.0))
+    base.stuck = True
+    assert _code(base, run_move, _to(Pose2D(6.0, 3.0, 0.0)), recovery=False) == "NO_PROGRESS"
+    assert base.now() < 2.0 * base.config.patience
+
+
+@pytest.mark.parametrize("belief", [Belief(sigma=0.3), Belief(quality=0.2), Belief(sigma=0.14)])
+def test_without_knowing_where_it_is_it_does_not_drive(
+    obedient: Any, run_move: Any, belief: Belief
+) -> None:
+    base = _base(obedient, Pose2D(2.0, 3.0, 0.0), belief=belief)
+    assert _code(base, run_move, _to(Pose2D(4.0, 3.0, 0.0)), recovery=True) == "NOT_LOCALIZED"
+    assert base.at == Pose2D(0.0, 0.0)
+
+
+def test_it_waits_for_localization_a_little(obedient: Any, run_move: Any) -> None:
+    base = _base(obedient, Pose2D(2.0, 3.0, 0.0), belief=Belief(quality=0.0))
+    for _ in be_sure(base):
+        if base.now() > 1.0:
+            base.localization = Belief()
+    assert 1.0 < base.now() < 1.5
+
+
+def test_another_failure_is_not_recovered_from(obedient: Any, run_move: Any) -> None:
+    base = _base(obedient, Pose2D(2.0, 3.0, 0.0))
+
+    def stands() -> list[Stand]:
+        raise Failure("BAD_GOAL", "no such place")
+
+    assert _code(base, run_move, Destination(stands, TOLERANCE), recovery=True) == "BAD_GOAL"
+    assert base.now() < 1.0
