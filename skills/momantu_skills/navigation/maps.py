@@ -73,12 +73,7 @@ def _read_map(path: Path) -> GridMap:
     resolution = _number(path, entry, "resolution")
     if not resolution > 0.0:
         raise ValueError(f"{path}: resolution is {resolution}, expected metres per pixel above 0")
-    origin = entry.get("origin")
-    if not isinstance(origin, list) or len(origin) != 3:
-        raise ValueError(f"{path}: origin is {origin!r}, expected [x, y, yaw]")
-    x, y, yaw = (float(value) for value in origin)
-    if yaw != 0.0:
-        raise ValueError(f"{path}: origin has yaw {yaw}; only unturned maps can be read, write 0.0")
+    origin = _origin(path, entry)
     if entry.get("mode", "trinary") != "trinary":
         raise ValueError(f"{path}: mode is {entry['mode']!r}, only trinary can be read")
     image = path.parent / str(entry.get("image", ""))
@@ -88,7 +83,7 @@ def _read_map(path: Path) -> GridMap:
     occupied = darkness > _number(path, entry, "occupied_thresh")
     free = darkness < _number(path, entry, "free_thresh")
     cells = np.where(occupied, OCCUPIED, np.where(free, FREE, UNKNOWN)).astype(np.uint8)
-    return GridMap(frozen(np.ascontiguousarray(cells[::-1])), resolution, (x, y))
+    return GridMap(frozen(np.ascontiguousarray(cells[::-1])), resolution, origin)
 
 
 def _read_yaml(path: Path) -> dict[str, Any]:
@@ -110,9 +105,28 @@ def _read_yaml(path: Path) -> dict[str, Any]:
 
 
 def _number(path: Path, entry: dict[str, Any], key: str) -> float:
-    value = entry.get(key)
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise ValueError(f"{path}: {key} is {value!r}, expected a number")
+    value = _finite(entry.get(key))
+    if value is None:
+        raise ValueError(f"{path}: {key} is {entry.get(key)!r}, expected a number")
+    return value
+
+
+def _origin(path: Path, entry: dict[str, Any]) -> tuple[float, float]:
+    origin = entry.get("origin")
+    values = [_finite(value) for value in origin] if isinstance(origin, list) else []
+    numbers = [value for value in values if value is not None]
+    if not len(values) == len(numbers) == 3:
+        raise ValueError(f"{path}: origin is {origin!r}, expected [x, y, yaw] in m and rad")
+    x, y, yaw = numbers
+    if yaw != 0.0:
+        raise ValueError(f"{path}: origin has yaw {yaw}; only unturned maps can be read, write 0.0")
+    return x, y
+
+
+def _finite(value: object) -> float | None:
+    """A YAML value as a number; None for anything else, infinities and booleans included."""
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        return None
     return float(value)
 
 
@@ -131,8 +145,11 @@ def _read_pgm(path: Path) -> Array:
         body = data[start : start + columns * rows * kind.itemsize]
         pixels = np.frombuffer(body, dtype=kind) if len(body) % kind.itemsize == 0 else None
     else:
-        words = data[start:].split()
-        pixels = np.array([int(word) for word in words[: columns * rows]])
+        words = data[start:].split()[: columns * rows]
+        wrong = next((word for word in words if not word.isdigit()), None)
+        if wrong is not None:
+            raise ValueError(f"{path}: the pixel {wrong!r} is no whole number")
+        pixels = np.array([int(word) for word in words])
     if pixels is None or pixels.size != columns * rows:
         raise ValueError(f"{path} ends early: its header promises {columns} x {rows} pixels")
     return np.asarray(pixels, dtype=np.float64).reshape(rows, columns) / brightest

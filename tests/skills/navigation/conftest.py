@@ -101,7 +101,7 @@ def obedient() -> Callable[..., Obedient]:
 
 @pytest.fixture(scope="session")
 def run_move() -> Callable[..., object]:
-    """`run_move(move, each)`: lets a move run to its end; what it returns. each: asked each tick."""
+    """`run_move(move, each)`: lets a move run to its end; what it returns."""
 
     def run(move: Generator[Any, Any, object], each: Callable[[], None] = lambda: None) -> object:
         answer, raised = None, None

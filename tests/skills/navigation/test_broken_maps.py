@@ -1,0 +1,146 @@
+"""Whatever bytes a map's files hold: a map, or a ValueError that names the file."""
+
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from momantu_skills.navigation.maps import FREE, OCCUPIED, UNKNOWN, read_map
+
+GOOD = {
+    "image": "plan.pgm",
+    "resolution": "0.05",
+    "origin": "[-1.0, 2.0, 0.0]",
+    "negate": "0",
+    "occupied_thresh": "0.65",
+    "free_thresh": "0.196",
+}
+PGM = b"P5\n3 2\n255\n" + bytes([0, 254, 205, 254, 254, 0])
+
+
+def _write(folder: Path, pgm: bytes = PGM, **changes: str | None) -> Path:
+    entries = {**GOOD, **changes}
+    lines = [f"{key}: {value}" for key, value in entries.items() if value is not None]
+    (folder / "plan.pgm").write_bytes(pgm)
+    (folder / "plan.yaml").write_text("\n".join(lines) + "\n")
+    return folder / "plan.yaml"
+
+
+def _refused(path: Path) -> str:
+    with pytest.raises(ValueError) as caught:  # noqa: PT011 - what it says is checked by callers
+        read_map(path)
+    assert str(path.parent) in str(caught.value)
+    return str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("resolution", "-0.05"),
+        ("resolution", ".nan"),
+        ("resolution", ".inf"),
+        ("resolution", "true"),
+        ("resolution", None),
+        ("origin", "[a, 0.0, 0.0]"),
+        ("origin", "[null, 0.0, 0.0]"),
+        ("origin", "[.nan, 0.0, 0.0]"),
+        ("origin", "[[0.0], 0.0, 0.0]"),
+        ("origin", "0.0"),
+        ("origin", None),
+        ("occupied_thresh", None),
+        ("occupied_thresh", "high"),
+        ("free_thresh", "[0.1]"),
+        ("free_thresh", None),
+    ],
+)
+def test_a_value_that_is_none_is_named(tmp_path: Path, key: str, value: str | None) -> None:
+    assert key in _refused(_write(tmp_path, **{key: value}))
+
+
+@pytest.mark.parametrize(
+    "pgm",
+    [
+        b"P2 3 2 255\n0 1 2 3 4 five",
+        b"P2 3 2 255\n0 1 2 3 4",
+        b"P2 3 2 255\n0 1 2 3 4 5.5",
+        b"P2 3 2 255\n0 1 2 3 4 \xff",
+        b"P5 3 2 255\n\0\0\0\0\0",
+        b"P5 3 2 65535\n" + bytes(11),
+        b"P5 3 2 70000\n" + bytes(12),
+        b"P5 3 2 0\n" + bytes(6),
+        b"P5 -3 2 255\n" + bytes(6),
+        b"P5 3 2",
+        b"P5 99999 99999 255\n",
+        b"# nothing but a comment",
+        b"\x89PNG\r\n\x1a\n",
+    ],
+)
+def test_a_broken_picture_is_named(tmp_path: Path, pgm: bytes) -> None:
+    assert "plan.pgm" in _refused(_write(tmp_path, pgm))
+
+
+@settings(max_examples=150)
+@given(st.binary(max_size=40), st.sampled_from([b"", b"P5 ", b"P2 ", b"P5 2 2 255 ", b"P2 1 2 9 "]))
+def test_any_bytes_are_a_map_or_named(body: bytes, head: bytes) -> None:
+    with TemporaryDirectory() as folder:
+        path = _write(Path(folder), head + body)
+        says = ""
+        cells = np.full((1, 1), FREE)
+        try:
+            cells = read_map(path).cells
+        except ValueError as error:
+            says = str(error)
+    assert says == "" or "plan.pgm" in says
+    assert cells.size > 0
+    assert set(np.unique(cells)) <= {FREE, OCCUPIED, UNKNOWN}
+
+
+@settings(max_examples=100)
+@given(st.text(max_size=40))
+def test_any_text_is_named(text: str) -> None:
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "plan.yaml"
+        path.write_text(text, encoding="utf-8")
+        assert "plan.yaml" in _refused(path)
+
+
+def test_a_folder_is_no_map(tmp_path: Path) -> None:
+    _refused(tmp_path / "." / "")
+    (tmp_path / "plan.pgm").mkdir()
+    (tmp_path / "plan.yaml").write_text("\n".join(f"{k}: {v}" for k, v in GOOD.items()))
+    assert "plan.pgm" in _refused(tmp_path / "plan.yaml")
+
+
+@settings(max_examples=40)
+@given(
+    st.integers(1, 9),
+    st.integers(1, 9),
+    st.sampled_from([255, 1, 100, 65535]),
+    st.booleans(),
+    st.integers(0, 1000),
+)
+def test_each_pixel_is_judged_by_the_thresholds(
+    columns: int, rows: int, brightest: int, plain: bool, seed: int
+) -> None:
+    pixels = np.random.default_rng(seed).integers(0, brightest + 1, (rows, columns))
+    wide = ">u2" if brightest > 255 else "u1"
+    body = " ".join(map(str, pixels.ravel())).encode() if plain else pixels.astype(wide).tobytes()
+    header = f"P{2 if plain else 5}\n# made by hand\n{columns} # wide\n{rows} {brightest}\n"
+    with TemporaryDirectory() as folder:
+        grid = read_map(_write(Path(folder), header.encode() + body))
+    dark = 1.0 - pixels[::-1] / brightest
+    expected = np.where(dark > 0.65, OCCUPIED, np.where(dark < 0.196, FREE, UNKNOWN))
+    assert (grid.cells == expected).all()
+    assert not grid.cells.flags.writeable
+
+
+def test_bytes_after_the_picture_are_let_be(tmp_path: Path) -> None:
+    assert read_map(_write(tmp_path, PGM + b"more")).cells.shape == (2, 3)
+
+
+def test_a_picture_elsewhere_is_found_from_the_yamls_folder(tmp_path: Path) -> None:
+    (tmp_path / "pictures").mkdir()
+    (tmp_path / "pictures" / "floor.pgm").write_bytes(PGM)
+    assert read_map(_write(tmp_path, b"", image="pictures/floor.pgm")).cells.shape == (2, 3)
