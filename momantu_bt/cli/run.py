@@ -57,7 +57,7 @@ def run(
     Examples:
       momantu-bt run bring_object
       momantu-bt run trees/bring_object.yaml --seed 3 --video run.mp4 --report run.json
-      momantu-bt run bring_object --set from=table_b --set to=table_a --view
+      momantu-bt run bring_object --set "tag_edge=150 mm" --view
     """
     wanted = _Outputs(video, view, view_port, record, report, quiet)
     return _guarded(
