@@ -14,7 +14,7 @@ from momantu_bt.failure import (
     WRONG_TYPE,
 )
 from momantu_bt.tree.catalogue import SUBTREE
-from momantu_bt.tree.model import Handler, Literal, Node, Place, Tree
+from momantu_bt.tree.model import Handler, Literal, Node, Place, Reference, Tree
 from momantu_bt.tree.problems import nearest, within
 from momantu_bt.tree.signatures import Context
 from momantu_bt.tree.yaml_nodes import ANY
@@ -25,6 +25,7 @@ _ANY_SKILL = frozenset(ENGINE_CODES) - {TIMEOUT, FAILED, HALTED, SCRIPT_ERROR}
 Codes = frozenset[str]
 """Codes, bare and as `pick.SLIPPED`. UNKNOWN stands for any."""
 UNKNOWN = "?"
+_HANDLED_CODE = Reference("failure", ("code",))
 
 
 def check_handlers(context: Context, order: list[Tree]) -> None:
@@ -32,21 +33,40 @@ def check_handlers(context: Context, order: list[Tree]) -> None:
     of_tree: dict[str, Codes] = {}
     for tree in order:
         of_node: dict[int, Codes] = {}
+        handled = _handled(tree)
         for node in reversed(list(tree.root.walk())):
-            of_node[id(node)] = _codes(context, node, of_node, of_tree)
+            of_node[id(node)] = _codes(context, node, of_node, of_tree, handled)
             if node.handlers and node.children:
                 _check(context, node, of_node[id(node.children[0])])
         of_tree[tree.name] = of_node[id(tree.root)]
 
 
+def _handled(tree: Tree) -> dict[int, Codes]:
+    """What `$failure.code` can be, for each node within a handler; the innermost handler counts."""
+    found: dict[int, Codes] = {}
+    for node in tree.root.walk():
+        for handler in node.handlers:
+            codes = frozenset(UNKNOWN if c == ANY else c.split(".")[-1] for c in handler.codes)
+            below = handler.node.walk() if handler.node is not None else ()
+            found.update((id(each), codes) for each in below)
+    return found
+
+
 def _codes(
-    context: Context, node: Node, of_node: Mapping[int, Codes], of_tree: Mapping[str, Codes]
+    context: Context,
+    node: Node,
+    of_node: Mapping[int, Codes],
+    of_tree: Mapping[str, Codes],
+    meant: Mapping[int, Codes],
 ) -> Codes:
     below: Codes = frozenset().union(*(of_node[id(child)] for child in node.children))
     handled: Codes = frozenset().union(
         *(of_node[id(h.node)] for h in node.handlers if h.node is not None)
     )
-    found = _own(context, node, below, handled, of_tree)
+    if node.type == "Fail":
+        found = _raised(node, meant.get(id(node)))
+    else:
+        found = _own(context, node, below, handled, of_tree)
     if node.conditions:
         found |= {FAILED, SCRIPT_ERROR} if "fail_if" in node.conditions else {SCRIPT_ERROR}
     return frozenset() if node.disabled else found
@@ -57,8 +77,6 @@ def _own(
 ) -> Codes:
     if node.type == SUBTREE:
         return of_tree.get(node.target or "", frozenset({UNKNOWN}))
-    if node.type == "Fail":
-        return _raised(node)
     if node.type == "Handle":
         return _left_over(node, below) | handled
     if node.type == "ForceSuccess":
@@ -74,8 +92,10 @@ def _own(
     return below | handled | {FAILED, INPUT_MISSING, WRONG_TYPE, SCRIPT_ERROR}
 
 
-def _raised(node: Node) -> Codes:
+def _raised(node: Node, handled: Codes | None) -> Codes:
     code = node.ports.get("code")
+    if code == _HANDLED_CODE and handled is not None:
+        return handled
     return frozenset({str(code.value) if isinstance(code, Literal) else UNKNOWN})
 
 

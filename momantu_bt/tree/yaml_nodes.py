@@ -238,6 +238,10 @@ class NodeReader:
                 node.type = BROKEN
             else:
                 self._ports(node, value, spec)
+        elif isinstance(value, Items) and (near := _near_control(node)) is not None:
+            message = f"no node is called {node.type!r}"
+            self._error("unknown-node", node.place, message, f"did you mean {near}?")
+            node.type = BROKEN
         elif isinstance(value, Items):
             hint = f"write `{_said(node)}: {{port: value}}`, or begin with `sequence:`"
             self._misfit(node, value, f"{_said(node)} takes ports, no list", hint)
@@ -365,6 +369,12 @@ def _has_child(value: Raw) -> bool:
 
 def _near_modifier(name: str) -> str | None:
     return nearest(name, MODIFIERS)
+
+
+def _near_control(node: Node) -> str | None:
+    """What a mistyped node with a list of others was meant to be."""
+    controls = [name for name, spec in SPELLED.items() if spec.kind is Kind.CONTROL]
+    return None if node.type in (SUBTREE, *BUILT_IN) else nearest(node.type, controls)
 
 
 def _is_empty(value: Raw) -> bool:

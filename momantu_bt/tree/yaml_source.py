@@ -241,6 +241,8 @@ class _Builder:
 _NULL = re.compile(r"|~|null|Null|NULL")
 _INT = re.compile(r"[-+]?[0-9]+|0o[0-7]+|0x[0-9a-fA-F]+")
 _FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
+_OPENED_QUOTE = re.compile(r"""[^"'#]*(?:[:-]\s+|[\[{,]\s*)(?:"(?:[^"\\]|\\.)*|'[^']*)""")
+"""A line in which a value begins with a quote that the line does not close."""
 _LARGEST_NUMBER = 40
 """Digits; longer ones stay text, as no port takes them."""
 
@@ -272,20 +274,47 @@ def _in_our_words(error: MarkedYAMLError, text: str, file: str) -> Problem:
     for known, where, message, hint in _WORDS:
         if known in problem or known in context:
             mark = error.context_mark if where == "start" and error.context_mark else at
-            hint = _bare_node_above(text, at) or hint
+            hint = _cause_above(text, at) or hint
+            if known.startswith("a block") and error.context_mark is not None:
+                begin = error.context_mark
+                hint += f"; line {begin.line + 1} begins it in column {begin.column + 1}"
             return Problem("syntax", message, _mark(mark, file), hint)
     if "cannot start any token" in problem:
         return _bad_start(problem, _mark(at, file))
     return Problem("syntax", f"this is not YAML: {problem or context}", _mark(at, file))
 
 
-def _bare_node_above(text: str, mark: StringMark | None) -> str:
-    """The hint for modifiers under a node that has no `:` yet."""
-    above = lines_of(text)[: mark.line if mark is not None else 0]
-    bare = re.fullmatch(r"\s*-\s+(\w+)\s*", above[-1]) if above else None
-    if bare is None:
+def _cause_above(text: str, mark: StringMark | None) -> str:
+    """The hint where an earlier line is what is wrong: an open quote, or a `:` that is missing."""
+    above = lines_of(text)[: mark.line + 1 if mark is not None else 0]
+    for number, line in enumerate(above[:-1], 1):
+        opened = _OPENED_QUOTE.fullmatch(line)
+        if opened is not None:
+            return f"line {number} opens a quote that it does not close"
+    start = _start_of_text(above)
+    if start is None:
         return ""
-    return f"write `{bare[1]}:` when more follows below it"
+    bare = re.fullmatch(r"\s*-\s+(\w+)\s*", above[start])
+    hint = (
+        f"write `{bare[1]}:` when more follows below it" if bare else "a `:` may be missing there"
+    )
+    return f"line {start + 1}: {hint}"
+
+
+def _start_of_text(lines: list[str]) -> int | None:
+    """Index of the line without `:` that YAML reads on from into the last line."""
+    start, least = None, _indent(lines[-1]) if lines else 0
+    for index in range(len(lines) - 2, -1, -1):
+        line = lines[index]
+        if not line.strip() or line.lstrip().startswith("#") or re.search(r":(\s|$)", line):
+            break
+        if _indent(line) < least:
+            start, least = index, _indent(line)
+    return start
+
+
+def _indent(line: str) -> int:
+    return len(line) - len(line.lstrip(" "))
 
 
 def _bad_start(problem: str, place: Place) -> Problem:

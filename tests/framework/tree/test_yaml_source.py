@@ -71,7 +71,8 @@ def test_a_syntax_error_in_our_words(text: str, line: int, column: int, message:
 def test_modifiers_under_a_bare_node_say_what_is_missing() -> None:
     with pytest.raises(YamlSyntaxError) as caught:
         compose("- relocalize\n  retry: 3\n", "t.yaml")
-    assert caught.value.problem.hint == "write `relocalize:` when more follows below it"
+    hint = "line 1: write `relocalize:` when more follows below it"
+    assert caught.value.problem.hint == hint
 
 
 def _bomb() -> str:
