@@ -207,7 +207,7 @@ def test_the_version_is_the_number_one(version: str, check: Check) -> None:
         ('a: "b\nc: 1\nd: \'x\' "y"\n', "line 1 opens a quote"),
         ("a: it's\nb: c: d\n", "check the indentation"),
         ("a: 1\n  # note\nb: c: d\n", "check the indentation"),
-        ("x:\n   a: 1\n  b: 2\n", "line 2 begins it in column 4"),
+        ("x: 1\n- b\n", "line 1 begins it in column 1"),
         ("- a\nb: 1\n", "line 1 begins it in column 1"),
     ],
 )

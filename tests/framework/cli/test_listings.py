@@ -1,0 +1,181 @@
+"""What check, show, skills, worlds and robots print, against what they print it about."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from momantu_bt import plugins
+from momantu_bt.cli import main
+from momantu_bt.skill import Skill
+from momantu_bt.tree.lookup import bundled
+from momantu_bt.tree.types import label
+
+Out = pytest.CaptureFixture[str]
+SKILLS = sorted(plugins.installed(plugins.SKILLS))
+TREE = "momantu_bt: 1\nvalues: {n: 66 mm}\ntrees:\n  Main: [{wait: 1 s, timeout: 3 s}]\n"
+
+
+def printed(capsys: Out, *arguments: str) -> str:
+    """What a command line that succeeds prints."""
+    assert main(arguments) == 0
+    said = capsys.readouterr()
+    assert said.err == ""
+    return said.out
+
+
+def as_json(capsys: Out, *arguments: str) -> Any:
+    """What it prints with `--json`."""
+    return json.loads(printed(capsys, *arguments, "--json"))
+
+
+@pytest.fixture
+def tree(tmp_path: Path) -> Path:
+    """A tree that runs anywhere."""
+    path = tmp_path / "t.yaml"
+    path.write_text(TREE, encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize("name", SKILLS)
+def test_a_skill_is_shown_whole(capsys: Out, name: str) -> None:
+    skill: type[Skill] = plugins.load(plugins.SKILLS, name)
+    about = as_json(capsys, "skills", "show", name)
+    text = printed(capsys, "skills", "show", name)
+    assert {port["name"] for port in about["ports"]} == set(skill.ports)
+    for port in about["ports"]:
+        known = skill.ports[port["name"]]
+        assert (port["direction"], port["type"]) == (known.direction, label(known.type))
+        assert port["required"] is known.required
+        assert f"  {port['name']}: {port['type']}" in text
+        assert f" in {known.unit}" in text or known.unit is None
+    assert about["failures"] == dict(skill.failures)
+    assert all(f"  {code}: {said}" in text for code, said in skill.failures.items())
+    assert set(about["uses"]) == set(skill.uses)
+
+
+def test_lists_name_everything_installed(capsys: Out) -> None:
+    for kind, group in (
+        ("skills", plugins.SKILLS),
+        ("worlds", plugins.WORLDS),
+        ("robots", plugins.ROBOTS),
+    ):
+        rows = as_json(capsys, kind)
+        assert [row["name"] for row in rows] == list(plugins.installed(group))
+        assert all(row["about"] for row in rows)
+        lines = printed(capsys, kind).splitlines()
+        assert [line.split()[0] for line in lines] == [row["name"] for row in rows]
+
+
+@pytest.mark.parametrize("name", plugins.installed(plugins.WORLDS))
+def test_a_world_is_shown_whole(capsys: Out, name: str) -> None:
+    about = as_json(capsys, "worlds", "show", name)
+    text = printed(capsys, "worlds", "show", name)
+    site = plugins.load(plugins.WORLDS, name).site()
+    assert set(about["surfaces"]) == set(site.surfaces)
+    assert set(about["places"]) == set(site.places)
+    assert about["default_robot"] in plugins.installed(plugins.ROBOTS)
+    assert all(f"  {each}: " in text for each in (*site.surfaces, *site.places))
+
+
+@pytest.mark.parametrize("name", plugins.installed(plugins.ROBOTS))
+def test_a_robot_is_shown_whole(capsys: Out, name: str) -> None:
+    about = as_json(capsys, "robots", "show", name)
+    text = printed(capsys, "robots", "show", name)
+    assert {"home", "ready", "carry", "look_around"} <= set(about["named_poses"])
+    for kind in ("actuators", "sensors"):
+        assert about[kind]
+        assert all(f"  {each}: " in text for each in about[kind])
+
+
+def test_one_broken_plug_in_does_not_hide_the_others(
+    capsys: Out, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def load(group: str, name: str) -> Any:
+        if name == "pick":
+            raise plugins.PluginError("its library is missing")
+        return plugins.load(group, name)
+
+    monkeypatch.setattr("momantu_bt.cli.listing.load", load)
+    about = {row["name"]: row["about"] for row in as_json(capsys, "skills")}
+    assert about["pick"] == "cannot be loaded: its library is missing"
+    assert list(about) == SKILLS
+
+
+def test_a_list_of_nothing_says_so(capsys: Out, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("momantu_bt.cli.listing.installed", lambda group: {})
+    assert main(["robots"]) == 0
+    said = capsys.readouterr()
+    assert (said.out, said.err) == ("", "none is installed\n")
+    assert main(["robots", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out) == []
+
+
+@pytest.mark.parametrize("name", sorted(bundled()))
+def test_a_bundled_tree_is_shown_with_all_its_trees_and_values(capsys: Out, name: str) -> None:
+    from momantu_bt.tree.load import load
+
+    document = load(name).document
+    lines = printed(capsys, "show", name).splitlines()
+    assert lines[0].endswith(f": {document.main} in {document.world}")
+    assert [line.split()[0] for line in lines[1 : len(document.values) + 1]] == [*document.values]
+    heads = [line.split()[0] for line in lines[1:] if line and not line.startswith(" ")]
+    assert heads == [document.main, *(each for each in document.trees if each != document.main)]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "where"),
+    [([], ""), (["--world", "none"], ""), (["--world", "four_rooms"], " in four_rooms")],
+)
+def test_show_names_the_world_it_was_given(
+    capsys: Out, tree: Path, arguments: list[str], where: str
+) -> None:
+    lines = printed(capsys, "show", str(tree), *arguments).splitlines()
+    assert lines == [
+        f"{tree}: Main{where}",
+        "  n = 66 mm",
+        "",
+        "Main",
+        "  sequence",
+        "    wait 1 s  (at most 3 s)",
+    ]
+
+
+def test_show_without_the_files_own_world(capsys: Out, tree: Path) -> None:
+    tree.write_text("world: four_rooms\n" + TREE, encoding="utf-8")
+    assert printed(capsys, "show", str(tree)).startswith(f"{tree}: Main in four_rooms\n")
+    assert printed(capsys, "show", str(tree), "--world", "none").startswith(f"{tree}: Main\n")
+
+
+def test_checking_several_trees_tells_of_each(capsys: Out, tree: Path, tmp_path: Path) -> None:
+    bad = tmp_path / "bad.yaml"
+    bad.write_bytes(TREE.replace("wait", "wat").replace("\n", "\r\n").encode())
+    assert main(["check", str(bad), str(tree), "x" * 5000]) == 2
+    said = capsys.readouterr()
+    assert said.out == f"{tree}: no errors in 1 trees with 3 nodes\n"
+    first, line, caret, *_ = said.err.splitlines()
+    assert first.startswith(f"{bad}:4:11: error: no node is called 'wat'")
+    assert caret.index("^^^") == line.index("wat")
+    assert "internal error" not in said.err
+
+
+def test_the_json_of_a_problem_is_the_problem(capsys: Out, tree: Path) -> None:
+    tree.write_text(TREE.replace("1 s", "日 m"), encoding="utf-8")
+    assert main(["check", "--json", str(tree)]) == 2
+    (problem,) = json.loads(capsys.readouterr().out)["trees"][0]["problems"]
+    assert problem["code"] == "wrong-value"
+    assert "日 m" in problem["message"]
+    assert (problem["severity"], problem["file"]) == ("error", str(tree))
+    assert (problem["line"], problem["column"], problem["length"]) == (4, 17, 3)
+
+
+def test_a_warning_is_told_and_does_not_fail(capsys: Out, tree: Path) -> None:
+    tree.write_text(
+        TREE.replace("trees:", "main: Main\ntrees:\n  Spare: {wait: 1}"), encoding="utf-8"
+    )
+    assert main(["check", str(tree)]) == 0
+    said = capsys.readouterr()
+    assert "[unused-tree]" in said.err
+    assert said.err.endswith("1 warning\n")
+    assert "no errors" in said.out

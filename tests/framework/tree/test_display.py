@@ -1,0 +1,165 @@
+"""What a terminal shows: the caret under odd and wide characters, and every node in words."""
+
+import unicodedata
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from momantu_bt.tree.catalogue import BUILT_IN, CONDITIONS
+from momantu_bt.tree.model import Document, Literal, Place, Reference, Scope, Template
+from momantu_bt.tree.printing import lines, value_text
+from momantu_bt.tree.problems import Problem, Severity, nearest, show, valid_names, within
+from momantu_bt.tree.yaml_format import read
+
+ODD = st.text(alphabet="a é日本😀\u0301ｱ\t$:{}-", max_size=30)
+
+
+def cells(text: str) -> int:
+    """Columns of a terminal, a tab counted as one."""
+    marks = ("Mn", "Me")
+    wide = (1 + (unicodedata.east_asian_width(c) in "WF") for c in text)
+    return sum(n for n, c in zip(wide, text, strict=True) if unicodedata.category(c) not in marks)
+
+
+@given(ODD, st.text(alphabet="日ax", min_size=1, max_size=5), ODD)
+def test_the_caret_is_under_the_word(before: str, word: str, after: str) -> None:
+    problem = Problem("x", "m", Place("t", 1, len(before) + 1, len(word)))
+    _, shown, caret = show(problem, {"t": before + word + after}).splitlines()
+    prefix = caret.index("|") + 2
+    assert shown[prefix:] == before + word + after
+    assert cells(caret[prefix:].rstrip("^")) == cells(before)
+    assert caret.count("^") == cells(word)
+    assert caret.count("\t") == before.count("\t")
+
+
+@given(st.integers(1, 2000), st.integers(1, 2000), st.integers(1, 50))
+def test_any_place_in_or_beyond_a_line_can_be_shown(size: int, column: int, length: int) -> None:
+    text = show(Problem("x", "m", Place("t", 1, column, length), "do"), {"t": "b" * size})
+    head, shown, caret = text.splitlines()
+    assert head == f"t:1:{column}: error: m [x]"
+    assert len(shown) < 140
+    assert 1 <= caret.count("^") <= max(1, min(length, 120))
+    assert caret.endswith("^ do")
+
+
+@pytest.mark.parametrize("character", ["\x1b", "\x07", "\x85", "\u202e", "\u2028"])
+def test_what_could_upset_a_terminal_is_not_shown(character: str) -> None:
+    problem = Problem("x", "m", Place("t", 2, 3))
+    shown = show(problem, {"t": f"first\n{character}a b\nlast"})
+    assert character not in shown
+    assert "\ufffda b" in shown
+
+
+@pytest.mark.parametrize("break_", ["\n", "\r\n", "\r"])
+def test_line_ends_of_every_kind_end_lines(break_: str) -> None:
+    source = {"t": break_.join(["one", "two: 3", "four"])}
+    shown = show(Problem("x", "m", Place("t", 2, 1, 3), severity=Severity.WARNING), source)
+    assert shown == "t:2:1: warning: m [x]\n  2 | two: 3\n    | ^^^"
+    assert within(Place("t", 2, 1, 6), "3", source) == Place("t", 2, 6, 1)
+
+
+def test_a_word_is_found_whole_and_behind_the_place() -> None:
+    source = {"t": "$ab $a $a"}
+    assert within(Place("t", 1, 1, 9), "$a", source) == Place("t", 1, 5, 2)
+    assert within(Place("t", 1, 6, 4), "$a", source) == Place("t", 1, 8, 2)
+    assert within(Place("t", 1, 1, 9), "$c", source) == Place("t", 1, 1, 9)
+
+
+@given(st.lists(st.from_regex(r"[a-z]{1,4}(_[a-z]{1,4})?", fullmatch=True), min_size=1))
+def test_a_known_name_is_its_own_nearest(names: list[str]) -> None:
+    for name in names:
+        assert nearest(name, names) == name
+        assert nearest(name.upper().replace("_", "-"), names) == name
+        assert valid_names(name, names, "names") == f"did you mean {name}?"
+
+
+def document(node: str) -> Document:
+    """A tree `Main` of one node, beside a tree `Sub`."""
+    text = f"momantu_bt: 1\nmain: Main\ntrees:\n  Main: {node}\n  Sub: {{inputs: [x], leaf: $x}}\n"
+    found, problems = read(text, "t.yaml")
+    assert problems.sorted() == []
+    return found
+
+
+WRITTEN = {
+    "Handle": ("{handle: {try: a, catch: {X: b}}}", ["handle", "a", "on X:", "b"]),
+    "Recover": (
+        "{recover: {attempts: 1, try: a, catch: {X: again}}}",
+        ["recover with 1 try", "a", "on X: try again"],
+    ),
+    "IfThenElse": ("{if: a, then: b}", ["if", "if: a", "then: b"]),
+    "WhileDoElse": (
+        "{while_do: $n > 1, do: a, else: b}",
+        ["while", "while: condition $n > 1", "do: a", "else: b"],
+    ),
+    "ForEach": ("{for_each: {in: $l, as: $i, child: a}}", ["for each in $l, as $i", "a"]),
+    "Precondition": ("{precondition: {if: not $b, child: a}}", ["precondition not $b", "a"]),
+    "Parallel": (
+        "{parallel: {success_count: 1, children: [a]}}",
+        ["parallel success_count 1", "a"],
+    ),
+    "Fail": ("{fail: OH_NO}", ["fail OH_NO"]),
+    "Script": ("{script: '$n := 1; $m := $n'}", ["script $n := 1; $m := $n"]),
+    "ScriptCondition": ("{condition: $a&&$b}", ["condition $a and $b"]),
+    "SetBlackboard": ("{set: {key: $k, value: [1, true]}}", ["set key $k, value [1, true]"]),
+    "UnsetBlackboard": ("{unset: $k}", ["unset $k"]),
+    "Sleep": ("{wait: 1 min 30 s}", ["wait 1 min 30 s"]),
+    "AlwaysSuccess": ("succeed", ["succeed"]),
+    "RetryUntilSuccessful": ("{a: , retry: 1}", ["a  (1 try)"]),
+    "Repeat": ("{a: , repeat: -1}", ["a  (rounds without end)"]),
+    "Timeout": ("{a: , timeout: $t}", ["a  (at most $t)"]),
+    "Delay": ("{a: , delay: 0.5}", ["a  (after 0.5 s)"]),
+    "Inverter": ("{invert: {child: [a]}}", ["sequence  (inverted)", "a"]),
+    "RunOnce": ("{a: , run_once: }", ["a  (once only)"]),
+    "SubTree": ("{Sub: {x: 3}, name: here}", ["here: Sub x 3"]),
+}
+
+
+@pytest.mark.parametrize("type_", sorted({*BUILT_IN, *WRITTEN}))
+def test_every_kind_of_node_in_words(type_: str) -> None:
+    spec = BUILT_IN.get(type_)
+    if type_ in WRITTEN:
+        node, expected = WRITTEN[type_]
+        shown = [line.text for line in lines(document(node)) if line.depth > 0]
+        assert shown[:-1] == expected
+        return
+    assert spec is not None
+    child = "a" if spec.positions == ("child",) else "[a, b]"
+    node = spec.yaml[0] if spec.children == (0, 0) else f"{{{spec.yaml[0]}: {child}}}"
+    if spec.positions == ("child",):
+        node = f"{{{spec.yaml[0]}: {{child: a}}}}"
+    shown = [line.text for line in lines(document(node)) if line.depth > 0]
+    assert "_" not in shown[0]
+    assert ("a" in shown) or shown[0].startswith("a  (") or spec.children == (0, 0)
+
+
+@pytest.mark.parametrize("condition", CONDITIONS)
+def test_every_condition_is_shown_as_it_is_written(condition: str) -> None:
+    script = "$n := 1" if condition in ("on_success", "on_failure", "on_halt", "after") else "$n"
+    shown = [line.text for line in lines(document(f"{{a: , {condition}: {script}}}"))]
+    assert shown[1] == f"a  ({condition} {script})"
+
+
+@pytest.mark.parametrize(
+    ("value", "shown"),
+    [
+        (Reference("k"), "$k"),
+        (Reference("k", ("x", "y"), Scope.ROOT), "$@k.x.y"),
+        (Template(("at ", Reference("k", ("x",)), "!")), '"at ${k.x}!"'),
+        (Literal(None), "nothing"),
+        (Literal(False), "false"),
+        (Literal({"a": [1, {"b": None}]}), "{a: [1, {b: nothing}]}"),
+        (Literal("66 mm"), "66 mm"),
+    ],
+)
+def test_every_kind_of_value_as_a_file_writes_it(value: object, shown: str) -> None:
+    assert value_text(value) == shown  # type: ignore[arg-type]
+
+
+def test_long_ports_are_cut_but_names_are_not() -> None:
+    node = document("{a: {text: " + "x" * 300 + "}}").trees["Main"].root
+    (line,) = [each.text for each in lines(document("{a: {text: " + "x" * 300 + "}}"))][1:2]
+    assert node.ports["text"] == Literal("x" * 300)
+    assert line.endswith("…")
+    assert len(line) < 110
