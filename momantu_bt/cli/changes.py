@@ -13,6 +13,7 @@ from momantu_bt.engine.nodes.skill import SkillLeaf
 from momantu_bt.engine.nodes.subtree import SubTree
 from momantu_bt.engine.nodes.timing import Sleep
 from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, Status
+from momantu_bt.failure import FailureValue
 from momantu_bt.record.chain import chain_text
 
 _WORDS = {"RUNNING": "starts", "SUCCESS": "done", "IDLE": "halted", "SKIPPED": "skipped"}
@@ -32,23 +33,25 @@ class ChangeLines:
 
     def ticked(self, run: Executor) -> None:
         """Tell this tick's changes."""
-        for node, status, note in _parents_first(run.context.changes):
+        for node, status, note, failure in _parents_first(run.context.changes):
             if isinstance(node, Recover):
                 self._tell_note(run.context.now, node, note)
             elif isinstance(node, _TOLD):
-                self._tell(run.context.now, node, status)
+                self._tell(run.context.now, node, status, failure)
 
     def close(self) -> None:
         """Nothing is left to say."""
 
-    def _tell(self, now: float, node: TreeNode, status: Status) -> None:
+    def _tell(
+        self, now: float, node: TreeNode, status: Status, failure: FailureValue | None
+    ) -> None:
         running = node.index in self._was_running
         self._was_running.discard(node.index)
         if status is RUNNING:
             self._was_running.add(node.index)
         if status is IDLE and not running:
             return
-        words = f"fails: {_reason(node)}" if status is FAILURE else _WORDS[status.value]
+        words = f"fails: {_reason(node, failure)}" if status is FAILURE else _WORDS[status.value]
         self._line(now, node, f"{node.label} {words}")
 
     def _tell_note(self, now: float, node: Recover, note: str) -> None:
@@ -75,9 +78,9 @@ def _level(node: TreeNode) -> int:
     return above + isinstance(parent, SubTree)
 
 
-def _reason(node: TreeNode) -> str:
-    if node.failure is None:
+def _reason(node: TreeNode, failure: FailureValue | None) -> str:
+    if failure is None:
         return "FAILED"
     if isinstance(node, SubTree):
-        return node.failure.code
-    return chain_text(node.failure).partition(" <- ")[0]
+        return failure.code
+    return chain_text(failure).partition(" <- ")[0]

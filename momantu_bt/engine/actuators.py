@@ -46,10 +46,19 @@ class Actuators:
         return None if lease is None else lease.owner
 
     def stop_all(self) -> None:
-        """Stop every actuator of the robot, owned or not."""
+        """Stop every actuator of the robot, owned or not.
+
+        One that cannot be stopped keeps no other from it; what the first raised is raised then.
+        """
         self._owners.clear()
+        troubles: list[Exception] = []
         for actuator in self.robot.description.actuators:
-            self._stop(actuator)
+            try:
+                self._stop(actuator)
+            except Exception as trouble:
+                troubles.append(trouble)
+        if troubles:
+            raise troubles[0]
 
     def _claim(self, actuator: str, lease: Lease) -> None:
         holder = self._owners.setdefault(actuator, lease)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import types
+from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 import numpy as np
@@ -56,9 +57,14 @@ def fits(value: Any, annotation: Any) -> bool:
     return _is_instance(value, origin)
 
 
+_IMMUTABLE: Mapping[Any, Any] = types.MappingProxyType({list: tuple | list, dict: Mapping})
+"""What a frozen value of a kind is."""
+
+
 def _is_instance(value: Any, kind: Any) -> bool:
     if isinstance(value, bool):
         return kind is bool
+    kind = _IMMUTABLE.get(kind, kind)
     try:
         return isinstance(value, kind)
     except TypeError:

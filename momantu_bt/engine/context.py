@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from momantu_bt.engine.actuators import Actuators
 from momantu_bt.engine.blackboard import Journal
 from momantu_bt.engine.status import Status
+from momantu_bt.failure import FailureValue
 from momantu_bt.frames import FrameBuffer
 from momantu_bt.skill import Clock
 from momantu_bt.world import Site
@@ -28,11 +29,15 @@ class Body:
 
 
 class Change(NamedTuple):
-    """A node's status changed, or its note did while it was RUNNING."""
+    """A node's status changed, or its note did while it was RUNNING.
+
+    failure: why, with FAILURE; the node itself may have started again within the tick.
+    """
 
     node: TreeNode
     status: Status
     note: str
+    failure: FailureValue | None
 
 
 @dataclass(slots=True)

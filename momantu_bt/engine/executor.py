@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import time
 import traceback
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
 from momantu_bt.engine.build import Built
 from momantu_bt.engine.context import RunContext
 from momantu_bt.engine.interrupts import Interrupts
+from momantu_bt.engine.node import TreeNode
 from momantu_bt.engine.nodes.timing import running_as_cause
 from momantu_bt.engine.services import Services
 from momantu_bt.engine.session import CLOCK_SLACK
@@ -150,7 +151,7 @@ class Executor:
         self.fingerprint.add(
             self._state,
             issued,
-            [(node.index, status.value) for node, status, _ in context.changes],
+            [(change.node.index, change.status.value) for change in context.changes],
             self._written(),
         )
         for observer in self.observers:
@@ -172,9 +173,7 @@ class Executor:
         self.context.changes.clear()
         self.context.writes.clear()
         try:
-            self.halt_all()
-            if self.context.body is not None:
-                self.context.body.actuators.stop_all()
+            self._halt_and_stop()
             if status == outcome.ERROR:
                 return None
             self.settling = True
@@ -185,6 +184,14 @@ class Executor:
         except Exception:
             self._error = self._error or traceback.format_exc()
             return None
+
+    def _halt_and_stop(self) -> None:
+        """Every actuator is stopped even when halting the tree goes wrong."""
+        try:
+            self.halt_all()
+        finally:
+            if self.context.body is not None:
+                self.context.body.actuators.stop_all()
 
     def _settle(self) -> None:
         if self.world is None:
@@ -198,9 +205,24 @@ class Executor:
         self._note()
 
     def halt_all(self) -> None:
-        """Halt the tree; nodes that an exception left running are halted one by one."""
-        self.built.root.reset()
-        for node in reversed(self.built.nodes):
-            if node.state is RUNNING:
-                node.halt()
-            node.clear()
+        """Halt the tree; nodes that an exception left running are halted one by one.
+
+        What goes wrong in one node keeps no other from being halted; the first is raised.
+        """
+        troubles: list[Exception] = []
+        for halt in (self.built.root.reset, *map(_halting, reversed(self.built.nodes))):
+            try:
+                halt()
+            except Exception as trouble:
+                troubles.append(trouble)
+        if troubles:
+            raise troubles[0]
+
+
+def _halting(node: TreeNode) -> Callable[[], None]:
+    def halt() -> None:
+        if node.state is RUNNING:
+            node.halt()
+        node.clear()
+
+    return halt

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import time
+import traceback
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
 from momantu_bt.engine.actuators import Actuators
@@ -19,7 +20,7 @@ from momantu_bt.engine.node import TreeNode
 from momantu_bt.engine.nodes.skill import SkillLeaf
 from momantu_bt.engine.services import Services, in_order
 from momantu_bt.frames import FrameBuffer
-from momantu_bt.record.report import NodeReport, Report
+from momantu_bt.record.report import ERROR, NodeReport, Report
 from momantu_bt.record.versions import versions
 from momantu_bt.robot import RobotDescription
 from momantu_bt.skill import Skill
@@ -78,11 +79,25 @@ def launch(
         executor = _assemble(document, options, registry, kinds, world)
         if watch is not None:
             executor.observers = list(watch(executor))
-        for observer in executor.observers:
-            stack.callback(observer.close)
         started = time.perf_counter() - begun
-        ending = executor.run(interrupts)
+        try:
+            ending = executor.run(interrupts)
+        finally:
+            trouble = _close(executor.observers)
+        if trouble is not None:
+            ending = replace(ending, status=ERROR, error=ending.error or trouble)
         return _report(document, options, executor, ending, started)
+
+
+def _close(observers: Sequence[Observer]) -> str | None:
+    """Close all, whatever goes wrong; the first traceback."""
+    troubles: list[str] = []
+    for observer in observers:
+        try:
+            observer.close()
+        except Exception:
+            troubles.append(traceback.format_exc())
+    return troubles[0] if troubles else None
 
 
 def _open(

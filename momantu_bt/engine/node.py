@@ -146,7 +146,8 @@ class TreeNode(Behaviour):
     def show(self, status: Status) -> None:
         """Change what people see and note it in the journal; RUNNING again for a new `note`."""
         self.shown = status
-        self.context.changes.append(Change(self, status, self.note))
+        failure = self.failure if status is FAILURE else None
+        self.context.changes.append(Change(self, status, self.note, failure))
 
     # names and failures
 

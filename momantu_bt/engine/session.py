@@ -87,8 +87,6 @@ class Session:
             elif live_inputs and self.skill is not None:
                 self.skill.port_values.update(self._admitted(live_inputs))
             self._advance(self._generator)
-        except StopIteration:
-            self._finish()
         except Failure as failure:
             self._fail(self._declared(failure))
         except Exception as error:
@@ -167,6 +165,9 @@ class Session:
                 said = generator.throw(
                     ValueError(f"compute with a budget of {said.budget} s; thinking is never free")
                 )
+        except StopIteration:
+            self._finish()
+            return
         finally:
             self.took = time.perf_counter() - started
         self.status = RUNNING
@@ -206,11 +207,14 @@ class Session:
 
     def _fail(self, failure: FailureValue) -> None:
         generator, self._generator = self._generator, None
-        if generator is not None:
-            generator.close()
         self._waiting = None
-        self.lease.end()
         self.failure = failure
+        if generator is not None:
+            try:
+                generator.close()
+            except Exception as error:
+                self.failure = _skill_error(self.kind, error, cause=failure)
+        self.lease.end()
         self.status = FAILURE
 
     def _declared(self, failure: Failure) -> FailureValue:
@@ -258,9 +262,11 @@ def _with_cause(value: FailureValue, cause: FailureValue | None) -> FailureValue
     return FailureValue(value.code, value.message, value.data, cause=cause)
 
 
-def _skill_error(kind: type[Skill], error: Exception, sentence: str = "") -> FailureValue:
+def _skill_error(
+    kind: type[Skill], error: Exception, sentence: str = "", cause: FailureValue | None = None
+) -> FailureValue:
     text = "".join(traceback.format_exception(error))
     said = sentence or f"raised {type(error).__name__}: {error}"
-    cause = error.value if isinstance(error, Failure) else None
+    cause = error.value if isinstance(error, Failure) else cause
     data = {"traceback": text, "exception": type(error).__name__}
     return FailureValue(SKILL_ERROR, f"{kind.__name__} {said}", data, cause=cause)

@@ -13,8 +13,8 @@ import numpy as np
 from momantu_bt.failure import FailureValue
 from momantu_bt.skill import MISSING
 
-_LEFT_OUT = ("traceback", "place")
-"""Parts of a failure that depend on where the files lie."""
+_PLACE, _TRACEBACK = "place", "traceback"
+"""Parts of a failure that depend on where the files lie; neither enters."""
 
 
 def encode(value: Any) -> bytes:
@@ -33,8 +33,10 @@ def _encode(value: Any, out: list[bytes]) -> None:
     elif value is None or value is MISSING or isinstance(value, bool | int | Enum):
         out.append(f"{type(value).__name__}:{value!r};".encode())
     elif isinstance(value, str):
-        text = value.encode()
+        text = value.encode("utf-8", "surrogatepass")
         out.append(b"s%d:" % len(text) + text)
+    elif isinstance(value, np.ndarray) and value.dtype.hasobject:
+        _encode(value.tolist(), out)
     elif isinstance(value, np.ndarray):
         out.append(f"a{value.dtype.str}{value.shape}".encode() + value.tobytes())
     elif isinstance(value, np.generic):
@@ -47,7 +49,7 @@ def _encode(value: Any, out: list[bytes]) -> None:
             _encode(item, out)
     elif isinstance(value, FailureValue):
         named = {f.name: getattr(value, f.name) for f in fields(value)}
-        _encode_mapping({k: v for k, v in named.items() if k not in _LEFT_OUT}, out)
+        _encode_mapping({k: v for k, v in named.items() if k != _PLACE}, out)
     elif is_dataclass(value):
         out.append(type(value).__qualname__.encode())
         for field in fields(value):
@@ -59,6 +61,6 @@ def _encode(value: Any, out: list[bytes]) -> None:
 def _encode_mapping(value: Mapping[Any, Any], out: list[bytes]) -> None:
     out.append(b"m%d:" % len(value))
     for key in sorted(value, key=str):
-        if key not in _LEFT_OUT:
+        if key != _TRACEBACK:
             _encode(str(key), out)
             _encode(value[key], out)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from contextlib import suppress
 from pathlib import Path
 
 
@@ -21,7 +22,8 @@ def write_whole(path: Path, text: str) -> None:
         draft.write_text(text, encoding="utf-8")
         draft.replace(path)
     except OSError as error:
-        draft.unlink(missing_ok=True)
+        with suppress(OSError):
+            draft.unlink()
         raise OutputError(f"{path} cannot be written: {error.strerror or error}") from None
 
 
@@ -32,12 +34,12 @@ def check_writable(path: Path) -> None:
         OutputError: its folder does not exist or cannot be written, or it is a folder itself.
     """
     folder = path.parent
-    if path.is_dir():
-        raise OutputError(f"{path} is a folder, expected the name of a file to write")
-    if not folder.is_dir():
-        raise OutputError(f"{path} cannot be written: there is no folder {folder}")
     probe = folder / f".{path.name}.{os.getpid()}.probe"
     try:
+        if path.is_dir():
+            raise OutputError(f"{path} is a folder, expected the name of a file to write")
+        if not folder.is_dir():
+            raise OutputError(f"{path} cannot be written: there is no folder {folder}")
         probe.touch()
         probe.unlink()
     except OSError as error:

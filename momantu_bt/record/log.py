@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 from momantu_bt.engine.executor import Executor
-from momantu_bt.engine.status import FAILURE
 from momantu_bt.messages import plain
 from momantu_bt.record.files import OutputError
 
@@ -29,7 +28,8 @@ def prepare_folder(folder: Path) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         (folder / CHANGES).open("x").close()
     except FileExistsError:
-        raise OutputError(f"{folder} holds a record already; choose another folder") from None
+        problem = "holds a record already" if folder.is_dir() else "is a file"
+        raise OutputError(f"{folder} {problem}; choose another folder") from None
     except OSError as error:
         raise OutputError(f"{folder} cannot be written: {error.strerror or error}") from None
 
@@ -42,7 +42,7 @@ class LogObserver:
 
     def ticked(self, run: Executor) -> None:
         """Write this tick's changes."""
-        for node, status, note in run.context.changes:
+        for node, status, note, failure in run.context.changes:
             line: dict[str, Any] = {
                 "t": round(run.context.now, 9),
                 "node": node.index,
@@ -52,8 +52,8 @@ class LogObserver:
             }
             if note:
                 line["note"] = note
-            if status is FAILURE and node.failure is not None:
-                line["failure"] = plain(node.failure.as_dict())
+            if failure is not None:
+                line["failure"] = plain(failure.as_dict())
             self._file.write(json.dumps(line, default=str) + "\n")
 
     def close(self) -> None:

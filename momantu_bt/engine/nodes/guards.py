@@ -37,6 +37,10 @@ class Precondition(Decorator):
             self.admitted = False
         return self.pass_on(status)
 
+    def clear(self) -> None:
+        """The child has been halted: the next start asks again."""
+        self.admitted = False
+
 
 class Disabled(TreeNode):
     """Always SKIPPED; what is below it in the file is not built."""

@@ -82,6 +82,12 @@ def bench() -> Bench:
     return Bench()
 
 
+@pytest.fixture(scope="session")
+def new_bench() -> type[Bench]:
+    """For property tests, whose examples need a bench each."""
+    return Bench
+
+
 @pytest.fixture
 def run_yaml(tmp_path):
     """Run a tree written in the test, with skills of the test, in a scripted world."""
