@@ -130,3 +130,27 @@ def test_too_many_nodes_within_nodes(check: Check) -> None:
     for _ in range(MAX_NESTING // 5):
         node = "{sequence: [" + node + "]" + modifiers + "}"
     assert [p.code for p in check(f"momantu_bt: 1\ntrees:\n  Main: {node}\n")] == ["too-large"]
+
+
+def _passed_on(outer: str, inner: str = "NO_PLAN | TIMEOUT", code: str = "$failure.code") -> str:
+    return (
+        "trees:\n  Main:\n    handle:\n      try: Sub\n      catch:\n"
+        f"        {outer}: relocalize\n"
+        "  Sub:\n    recover:\n      attempts: 2\n      try: {reset_pose: home, timeout: 3 s}\n"
+        f"      catch:\n        {inner}: {{fail: {{code: {code}}}}}\n"
+    )
+
+
+def test_a_code_that_a_handler_passes_on_can_arrive(fine: Fine, expect: Expect) -> None:
+    fine(_passed_on("NO_PLAN | TIMEOUT"))
+    expect("dead-handler", _passed_on("NO_PLAN | «TIME_OUT»"), hint="did you mean TIMEOUT?")
+    expect("dead-handler", _passed_on("«MINE»"))
+    fine(_passed_on("MINE", code="MINE"))
+
+
+def test_a_handler_of_the_rest_can_pass_on_anything(fine: Fine) -> None:
+    fine(_passed_on("NO_PLAN | WHATEVER", inner="any"))
+
+
+def test_the_code_of_a_node_type_is_passed_on_bare(fine: Fine) -> None:
+    fine(_passed_on("NO_PLAN", inner="reset_pose.NO_PLAN"))
