@@ -127,3 +127,12 @@ def test_an_arm_that_would_sweep_a_wall_may_not_turn(obedient: Any) -> None:
 @given(MIDDLE, YAWS)
 def test_in_the_open_every_turn_has_room(obedient: Any, pose: Pose2D, yaw: float) -> None:
     assert can_turn(obedient(pose, arm=0.5), pose, yaw)
+
+
+def test_an_arm_that_touches_is_no_leave_to_back_the_base_into_a_wall(obedient: Any) -> None:
+    pose = Pose2D(4.0, 3.0, 0.0)
+    ahead, behind = (4.6, 2.0, 5.2, 4.0), (3.0, 2.0, 3.5, 4.0)
+    touching = obedient(pose, [ahead, behind], arm=0.5)
+    assert touching.room(pose, whole=True) < 0.0
+    assert clear_behind(touching, pose, 0.15)
+    assert not clear_behind(touching, pose, 0.24)
