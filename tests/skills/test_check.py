@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -11,9 +12,10 @@ from momantu_skills.check import Check
 
 from momantu_bt.geometry import Pose2D
 from momantu_bt.testing import ScriptedRobot, run_skill
+from momantu_bt.tree.load import TreeError, load
 
 
-def check(what: str, *, robot: Any = None, place: str = "", **beliefs: Any) -> Any:
+def check(what: str, *, robot: Any = None, place: str | None = None, **beliefs: Any) -> Any:
     localization = SimpleNamespace(
         map_from_base=beliefs.get("at", Pose2D(0.0, 0.0)),
         covariance=np.diag([1.0, 1.0, 1.0]) * beliefs.get("sigma", 0.01) ** 2,
@@ -54,7 +56,7 @@ def test_what_holds(what: str, beliefs: Any) -> None:
         ("near", {"place": "start", "at": Pose2D(3.0, 0.0)}, "NOT_NEAR"),
         ("near", {"place": "table_a", "at": Pose2D(-0.5, 0.0)}, "NOT_NEAR"),
         ("near", {"place": "shelf"}, "BAD_QUESTION"),
-        ("hoding", {}, "BAD_QUESTION"),
+        ("hoding", {}, "WRONG_TYPE"),
     ],
 )
 def test_what_does_not_hold(what: str, beliefs: Any, code: str) -> None:
@@ -65,5 +67,11 @@ def test_a_closed_gripper_is_not_open() -> None:
     assert check("gripper_open", robot=ScriptedRobot(gripper_width=0.01)).code == "NOT_OPEN"
 
 
-def test_a_misspelt_question_is_answered_with_the_nearest() -> None:
-    assert "did you mean 'holding'" in check("hoding").failure.message
+def test_a_misspelt_question_is_found_before_the_run(tmp_path: Path) -> None:
+    tree = tmp_path / "ask.yaml"
+    tree.write_text("momantu_bt: 1\nworld: four_rooms\ntrees:\n  Main:\n    check: hoding\n")
+    with pytest.raises(TreeError) as caught:
+        load(str(tree))
+    (problem,) = caught.value.problems
+    assert problem.place.line == 5
+    assert "holding" in f"{problem.message} {problem.hint}"

@@ -14,8 +14,8 @@ from momantu_bt.geometry import Array
 from momantu_skills.manipulation.urdf import CollisionPart
 
 MOST_CORNERS = 80
-"""Hulls are reduced to about this many corners. Fetch's shrink by up to 7 mm on arm links, by 2 mm
-on gripper and wrist, by 27 mm on torso and base: the price of quick checks."""
+"""Hulls are reduced to about this many corners, the price of quick checks: an arm's link of usual
+size shrinks by up to 7 mm, a hand by 2 mm, a torso or base by up to 27 mm."""
 ROUND = 16
 """Corners of a circle when a cylinder becomes a prism."""
 SPHERE = 64
