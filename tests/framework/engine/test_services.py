@@ -1,0 +1,122 @@
+"""Services: their order, when they are due, and that they look but do not touch."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from momantu_bt.engine.actuators import Actuators
+from momantu_bt.engine.services import ServiceCycleError, Services, in_order
+from momantu_bt.frames import FrameBuffer
+from momantu_bt.messages import BaseVelocity
+from momantu_bt.service import Service
+from momantu_bt.skill import Needs, Run, Skill
+from momantu_bt.testing import ManualClock, ScriptedRobot, ScriptedWorld, scripted_site
+from momantu_bt.world import TICK
+
+
+def kind(*needs, rate=20.0):
+    class Some(Service):
+        """Keeps when it was updated."""
+
+        def start(self, context):
+            self.context, self.updates = context, []
+
+        def update(self, robot, now):
+            self.updates.append(now)
+
+    Some.needs, Some.rate = needs, rate
+    return Some
+
+
+@given(
+    edges=st.sets(st.tuples(st.integers(0, 6), st.integers(0, 6))), asked=st.sets(st.integers(0, 6))
+)
+def test_each_service_comes_after_what_it_needs_and_nothing_is_started_in_vain(edges, asked):
+    graph = {i: sorted(b for a, b in edges if a == i and b < i) for i in range(7)}
+    kinds = {str(i): kind(*map(str, needs)) for i, needs in graph.items()}
+    ordered = list(in_order(map(str, sorted(asked)), kinds.__getitem__))
+    wanted, waiting = set(), sorted(asked)
+    while waiting:
+        one = waiting.pop()
+        wanted.add(str(one))
+        waiting += graph[one]
+    assert set(ordered) == wanted
+    assert len(ordered) == len(wanted)
+    for name in ordered:
+        assert all(ordered.index(need) < ordered.index(name) for need in kinds[name].needs)
+
+
+@pytest.mark.parametrize("length", [1, 2, 4])
+def test_a_circle_of_needs_is_shown(length):
+    names = [f"s{i}" for i in range(length)]
+    kinds = {name: kind(names[(i + 1) % length]) for i, name in enumerate(names)}
+    with pytest.raises(ServiceCycleError) as circle:
+        in_order(["s0"], kinds.__getitem__)
+    assert str(circle.value) == " needs ".join([*names, "s0"])
+
+
+def updates(rate, ticks):
+    service = kind(rate=rate)()
+    services = Services({"some": service}, Actuators(ScriptedRobot()))
+    robot = ScriptedRobot()
+    services.start(
+        scripted_site(), FrameBuffer(robot.description.kinematics()), ManualClock(), seed=0
+    )
+    for tick in range(1, ticks + 1):
+        services.update(tick * TICK)
+    return service.updates
+
+
+@given(rate=st.floats(0.5, 20.0), ticks=st.integers(1, 400))
+def test_a_service_keeps_its_rate_however_it_falls_between_the_ticks(rate, ticks):
+    times = updates(rate, ticks)
+    assert times[0] == TICK
+    for count, time in enumerate(times):
+        due = TICK + count / rate
+        assert due - 1e-6 <= time < due + TICK + 1e-6
+    assert ticks * TICK < TICK + len(times) / rate + TICK + 1e-6
+
+
+@pytest.mark.parametrize("rate", [20.0, 25.0, 1000.0])
+def test_a_service_is_never_updated_twice_in_a_tick(rate):
+    assert len(updates(rate, 50)) == 50
+
+
+def test_a_service_cannot_command_the_robot(run_yaml):
+    class Meddling(kind()):
+        """Drives off."""
+
+        def update(self, robot, now):
+            robot.command("base", BaseVelocity(1.0, 0.0))
+
+    class Asking(Skill):
+        """Needs it."""
+
+        meddling: Meddling = Needs()
+
+        def run(self, robot) -> Run:
+            yield "asking"
+
+    world = ScriptedWorld()
+    report = run_yaml("trees: {Main: asking}", Asking, services={"meddling": Meddling}, world=world)
+    assert report.status == "ERROR"
+    assert "PermissionError: meddling commands 'base'" in report.error
+    assert not any(isinstance(goal, BaseVelocity) for _, _, goal in world.robot.commands)
+
+
+def test_a_service_gets_the_sites_parameters_and_a_random_of_its_own():
+    first, second = kind()(), kind()()
+    robot, site = ScriptedRobot(), scripted_site()
+    draws = []
+    for seed in (4, 4, 5):
+        services = Services({"first": first, "second": second}, Actuators(robot))
+        services.start(site, FrameBuffer(robot.description.kinematics()), ManualClock(), seed)
+        draws.append([one.context.random.random() for one in (first, second)])
+    assert draws[0] == draws[1]
+    assert len({*draws[0], *draws[2]}) == 4
+    assert first.context.other("second") is second
+    assert dict(first.context.parameters) == {}
+    with pytest.raises(KeyError):
+        first.context.other("third")
