@@ -197,6 +197,24 @@ def test_after_a_halt_or_an_end_a_tree_runs_as_if_for_the_first_time(new_bench, 
     assert used.trace() == fresh.trace()
 
 
+FORGETTING = [kind for kind in (*ANY_NUMBER, *TWO_OR_THREE, *ONE, *PORTS) if kind is not RunOnce]
+
+
+@pytest.mark.parametrize("kind", FORGETTING)
+@settings(max_examples=25)
+@given(data=st.data(), ticks=st.integers(1, 4))
+def test_a_halted_node_remembers_nothing(new_bench, kind, data, ticks):
+    working = st.sampled_from(["RRS", "RRF", "RSRF", "RFRS", "SRS", "FRF"])
+    spec = data.draw(above(working, [kind]))
+    fresh, used = Plant(new_bench(), spec), Plant(new_bench(), spec)
+    for _ in range(ticks):
+        if used.bench.tick(used.root) != "R":
+            break
+    used.root.reset()
+    used.rewind()
+    assert used.trace() == fresh.trace()
+
+
 @CHECKS
 @given(spec=trees())
 def test_a_failure_leads_to_the_node_that_failed_of_its_own(new_bench, spec):

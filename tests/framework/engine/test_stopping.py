@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import os
 import signal
+import time
 
 import pytest
 from hypothesis import given
@@ -438,3 +439,23 @@ def test_the_book_of_owners_agrees_with_a_plain_model_of_it(actions):
             assert book.owner(name) == (None if owner is None else f"skill {owner}")
     issued = [(one.actuator, one.goal) for one in book.issued]
     assert issued == [(name, goal) for _, name, goal in book.robot.commands]
+
+
+def test_only_undeclared_work_counts_as_slow(run_yaml, monkeypatch):
+    wall = [0.0]
+    monkeypatch.setattr(time, "perf_counter", lambda: wall[0])
+
+    class Slow(Skill):
+        """Takes its time, declared and not."""
+
+        def run(self, robot) -> Run:
+            wall[0] += 0.03
+            yield "slow"
+            wall[0] += 0.01
+            yield "quick"
+            yield from compute(lambda: wall.append(wall.pop() + 9.0), 0.2)
+            wall[0] += 0.05
+
+    report = run_yaml("trees: {Main: [slow]}", Slow)
+    slow = next(node for node in report.nodes if node.type == "slow")
+    assert (slow.slow_ticks, slow.slowest_s) == (2, 0.05)

@@ -104,6 +104,16 @@ def test_a_trajectory_counts_by_its_numbers_not_by_which_object_it_is():
     assert once.hexdigest() == again.hexdigest()
 
 
+def test_a_goal_that_changes_counts_in_each_tick():
+    def digest(*ends):
+        fingerprint = Fingerprint()
+        for end in ends:
+            fingerprint.add(None, [Issued("arm", trajectory(end=end))], (), ())
+        return fingerprint.hexdigest()
+
+    assert len({digest(1.0, 1.0), digest(1.0, 0.5), digest(0.5, 1.0)}) == 3
+
+
 NAMES = st.sampled_from(["", "a", "b", "ab", "0/Sub/a"])
 VALUES = st.none() | st.booleans() | st.integers(-2, 2) | st.text("ab", max_size=2)
 TICKS = st.lists(
