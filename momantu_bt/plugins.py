@@ -56,7 +56,7 @@ def load(group: str, name: str) -> Any:
     what = _WHAT.get(group, "plug-in")
     if name not in having:
         near = difflib.get_close_matches(name, having, n=1)
-        hint = f", did you mean {near[0]!r}?" if near else ""
+        hint = f" (did you mean {near[0]!r}?)" if near else ""
         names = ", ".join(having) or "none"
         raise PluginError(f"no {what} is called {name!r}{hint}; installed: {names}")
     try:
