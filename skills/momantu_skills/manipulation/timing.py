@@ -86,7 +86,9 @@ def timed(
         raise ValueError(f"no timing within the limits for a path of {len(path)} waypoints")
     count = max(2, int(np.ceil(result.duration / config.sample)) + 1)
     times = np.linspace(0.0, result.duration, count)
-    positions, velocities = result(times), result(times, 1)
+    # beside a limit the spline swings a few milliradians past it; the joints stay inside
+    positions = np.clip(result(times), group.lower, group.upper)
+    velocities = result(times, 1)
     velocities[0] = velocities[-1] = 0.0
     slow = 1.0 if tip_speed is None else _slowdown(group, positions, velocities, tip_speed)
     return _trajectory(group, times * slow, positions, velocities / slow)
