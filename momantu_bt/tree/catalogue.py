@@ -30,10 +30,6 @@ class CodeText(str):
     """The type of a port that holds a failure code."""
 
 
-FOREVER = -1
-"""Of `repeat` and `retry`: no limit (BehaviorTree.CPP's convention)."""
-
-
 @dataclass(frozen=True, slots=True)
 class NodeSpec:
     """One built-in node.

@@ -10,12 +10,6 @@ from momantu_bt.geometry import Pose2D
 from momantu_bt.robot import Robot
 from momantu_bt.skill import In, Needs, Run, Skill
 
-SIGMA = 0.15
-"""m; standard deviation of the position above which the robot does not know where it is."""
-SIGMA_YAW = math.radians(8.0)
-"""rad; the same for its heading."""
-QUALITY = 0.35
-"""Fit of the newest scan below which the estimate is wrong however sure it is of itself."""
 NEAR = 1.5
 """m from a place, or from the edge of a surface, that counts as near."""
 OPEN = 0.9
@@ -58,18 +52,20 @@ class Check(Skill):
             raise Failure("HOLDING", f"the hand holds a {held.object.category}")
 
     def _localized(self) -> None:
-        covariance, quality = self.localization.covariance, float(self.localization.quality)
-        sigma = math.sqrt(max(float(covariance[0, 0]), float(covariance[1, 1])))
-        sigma_yaw = math.sqrt(float(covariance[2, 2]))
-        if sigma > SIGMA or sigma_yaw > SIGMA_YAW or quality < QUALITY:
-            raise Failure(
-                "NOT_LOCALIZED",
-                f"the position is known to {sigma:.2f} m and {math.degrees(sigma_yaw):.0f} "
-                f"degrees, and {quality:.0%} of the scan fits the map",
-                sigma=sigma,
-                sigma_yaw=sigma_yaw,
-                quality=quality,
-            )
+        from momantu_skills.navigation.confidence import is_localized, sigmas
+
+        if is_localized(self.localization):
+            return
+        sigma, sigma_yaw = sigmas(self.localization.covariance)
+        quality = float(self.localization.quality)
+        raise Failure(
+            "NOT_LOCALIZED",
+            f"the position is known to {sigma:.2f} m and {math.degrees(sigma_yaw):.0f} "
+            f"degrees, and {quality:.0%} of the scan fits the map",
+            sigma=sigma,
+            sigma_yaw=sigma_yaw,
+            quality=quality,
+        )
 
     def _near(self) -> None:
         here = self.localization.map_from_base

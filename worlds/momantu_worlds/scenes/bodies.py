@@ -84,8 +84,7 @@ class Body:
 
     name: unique in the episode. category: "can", "bottle", "table", "wall" … static: it never
     moves. mass: kg, ignored when static; its density is uniform over the colliding parts.
-    friction: coefficient, static and dynamic alike. known_to_map: drawn on the site's floor plan
-    at this very place, or nearly there.
+    friction: coefficient, static and dynamic alike.
     """
 
     name: str
@@ -95,7 +94,6 @@ class Body:
     static: bool = True
     mass: float = 0.0
     friction: float = 0.6
-    known_to_map: bool = True
 
 
 @dataclass(frozen=True, slots=True)

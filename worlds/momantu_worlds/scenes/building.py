@@ -46,7 +46,7 @@ def bodies(world: WorldFile, layout: Layout) -> Iterator[Body]:
         piece = placed.piece
         parts = furniture(piece.kind, piece.size, piece.color)
         pose = placed.pose.transform()
-        yield Body(placed.name, piece.kind, pose, parts, known_to_map=placed.known)
+        yield Body(placed.name, piece.kind, pose, parts)
     yield item_body(world, layout)
     yield tag_body(world, layout)
     for thing in layout.things:
@@ -123,5 +123,4 @@ def _loose(name: str, thing: Thing, pose: Transform, friction: float) -> Body:
         static=False,
         mass=thing.mass,
         friction=friction,
-        known_to_map=False,
     )

@@ -50,7 +50,7 @@ def plain_episode(
         bodies += [
             Body("table_a", "table", Transform((1.2, 0 if not stand else 3, 0)), (top,)),
             Body("tag", "tag", Transform((1.0, 0.4, TABLE_HEIGHT + 0.001)), (picture,)),
-            Body("can", "can", can_pose, (can,), False, CAN_MASS, can_friction, False),
+            Body("can", "can", can_pose, (can,), False, CAN_MASS, can_friction),
         ]
     if stand:
         post = Part(Cylinder(0.03, 0.1), Transform((0, 0, -0.05)))
