@@ -1,4 +1,7 @@
-"""The one model of a tree file, whichever spelling it was written in."""
+"""The one model of a tree file, whichever spelling it was written in.
+
+Two documents are equal when they mean the same: places, comments and the source do not count.
+"""
 
 from __future__ import annotations
 
@@ -74,7 +77,8 @@ class Handler:
 
     codes: tuple[str, ...]
     node: Node | None
-    place: Place
+    place: Place = field(compare=False)
+    comments: tuple[str, ...] = field(default=(), compare=False)
 
 
 @dataclass(slots=True)
@@ -88,11 +92,12 @@ class Node:
     `written_as_modifier` keeps the spelling. conditions: modifier name ("skip_if", "while",
     "on_success", …) to a script in canonical form (`&& || !`).
     For a SubTree, `ports` are the wires to its inputs and outputs and `target` is its name.
-    port_places: of the ports' values; port_name_places: of their names.
+    port_places: of the ports' values; port_name_places: of their names. comments: those written
+    before the node or at the end of its line, without their signs.
     """
 
     type: str
-    place: Place
+    place: Place = field(compare=False)
     ports: dict[str, PortValue] = field(default_factory=dict)
     children: list[Node] = field(default_factory=list)
     handlers: list[Handler] = field(default_factory=list)
@@ -101,10 +106,11 @@ class Node:
     note: str | None = None
     disabled: bool = False
     target: str | None = None
-    written_as_modifier: bool = False
-    port_places: dict[str, Place] = field(default_factory=dict)
-    port_name_places: dict[str, Place] = field(default_factory=dict)
-    condition_places: dict[str, Place] = field(default_factory=dict)
+    written_as_modifier: bool = field(default=False, compare=False)
+    port_places: dict[str, Place] = field(default_factory=dict, compare=False)
+    port_name_places: dict[str, Place] = field(default_factory=dict, compare=False)
+    condition_places: dict[str, Place] = field(default_factory=dict, compare=False)
+    comments: tuple[str, ...] = field(default=(), compare=False)
 
     def walk(self) -> Iterator[Node]:
         """The node and everything below it, in the order of the file, without recursion."""
@@ -121,39 +127,59 @@ class Node:
 
 @dataclass(frozen=True, slots=True)
 class PortDeclaration:
-    """An input or output of a subtree. type_name: "text", "list of pose2d", … or "any"."""
+    """An input or output of a subtree.
+
+    direction: "in", "out" or "inout". type_name: "text", "list of pose2d", … or "any".
+    """
 
     name: str
     direction: str
     type_name: str
-    place: Place
+    place: Place = field(compare=False)
     default: Literal | None = None
     doc: str = ""
 
 
 @dataclass(slots=True)
 class Tree:
-    """One named tree of a document."""
+    """One named tree of a document.
+
+    open: it declares no ports, and takes whatever it is given, as BehaviorTree.CPP's trees do.
+    """
 
     name: str
     root: Node
-    place: Place
+    place: Place = field(compare=False)
     ports: dict[str, PortDeclaration] = field(default_factory=dict)
     doc: str = ""
+    open: bool = False
+    comments: tuple[str, ...] = field(default=(), compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Include:
+    """A file whose trees the document takes over. path: as written."""
+
+    path: str
+    place: Place = field(compare=False)
 
 
 @dataclass(slots=True)
 class Document:
     """A tree file with everything it includes.
 
+    trees: the file's own and those of the files it includes; `Tree.place.file` tells them apart.
     values: initial keys of the root's board. source: the text, by file, for error displays.
+    comments: those after the last tree.
     """
 
-    file: str
+    file: str = field(compare=False)
     main: str
     trees: dict[str, Tree]
     world: str | None = None
     values: dict[str, Literal] = field(default_factory=dict)
-    value_places: dict[str, Place] = field(default_factory=dict)
-    world_place: Place | None = None
-    source: dict[str, str] = field(default_factory=dict)
+    includes: tuple[Include, ...] = ()
+    value_places: dict[str, Place] = field(default_factory=dict, compare=False)
+    world_place: Place | None = field(default=None, compare=False)
+    source: dict[str, str] = field(default_factory=dict, compare=False)
+    comments: tuple[str, ...] = field(default=(), compare=False)

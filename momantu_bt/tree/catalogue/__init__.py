@@ -1,0 +1,62 @@
+"""Every built-in node: its canonical type, its spelling in YAML, its ports and its children.
+
+Canonical types and their meaning are BehaviorTree.CPP 4's where it has the node; the rest is
+ours. The engine's classes are keyed by the canonical type, the readers by the spelling.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from momantu_bt.tree.catalogue.controls import CONTROLS
+from momantu_bt.tree.catalogue.decorators import DECORATORS
+from momantu_bt.tree.catalogue.leaves import LEAVES
+from momantu_bt.tree.catalogue.spec import CodeText, Kind, NodeSpec, ScriptText
+
+__all__ = [
+    "BUILT_IN",
+    "CONDITIONS",
+    "FORCED",
+    "MODIFIERS",
+    "NODE_KEYS",
+    "POST_SCRIPTS",
+    "PRE_CONDITIONS",
+    "SPELLED",
+    "SUBTREE",
+    "CodeText",
+    "Kind",
+    "NodeSpec",
+    "ScriptText",
+]
+
+SUBTREE = "SubTree"
+"""Canonical type of a node that runs another tree of the document; `Node.target` names it."""
+
+BUILT_IN: Mapping[str, NodeSpec] = {spec.type: spec for spec in (*CONTROLS, *DECORATORS, *LEAVES)}
+"""Built-in nodes by canonical type."""
+
+SPELLED: Mapping[str, NodeSpec] = {name: spec for spec in BUILT_IN.values() for name in spec.yaml}
+"""Built-in nodes by YAML spelling."""
+
+FORCED: Mapping[str, str] = {"success": "ForceSuccess", "failure": "ForceFailure"}
+"""What the modifier `force:` makes of its value."""
+
+PRE_CONDITIONS = ("fail_if", "succeed_if", "skip_if", "while")
+"""Conditions asked before a node's tick, in this order (BehaviorTree.CPP's)."""
+
+POST_SCRIPTS = ("on_success", "on_failure", "on_halt", "after")
+"""Scripts run when a node ends: so, or (`after`) with success or failure."""
+
+CONDITIONS = (*PRE_CONDITIONS, *POST_SCRIPTS)
+"""Keys of `Node.conditions`."""
+
+NODE_KEYS = ("name", "note", "disabled")
+"""Modifiers that are neither decorators nor conditions."""
+
+MODIFIERS: Mapping[str, str] = {
+    **dict.fromkeys(NODE_KEYS, "key"),
+    **dict.fromkeys(CONDITIONS, "condition"),
+    **{spec.yaml[0]: "decorator" for spec in BUILT_IN.values() if spec.modifier},
+    "force": "decorator",
+}
+"""Reserved modifier names of YAML, and what each one is."""

@@ -1,0 +1,91 @@
+"""Decorators: nodes around one child."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from momantu_bt.skill import Port
+from momantu_bt.tree.catalogue.spec import (
+    Kind,
+    NodeSpec,
+    ScriptText,
+    by_name,
+    decorator,
+    input_port,
+)
+
+DECORATORS = (
+    decorator(
+        "RetryUntilSuccessful",
+        "retry",
+        "Runs the child again when it fails.",
+        input_port("attempts", int, "tries in all; -1 is without end"),
+        xml={"attempts": "num_attempts"},
+    ),
+    decorator(
+        "Repeat",
+        "repeat",
+        "Runs the child again when it succeeds.",
+        input_port("cycles", int, "runs in all; -1 is without end"),
+        xml={"cycles": "num_cycles"},
+    ),
+    decorator(
+        "Timeout",
+        "timeout",
+        "Halts the child and fails with TIMEOUT when it takes longer.",
+        input_port("duration", float, "the limit", unit="s"),
+        xml={"duration": "msec"},
+    ),
+    decorator(
+        "Delay",
+        "delay",
+        "Waits before the child.",
+        input_port("duration", float, "how long", unit="s"),
+        xml={"duration": "delay_msec"},
+    ),
+    decorator("Inverter", "invert", "Success becomes failure and failure success."),
+    decorator("ForceSuccess", "force_success", "Whatever the child's end: success."),
+    decorator("ForceFailure", "force_failure", "Whatever the child's end: failure."),
+    decorator(
+        "KeepRunningUntilFailure",
+        "keep_running_until_failure",
+        "Runs the child again and again until it fails.",
+    ),
+    decorator(
+        "RunOnce",
+        "run_once",
+        "Runs the child once in the life of the tree.",
+        input_port(
+            "then_skip",
+            bool,
+            "skipped afterwards, instead of repeating the result",
+            True,
+        ),
+    ),
+    decorator(
+        "Precondition",
+        "precondition",
+        "Asks a condition before the child starts.",
+        input_port("if", ScriptText, "the condition"),
+        input_port(
+            "else",
+            Literal["FAILURE", "SUCCESS", "RUNNING", "SKIPPED"],
+            "the result when it does not hold",
+            "FAILURE",
+        ),
+        modifier=False,
+    ),
+    NodeSpec(
+        "ForEach",
+        ("for_each",),
+        Kind.DECORATOR,
+        "Runs the child for each item of a list, until it fails.",
+        by_name(
+            input_port("in", tuple, "the items"),
+            Port("as", "out", object, "the key that holds the item of the round"),
+        ),
+        children=(1, 1),
+        positions=("child",),
+    ),
+)
+"""All of them."""

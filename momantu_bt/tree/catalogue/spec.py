@@ -1,0 +1,118 @@
+"""What a built-in node is: its canonical type, spelling in YAML, ports and children."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Any
+
+from momantu_bt.skill import MISSING, Port
+
+
+class Kind(StrEnum):
+    """What a built-in node is to its parent and to its children."""
+
+    CONTROL = "control"
+    DECORATOR = "decorator"
+    LEAF = "leaf"
+
+
+class ScriptText(str):
+    """The type of a port that holds a script in canonical form (`&& || !`, bare names)."""
+
+
+class CodeText(str):
+    """The type of a port that holds a failure code."""
+
+
+@dataclass(frozen=True, slots=True)
+class NodeSpec:
+    """One built-in node.
+
+    yaml: the spellings, preferred first. first: the port that a scalar in YAML means.
+    modifier: the YAML spelling may stand beside a node key. children: least and most (None: any).
+    positions: what each child is, where they have names of their own in YAML (if, then, else).
+    handlers: takes `catch:`. xml: attribute names of BehaviorTree.CPP for ports named otherwise.
+    """
+
+    type: str
+    yaml: tuple[str, ...]
+    kind: Kind
+    doc: str
+    ports: Mapping[str, Port] = field(default_factory=dict)
+    first: str | None = None
+    children: tuple[int, int | None] = (0, 0)
+    positions: tuple[str, ...] = ()
+    modifier: bool = False
+    handlers: bool = False
+    concurrent: bool = False
+    xml: Mapping[str, str] = field(default_factory=dict)
+
+
+def by_name(*ports: Port) -> dict[str, Port]:
+    """Ports as `NodeSpec.ports` holds them."""
+    return {port.name: port for port in ports}
+
+
+def input_port(
+    name: str, type_: Any, doc: str, default: Any = MISSING, unit: str | None = None
+) -> Port:
+    """An input of a built-in node."""
+    return Port(name, "in", type_, doc, default, unit)
+
+
+def control(
+    type_: str,
+    yaml: str,
+    doc: str,
+    *ports: Port,
+    least: int = 1,
+    most: int | None = None,
+    concurrent: bool = False,
+) -> NodeSpec:
+    """A node that decides which of its children run."""
+    return NodeSpec(
+        type_,
+        (yaml,),
+        Kind.CONTROL,
+        doc,
+        by_name(*ports),
+        children=(least, most),
+        concurrent=concurrent,
+    )
+
+
+def decorator(
+    type_: str,
+    yaml: str,
+    doc: str,
+    *ports: Port,
+    modifier: bool = True,
+    xml: Mapping[str, str] | None = None,
+) -> NodeSpec:
+    """A node around one child; its first port is what a bare value means."""
+    return NodeSpec(
+        type_,
+        (yaml,),
+        Kind.DECORATOR,
+        doc,
+        by_name(*ports),
+        first=ports[0].name if ports else None,
+        children=(1, 1),
+        positions=("child",),
+        modifier=modifier,
+        xml=xml or {},
+    )
+
+
+def leaf(
+    type_: str,
+    yaml: tuple[str, ...],
+    doc: str,
+    *ports: Port,
+    xml: Mapping[str, str] | None = None,
+) -> NodeSpec:
+    """A node without children; its first port is what a bare value means."""
+    first = ports[0].name if ports else None
+    return NodeSpec(type_, yaml, Kind.LEAF, doc, by_name(*ports), first=first, xml=xml or {})
