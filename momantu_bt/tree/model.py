@@ -61,6 +61,11 @@ class Template:
 
 PortValue: TypeAlias = Literal | Reference | Template
 
+
+class Beside(str):
+    """A comment at the end of the line of what it belongs to; a plain text stands above it."""
+
+
 FIRST_INPUT = ""
 """Key of a port value written without a name (`reset_pose: home`); the checker names it."""
 
@@ -92,8 +97,10 @@ class Node:
     `written_as_modifier` keeps the spelling. conditions: modifier name ("skip_if", "while",
     "on_success", …) to a script in canonical form (`&& || !`).
     For a SubTree, `ports` are the wires to its inputs and outputs and `target` is its name.
-    port_places: of the ports' values; port_name_places: of their names. comments: those written
-    before the node or at the end of its line, without their signs.
+    port_places: of the ports' values; port_name_places: of their names. condition_places: of the
+    conditions' scripts, and of `name`, `note` and `disabled`.
+    comments: those written before the node or at the end of its line (`Beside`), without their
+    signs; port_comments: the same of its ports; end_comments: those after all that is inside it.
     """
 
     type: str
@@ -111,6 +118,8 @@ class Node:
     port_name_places: dict[str, Place] = field(default_factory=dict, compare=False)
     condition_places: dict[str, Place] = field(default_factory=dict, compare=False)
     comments: tuple[str, ...] = field(default=(), compare=False)
+    port_comments: dict[str, tuple[str, ...]] = field(default_factory=dict, compare=False)
+    end_comments: tuple[str, ...] = field(default=(), compare=False)
 
     def walk(self) -> Iterator[Node]:
         """The node and everything below it, in the order of the file, without recursion."""
@@ -138,6 +147,7 @@ class PortDeclaration:
     place: Place = field(compare=False)
     default: Literal | None = None
     doc: str = ""
+    comments: tuple[str, ...] = field(default=(), compare=False)
 
 
 @dataclass(slots=True)
@@ -170,7 +180,8 @@ class Document:
 
     trees: the file's own and those of the files it includes; `Tree.place.file` tells them apart.
     values: initial keys of the root's board. source: the text, by file, for error displays.
-    comments: those after the last tree.
+    header_comments: those above and beside the first keys of the file; value_comments: those of
+    `values`, by key; comments: those after the last tree.
     """
 
     file: str = field(compare=False)
@@ -182,4 +193,6 @@ class Document:
     value_places: dict[str, Place] = field(default_factory=dict, compare=False)
     world_place: Place | None = field(default=None, compare=False)
     source: dict[str, str] = field(default_factory=dict, compare=False)
+    header_comments: tuple[str, ...] = field(default=(), compare=False)
+    value_comments: dict[str, tuple[str, ...]] = field(default_factory=dict, compare=False)
     comments: tuple[str, ...] = field(default=(), compare=False)
