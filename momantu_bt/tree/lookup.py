@@ -23,9 +23,12 @@ def bundled_folder() -> Path | None:
 
 
 def bundled() -> dict[str, Path]:
-    """Bundled trees by name."""
+    """Bundled trees by name; those in a folder of their own have its name before theirs."""
     folder = bundled_folder()
-    return {} if folder is None else {p.stem: p for p in sorted(folder.glob(f"*{SUFFIX}"))}
+    if folder is None:
+        return {}
+    paths = [*sorted(folder.glob(f"*{SUFFIX}")), *sorted(folder.glob(f"*/*{SUFFIX}"))]
+    return {path.relative_to(folder).with_suffix("").as_posix(): path for path in paths}
 
 
 def find(name: str) -> Path:
@@ -50,6 +53,10 @@ def find(name: str) -> Path:
 
 
 def _not_found(path: Path, having: dict[str, Path]) -> str:
+    inner = {name.rpartition("/")[2]: name for name in having}
+    near = nearest(path.name, inner)
+    if not path.suffix and near is not None:
+        return f"no tree is called {str(path)!r}; did you mean {inner[near]}?"
     if path.suffix or len(path.parts) > 1:
         folder = path.parent
         if not folder.is_dir():
@@ -58,10 +65,8 @@ def _not_found(path: Path, having: dict[str, Path]) -> str:
         near = nearest(path.name, beside)
         if near is not None:
             return f"there is no file {path}; did you mean {beside[near]}?"
-        near = nearest(path.stem, having)
+        near = nearest(path.stem, inner)
         if near is not None:
-            return f"there is no file {path}; did you mean the bundled tree {near}?"
+            return f"there is no file {path}; did you mean the bundled tree {inner[near]}?"
         return f"there is no file {path}; tree files there: {', '.join(beside) or 'none'}"
-    near = nearest(path.name, having)
-    hint = f"did you mean {near}?" if near else f"bundled trees: {', '.join(having) or 'none'}"
-    return f"no tree is called {path.name!r}; {hint}"
+    return f"no tree is called {path.name!r}; bundled trees: {', '.join(having) or 'none'}"

@@ -31,6 +31,7 @@ def test_a_file_by_path(folder: Path, registry: Registry) -> None:
 def test_bundled_trees_by_name() -> None:
     assert {"bring_object", "bring_object_plain"} <= bundled().keys()
     assert find("bring_object").name == "bring_object.yaml"
+    assert find("examples/patrol").parts[-2:] == ("examples", "patrol.yaml")
 
 
 @pytest.mark.parametrize(
@@ -42,6 +43,9 @@ def test_bundled_trees_by_name() -> None:
         ("no/such.yaml", "there is no folder no"),
         ("bring_objct", "did you mean bring_object?"),
         ("zzz", "bundled trees: bring_object"),
+        ("patrol", "no tree is called 'patrol'; did you mean examples/patrol?"),
+        ("exmples/patrl", "did you mean examples/patrol?"),
+        ("patrol.yaml", "did you mean the bundled tree examples/patrol?"),
         (".", "is a folder; tree files in it: fetch_it.yaml"),
     ],
 )
