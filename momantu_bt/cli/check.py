@@ -8,8 +8,10 @@ from typing import Annotated, Any
 
 import typer
 
+from momantu_bt.tree.codes import UnknownCode, codes, explanation
 from momantu_bt.tree.load import Checked, TreeError, TreeNotFound, load
-from momantu_bt.tree.problems import Problem, Severity, show
+from momantu_bt.tree.problems import Problem, Severity, show, valid_names
+from momantu_bt.tree.sarif import sarif
 
 EXIT_WRONG_INPUT = 2
 MOST_SHOWN = 50
@@ -17,12 +19,20 @@ MOST_SHOWN = 50
 
 
 def check(
-    trees: Annotated[list[str], typer.Argument(help="Tree files, or names of bundled trees.")],
+    trees: Annotated[
+        list[str] | None, typer.Argument(help="Tree files, or names of bundled trees.")
+    ] = None,
     world: Annotated[
         str | None, typer.Option(help="Check against this world; `none` is without one.")
     ] = None,
     robot: Annotated[str | None, typer.Option(help="Check against this robot.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,
+    as_sarif: Annotated[
+        bool, typer.Option("--sarif", help="Print SARIF 2.1.0, for editors and code reviews.")
+    ] = False,
+    explain: Annotated[
+        str | None, typer.Option(metavar="CODE", help="Explain a problem's code, with examples.")
+    ] = None,
 ) -> int:
     """Say everything that is wrong with tree files: all errors at once, each with its place.
 
@@ -32,29 +42,44 @@ def check(
       momantu-bt check trees/bring_object.yaml
       momantu-bt check bring_object --world four_rooms --robot fetch
       momantu-bt check --json my_tree.yaml
+      momantu-bt check --explain read-before-write
     """
+    if explain is not None:
+        return _explain(explain)
+    if not trees:
+        return _refuse("name at least one tree file; see momantu-bt check --help")
+    if as_json and as_sarif:
+        return _refuse("choose one of --json and --sarif")
+    quiet = as_json or as_sarif
     reports: list[dict[str, Any]] = []
+    found: list[Problem] = []
+    unread: list[str] = []
     fine = True
     for tree in trees:
         try:
             checked = load(tree, world=world, robot=robot)
         except TreeNotFound as error:
             fine = False
+            unread.append(str(error))
             reports.append({"tree": tree, "ok": False, "message": str(error), "problems": []})
-            if not as_json:
+            if not quiet:
                 typer.echo(f"momantu-bt: {error}", err=True)
         except TreeError as error:
             fine = False
+            found += error.problems
             reports.append(_as_json(tree, False, error.problems))
-            if not as_json:
+            if not quiet:
                 report(error.problems, error.source)
         else:
+            found += checked.notes
             reports.append(_as_json(tree, True, checked.notes))
-            if not as_json:
+            if not quiet:
                 report(checked.notes, checked.document.source)
                 typer.echo(_fine(tree, checked))
     if as_json:
-        typer.echo(json.dumps({"ok": fine, "trees": reports}, indent=2, ensure_ascii=False))
+        _print_json({"ok": fine, "trees": reports})
+    if as_sarif:
+        _print_json(sarif(found, unread))
     return 0 if fine else EXIT_WRONG_INPUT
 
 
@@ -71,7 +96,26 @@ def report(problems: Sequence[Problem], source: Mapping[str, str]) -> None:
         for severity in Severity
         if (count := sum(problem.severity is severity for problem in problems))
     ]
-    typer.echo(", ".join(counts), err=True)
+    more = f"momantu-bt check --explain {problems[0].code} says more"
+    typer.echo(f"{', '.join(counts)}; {more}", err=True)
+
+
+def _explain(code: str) -> int:
+    try:
+        typer.echo(explanation(code).rstrip())
+    except UnknownCode:
+        hint = valid_names(code, codes(), "codes")
+        return _refuse(f"no problem has the code {code!r}; {hint}")
+    return 0
+
+
+def _refuse(message: str) -> int:
+    typer.echo(f"momantu-bt: {message}", err=True)
+    return EXIT_WRONG_INPUT
+
+
+def _print_json(value: Any) -> None:
+    typer.echo(json.dumps(value, indent=2, ensure_ascii=False))
 
 
 def _as_json(tree: str, ok: bool, problems: Sequence[Problem]) -> dict[str, Any]:

@@ -59,7 +59,9 @@ def test_help_of_a_verb_has_examples_on_lines_of_their_own(
     ("arguments", "message"),
     [
         (["chek"], "Did you mean 'check'?"),
-        (["check"], "Missing argument"),
+        (["check"], "name at least one tree file"),
+        (["check", "--json", "--sarif", "x.yaml"], "one of --json and --sarif"),
+        (["check", "--explain", "unknwon-node"], "did you mean unknown-node?"),
         (["check", "--wrld", "x", "y"], "--wrld"),
         (["check", "nowhere.yaml"], "there is no file nowhere.yaml"),
         (["show", "bring_objct"], "did you mean bring_object?"),
@@ -86,7 +88,7 @@ def test_check_reports_all_errors(capsys: pytest.CaptureFixture[str], bad: Path)
     assert f"{bad}:4:7: error: no node is called 'wit' [unknown-node]" in said
     assert f"{bad}:5:13: error:" in said
     assert "did you mean wait?" in said
-    assert said.endswith("2 errors\n")
+    assert said.endswith("2 errors; momantu-bt check --explain unknown-node says more\n")
 
 
 def test_check_as_json(capsys: pytest.CaptureFixture[str], tree: Path, bad: Path) -> None:
@@ -97,14 +99,32 @@ def test_check_as_json(capsys: pytest.CaptureFixture[str], tree: Path, bad: Path
     assert (first["code"], first["line"], first["column"]) == ("unknown-node", 4, 7)
 
 
+def test_check_explains_a_code(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", "--explain", "unknown-node"]) == 0
+    said = capsys.readouterr().out
+    assert said.startswith("# unknown-node")
+    assert "Wrong:" in said
+
+
+def test_check_in_sarif(bad: Path, tree: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", "--sarif", str(bad), str(tree), "nowhere.yaml"]) == 2
+    captured = capsys.readouterr()
+    run = json.loads(captured.out)["runs"][0]
+    assert [result["ruleId"] for result in run["results"]] == ["unknown-node", "wrong-value"]
+    assert (
+        "nowhere.yaml" in run["invocations"][0]["toolExecutionNotifications"][0]["message"]["text"]
+    )
+    assert captured.err == ""
+
+
 def test_very_many_errors_are_counted(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     path = tmp_path / "many.yaml"
     path.write_text("momantu_bt: 1\ntrees:\n  Main:\n" + "    - wit\n" * 60, encoding="utf-8")
     assert main(["check", str(path)]) == 2
     said = capsys.readouterr().err
-    assert said.count("unknown-node") == MOST_SHOWN
+    assert said.count("[unknown-node]") == MOST_SHOWN
     assert "and 10 more" in said
-    assert said.endswith("60 errors\n")
+    assert "\n60 errors;" in said
 
 
 def test_show(capsys: pytest.CaptureFixture[str], tree: Path, bad: Path) -> None:
