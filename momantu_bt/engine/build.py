@@ -29,7 +29,7 @@ from momantu_bt.engine.nodes.skill import SkillLeaf
 from momantu_bt.engine.nodes.subtree import SubTree
 from momantu_bt.engine.ports import Inputs, Reader, cell_of, inputs_of, outputs_of, reader
 from momantu_bt.skill import Port, Skill
-from momantu_bt.tree.catalogue import BUILT_IN, SUBTREE
+from momantu_bt.tree.catalogue import AUTOREMAP, BUILT_IN, SUBTREE
 from momantu_bt.tree.model import Document, Literal, Node, PortValue, Reference, Tree
 from momantu_bt.tree.values import ConversionError, port_of
 
@@ -220,8 +220,9 @@ class _Builder:
         self, model: Node, board: Board, path: str, conditions: Conditions | None
     ) -> SubTree:
         tree = _tree(self.document, model.target or "")
-        values = dict(model.ports)
-        autoremap = values.pop("_autoremap", Literal(False)) == Literal(True)
+        wired = {n: d.default for n, d in tree.ports.items() if _is_wire(d.default)}
+        values: dict[str, PortValue] = {**wired, **model.ports}
+        autoremap = values.pop(AUTOREMAP, Literal(False)) == Literal(True)
         wires = {k: cell_of(v, board) for k, v in values.items() if _is_wire(v)}
         inner = Board(
             self.context.writes, board, wires, path=f"{path}/{tree.name}/", autoremap=autoremap
@@ -246,7 +247,7 @@ class _Builder:
         return given
 
 
-def _is_wire(value: PortValue) -> TypeGuard[Reference]:
+def _is_wire(value: PortValue | None) -> TypeGuard[Reference]:
     return isinstance(value, Reference) and not value.fields
 
 

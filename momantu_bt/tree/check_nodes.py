@@ -36,7 +36,7 @@ def check_tree_ports(context: Context, tree: Tree) -> None:
 
 
 def _check_default(context: Context, name: str, declaration: PortDeclaration) -> None:
-    if declaration.default is None:
+    if not isinstance(declaration.default, Literal):
         return
     try:
         convert(declaration.default.value, port_of(declaration))
@@ -60,6 +60,7 @@ def check_node(context: Context, node: Node) -> None:
     _check_children(context, node, signature)
     for name in list(node.ports):
         _check_port(context, node, name, signature)
+    _check_one_of(context, node, signature)
     for name, port in signature.ports.items():
         needed = port.required or (signature.spec is not None and port.direction == "out")
         if needed and name not in node.ports and name not in node.port_places:
@@ -95,6 +96,18 @@ def _check_children(context: Context, node: Node, signature: Signature) -> None:
     elif most is not None and count > most:
         message = f"{signature.said} has {count} children; at most {most}"
         context.problems.error("children", node.place, message)
+
+
+def _check_one_of(context: Context, node: Node, signature: Signature) -> None:
+    """Of some inputs exactly one is given, such as a time in seconds or in milliseconds."""
+    for group in signature.spec.one_of if signature.spec is not None else ():
+        given = [name for name in group if name in node.port_places or name in node.ports]
+        if not given:
+            _report_missing(context, node, signature.ports[group[0]], signature)
+        for name in given[1:]:
+            message = f"{signature.said} takes {given[0]!r} or {name!r}, not both"
+            place = node.port_name_places.get(name, node.place)
+            context.problems.error("one-of", place, message, "remove one")
 
 
 def _report_missing(context: Context, node: Node, port: Port, signature: Signature) -> None:

@@ -138,14 +138,16 @@ class Node:
 class PortDeclaration:
     """An input or output of a subtree.
 
-    direction: "in", "out" or "inout". type_name: "text", "list of pose2d", … or "any".
+    direction: "in", "out" or "inout" (a key that may come in with a value and go out with
+    another). type_name: "text", "list of pose2d", … or "any". default: a value, or the key outside
+    that a node is wired to where it does not say.
     """
 
     name: str
     direction: str
     type_name: str
     place: Place = field(compare=False)
-    default: Literal | None = None
+    default: Literal | Reference | None = None
     doc: str = ""
     comments: tuple[str, ...] = field(default=(), compare=False)
 

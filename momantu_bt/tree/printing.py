@@ -188,6 +188,8 @@ def _count(node: Node, port: str) -> str:
 
 
 def _duration(node: Node) -> str:
+    if "msec" in node.ports:
+        return f"{value_text(node.ports['msec'])} ms"
     value = node.ports.get("duration", Literal("?"))
     shown = value_text(value)
     bare = isinstance(value, Literal) and isinstance(value.value, int | float)

@@ -9,20 +9,23 @@ from __future__ import annotations
 import dataclasses
 import difflib
 import math
+import re
 from collections.abc import Mapping, Sequence
 from enum import Enum
 from types import MappingProxyType
 from typing import Any, Literal, get_args, get_type_hints
 
 from momantu_bt.skill import MISSING, Port
+from momantu_bt.tree import model
 from momantu_bt.tree.catalogue import CodeText
-from momantu_bt.tree.model import PortDeclaration
 from momantu_bt.tree.script_nodes import part
 from momantu_bt.tree.types import ValueType, is_union, label, members, origin, parse_type
 from momantu_bt.tree.units import UnitError, in_unit, quantity, units_of
 
 __all__ = ["ConversionError", "convert", "natural", "part", "port_of", "render"]
 
+_NUMBER = re.compile(r"[-+]?([0-9]+|[0-9]*\.[0-9]+|[0-9]+\.)([eE][-+]?[0-9]+)?")
+_LONGEST_NUMBER = 40
 _MISREAD = {"yes": "true", "on": "true", "y": "true", "no": "false", "off": "false", "n": "false"}
 _MISREAD |= {"True": "true", "TRUE": "true", "False": "false", "FALSE": "false"}
 
@@ -60,19 +63,23 @@ def natural(value: Any) -> Any:
     return value
 
 
-def port_of(declaration: PortDeclaration) -> Port:
+def port_of(declaration: model.PortDeclaration) -> Port:
     """A subtree's input or output as a port.
 
     Raises:
         KeyError: its type has no such name.
     """
-    default = MISSING if declaration.default is None else declaration.default.value
+    default = declaration.default
     return Port(
         declaration.name,
         declaration.direction,
         parse_type(declaration.type_name),
         declaration.doc,
-        default,
+        default.value
+        if isinstance(default, model.Literal)
+        else MISSING
+        if default is None
+        else None,
     )
 
 
@@ -197,15 +204,26 @@ def _measured(text: str, type_: type, unit: str | None) -> Any:
     try:
         if unit is not None:
             found = in_unit(text, unit)
-            return text if found is None else found
+            return _plain_number(text) if found is None else found
         plain = quantity(text)
     except UnitError as error:
         raise ConversionError(str(error)) from None
     if plain is None:
-        return text
+        return _plain_number(text)
     if type_ is int:
         raise ConversionError(f"{text!r} has a unit; expected a bare whole number")
     return plain.value
+
+
+def _plain_number(text: str) -> Any:
+    """`010` and `2.50` as numbers: XML has no others; any other text as it is."""
+    if not _NUMBER.fullmatch(text) or len(text) > _LONGEST_NUMBER:
+        return text
+    try:
+        return int(text)
+    except ValueError:
+        number = float(text)
+        return number if math.isfinite(number) else text
 
 
 def _to_text(value: Any, type_: type[str]) -> Any:

@@ -6,7 +6,16 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from momantu_bt.tree.catalogue import MODIFIERS, SPELLED
-from momantu_bt.tree.model import Document, Literal, Node, Place, PortDeclaration, Tree
+from momantu_bt.tree.model import (
+    Document,
+    Literal,
+    Node,
+    Place,
+    PortDeclaration,
+    Reference,
+    Template,
+    Tree,
+)
 from momantu_bt.tree.problems import Problems, TreeError, errors, nearest, valid_names
 from momantu_bt.tree.yaml_nodes import AGAIN, NodeReader
 from momantu_bt.tree.yaml_source import (
@@ -24,7 +33,8 @@ VERSION = 1
 """What `momantu_bt:` says; a later one may read differently."""
 
 _TOP = ("momantu_bt", "world", "main", "values", "trees")
-_HEADER = ("inputs", "outputs", "doc")
+_PORTS = {"inputs": "in", "outputs": "out", "inouts": "inout"}
+_HEADER = (*_PORTS, "open", "doc")
 _DECLARATION = ("type", "default", "doc")
 
 
@@ -201,9 +211,11 @@ class _Reader:
             body = Entries(
                 [(k, v) for k, v in raw.entries if k.text not in _HEADER], raw.place, raw.flow
             )
-            for name, direction in (("inputs", "in"), ("outputs", "out")):
+            for name, direction in _PORTS.items():
                 if name in header:
-                    self.declarations(tree, header[name], direction)
+                    self.declarations(tree, header[name], name, direction)
+            if "open" in header:
+                self.open(tree, header["open"])
             if "doc" in header:
                 tree.doc = str(plain_value(header["doc"]))
             if not body.entries:
@@ -212,16 +224,23 @@ class _Reader:
         reader.read(body, _root_setter(tree))
         return tree
 
-    def declarations(self, tree: Tree, raw: Raw, direction: str) -> None:
+    def open(self, tree: Tree, raw: Raw) -> None:
+        if isinstance(raw, Scalar) and isinstance(raw.value, bool):
+            tree.open = raw.value
+        else:
+            hint = "an open tree takes any key as a port"
+            self.problems.error("wrong-value", raw.place, "`open` is true or false", hint)
+
+    def declarations(self, tree: Tree, raw: Raw, name: str, direction: str) -> None:
         if isinstance(raw, Items):
-            raw = self.untyped(raw, f"{direction}puts")
-        for key, value in self.mapping(raw, f"{direction}puts", "name: type"):
+            raw = self.untyped(raw, name)
+        for key, value in self.mapping(raw, name, "name: type"):
             if not self.is_key(key):
                 continue
             if key.text in tree.ports and tree.ports[key.text].direction != direction:
-                self.problems.error(
-                    "duplicate-key", key.place, f"{key.text!r} is an input and an output"
-                )
+                message = f"{key.text!r} is an input or output already"
+                hint = "a key that comes in and goes out stands under `inouts:`"
+                self.problems.error("duplicate-key", key.place, message, hint)
             found = self.declaration(key, value, direction)
             if found is not None:
                 tree.ports[key.text] = found
@@ -257,7 +276,7 @@ class _Reader:
             hint = "such as `type: text` or `type: list of int`"
             self.problems.error("wrong-value", type_.place, "`type` is the name of a type", hint)
         default = having.get("default")
-        found = None if default is None else self.written_out(default, "a default")
+        found = None if default is None else self.default(default)
         return PortDeclaration(
             key.text,
             direction,
@@ -266,6 +285,14 @@ class _Reader:
             found,
             str(plain_value(having["doc"])) if "doc" in having else "",
         )
+
+    def default(self, raw: Raw) -> Literal | Reference | None:
+        found = port_value(raw, "", self.problems)
+        if isinstance(found, Template) or (isinstance(found, Reference) and found.fields):
+            message = "a default is a value, or one key of whoever runs the tree"
+            self.problems.error("wire-inside", raw.place, message, "write the value, or $key")
+            return None
+        return found
 
 
 def _root_setter(tree: Tree) -> Callable[[Node], None]:

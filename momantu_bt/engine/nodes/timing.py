@@ -12,6 +12,15 @@ from momantu_bt.engine.status import RUNNING, SKIPPED, SUCCESS, Status
 from momantu_bt.failure import HALTED, TIMEOUT, FailureValue
 
 
+def seconds(inputs: Inputs) -> float:
+    """The time of a node whose inputs are `duration` and `msec`, one of which is given."""
+    duration: float | None = inputs["duration"]
+    if duration is not None:
+        return duration
+    milliseconds: int = inputs["msec"]
+    return milliseconds / 1000.0
+
+
 class Timeout(Decorator):
     """Halts a child that runs too long and fails with TIMEOUT; what was running is its cause.
 
@@ -25,7 +34,7 @@ class Timeout(Decorator):
 
     def step(self) -> Status:
         """Tick the child while there is time."""
-        limit: float = self.inputs["duration"]
+        limit = seconds(self.inputs)
         if self.begun is None:
             self.begun = self.context.now
         self.state = RUNNING
@@ -68,7 +77,7 @@ class Delay(Decorator):
         if self.begun is None:
             self.begun = self.context.now
         self.state = RUNNING
-        duration: float = self.inputs["duration"]
+        duration = seconds(self.inputs)
         if self.context.now - self.begun < duration - CLOCK_SLACK:
             return RUNNING
         status = self.child.execute()
@@ -94,7 +103,9 @@ class Sleep(TreeNode):
     def step(self) -> Status:
         """Wait; the duration is read at the start."""
         if self.state is not RUNNING:
-            duration: float = self.inputs["duration"]
+            duration = seconds(self.inputs)
             self.until = self.context.now + duration
-            self.label = label(self.model, {"duration": f"{duration:g} s"})
+            self.label = label(
+                self.model, {"duration": f"{duration:g} s", "msec": duration * 1000.0}
+            )
         return SUCCESS if self.context.now >= self.until - CLOCK_SLACK else RUNNING

@@ -14,6 +14,7 @@ from momantu_bt.tree.catalogue.leaves import LEAVES
 from momantu_bt.tree.catalogue.spec import CodeText, Kind, NodeSpec, ScriptText
 
 __all__ = [
+    "AUTOREMAP",
     "BUILT_IN",
     "CONDITIONS",
     "FORCED",
@@ -31,6 +32,9 @@ __all__ = [
 
 SUBTREE = "SubTree"
 """Canonical type of a node that runs another tree of the document; `Node.target` names it."""
+
+AUTOREMAP = "_autoremap"
+"""Port of a SubTree: whether every key inside that no wire names is the same key outside."""
 
 BUILT_IN: Mapping[str, NodeSpec] = {spec.type: spec for spec in (*CONTROLS, *DECORATORS, *LEAVES)}
 """Built-in nodes by canonical type."""

@@ -6,12 +6,14 @@ from typing import Literal
 
 from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue.spec import (
+    TIME,
     Kind,
     NodeSpec,
     ScriptText,
     by_name,
     decorator,
     input_port,
+    time_ports,
 )
 
 DECORATORS = (
@@ -33,15 +35,17 @@ DECORATORS = (
         "Timeout",
         "timeout",
         "Halts the child and fails with TIMEOUT when it takes longer.",
-        input_port("duration", float, "the limit", unit="s"),
-        xml={"duration": "msec"},
+        *time_ports("the limit"),
+        xml={"duration": ""},
+        one_of=TIME,
     ),
     decorator(
         "Delay",
         "delay",
         "Waits before the child.",
-        input_port("duration", float, "how long", unit="s"),
-        xml={"duration": "delay_msec"},
+        *time_ports("how long"),
+        xml={"duration": "", "msec": "delay_msec"},
+        one_of=TIME,
     ),
     decorator("Inverter", "invert", "Success becomes failure and failure success."),
     decorator("ForceSuccess", "force_success", "Whatever the child's end: success."),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from momantu_bt.skill import Port
-from momantu_bt.tree.catalogue.spec import CodeText, ScriptText, input_port, leaf
+from momantu_bt.tree.catalogue.spec import TIME, CodeText, ScriptText, input_port, leaf, time_ports
 
 LEAVES = (
     leaf("AlwaysSuccess", ("succeed", "always_success"), "Succeeds at once."),
@@ -40,8 +40,9 @@ LEAVES = (
         "Sleep",
         ("wait",),
         "Waits.",
-        input_port("duration", float, "how long", unit="s"),
-        xml={"duration": "msec"},
+        *time_ports("how long"),
+        xml={"duration": ""},
+        one_of=TIME,
     ),
 )
 """All of them."""

@@ -33,7 +33,8 @@ class NodeSpec:
     yaml: the spellings, preferred first. first: the port that a scalar in YAML means.
     modifier: the YAML spelling may stand beside a node key. children: least and most (None: any).
     positions: what each child is, where they have names of their own in YAML (if, then, else).
-    handlers: takes `catch:`. xml: attribute names of BehaviorTree.CPP for ports named otherwise.
+    handlers: takes `catch:`. xml: attribute names of BehaviorTree.CPP for ports named otherwise;
+    empty for a port that it does not have. one_of: groups of inputs, exactly one of which is given.
     """
 
     type: str
@@ -48,6 +49,7 @@ class NodeSpec:
     handlers: bool = False
     concurrent: bool = False
     xml: Mapping[str, str] = field(default_factory=dict)
+    one_of: tuple[tuple[str, ...], ...] = ()
 
 
 def by_name(*ports: Port) -> dict[str, Port]:
@@ -60,6 +62,18 @@ def input_port(
 ) -> Port:
     """An input of a built-in node."""
     return Port(name, "in", type_, doc, default, unit)
+
+
+def time_ports(doc: str) -> tuple[Port, Port]:
+    """A time in either spelling, ours and BehaviorTree.CPP's; exactly one is given."""
+    return (
+        input_port("duration", float, doc, None, unit="s"),
+        input_port("msec", int, f"{doc}, in milliseconds", None),
+    )
+
+
+TIME = (("duration", "msec"),)
+"""`NodeSpec.one_of` of a node with `time_ports`."""
 
 
 def control(
@@ -90,6 +104,7 @@ def decorator(
     *ports: Port,
     modifier: bool = True,
     xml: Mapping[str, str] | None = None,
+    one_of: tuple[tuple[str, ...], ...] = (),
 ) -> NodeSpec:
     """A node around one child; its first port is what a bare value means."""
     return NodeSpec(
@@ -103,6 +118,7 @@ def decorator(
         positions=("child",),
         modifier=modifier,
         xml=xml or {},
+        one_of=one_of,
     )
 
 
@@ -112,7 +128,16 @@ def leaf(
     doc: str,
     *ports: Port,
     xml: Mapping[str, str] | None = None,
+    one_of: tuple[tuple[str, ...], ...] = (),
 ) -> NodeSpec:
     """A node without children; its first port is what a bare value means."""
-    first = ports[0].name if ports else None
-    return NodeSpec(type_, yaml, Kind.LEAF, doc, by_name(*ports), first=first, xml=xml or {})
+    return NodeSpec(
+        type_,
+        yaml,
+        Kind.LEAF,
+        doc,
+        by_name(*ports),
+        first=ports[0].name if ports else None,
+        xml=xml or {},
+        one_of=one_of,
+    )

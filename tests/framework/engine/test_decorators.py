@@ -37,7 +37,9 @@ TABLE = [
     (Timeout, "RRS", {"duration": 1.0}, "RRS"),
     (Timeout, "R", {"duration": 0.1}, "RRF"),
     (Timeout, "RRRRS", {"duration": 0.0}, "RRRRS"),
+    (Timeout, "R", {"duration": None, "msec": 100}, "RRF"),
     (Delay, "S", {"duration": 0.1}, "RRS"),
+    (Delay, "S", {"duration": None, "msec": 100}, "RRS"),
     (Delay, "F", {"duration": 0.0}, "F"),
 ]
 

@@ -69,6 +69,11 @@ def test_only_modifiers(expect: Expect) -> None:
     expect("no-node", main("- «{retry: 3}»"), message="only modifiers here (retry)")
 
 
+def test_a_time_is_given_once(expect: Expect) -> None:
+    expect("missing-input", main("- «wait»: {}"), message="needs the input 'duration'")
+    expect("one-of", main("- wait: {duration: 1 s, «msec»: 1000}"), message="not both")
+
+
 def test_missing_input(expect: Expect) -> None:
     expect("missing-input", main("- «pick»"), message="'object'", hint="detected_object")
 

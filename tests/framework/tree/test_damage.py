@@ -166,8 +166,8 @@ def test_one_mistake_is_one_problem(expect: Expect, body: str, code: str, hint: 
     ("ports", "code", "message"),
     [
         ("{n: {type: pose2d, default: {x: 1, «x»: 2, y: 3}}}", "duplicate-key", "'x' stands"),
-        ("{n: {type: int, default: «$m»}}", "wire-inside", "a default is written out"),
-        ('{n: {type: text, default: «"at ${m}"»}}', "wire-inside", "a default is written out"),
+        ("{n: {type: int, default: «$m.x»}}", "wire-inside", "a default is a value, or one key"),
+        ('{n: {type: text, default: «"at ${m}"»}}', "wire-inside", "or one key"),
         ("{n: {type: «[int]»}}", "wrong-value", "the name of a type"),
         ("[n, «n»]", "duplicate-key", "'n' stands here twice"),
         ("[n, «[m]»]", "wrong-value", "lists names"),

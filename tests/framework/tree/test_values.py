@@ -54,6 +54,9 @@ HERE = Pose(Transform(), "odom", 0.0)
         ),
         (HERE, Pose, None, HERE),
         ("66 mm", object, None, 0.066),
+        ("010", int, None, 10),
+        ("2.50", float, None, 2.5),
+        ("2.50", float, "m", 2.5),
     ],
 )
 def test_what_fits(value: Any, type_: Any, unit: str | None, expected: Any) -> None:
@@ -69,7 +72,8 @@ def test_what_fits(value: Any, type_: Any, unit: str | None, expected: Any) -> N
         (1, bool, "not true or false"),
         (True, int, "expected int"),
         (True, float, "expected number"),
-        ("3", int, "expected int"),
+        ("three", int, "expected int"),
+        ("2.50", int, "not a whole number"),
         ("3 m", int, "bare whole number"),
         (float("inf"), int, "not a whole number"),
         ("reb", Colour, "did you mean red"),

@@ -148,6 +148,16 @@ def test_inputs_and_outputs() -> None:
     assert (found.doc, found.root.type) == ("Does it.", "go")
 
 
+def test_a_tree_may_be_open_and_a_key_may_come_in_and_go_out() -> None:
+    trees = document(
+        "main: Main\ntrees:\n  Main: [Sub, Any]\n  Any: {open: true, go: {}}\n  Sub:\n"
+        "    inouts: {a: {type: pose, default: $p}}\n    go: {x: $a}\n"
+    ).trees
+    port = trees["Sub"].ports["a"]
+    assert (port.direction, port.type_name, port.default) == ("inout", "pose", Reference("p"))
+    assert (trees["Any"].open, trees["Sub"].open) == (True, False)
+
+
 def test_every_node_knows_its_place() -> None:
     found = document("trees:\n  Main:\n    - a\n    - b: {x: $k}\n      retry: 2\n")
     places = {n.type: (n.place.line, n.place.column) for n in found.trees["Main"].root.walk()}
