@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from importlib import import_module
 from typing import Any
 
@@ -17,6 +17,7 @@ import typer
 
 import momantu_bt.cli.threads  # noqa: F401 - before numpy, which the next imports load
 from momantu_bt import __version__, plugins
+from momantu_bt.cli.help import help_of
 from momantu_bt.world import WorldError
 
 EXIT_OK = 0
@@ -91,24 +92,7 @@ def _add(app: typer.Typer, name: str, verb: Any) -> None:
     if isinstance(verb, typer.Typer):
         app.add_typer(verb, name=name)
     else:
-        app.command(name, help=_help(verb))(verb)
-
-
-def _help(verb: Callable[..., Any]) -> str:
-    """A verb's docstring; the lines of its examples stay lines."""
-    paragraphs = (verb.__doc__ or "").split("\n\n")
-    return "\n\n".join(
-        "\b\n" + paragraph if paragraph.strip().startswith("Examples:") else paragraph
-        for paragraph in map(_dedented, paragraphs)
-    )
-
-
-def _dedented(paragraph: str) -> str:
-    lines = paragraph.strip("\n").splitlines()
-    widths = [len(line) - len(line.lstrip()) for line in lines[1:] if line.strip()]
-    margin = min(widths, default=0)
-    first = lines[0].lstrip() if lines else ""
-    return "\n".join([first, *(line[margin:] for line in lines[1:])])
+        app.command(name, help=help_of(verb))(verb)
 
 
 def _print_version(wanted: bool) -> None:

@@ -8,7 +8,9 @@ from typing import Annotated, Any
 
 import typer
 
+from momantu_bt.cli.help import help_of
 from momantu_bt.cli.listing import first_line, listing
+from momantu_bt.cli.skills_schema import schema
 from momantu_bt.plugins import SKILLS, load
 from momantu_bt.skill import MISSING, Port, Skill
 from momantu_bt.tree.types import label
@@ -57,6 +59,9 @@ def show_one(
         typer.echo("\nFails with")
         for code, sentence in skill.failures.items():
             typer.echo(f"  {code}: {sentence}")
+
+
+skills.command("schema", help=help_of(schema))(schema)
 
 
 def _kind(port: Port) -> str:

@@ -35,7 +35,7 @@ from momantu_bt.tree.yaml_values import drop_duplicates, port_value, reported_br
 AGAIN = "again"
 ANY = "any"
 _HANDLER_CODE = re.compile(rf"(?:\w+\.)?{CODE.pattern}|{ANY}")
-_COMPANIONS = {"if": ("then", "else"), "while_do": ("do", "else")}
+COMPANIONS = {"if": ("then", "else"), "while_do": ("do", "else")}
 """Keys that stand beside a node key and hold its other children."""
 
 Put = Callable[[Node], None]
@@ -97,12 +97,12 @@ class NodeReader:
             return self._broken("no-node", raw.place, message, "write one, such as `wait: 1 s`")
         key, value = chosen
         beside = [(k, v) for k, v in raw.entries if k is not key]
-        companions = _COMPANIONS.get(key.text, ())
+        companions = COMPANIONS.get(key.text, ())
         node = self._named(key, value, [(k, v) for k, v in beside if k.text in companions])
         return self._modified(node, [(k, v) for k, v in beside if k.text not in companions])
 
     def _node_key(self, raw: Entries) -> tuple[Scalar, Raw] | None:
-        companions = {name for key, _ in raw.entries for name in _COMPANIONS.get(key.text, ())}
+        companions = {name for key, _ in raw.entries for name in COMPANIONS.get(key.text, ())}
         own = [e for e in raw.entries if e[0].text not in MODIFIERS and e[0].text not in companions]
         if not own:
             nodes = [e for e in raw.entries if _has_child(e[1]) and e[0].text in MODIFIERS]
@@ -220,7 +220,7 @@ class NodeReader:
             self._leaf(node, value, None)
             return node
         node = Node(spec.type, key.place)
-        if name in _COMPANIONS:
+        if name in COMPANIONS:
             self._branches(node, value, companions)
         elif spec.handlers:
             self._with_handlers(node, value, spec)
@@ -306,7 +306,7 @@ class NodeReader:
         places = {key.text: raw for key, raw in companions}
         condition = _as_condition(value)
         self._waiting.append((condition or value, node.children.append))
-        for name in _COMPANIONS[BUILT_IN[node.type].yaml[0]]:
+        for name in COMPANIONS[BUILT_IN[node.type].yaml[0]]:
             if name in places:
                 self._waiting.append((places[name], node.children.append))
             elif name != "else":

@@ -177,5 +177,48 @@ def test_a_warning_is_told_and_does_not_fail(capsys: Out, tree: Path) -> None:
     assert main(["check", str(tree)]) == 0
     said = capsys.readouterr()
     assert "[unused-tree]" in said.err
-    assert said.err.endswith("1 warning\n")
+    assert "\n1 warning;" in said.err
     assert "no errors" in said.out
+
+
+def test_the_schema_is_printed_or_written(capsys: Out, tmp_path: Path) -> None:
+    shown = json.loads(printed(capsys, "skills", "schema"))
+    path = tmp_path / "schema.json"
+    assert str(path) in printed(capsys, "skills", "schema", "-o", str(path))
+    assert json.loads(path.read_text(encoding="utf-8")) == shown
+
+
+def test_the_schema_of_a_world_and_a_robot(capsys: Out) -> None:
+    asked = ("skills", "schema", "--world", "four_rooms", "--robot", "fetch")
+    said = printed(capsys, *asked)
+    assert all(f'"{name}"' in said for name in ("table_a", "corridor", "look_around"))
+
+
+@pytest.mark.parametrize(
+    ("asked", "message"),
+    [
+        (("--world", "fuor_rooms"), "did you mean 'four_rooms'?"),
+        (("--robot", "fecth"), "did you mean 'fetch'?"),
+        (("-o", "no_folder/schema.json"), "there is no folder no_folder"),
+    ],
+)
+def test_a_schema_that_cannot_be_made(capsys: Out, asked: tuple[str, ...], message: str) -> None:
+    assert main(["skills", "schema", *asked]) == 2
+    assert message in capsys.readouterr().err
+
+
+def test_a_broken_plugin_is_left_out_of_the_schema(
+    capsys: Out, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole = plugins.load
+
+    def load(group: str, name: str) -> Any:
+        if name == "pick":
+            raise plugins.PluginError("the skill 'pick' cannot be loaded")
+        return whole(group, name)
+
+    monkeypatch.setattr(plugins, "load", load)
+    assert main(["skills", "schema"]) == 0
+    said = capsys.readouterr()
+    assert "left out: the skill 'pick'" in said.err
+    assert "pick" not in json.loads(said.out)["$defs"]["mapping"]["properties"]
