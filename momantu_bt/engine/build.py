@@ -71,6 +71,7 @@ WITH_INPUTS: Mapping[str, Callable[..., TreeNode]] = MappingProxyType(
         "Delay": timing.Delay,
         "Sleep": timing.Sleep,
         "Fail": leaves.Fail,
+        "ElseFail": forcing.ElseFail,
     }
 )
 """Nodes whose ports are inputs only."""
