@@ -94,9 +94,12 @@ def canonical(text: str) -> str:
     return respell(text, found, dollar=False)
 
 
-def yaml_spelling(text: str) -> str:
-    """The canonical form in our YAML spelling; ScriptSyntaxError when it cannot be read."""
-    return respell(text, tokens(text, dollar=False), dollar=True)
+def yaml_spelling(text: str, *, words: bool = True) -> str:
+    """The canonical form in our YAML spelling; ScriptSyntaxError when it cannot be read.
+
+    words: write `and`, `or` and `not` for the signs.
+    """
+    return respell(text, tokens(text, dollar=False), dollar=True, words=words)
 
 
 class _Parser:

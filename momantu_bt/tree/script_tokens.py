@@ -115,12 +115,12 @@ def _apart(before: list[str], word: str, following: str) -> str:
     return left + word + ("" if following.isspace() else " ")
 
 
-def respell(text: str, found: list[Token], *, dollar: bool) -> str:
+def respell(text: str, found: list[Token], *, dollar: bool, words: bool = True) -> str:
     """The same script in the other spelling, spaces and brackets kept.
 
-    found: its tokens. dollar: the spelling wanted.
+    found: its tokens. dollar: the spelling wanted; words: in it, words for signs.
     """
-    words = {operator: word for word, operator in _WORDS.items()}
+    spelled = {operator: word for word, operator in _WORDS.items()}
     pieces: list[str] = []
     position = 0
     for token in found:
@@ -128,8 +128,8 @@ def respell(text: str, found: list[Token], *, dollar: bool) -> str:
         position = token.offset + token.length
         if token.kind == "name" and token.text not in ("true", "false"):
             pieces.append(("$" if dollar else "") + token.text)
-        elif token.kind == "operator" and dollar and token.text in words:
-            pieces.append(_apart(pieces, words[token.text], text[position : position + 1]))
+        elif token.kind == "operator" and dollar and words and token.text in spelled:
+            pieces.append(_apart(pieces, spelled[token.text], text[position : position + 1]))
         elif token.kind == "operator" and token.word:
             pieces.append(token.text)
             while token.text == "!" and text[position : position + 1] == " ":

@@ -17,6 +17,7 @@ from momantu_bt.tree.model import (
     Tree,
 )
 from momantu_bt.tree.problems import Problems, TreeError, errors, nearest, valid_names
+from momantu_bt.tree.yaml_comments import attach
 from momantu_bt.tree.yaml_nodes import AGAIN, NodeReader
 from momantu_bt.tree.yaml_source import (
     Entries,
@@ -24,7 +25,7 @@ from momantu_bt.tree.yaml_source import (
     Raw,
     Scalar,
     YamlSyntaxError,
-    compose,
+    compose_with_remarks,
     plain_value,
 )
 from momantu_bt.tree.yaml_values import KEY, drop_duplicates, port_value
@@ -33,8 +34,8 @@ VERSION = 1
 """What `momantu_bt:` says; a later one may read differently."""
 
 _TOP = ("momantu_bt", "world", "main", "values", "trees")
-_PORTS = {"inputs": "in", "outputs": "out", "inouts": "inout"}
-_HEADER = (*_PORTS, "open", "doc")
+PORTS = {"inputs": "in", "outputs": "out", "inouts": "inout"}
+HEADER = (*PORTS, "open", "doc")
 _DECLARATION = ("type", "default", "doc")
 
 
@@ -48,7 +49,7 @@ def read(text: str, file: str) -> tuple[Document, Problems]:
     """
     source = {file: text}
     try:
-        raw = compose(text, file)
+        raw, remarks = compose_with_remarks(text, file)
     except YamlSyntaxError as error:
         raise TreeError([error.problem], source) from None
     problems = Problems()
@@ -56,6 +57,8 @@ def read(text: str, file: str) -> tuple[Document, Problems]:
     if document is None:
         raise TreeError(errors(problems.sorted()), source)
     document.source = source
+    if remarks:
+        attach(document, raw, text, remarks)
     return document, problems
 
 
@@ -207,11 +210,11 @@ class _Reader:
         body = raw
         if isinstance(raw, Entries):
             drop_duplicates(raw, self.problems)
-            header = {k.text: v for k, v in raw.entries if k.text in _HEADER}
+            header = {k.text: v for k, v in raw.entries if k.text in HEADER}
             body = Entries(
-                [(k, v) for k, v in raw.entries if k.text not in _HEADER], raw.place, raw.flow
+                [(k, v) for k, v in raw.entries if k.text not in HEADER], raw.place, raw.flow
             )
-            for name, direction in _PORTS.items():
+            for name, direction in PORTS.items():
                 if name in header:
                     self.declarations(tree, header[name], name, direction)
             if "open" in header:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import re
+from bisect import bisect_right
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
@@ -83,8 +84,27 @@ def plain_value(raw: Raw) -> Any:
     return {key.text: plain_value(value) for key, value in raw.entries}
 
 
+@dataclass(frozen=True, slots=True)
+class Remark:
+    """A comment in the file, without its `#`. beside: something stands before it on its line."""
+
+    line: int
+    column: int
+    text: str
+    beside: bool
+
+
 def compose(text: str, file: str) -> Raw:
     """Read a text.
+
+    Raises:
+        YamlSyntaxError: with the one problem, in our words.
+    """
+    return compose_with_remarks(text, file)[0]
+
+
+def compose_with_remarks(text: str, file: str) -> tuple[Raw, list[Remark]]:
+    """Read a text and its comments.
 
     Raises:
         YamlSyntaxError: with the one problem, in our words.
@@ -111,7 +131,34 @@ def compose(text: str, file: str) -> Raw:
         raise YamlSyntaxError(
             Problem("syntax", "the file is empty", place, "begin with `momantu_bt: 1`")
         )
-    return builder.root
+    return builder.root, _remarks(text, builder.spans) if "#" in text else []
+
+
+def _span(event: Any) -> list[tuple[int, int]]:
+    """Where a scalar's text stands; that of `|` and `>` begins on the next line."""
+    start, end = event.start_mark.index, event.end_mark.index
+    if event.style not in ("|", ">"):
+        return [(start, end)]
+    below = re.compile(r"[\r\n]").search(event.start_mark.buffer, start)
+    return [] if below is None else [(below.start(), end)]
+
+
+_REMARK = re.compile(r"(?<!\S)#([^\r\n]*)")
+
+
+def _remarks(text: str, spans: list[tuple[int, int]]) -> list[Remark]:
+    """The comments of a text. spans: of its scalars, within which `#` begins none."""
+    found: list[Remark] = []
+    starts = [0, *(match.end() for match in re.finditer(r"\r\n|\r|\n", text))]
+    position = 0
+    for start, end in [*spans, (len(text), len(text))]:
+        for match in _REMARK.finditer(text, position, start):
+            line = bisect_right(starts, match.start())
+            before = text[starts[line - 1] : match.start()]
+            words = match[1].removeprefix(" ").rstrip()
+            found.append(Remark(line, len(before) + 1, words, bool(before.strip())))
+        position = end
+    return found
 
 
 @dataclass(slots=True)
@@ -132,6 +179,7 @@ class _Builder:
     nodes: int = 0
     aliases: int = 0
     documents: int = 0
+    spans: list[tuple[int, int]] = field(default_factory=list)
 
     def take(self, event: Any) -> None:
         if isinstance(event, yaml_events.DocumentStartEvent):
@@ -179,6 +227,7 @@ class _Builder:
 
     def scalar(self, event: Any) -> Scalar:
         quoted = event.style is not None
+        self.spans += _span(event)
         value = event.value if quoted else resolve(event.value)
         return Scalar(value, str(event.value), quoted, self.scalar_place(event))
 
