@@ -7,7 +7,9 @@ from collections.abc import Sequence
 from momantu_bt.tree.model import Document, PortDeclaration, Tree
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.yaml_format import HEADER, PORTS, VERSION
-from momantu_bt.tree.yaml_node_writer import WIDTH, NodeWriter, above, beside, spread
+from momantu_bt.tree.yaml_leaf_writer import LeafWriter
+from momantu_bt.tree.yaml_lines import WIDTH, above, beside, spread
+from momantu_bt.tree.yaml_node_writer import NodeWriter
 from momantu_bt.tree.yaml_scalars import CannotWrite, literal, port_text, scalar
 
 __all__ = ["CannotWrite", "write"]
@@ -26,7 +28,7 @@ def write(document: Document, registry: Registry | None = None) -> str:
         lines += ["", "values:", *_values(document)]
     own = [tree for tree in document.trees.values() if tree.place.file == document.file]
     lines += ["", "trees:"]
-    writer = NodeWriter(frozenset(document.trees), registry or Registry())
+    writer = NodeWriter(LeafWriter(frozenset(document.trees), registry or Registry()))
     for index, tree in enumerate(own):
         lines += ([""] if index else []) + _tree(tree, writer)
     lines += above(document.comments, "")
