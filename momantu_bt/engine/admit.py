@@ -89,8 +89,14 @@ def _shown(value: Any, limit: int = 60) -> str:
     return text if len(text) <= limit else text[: limit - 1] + "…"
 
 
+_PLAIN = frozenset((bool, int, float, str, type(None)))
+"""Types of values that are immutable as they are."""
+
+
 def freeze(value: Any) -> Any:
     """The same value made immutable: lists become tuples, arrays read-only, mappings proxies."""
+    if type(value) in _PLAIN:
+        return value
     if isinstance(value, list | tuple) and type(value) in (list, tuple):
         return tuple(freeze(item) for item in value)
     if isinstance(value, np.ndarray):

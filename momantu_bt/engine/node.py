@@ -3,7 +3,8 @@
 Nodes are py_trees behaviours, so that its displays and visitors work on them, but tick and stop
 after BehaviorTree.CPP 4: `execute` asks the conditions, then `step`, then runs the scripts that
 follow an end. `state` is what a parent decides by (IDLE, RUNNING, or an end not yet collected);
-`shown` is the newest result, for people.
+`shown` is the newest result, for people: it is IDLE again as soon as a node above starts anew,
+without a change of its own in the journal.
 """
 
 from __future__ import annotations
@@ -34,6 +35,15 @@ _AS_PY_TREES: Mapping[Status, PyTreesStatus] = {
 }
 
 
+class _Top:
+    """What stands above the root: it never starts anew."""
+
+    runs = 0
+
+
+_TOP = _Top()
+
+
 class TreeNode(Behaviour):
     """One node of a running tree. Subclasses write `step`, and `clear` for what they remember.
 
@@ -51,7 +61,9 @@ class TreeNode(Behaviour):
         conditions: Conditions | None = None,
     ) -> None:
         self.state = IDLE
-        self.shown = IDLE
+        self._shown = IDLE
+        self._shown_in_run = 0
+        self._above: TreeNode | _Top = _TOP
         super().__init__(_name(model))
         self.model = model
         self.label = text(model)
@@ -60,6 +72,8 @@ class TreeNode(Behaviour):
         self.children = list(children)
         self.conditions = conditions
         self.failure: FailureValue | None = None
+        self._raised: FailureValue | None = None
+        self.place = f"{model.place.file}:{model.place.line}"
         self.index = 0
         self.depth = 0
         self.runs = self.failures = self.ticks = 0
@@ -67,7 +81,7 @@ class TreeNode(Behaviour):
         self.started_at: float | None = None
         self.ticked_at = 0
         for child in self.kids:
-            child.parent = self
+            child.parent = child._above = self
         self.below: tuple[TreeNode, ...] = tuple(
             node for child in self.kids for node in (child, *child.below)
         )
@@ -93,23 +107,29 @@ class TreeNode(Behaviour):
 
     def execute(self) -> Status:
         """Tick the node and return its status, SKIPPED included."""
+        context = self.context
         self.ticks += 1
-        self.ticked_at = self.context.tick
+        self.ticked_at = context.tick
         try:
-            new = None if self.conditions is None else self._asked(self.conditions)
-            if new is None:
+            if self.conditions is not None:
+                new = self._conditioned(self.conditions)
+            else:
                 if self.state is not RUNNING:
-                    self._start()
+                    self.runs += 1
+                    self.failure = None
                 new = self.step()
-            if self.conditions is not None and new.completed:
-                self.conditions.after(new)
         except (Failure, ScriptError) as error:
             new = self._broken(error)
+        if new is RUNNING:
+            if self.started_at is None:
+                self.started_at = context.now
+        elif self.started_at is not None:
+            self._count_seconds()
+        if new is FAILURE:
+            self.failures += 1
         if new is not SKIPPED:
             self.state = new
-        if new is not RUNNING:
-            self._end(new)
-        if new is not self.shown:
+        if new is not self._shown or self._shown_in_run != self._above.runs:
             self.show(new)
         return new
 
@@ -119,7 +139,7 @@ class TreeNode(Behaviour):
         self.clear()
         self._count_seconds()
         self.state = IDLE
-        if self.shown is RUNNING:
+        if self._shown is RUNNING:
             self.show(IDLE)
 
     def halt_node(self) -> None:
@@ -140,14 +160,28 @@ class TreeNode(Behaviour):
     def reset_children(self) -> None:
         """Reset every child."""
         for child in self.kids:
-            if child.state is not IDLE:
+            if child.state is RUNNING:
                 child.reset()
+            else:
+                child.state = IDLE
+
+    @property
+    def shown(self) -> Status:
+        """The newest result, for people."""
+        node = self
+        while isinstance(node._above, TreeNode):
+            if node._shown_in_run != node._above.runs:
+                return IDLE
+            node = node._above
+        return self._shown
 
     def show(self, status: Status) -> None:
         """Change what people see and note it in the journal; RUNNING again for a new `note`."""
-        self.shown = status
+        self._shown = status
+        self._shown_in_run = self._above.runs
+        note = self.note if status is RUNNING else ""
         failure = self.failure if status is FAILURE else None
-        self.context.changes.append(Change(self, status, self.note, failure))
+        self.context.changes.append(Change(self, status, note, failure))
 
     # names and failures
 
@@ -156,19 +190,18 @@ class TreeNode(Behaviour):
         """`name (file:line)`, for messages."""
         return f"{self.name} ({self.place})"
 
-    @property
-    def place(self) -> str:
-        """`file:line` in the tree file."""
-        return f"{self.model.place.file}:{self.model.place.line}"
-
     def fail_with(self, value: FailureValue) -> Status:
         """Fail with a failure, usually a child's."""
         self.failure = value
         return FAILURE
 
     def fail(self, code: str, message: str, cause: FailureValue | None = None) -> Status:
-        """Fail with a failure of this node's own."""
-        return self.fail_with(self.own(FailureValue(code, message, cause=cause)))
+        """Fail with a failure of this node's own; the same one again when nothing differs."""
+        value = self._raised
+        if value is None or (code, message, cause) != (value.code, value.message, value.cause):
+            value = self._raised = self.own(FailureValue(code, message, cause=cause))
+        self.failure = value
+        return FAILURE
 
     def own(self, value: FailureValue) -> FailureValue:
         """The failure as one of this node: with its name, type and place."""
@@ -218,26 +251,21 @@ class TreeNode(Behaviour):
 
     # bookkeeping
 
-    def _asked(self, conditions: Conditions) -> Status | None:
+    def _conditioned(self, conditions: Conditions) -> Status:
+        """One tick with the conditions asked before it and the scripts run after an end."""
         new = conditions.before(self.state)
-        if new is SKIPPED and self.state is RUNNING:
+        if new is None:
+            if self.state is not RUNNING:
+                self.runs += 1
+                self.failure = None
+            new = self.step()
+        elif new is SKIPPED and self.state is RUNNING:
             self.halt_node()
         elif new is FAILURE:
             self.fail(FAILED, f"its condition `{conditions.text('fail_if')}` holds")
+        if new is SUCCESS or new is FAILURE:
+            conditions.after(new)
         return new
-
-    def _start(self) -> None:
-        self.runs += 1
-        self.failure = None
-        self.started_at = self.context.now
-        for node in self.below:
-            if node.shown is not IDLE:
-                node.show(IDLE)
-
-    def _end(self, new: Status) -> None:
-        if new is FAILURE:
-            self.failures += 1
-        self._count_seconds()
 
     def _count_seconds(self) -> None:
         if self.started_at is not None:

@@ -43,10 +43,18 @@ def wire(reference: Reference) -> str:
 
 
 def _wire_reader(port: Port, reference: Reference, board: Board) -> Reader:
+    """Values are immutable: while the cell holds the same one, what the port takes is the same."""
     cell = cell_of(reference, board)
+    last: Any = MISSING
+    fitted: Any = None
 
     def read() -> Any:
-        return _fitted(_follow(reference, cell, port.name), port, wire(reference))
+        nonlocal last, fitted
+        value = cell.value
+        if value is not last or value is MISSING:
+            fitted = _fitted(_follow(reference, cell, port.name), port, wire(reference))
+            last = value
+        return fitted
 
     return read
 

@@ -13,6 +13,7 @@ import numpy as np
 from momantu_bt.failure import FailureValue
 from momantu_bt.skill import MISSING
 
+_FLOAT = struct.Struct("<d").pack
 _PLACE, _TRACEBACK = "place", "traceback"
 """Parts of a failure that depend on where the files lie; neither enters."""
 
@@ -22,6 +23,8 @@ def encode(value: Any) -> bytes:
 
     A value of an unknown kind counts by its type alone.
     """
+    if type(value) is float:
+        return b"f" + _FLOAT(value)
     parts: list[bytes] = []
     _encode(value, parts)
     return b"".join(parts)
@@ -29,7 +32,7 @@ def encode(value: Any) -> bytes:
 
 def _encode(value: Any, out: list[bytes]) -> None:
     if isinstance(value, float):
-        out.append(b"f" + struct.pack("<d", value))
+        out.append(b"f" + _FLOAT(value))
     elif value is None or value is MISSING or isinstance(value, bool | int | Enum):
         out.append(f"{type(value).__name__}:{value!r};".encode())
     elif isinstance(value, str):

@@ -22,6 +22,7 @@ class Fingerprint:
     def __init__(self) -> None:
         self._hash = hashlib.sha256()
         self._goals: dict[str, tuple[ActuatorGoal, bytes]] = {}
+        self._statuses: dict[tuple[int, str], bytes] = {}
 
     def add(
         self,
@@ -37,15 +38,21 @@ class Fingerprint:
         for command in issued:
             update(b"c" + command.actuator.encode())
             update(b"stop" if command.goal is None else self._goal_bytes(command))
-        for index, status in statuses:
-            update(f"n{index}{status}".encode())
-        for name, value in written:
-            update(b"w" + name.encode() + encode(value))
+        update(b"".join(map(self._status_bytes, statuses)))
+        update(b"".join([b"w" + name.encode() + encode(value) for name, value in written]))
         update(b"|")
 
     def hexdigest(self) -> str:
         """64 hexadecimal digits of all ticks so far."""
         return self._hash.hexdigest()
+
+    def _status_bytes(self, change: tuple[int, str]) -> bytes:
+        """The same few changes come again and again."""
+        known = self._statuses.get(change)
+        if known is None:
+            index, status = change
+            known = self._statuses[change] = f"n{index}{status}".encode()
+        return known
 
     def _goal_bytes(self, command: Issued) -> bytes:
         """A goal's bytes; a trajectory that is commanded again is not encoded again."""

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
 
 from momantu_bt.engine.executor import Executor
+from momantu_bt.engine.node import TreeNode
+from momantu_bt.failure import FailureValue
 from momantu_bt.messages import plain
 from momantu_bt.record.files import OutputError
 
@@ -39,22 +40,40 @@ class LogObserver:
 
     def __init__(self, folder: Path) -> None:
         self._file = (folder / CHANGES).open("w", encoding="utf-8")
+        self._nodes: dict[int, str] = {}
+        self._failures: dict[int, tuple[FailureValue, str]] = {}
 
     def ticked(self, run: Executor) -> None:
         """Write this tick's changes."""
+        if not run.context.changes:
+            return
+        time = repr(round(run.context.now, 9))
+        lines = []
         for node, status, note, failure in run.context.changes:
-            line: dict[str, Any] = {
-                "t": round(run.context.now, 9),
-                "node": node.index,
-                "name": node.name,
-                "place": node.place,
-                "status": status.value,
-            }
+            line = f'{{"t": {time}, {self._node(node)}, "status": "{status.value}"'
             if note:
-                line["note"] = note
+                line += f', "note": {json.dumps(note)}'
             if failure is not None:
-                line["failure"] = plain(failure.as_dict())
-            self._file.write(json.dumps(line, default=str) + "\n")
+                line += f', "failure": {self._failure(node, failure)}'
+            lines.append(line + "}\n")
+        self._file.write("".join(lines))
+
+    def _node(self, node: TreeNode) -> str:
+        """What every line of a node says, written out once."""
+        known = self._nodes.get(node.index)
+        if known is None:
+            name, place = json.dumps(node.name), json.dumps(node.place)
+            known = f'"node": {node.index}, "name": {name}, "place": {place}'
+            self._nodes[node.index] = known
+        return known
+
+    def _failure(self, node: TreeNode, failure: FailureValue) -> str:
+        """A failure as JSON; one that comes again is not written out again."""
+        known = self._failures.get(node.index)
+        if known is None or known[0] is not failure:
+            known = (failure, json.dumps(plain(failure.as_dict()), default=str))
+            self._failures[node.index] = known
+        return known[1]
 
     def close(self) -> None:
         """Close the file; safe to call twice."""

@@ -8,6 +8,7 @@ import unicodedata
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import IntEnum
+from functools import lru_cache
 from typing import Any
 
 from momantu_bt.tree.model import Place
@@ -113,9 +114,10 @@ def valid_names(word: str, candidates: Iterable[str], what: str) -> str:
     return f"{what}: {', '.join(names)}" if names else f"there are no {what}"
 
 
-def lines_of(text: str) -> list[str]:
+@lru_cache(maxsize=16)
+def lines_of(text: str) -> tuple[str, ...]:
     """A text's lines as YAML counts them; some characters that end lines elsewhere do not here."""
-    return re.split(r"\r\n|\r|\n", text)
+    return tuple(re.split(r"\r\n|\r|\n", text))
 
 
 def within(place: Place, word: str, source: Mapping[str, str]) -> Place:

@@ -113,7 +113,7 @@ def compose_with_remarks(text: str, file: str) -> tuple[Raw, list[Remark]]:
     if size > MAX_BYTES:
         raise _bound(Place(file, 1, 1), f"{size} bytes; a tree file has at most {MAX_BYTES}")
     builder = _Builder(file)
-    reader = YAML()
+    reader = YAML(typ="safe", pure=True)
     try:
         for event in reader.parse(text):
             builder.take(event)

@@ -30,8 +30,9 @@ class Sequence(TreeNode):
         if self.state is IDLE:
             self.skipped = 0
         self.state = RUNNING
-        while self.at < len(self.kids):
-            child = self.kids[self.at]
+        kids = self.kids
+        while self.at < len(kids):
+            child = kids[self.at]
             fresh = child.state is IDLE
             status = child.execute()
             if status is RUNNING:
@@ -41,9 +42,9 @@ class Sequence(TreeNode):
             self.at += 1
             if status is SKIPPED:
                 self.skipped += 1
-            elif self.pauses and fresh and self.at < len(self.kids):
+            elif self.pauses and fresh and self.at < len(kids):
                 return RUNNING
-        all_skipped = self.skipped == len(self.kids)
+        all_skipped = self.skipped == len(kids)
         self.reset_children()
         self.at = self.skipped = 0
         return SKIPPED if all_skipped else SUCCESS
