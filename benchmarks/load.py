@@ -3,9 +3,9 @@
     python benchmarks/load.py
     python benchmarks/load.py --nodes 1000 --rounds 20
 
-The trees are of the kind people write: subtrees with inputs, recoveries with handlers, wires, units,
-scripts and conditions, in YAML. The demand: 1,000 nodes are loaded and checked in under 0.5 s. The
-last column is a whole `momantu-bt check FILE` in a process of its own.
+The trees are of the kind people write, in YAML: subtrees with inputs, recoveries with handlers,
+wires, units, scripts and conditions. The demand: 1,000 nodes are loaded and checked in under
+0.5 s. The last column is a whole `momantu-bt check FILE` in a process of its own.
 """
 
 from __future__ import annotations

@@ -61,6 +61,7 @@ class Bare(Behaviour):
         self.result = result
 
     def update(self) -> Status:
+        """The same status each time."""
         return self.result
 
 

@@ -57,7 +57,7 @@ class ChangeLines:
     def _tell_note(self, now: float, node: Recover, note: str) -> None:
         before = self._notes.get(node.index, "try 1")
         self._notes[node.index] = note
-        if note not in (before, "try 1"):
+        if note not in (before, "try 1", ""):
             self._line(now, node, f"{node.name}: {note}")
 
     def _line(self, now: float, node: TreeNode, words: str) -> None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import re
 from bisect import bisect_right
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
@@ -350,7 +351,7 @@ def _cause_above(text: str, mark: StringMark | None) -> str:
     return f"line {start + 1}: {hint}"
 
 
-def _start_of_text(lines: list[str]) -> int | None:
+def _start_of_text(lines: Sequence[str]) -> int | None:
     """Index of the line without `:` that YAML reads on from into the last line."""
     start, least = None, _indent(lines[-1]) if lines else 0
     for index in range(len(lines) - 2, -1, -1):
