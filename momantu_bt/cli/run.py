@@ -79,8 +79,8 @@ class _Outputs:
 
 def _guarded(start: Callable[[], Report]) -> int:
     """Run; what is wrong with the arguments becomes a sentence and an exit code."""
-    from momantu_bt.engine.build import BuildError
     from momantu_bt.engine.launch import LaunchError
+    from momantu_bt.engine.makers import BuildError
     from momantu_bt.engine.services import ServiceCycleError
     from momantu_bt.record.files import OutputError
 

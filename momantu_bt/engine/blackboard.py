@@ -24,29 +24,39 @@ Journal: TypeAlias = "list[tuple[Cell, Any]]"
 
 
 class Cell:
-    """One value, or MISSING. Values are immutable; each write is noted in the run's journal."""
+    """One value, or MISSING. Values are immutable; each write is noted in the run's journal.
 
-    __slots__ = ("_journal", "name", "value")
+    writes: how often it was written; a node that remembers it sees whether something is new.
+    """
+
+    __slots__ = ("_journal", "name", "value", "writes")
 
     def __init__(self, name: str, journal: Journal) -> None:
         self.name = name
         self.value: Any = MISSING
+        self.writes = 0
         self._journal = journal
 
     def write(self, value: Any) -> None:
         """Replace the value; MISSING clears it."""
         self._journal.append((self, self.value))
         self.value = freeze(value)
+        self.writes += 1
 
 
 class ReadOnlyCell(Cell):
-    """A key that the engine publishes, such as `@localization`: its value is asked when read."""
+    """A key that the engine publishes, such as `@localization`: its value is asked when read.
 
-    __slots__ = ("_ask",)
+    It counts as written whenever it is found to be another object than the last time.
+    """
+
+    __slots__ = ("_ask", "_count", "_last")
 
     def __init__(self, name: str, ask: Callable[[], Any]) -> None:
         self.name = name
         self._ask = ask
+        self._count = 0
+        self._last: Any = MISSING
 
     @property
     def value(self) -> Any:
@@ -56,6 +66,18 @@ class ReadOnlyCell(Cell):
     @value.setter
     def value(self, value: Any) -> None:
         raise Failure(SCRIPT_ERROR, f"@{self.name} is published by the engine and is read-only")
+
+    @property
+    def writes(self) -> int:
+        """How many values have been found here."""
+        found = self._ask()
+        if found is not self._last:
+            self._last, self._count = found, self._count + 1
+        return self._count
+
+    @writes.setter
+    def writes(self, count: int) -> None:
+        raise AttributeError("the engine counts the writes of a key that it publishes")
 
     def write(self, value: Any) -> None:
         """Never possible: raises Failure SCRIPT_ERROR."""

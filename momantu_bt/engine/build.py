@@ -4,30 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import Any, TypeAlias, TypeGuard
 
 from momantu_bt.engine.blackboard import Board, Cell
 from momantu_bt.engine.conditions import Conditions
 from momantu_bt.engine.context import RunContext
+from momantu_bt.engine.makers import MAKERS, BuildError, Parts
 from momantu_bt.engine.node import TreeNode
-from momantu_bt.engine.nodes import (
-    branches,
-    fallbacks,
-    forcing,
-    guards,
-    leaves,
-    loops,
-    parallel,
-    reactive,
-    recovery,
-    scripts,
-    sequences,
-    timing,
-)
+from momantu_bt.engine.nodes import guards, recovery
 from momantu_bt.engine.nodes.skill import SkillLeaf
 from momantu_bt.engine.nodes.subtree import SubTree
-from momantu_bt.engine.ports import Inputs, Reader, cell_of, inputs_of, outputs_of, reader
+from momantu_bt.engine.ports import Reader, cell_of, inputs_of, outputs_of, reader
 from momantu_bt.skill import Port, Skill
 from momantu_bt.tree.catalogue import AUTOREMAP, BUILT_IN, SUBTREE
 from momantu_bt.tree.model import Document, Literal, Node, PortValue, Reference, Tree
@@ -37,48 +24,6 @@ MAX_DEPTH = 250
 """Nodes within nodes, subtrees counted; each costs two of Python's 1000 frames when ticked."""
 
 SkillFinder: TypeAlias = Callable[[str], type[Skill]]
-
-PLAIN: Mapping[str, Callable[..., TreeNode]] = MappingProxyType(
-    {
-        "Sequence": sequences.Sequence,
-        "AsyncSequence": sequences.AsyncSequence,
-        "SequenceWithMemory": sequences.SequenceWithMemory,
-        "ReactiveSequence": reactive.ReactiveSequence,
-        "Fallback": fallbacks.Fallback,
-        "AsyncFallback": fallbacks.AsyncFallback,
-        "ReactiveFallback": reactive.ReactiveFallback,
-        "RoundRobin": fallbacks.RoundRobin,
-        "IfThenElse": branches.IfThenElse,
-        "WhileDoElse": branches.WhileDoElse,
-        "Inverter": forcing.Inverter,
-        "ForceSuccess": forcing.ForceSuccess,
-        "ForceFailure": forcing.ForceFailure,
-        "KeepRunningUntilFailure": loops.KeepRunningUntilFailure,
-        "AlwaysSuccess": leaves.AlwaysSuccess,
-        "AlwaysFailure": leaves.AlwaysFailure,
-    }
-)
-"""Nodes without ports."""
-
-WITH_INPUTS: Mapping[str, Callable[..., TreeNode]] = MappingProxyType(
-    {
-        "Parallel": parallel.Parallel,
-        "ParallelAll": parallel.ParallelAll,
-        "RetryUntilSuccessful": loops.RetryUntilSuccessful,
-        "Repeat": loops.Repeat,
-        "RunOnce": loops.RunOnce,
-        "Timeout": timing.Timeout,
-        "Delay": timing.Delay,
-        "Sleep": timing.Sleep,
-        "Fail": leaves.Fail,
-        "ElseFail": forcing.ElseFail,
-    }
-)
-"""Nodes whose ports are inputs only."""
-
-
-class BuildError(Exception):
-    """The model cannot become nodes: the checker would have said so."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,36 +94,10 @@ class _Builder:
         spec = BUILT_IN.get(model.type)
         if spec is None:
             return self._skill(model, board, path, conditions)
+        if model.type not in MAKERS:
+            raise BuildError(f"{model.place}: the engine has no node {model.type!r}")
         kids = [self.node(m, board, f"{path}.{i}") for i, m in enumerate(model.children)]
-        made = (model, self.context, kids, conditions)
-        if model.type in PLAIN:
-            return PLAIN[model.type](*made)
-        inputs = inputs_of(spec.ports, model.ports, board)
-        if model.type in WITH_INPUTS:
-            return WITH_INPUTS[model.type](*made, inputs=inputs)
-        return self._special(made, inputs, board)
-
-    def _special(self, made: Any, inputs: Inputs, board: Board) -> TreeNode:
-        model: Node = made[0]
-        if model.type == "ForEach":
-            return loops.ForEach(*made, inputs=inputs, item=self._key(model, "as", board))
-        if model.type == "SetBlackboard":
-            return leaves.SetBlackboard(*made, inputs=inputs, key=self._key(model, "key", board))
-        if model.type == "UnsetBlackboard":
-            return leaves.UnsetBlackboard(*made, key=self._key(model, "key", board))
-        if model.type == "Precondition":
-            code = scripts.Code(inputs.readers["if"], board)
-            return guards.Precondition(*made, inputs=inputs, code=code)
-        kinds = {"Script": scripts.ScriptNode, "ScriptCondition": scripts.ScriptCondition}
-        if model.type in kinds:
-            return kinds[model.type](*made, code=scripts.Code(inputs.readers["code"], board))
-        raise BuildError(f"{model.place}: the engine has no node {model.type!r}")
-
-    def _key(self, model: Node, port: str, board: Board) -> Cell:
-        value = model.ports.get(port)
-        if not isinstance(value, Reference):
-            raise BuildError(f"{model.place}: {model.type} needs `{port}: $key`")
-        return cell_of(value, board)
+        return MAKERS[model.type](Parts(model, spec, self.context, kids, conditions, board))
 
     def _skill(
         self, model: Node, board: Board, path: str, conditions: Conditions | None

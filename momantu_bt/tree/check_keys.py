@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from typing import get_args
 
-from momantu_bt.tree.catalogue import PRE_CONDITIONS, ScriptText
-from momantu_bt.tree.key_flow import FLOWS, After, removed
+from momantu_bt.tree.catalogue import BUILT_IN, PRE_CONDITIONS, ScriptText
+from momantu_bt.tree.key_flow import FLOWS, After, Walk, removed
 from momantu_bt.tree.key_reads import Demand, KeyReads, Written, references
-from momantu_bt.tree.keys import NEVER, Key, Known, meet
+from momantu_bt.tree.keys import NEVER, Key, Known, both, meet
 from momantu_bt.tree.model import Literal, Node, Place, Reference, Scope, Tree
-from momantu_bt.tree.problems import within
+from momantu_bt.tree.problems import valid_names, within
 from momantu_bt.tree.script import Script, ScriptSyntaxError, parse
 from momantu_bt.tree.signatures import Context, Signature
 from momantu_bt.tree.types import ValueType, assignable, label, origin
@@ -40,10 +40,20 @@ class _KeyCheck:
             if port.direction == "out":
                 self.reads.seen.add(name)
                 self.output_of_tree(name, success.get(name), success)
+        self.watched()
         for written in self.reads.written:
             if written.key not in self.reads.seen:
                 message = f"nothing reads ${written.key}, which {written.said} writes"
                 self.context.problems.warning("unread-output", written.place, message)
+
+    def watched(self) -> None:
+        """A key that is watched for changes need not have a value, but something writes it."""
+        given = {written.key for written in self.reads.written} | self.reads.given
+        for watch in self.reads.watched if not self.tree.open else ():
+            if watch.key not in given:
+                message = f"nothing writes ${watch.key}, which {watch.said} watches"
+                hint = valid_names(watch.key, sorted(given), "keys that something writes")
+                self.context.problems.error("read-before-write", watch.place, message, hint)
 
     def start(self) -> Known:
         keys: dict[str, Key] = {}
@@ -55,6 +65,7 @@ class _KeyCheck:
         for name, port in self.ports.items():
             if port.direction == "in":
                 keys.setdefault(name, Key(port.type, self.tree.ports[name].place))
+        self.reads.given.update(keys, self.ports)
         return Known(keys)
 
     def output_of_tree(self, name: str, key: Key | None, success: Known) -> None:
@@ -117,13 +128,15 @@ class _KeyCheck:
         self.reads.inputs(node, signature, before)
         for name, port in signature.ports.items():
             code = node.ports.get(name)
-            if port.type is ScriptText and isinstance(code, Literal):
+            if port.type is ScriptText and isinstance(code, Literal) and node.type != "TestNode":
                 after = self.script(str(code.value), before, node.port_places[name])
                 before = after if node.type == "Script" else before
         flow = FLOWS.get(node.type)
-        if flow is not None:
-            return flow(self.node, node, self.with_item(node, before))
-        return self.leaf(node, signature, before)
+        if flow is None:
+            return self.leaf(node, signature, before)
+        if signature.spec is not None and signature.spec.item is not None:
+            return flow(self.with_item(node, signature.spec.item), node, before)
+        return flow(self.node, node, self.handed_on(node, signature, before))
 
     def leaf(self, node: Node, signature: Signature, before: Known) -> After:
         key = node.ports.get("key")
@@ -135,7 +148,27 @@ class _KeyCheck:
             return After(after, NEVER)
         if node.type in ("AlwaysFailure", "Fail"):
             return After(NEVER, before)
+        if node.type == "TestNode":
+            return self.test_node(node, before)
         return After(after, before)
+
+    def test_node(self, node: Node, before: Known) -> After:
+        """After the scripts that follow its end; each of them may fail."""
+
+        def then(known: Known, name: str) -> Known:
+            code = node.ports.get(name)
+            if not isinstance(code, Literal):
+                return known
+            return self.script(str(code.value), known, node.port_places[name])
+
+        then(before, "return_status_script")
+        good, bad = then(before, "success_script"), then(before, "failure_script")
+        success = both(good, then(meet(good, bad), "post_script"))
+        status = node.ports.get("return_status", Literal("SUCCESS"))
+        if "return_status_script" in node.ports or not isinstance(status, Literal):
+            return After(success, before, before)
+        ends = {"SUCCESS": After(success, before), "SKIPPED": After(NEVER, before, before)}
+        return ends.get(str(status.value), After(NEVER, before))
 
     def outputs(self, node: Node, signature: Signature, before: Known) -> Known:
         after = before
@@ -152,21 +185,44 @@ class _KeyCheck:
             after = after.having(value.key, Key(type_, place))
         return after
 
-    def with_item(self, node: Node, before: Known) -> Known:
-        """What the child of `for_each` knows: the item besides the rest."""
-        item = node.ports.get("as")
-        if node.type != "ForEach" or not isinstance(item, Reference):
-            return before
-        place = node.port_places.get("as", node.place)
-        return before.having(item.key, Key(self.item_type(node, before), place))
+    def handed_on(self, node: Node, signature: Signature, before: Known) -> Known:
+        """What `goal_updater` writes for its child: what its inputs have."""
+        after = before
+        for name, value in node.ports.items():
+            source = node.ports.get(name.replace("output_", "input_"))
+            port = signature.ports.get(name)
+            if port is None or port.direction != "out" or not isinstance(value, Reference):
+                continue
+            place = node.port_places.get(name, node.place)
+            self.reads.written.append(Written(value.key, place, signature.said))
+            key = before.get(source.key) if isinstance(source, Reference) else None
+            if key is not None and value.scope is Scope.LOCAL:
+                after = after.having(value.key, Key(key.type, place))
+        return after
 
-    def item_type(self, node: Node, before: Known) -> ValueType:
-        items = node.ports.get("in")
-        if isinstance(items, Reference) and not items.fields:
+    def with_item(self, loop: Node, item: tuple[str, str]) -> Walk:
+        """Walks a loop's child, which knows the item besides the rest."""
+        output, source = item
+
+        def walk(child: Node, before: Known) -> After:
+            value = loop.ports.get(output)
+            if isinstance(value, Reference) and value.scope is Scope.LOCAL:
+                place = loop.port_places.get(output, loop.place)
+                key = Key(self.item_type(loop, output, source, before), place)
+                before = before.having(value.key, key)
+                self.reads.given.add(value.key)
+            return self.node(child, before)
+
+        return walk
+
+    def item_type(self, loop: Node, output: str, source: str, before: Known) -> ValueType:
+        declared = BUILT_IN[loop.type].ports[output].type
+        items = loop.ports.get(source)
+        if declared is object and isinstance(items, Reference) and not items.fields:
             key = before.get(items.key)
             if key is not None and origin(key.type) is tuple:
                 return get_args(key.type)[0]
-        return object
+        return declared
 
     def script(self, text: str, before: Known, place: Place) -> Known:
         try:
@@ -183,6 +239,7 @@ class _KeyCheck:
             where = within(place, f"${variable.key}", self.context.document.source)
             self.reads.lookup(_reference(variable.key), before, where)
         after = before
+        self.reads.given.update(variable.key for variable in script.writes)
         for variable in script.writes:
             if not variable.key.startswith("@"):
                 after = after.having(variable.key, Key(object, place))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from momantu_bt.failure import CODE
 from momantu_bt.messages import VALUE_TYPES
-from momantu_bt.skill import Port
+from momantu_bt.skill import MISSING, Port
 from momantu_bt.tree.catalogue import MODIFIERS, CodeText
 from momantu_bt.tree.model import (
     FIRST_INPUT,
@@ -62,9 +62,14 @@ def check_node(context: Context, node: Node) -> None:
         _check_port(context, node, name, signature)
     _check_one_of(context, node, signature)
     for name, port in signature.ports.items():
-        needed = port.required or (signature.spec is not None and port.direction == "out")
-        if needed and name not in node.ports and name not in node.port_places:
+        if _is_needed(port, signature) and name not in node.ports and name not in node.port_places:
             _report_missing(context, node, port, signature)
+
+
+def _is_needed(port: Port, signature: Signature) -> bool:
+    """Whether it must be given: an output of a built-in node, too, unless it has a default."""
+    written = port.direction == "out" and port.default is MISSING
+    return port.required or (signature.spec is not None and written)
 
 
 def _name_first_input(context: Context, node: Node, signature: Signature) -> None:
@@ -126,8 +131,9 @@ def _check_port(context: Context, node: Node, name: str, signature: Signature) -
         return
     value = node.ports[name]
     place = node.port_places.get(name, node.place)
-    if port.direction == "out":
-        _check_output(context, value, place, port, signature)
+    watched = signature.spec is not None and name in signature.spec.keys
+    if port.direction == "out" or watched:
+        _check_key(context, value, place, port, signature)
     elif isinstance(value, Literal):
         check_literal(context, value, place, port)
     elif isinstance(value, Template) and not assignable(str, port.type):
@@ -135,17 +141,20 @@ def _check_port(context: Context, node: Node, name: str, signature: Signature) -
         context.problems.error("wrong-type", place, message, "write $key alone")
 
 
-def _check_output(
+def _check_key(
     context: Context, value: PortValue, place: Place, port: Port, signature: Signature
 ) -> None:
+    """What is written, or looked at as a key, is a key, and a whole one."""
+    doing = "written" if port.direction == "out" else "watched"
     if isinstance(value, Reference):
         if value.fields:
-            message = "a part of a value cannot be written"
+            message = f"a part of a value cannot be {doing}"
             context.problems.error("not-a-key", place, message, f"write ${value.key}")
         return
     text = str(value.value) if isinstance(value, Literal) else "key"
     hint = f"did you mean ${text}?" if text.isidentifier() else "write $key"
-    message = f"{port.name!r} is an output of {signature.said}: it needs a key"
+    what = "is an output of" if port.direction == "out" else "names what is watched by"
+    message = f"{port.name!r} {what} {signature.said}: it needs a key"
     context.problems.error("not-a-key", place, message, hint)
 
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from typing import NamedTuple, TypeAlias
 
 from momantu_bt.failure import FailureValue
-from momantu_bt.tree.keys import NEVER, Key, Known, meet
+from momantu_bt.tree.keys import NEVER, Key, Known, both, meet
 from momantu_bt.tree.model import Literal, Node, Reference, Scope
 
 
@@ -83,13 +83,57 @@ def _together(walk: Walk, node: Node, before: Known) -> After:
     ends = [walk(child, before) for child in node.children]
     skipped = before if all(end.skipped.reached for end in ends) else NEVER
     all_succeed = node.ports.get("success_count", Literal(-1)) == Literal(-1)
-    if node.type != "Parallel" or not all_succeed:
+    if node.type == "ParallelAll" or not all_succeed:
         return After(before, before, skipped)
-    success = before
-    for end in ends:
-        for name, key in (end.passed.keys or {}).items():
-            success = success.having(name, key)
-    return After(success.lacking(removed(node)), before, skipped)
+    passed = [end.passed for end in ends if end.passed.reached]
+    return After(both(before, *passed).lacking(removed(node)), before, skipped)
+
+
+def _anywhere(walk: Walk, node: Node, before: Known) -> After:
+    """It may begin with any child."""
+    for child in node.children:
+        walk(child, before)
+    return After(before, before)
+
+
+def _cases(walk: Walk, node: Node, before: Known) -> After:
+    ends = [walk(child, before) for child in node.children]
+    return After(
+        meet(NEVER, *(end.success for end in ends)),
+        meet(before, *(end.failure for end in ends)),
+        meet(NEVER, *(end.skipped for end in ends)),
+    )
+
+
+def _try_catch(walk: Walk, node: Node, before: Known) -> After:
+    if not node.children:
+        return After(before, before)
+    *tried, cleaner = node.children
+    known, failures, all_skipped = before, [NEVER], True
+    for child in tried:
+        after = walk(child, known)
+        known = after.passed
+        failures.append(after.failure)
+        all_skipped = all_skipped and after.skipped.reached
+    failed = meet(*failures)
+    if node.ports.get("catch_on_halt", Literal(False)) != Literal(False):
+        failed = meet(failed, before.lacking(removed(*tried)))
+    cleaned = walk(cleaner, failed)
+    ends = meet(cleaned.success, cleaned.failure, cleaned.skipped)
+    return After(known, ends, known if all_skipped else NEVER)
+
+
+def _retreat(walk: Walk, node: Node, before: Known) -> After:
+    """`recovery_node`: the second child runs after a failure of the first."""
+    work = _child(walk, node, before)
+    ends = [walk(child, work.failure) for child in node.children[1:]]
+    failures = [meet(end.failure, end.skipped) for end in ends]
+    return After(work.success, meet(work.failure, *failures), work.skipped)
+
+
+def _unless_skipped(walk: Walk, node: Node, before: Known) -> After:
+    end = _child(walk, node, before)
+    return After(end.success, end.failure, meet(end.skipped, before))
 
 
 def _branches(walk: Walk, node: Node, before: Known) -> After:
@@ -179,7 +223,6 @@ FLOWS: Mapping[str, Flow] = {
     "Inverter": _inverter,
     "ForceSuccess": _force_success,
     "ForceFailure": _force_failure,
-    "ElseFail": _child,
     "KeepRunningUntilFailure": _again(_until_failure),
     "Precondition": _perhaps,
     "ForEach": _again(_perhaps),
@@ -188,5 +231,28 @@ FLOWS: Mapping[str, Flow] = {
     "Timeout": _again(_around),
     "Delay": _around,
     "RunOnce": _once,
+    "Switch2": _again(_cases),
+    "Switch3": _again(_cases),
+    "Switch4": _again(_cases),
+    "Switch5": _again(_cases),
+    "Switch6": _again(_cases),
+    "TryCatch": _try_catch,
+    "LoopInt": _again(_perhaps),
+    "LoopDouble": _again(_perhaps),
+    "LoopString": _again(_perhaps),
+    "LoopBool": _again(_perhaps),
+    "SkipUnlessUpdated": _unless_skipped,
+    "WaitValueUpdate": _child,
+    "RecoveryNode": _again(_retreat),
+    "PipelineSequence": _again(_in_turn),
+    "NonblockingSequence": _again(_together),
+    "PersistentSequence": _again(_anywhere),
+    "RateController": _again(_around),
+    "DistanceController": _again(_around),
+    "SpeedController": _again(_around),
+    "SingleTrigger": _around,
+    "GoalUpdatedController": _again(_child),
+    "GoalUpdater": _child,
+    "PathLongerOnApproach": _perhaps,
 }
 """By canonical type."""

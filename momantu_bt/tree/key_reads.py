@@ -32,7 +32,7 @@ Demand: TypeAlias = tuple[str, str]
 
 @dataclass(frozen=True, slots=True)
 class Written:
-    """A key that a node writes. said: the node, in the file's words."""
+    """A key that a node writes, or watches. said: the node, in the file's words."""
 
     key: str
     place: Place
@@ -45,7 +45,8 @@ class KeyReads:
 
     root_keys: names that `$@key` may read. demands: by tree and input, what nodes below expect of
     a text there; trees that are run come before those that run them. written: what has been written
-    so far in the order of the file.
+    so far in the order of the file. given: keys that may come from elsewhere: a script, a loop, the
+    tree's inputs. watched: keys that a node only looks at; nobody knows yet who writes them.
     """
 
     context: Context
@@ -54,20 +55,35 @@ class KeyReads:
     demands: dict[tuple[str, str], set[Demand]]
     seen: set[str] = field(default_factory=set)
     written: list[Written] = field(default_factory=list)
+    given: set[str] = field(default_factory=set)
+    watched: list[Written] = field(default_factory=list)
 
     def inputs(self, node: Node, signature: Signature, before: Known) -> None:
-        """All inputs of a node."""
+        """All inputs of a node. One that may be empty is read, and needs nothing before it."""
+        lenient = signature.spec.may_be_empty if signature.spec is not None else ()
+        self.seen.update(name for name in lenient if name not in node.ports)
+        if node.type == SUBTREE:
+            self.given.update(r.key for value in node.ports.values() for r in references(value))
         for name, value in node.ports.items():
             port = signature.ports.get(name)
             if port is None or port.direction == "out" or port.type is ScriptText:
                 continue
             place = node.port_places.get(name, node.place)
+            if name in lenient:
+                self._watch(name, value, place, signature.said)
+                continue
             if isinstance(value, Reference):
                 self._wire(value, before, place, port, signature.said)
             for reference in references(value):
                 if value is not reference:
                     self.lookup(reference, before, place)
             self._demands(node, name, value, before, port)
+
+    def _watch(self, port: str, value: PortValue, place: Place, said: str) -> None:
+        for reference in references(value):
+            self.seen.add(reference.key)
+            if reference.scope is Scope.LOCAL and reference.key not in (port, BROKEN):
+                self.watched.append(Written(reference.key, place, said))
 
     def lookup(self, reference: Reference, before: Known, place: Place) -> Key | None:
         """What is known of a key that is read here; None, and reported, where it may be empty."""

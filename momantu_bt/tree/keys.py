@@ -66,6 +66,13 @@ def meet(*points: Known) -> Known:
     return Known(common)
 
 
+def both(*points: Known) -> Known:
+    """What is known where all of these points were passed; later ones count where they differ."""
+    if not all(point.reached for point in points):
+        return NEVER
+    return Known({name: key for point in points for name, key in (point.keys or {}).items()})
+
+
 def _either(left: Key, right: Key) -> Key:
     if left == right:
         return left

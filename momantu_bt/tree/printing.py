@@ -123,14 +123,27 @@ def _is_decorator(node: Node) -> bool:
 
 
 def _below(node: Node, level: int) -> list[tuple[Node | Handler, int, str]]:
-    spec = BUILT_IN.get(node.type)
-    roles = spec.positions if spec is not None and not spec.handlers else ()
-    named = [f"{role.replace('_do', '')}: " if role != "child" else "" for role in roles]
+    named = _roles(node)
     named += [""] * (len(node.children) - len(named))
     children: list[tuple[Node | Handler, int, str]] = [
         (child, level, role) for child, role in zip(node.children, named, strict=False)
     ]
     return children + [(handler, level, "") for handler in node.handlers]
+
+
+def _roles(node: Node) -> list[str]:
+    """What stands before each child."""
+    spec = BUILT_IN.get(node.type)
+    if spec is None or spec.handlers:
+        return []
+    if spec.switch:
+        cases = (node.ports.get(f"case_{i}", Literal("?")) for i in range(1, spec.switch + 1))
+        return [*(f"{value_text(case)}: " for case in cases), "else: "]
+    if node.type == "TryCatch":
+        return [*[""] * (len(node.children) - 1), "in any failure: "]
+    if node.type == "RecoveryNode":
+        return ["", "to recover: "]
+    return ["" if role == "child" else f"{role.replace('_do', '')}: " for role in spec.positions]
 
 
 def _name(node: Node) -> str:
@@ -157,6 +170,7 @@ def _ports(node: Node) -> str:
     shown = [
         value_text(value) if _is_bare(node, name) else f"{name} {value_text(value)}"
         for name, value in node.ports.items()
+        if not name.startswith("case_") or node.type == SUBTREE
     ]
     words = ", ".join(shown)
     return words if len(words) <= _WIDEST else words[: _WIDEST - 1] + "…"
@@ -196,6 +210,10 @@ def _duration(node: Node) -> str:
     return f"{shown} s" if bare else shown
 
 
+def _entry(node: Node) -> str:
+    return value_text(node.ports.get("entry", Literal("?")))
+
+
 _IN_WORDS: dict[str, Callable[[Node], str]] = {
     "RetryUntilSuccessful": lambda n: _count(n, "attempts"),
     "Repeat": lambda n: _count(n, "cycles").replace("tries", "rounds").replace("try", "round"),
@@ -204,9 +222,11 @@ _IN_WORDS: dict[str, Callable[[Node], str]] = {
     "Inverter": lambda n: "inverted",
     "ForceSuccess": lambda n: "success in any case",
     "ForceFailure": lambda n: "failure in any case",
-    "ElseFail": lambda n: f"else {value_text(n.ports.get('code', Literal('?')))}",
     "KeepRunningUntilFailure": lambda n: "again and again until it fails",
     "RunOnce": lambda n: "once only",
+    "SkipUnlessUpdated": lambda n: f"only when {_entry(n)} is new",
+    "WaitValueUpdate": lambda n: f"waits until {_entry(n)} is written",
+    "SingleTrigger": lambda n: "once at each start",
 }
 
 

@@ -8,6 +8,7 @@ from typing import Any, Literal, TypeAlias, Union, get_args
 from typing import get_origin as _get_origin
 
 from momantu_bt.messages import VALUE_TYPES
+from momantu_bt.tree.catalogue import Queue
 
 ValueType: TypeAlias = Any
 """A Python type as ports declare it: a class, `X | None`, `tuple[X, ...]`, `Literal[...]`."""
@@ -46,6 +47,8 @@ def label(type_: ValueType) -> str:
         return " or ".join(repr(value) for value in get_args(type_))
     if is_union(type_):
         return " or ".join(label(m) for m in members(type_) if m is not type(None))
+    if origin(type_) is Queue:
+        return f"list of {label(get_args(type_)[0])}"
     if origin(type_) is tuple:
         return _tuple_label(get_args(type_))
     for name, known in VALUE_TYPES.items():
@@ -92,6 +95,10 @@ def assignable(source: ValueType, target: ValueType) -> bool:
         return any(assignable(member, target) for member in members(source))
     if is_union(target):
         return any(assignable(source, member) for member in members(target))
+    if origin(target) is Queue:
+        item = get_args(target)[0]
+        listed: ValueType = tuple[item, ...]  # type: ignore[valid-type]
+        return source is str or assignable(source, listed) or assignable(source, item)
     if origin(source) is Literal:
         return any(assignable(type(value), target) for value in get_args(source))
     if origin(target) is Literal:

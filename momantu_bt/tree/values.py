@@ -17,7 +17,7 @@ from typing import Any, Literal, get_args, get_type_hints
 
 from momantu_bt.skill import MISSING, Port
 from momantu_bt.tree import model
-from momantu_bt.tree.catalogue import CodeText
+from momantu_bt.tree.catalogue import CodeText, Queue
 from momantu_bt.tree.script_nodes import part
 from momantu_bt.tree.types import ValueType, is_union, label, members, origin, parse_type
 from momantu_bt.tree.units import UnitError, in_unit, quantity, units_of
@@ -28,6 +28,9 @@ _NUMBER = re.compile(r"[-+]?([0-9]+|[0-9]*\.[0-9]+|[0-9]+\.)([eE][-+]?[0-9]+)?")
 _LONGEST_NUMBER = 40
 _MISREAD = {"yes": "true", "on": "true", "y": "true", "no": "false", "off": "false", "n": "false"}
 _MISREAD |= {"True": "true", "TRUE": "true", "False": "false", "FALSE": "false"}
+
+_BOOLS = {"true": True, "1": True, "false": False, "0": False}
+"""What BehaviorTree.CPP takes for a bool within a text."""
 
 
 class ConversionError(ValueError):
@@ -101,6 +104,8 @@ def _convert(value: Any, type_: ValueType, unit: str | None) -> Any:
         return _to_union(value, type_, unit)
     if origin(type_) is Literal:
         return _to_choice(value, get_args(type_))
+    if origin(type_) is Queue:
+        return _to_queue(value, get_args(type_)[0])
     if type_ is tuple or origin(type_) is tuple:
         return _to_tuple(value, type_, unit)
     if type_ is bool:
@@ -177,6 +182,25 @@ def _to_tuple(value: Any, type_: ValueType, unit: str | None) -> Any:
     if isinstance(value, tuple) and all(a is b for a, b in zip(items, value, strict=True)):
         return value
     return tuple(items)
+
+
+def _to_queue(value: Any, item: type) -> tuple[Any, ...]:
+    """A list; or a text, split at each `;` as BehaviorTree.CPP does; or one value alone."""
+    if isinstance(value, str):
+        parts = value.removesuffix(";").split(";") if value else []
+        value = [_item(part, item) for part in parts]
+    elif isinstance(value, bool | int | float):
+        value = [_in_words(value) if item is str else value]
+    found: tuple[Any, ...] = _to_tuple(value, tuple[item, ...], None)  # type: ignore[valid-type]
+    return found
+
+
+def _item(text: str, type_: type) -> Any:
+    """One of the values in a text of several, as its type would be written alone."""
+    if type_ is str:
+        return text
+    text = text.strip()
+    return _BOOLS.get(text.lower(), text) if type_ is bool else text
 
 
 def _to_bool(value: Any) -> bool:

@@ -13,7 +13,7 @@ from momantu_bt.tree.catalogue import BUILT_IN, FORCED, Kind
 from momantu_bt.tree.model import Beside, Handler, Literal, Node, PortValue
 from momantu_bt.tree.yaml_leaf_writer import LeafWriter
 from momantu_bt.tree.yaml_lines import STEP, WIDTH, above, beside, is_nested
-from momantu_bt.tree.yaml_nodes import AGAIN, COMPANIONS
+from momantu_bt.tree.yaml_nodes import AGAIN, COMPANIONS, SWITCH
 from momantu_bt.tree.yaml_scalars import (
     CannotWrite,
     port_text,
@@ -166,7 +166,9 @@ class NodeWriter:
         spec = BUILT_IN.get(node.type)
         key, end = self.leaves.key(node), above(node.end_comments, pad + STEP, every=True)
         heading = f"{lead}{key}:{beside(node.comments)}"
-        if spec is not None and spec.yaml[0] in COMPANIONS:
+        if spec is not None and spec.switch and (cases := _cases(node)) is not None:
+            return [*self._switch(node, cases, lead, pad), *end]
+        if spec is not None and spec.yaml[0] in COMPANIONS and not spec.switch:
             return [*self._branches(node, lead, pad), *end]
         if spec is not None and spec.handlers:
             return [heading, *self.leaves.ports(node, pad + STEP), *self._recovery(node, pad), *end]
@@ -205,6 +207,18 @@ class NodeWriter:
         for name, child in zip(names[1:], others, strict=False):
             pieces.append(_Value(child, f"{pad}{name}:", pad + STEP))
         return pieces
+
+    def _switch(self, node: Node, cases: list[str], lead: str, pad: str) -> list[_Piece]:
+        deeper = pad + STEP * 2
+        *chosen, default = node.children
+        variable = port_text(node.ports["variable"])
+        pieces: list[_Piece] = [
+            f"{lead}{SWITCH}: {variable}{beside(node.comments)}",
+            f"{pad}cases:",
+        ]
+        for case, child in zip(cases, chosen, strict=True):
+            pieces.append(_Value(child, f"{pad}{STEP}{case}:", deeper))
+        return [*pieces, _Value(default, f"{pad}default:", pad + STEP)]
 
     def _recovery(self, node: Node, pad: str) -> list[_Piece]:
         if len(node.children) != 1 or not node.handlers:
@@ -264,6 +278,18 @@ def _can_be_modifier(node: Node) -> bool:
 
 def _is_nothing(value: PortValue) -> bool:
     return isinstance(value, Literal) and value.value is None
+
+
+def _cases(node: Node) -> list[str] | None:
+    """The keys of `cases:`; None where the ports cannot be written so."""
+    values = [node.ports.get(name) for name in BUILT_IN[node.type].ports]
+    if len(node.ports) != len(values) or len(node.children) != len(values):
+        return None
+    if node.port_comments or any(value is None or is_nested(value) for value in values):
+        return None
+    variable, *cases = (port_text(value) for value in values if value is not None)
+    bare = {case.strip("\"'") for case in cases}
+    return cases if len(bare) == len(cases) and variable else None
 
 
 def _condition(node: Node) -> str | None:

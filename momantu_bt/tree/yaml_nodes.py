@@ -14,6 +14,7 @@ from momantu_bt.tree.catalogue import (
     MODIFIERS,
     SPELLED,
     SUBTREE,
+    SWITCHES,
     Kind,
     NodeSpec,
     ScriptText,
@@ -37,7 +38,12 @@ BTCPP = "btcpp"
 """Key of a script that our spelling has no words for: `skip_if: {btcpp: a && b || c}`."""
 ANY = "any"
 _HANDLER_CODE = re.compile(rf"(?:\w+\.)?{CODE.pattern}|{ANY}")
-COMPANIONS = {"if": ("then", "else"), "while_do": ("do", "else")}
+SWITCH = "switch"
+COMPANIONS = {
+    "if": ("then", "else"),
+    "while_do": ("do", "else"),
+    SWITCH: ("cases", "default"),
+}
 """Keys that stand beside a node key and hold its other children."""
 
 Put = Callable[[Node], None]
@@ -228,6 +234,8 @@ class NodeReader:
             ours = BUILT_IN[name].yaml[0] if name in BUILT_IN else "the tree's name"
             hint = f"did you mean {ours}?"
             return self._broken("unknown-node", key.place, f"no node is called {name!r}", hint)
+        if name == SWITCH:
+            return self._switch(key, value, companions)
         spec = SPELLED.get(name)
         if spec is None:
             target = name if name in self.trees else None
@@ -326,6 +334,45 @@ class NodeReader:
                 self._waiting.append((places[name], node.children.append))
             elif name != "else":
                 self._error("missing-child", node.place, f"`{_said(node)}` without `{name}:`")
+
+    def _switch(self, key: Scalar, value: Raw, companions: list[tuple[Scalar, Raw]]) -> Node:
+        """`switch: $x` with `cases:` and `default:` beside it, or with ports and `children:`."""
+        if isinstance(value, Entries) and not companions:
+            return self._plain_switch(key, value)
+        beside = {name.text: raw for name, raw in companions}
+        for name in COMPANIONS[SWITCH]:
+            if name not in beside:
+                message = f"`{SWITCH}` without `{name}:`"
+                return self._broken(
+                    "missing-child", key.place, message, f"write `{name}:` beside it"
+                )
+        cases = beside["cases"]
+        fewest, most = min(SWITCHES), max(SWITCHES)
+        if not isinstance(cases, Entries) or not fewest <= len(cases.entries) <= most:
+            message = f"`cases` is a mapping of {fewest} to {most} values to nodes"
+            hint = "such as `cases: {red: stop, green: go}`; `if` decides between two"
+            return self._broken("wrong-value", cases.place, message, hint)
+        drop_duplicates(cases, self.problems)
+        spec = SWITCHES.get(len(cases.entries))
+        if spec is None:  # there was a duplicate
+            return Node(BROKEN, key.place)
+        node = Node(spec.type, key.place)
+        self._port(node, "variable", value, value.place, spec)
+        for number, (case, raw) in enumerate(cases.entries, start=1):
+            self._port(node, f"case_{number}", case, case.place, spec)
+            self._waiting.append((raw, node.children.append))
+        self._waiting.append((beside["default"], node.children.append))
+        return node
+
+    def _plain_switch(self, key: Scalar, value: Entries) -> Node:
+        below = next((raw for name, raw in value.entries if name.text == "children"), None)
+        count = len(below.items) - 1 if isinstance(below, Items) else 0
+        if count not in SWITCHES:
+            message = f"`{SWITCH}` takes a value, with `cases:` and `default:` beside it"
+            return self._broken("missing-child", value.place, message, "such as `switch: $colour`")
+        node = Node(SWITCHES[count].type, key.place)
+        self._control(node, value, SWITCHES[count])
+        return node
 
     def _with_handlers(self, node: Node, value: Raw, spec: NodeSpec) -> None:
         if not isinstance(value, Entries):

@@ -14,9 +14,10 @@ between two children. RoundRobin starts with the child after the one that ended 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from momantu_bt.engine.node import TreeNode
+from momantu_bt.engine.ports import Inputs
 from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Status
 from momantu_bt.failure import FailureValue
 
@@ -80,17 +81,21 @@ class RoundRobin(TreeNode):
     """One child at a time, each start the next one.
 
     A child's SUCCESS is its own, and next time the one after it begins. A FAILURE hands on to
-    the child after; when each has failed (or was skipped) it fails with the last failure. The
-    place is kept between starts, until a recovery around it starts from scratch.
+    the child after; when each has failed (or was skipped) it fails with the last failure, and
+    next time begins with the first, as after a halt. Without `wrap_around` nothing comes after
+    the last child.
     """
 
-    at = 0
-    tried = 0
+    def __init__(self, *arguments: Any, inputs: Inputs, **named: Any) -> None:
+        super().__init__(*arguments, **named)
+        self.inputs = inputs
+        self.at = self.tried = 0
 
     def step(self) -> Status:
         """Tick the current child, and the ones after it while they fail."""
         if self.tried == 0:
             self.failures_seen: list[FailureValue] = []
+        wraps: bool = self.inputs["wrap_around"]
         self.state = RUNNING
         while self.tried < len(self.kids):
             child = self.kids[self.at]
@@ -105,15 +110,18 @@ class RoundRobin(TreeNode):
             if status is SUCCESS:
                 self.tried = 0
                 return SUCCESS
-        self.tried = 0
+            if self.at == 0 and not wraps:
+                break
+        self.clear()
         if not self.failures_seen:
+            self.state = IDLE
             return SKIPPED
         return self.fail_with(with_beside(self.failures_seen))
 
     def clear(self) -> None:
-        """Forget this start; the place stays."""
-        self.tried = 0
+        """Begin with the first child again."""
+        self.at = self.tried = 0
 
     def renew(self) -> None:
         """Begin with the first child again."""
-        self.at = self.tried = 0
+        self.clear()

@@ -1,7 +1,7 @@
 """Every built-in node: its canonical type, its spelling in YAML, its ports and its children.
 
-Canonical types and their meaning are BehaviorTree.CPP 4's where it has the node; the rest is
-ours. The engine's classes are keyed by the canonical type, the readers by the spelling.
+Canonical types and their meaning are BehaviorTree.CPP 4's and Nav2's where they have the node; the
+rest is ours. The engine's classes are keyed by the canonical type, the readers by the spelling.
 """
 
 from __future__ import annotations
@@ -11,7 +11,8 @@ from collections.abc import Mapping
 from momantu_bt.tree.catalogue.controls import CONTROLS
 from momantu_bt.tree.catalogue.decorators import DECORATORS
 from momantu_bt.tree.catalogue.leaves import LEAVES
-from momantu_bt.tree.catalogue.spec import CodeText, Kind, NodeSpec, ScriptText
+from momantu_bt.tree.catalogue.nav2 import NAV2
+from momantu_bt.tree.catalogue.spec import CodeText, Kind, NodeSpec, Queue, ScriptText
 
 __all__ = [
     "AUTOREMAP",
@@ -24,9 +25,11 @@ __all__ = [
     "PRE_CONDITIONS",
     "SPELLED",
     "SUBTREE",
+    "SWITCHES",
     "CodeText",
     "Kind",
     "NodeSpec",
+    "Queue",
     "ScriptText",
 ]
 
@@ -36,8 +39,13 @@ SUBTREE = "SubTree"
 AUTOREMAP = "_autoremap"
 """Port of a SubTree: whether every key inside that no wire names is the same key outside."""
 
-BUILT_IN: Mapping[str, NodeSpec] = {spec.type: spec for spec in (*CONTROLS, *DECORATORS, *LEAVES)}
+BUILT_IN: Mapping[str, NodeSpec] = {
+    spec.type: spec for spec in (*CONTROLS, *DECORATORS, *LEAVES, *NAV2)
+}
 """Built-in nodes by canonical type."""
+
+SWITCHES: Mapping[int, NodeSpec] = {spec.switch: spec for spec in CONTROLS if spec.switch}
+"""The switches by their number of cases; in YAML all are `switch`."""
 
 SPELLED: Mapping[str, NodeSpec] = {name: spec for spec in BUILT_IN.values() for name in spec.yaml}
 """Built-in nodes by YAML spelling."""

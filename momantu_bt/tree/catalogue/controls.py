@@ -36,11 +36,6 @@ _SEQUENCES = (
         "reactive_fallback",
         "Earlier children are asked again on each tick.",
     ),
-    control(
-        "RoundRobin",
-        "round_robin",
-        "Starts with the next child each time; a child that fails hands on to the one after it.",
-    ),
 )
 
 _PARALLEL = (
@@ -80,6 +75,22 @@ _BRANCHES = (
     ),
 )
 
+
+def _switch(cases: int) -> NodeSpec:
+    ports = [input_port(f"case_{i}", object, "a value of `variable`") for i in range(1, cases + 1)]
+    return NodeSpec(
+        f"Switch{cases}",
+        ("switch",),
+        Kind.CONTROL,
+        "Runs the child of the case that equals the variable, else the last child.",
+        by_name(input_port("variable", object, "what is compared, on each tick"), *ports),
+        children=(cases + 1, cases + 1),
+        switch=cases,
+    )
+
+
+_SWITCHES = tuple(_switch(cases) for cases in range(2, 7))
+
 _RECOVERY = (
     NodeSpec(
         "Recover",
@@ -100,7 +111,14 @@ _RECOVERY = (
         positions=("try",),
         handlers=True,
     ),
+    control(
+        "TryCatch",
+        "try_catch",
+        "All children but the last in turn; when one fails the last one cleans up, and it fails.",
+        input_port("catch_on_halt", bool, "the last child also cleans up after a halt", False),
+        least=2,
+    ),
 )
 
-CONTROLS = (*_SEQUENCES, *_PARALLEL, *_BRANCHES, *_RECOVERY)
+CONTROLS = (*_SEQUENCES, *_PARALLEL, *_BRANCHES, *_SWITCHES, *_RECOVERY)
 """All of them."""

@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from typing import Literal
 
-from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue.spec import (
     TIME,
-    CodeText,
     Kind,
     NodeSpec,
+    Queue,
     ScriptText,
     by_name,
     decorator,
     input_port,
+    output_port,
     time_ports,
 )
 
-DECORATORS = (
+_PLAIN = (
     decorator(
         "RetryUntilSuccessful",
         "retry",
@@ -51,13 +51,6 @@ DECORATORS = (
     decorator("Inverter", "invert", "Success becomes failure and failure success."),
     decorator("ForceSuccess", "force_success", "Whatever the child's end: success."),
     decorator("ForceFailure", "force_failure", "Whatever the child's end: failure."),
-    decorator(
-        "ElseFail",
-        "else_fail",
-        "When the child fails, fails with a code of one's own; the child's failure is its cause.",
-        input_port("code", CodeText, "upper-case words joined by underscores"),
-        input_port("message", str, "one sentence for a person", ""),
-    ),
     decorator(
         "KeepRunningUntilFailure",
         "keep_running_until_failure",
@@ -94,10 +87,60 @@ DECORATORS = (
         "Runs the child for each item of a list, until it fails.",
         by_name(
             input_port("in", tuple, "the items"),
-            Port("as", "out", object, "the key that holds the item of the round"),
+            output_port("as", object, "the key that holds the item of the round"),
         ),
         children=(1, 1),
         positions=("child",),
+        item=("as", "in"),
     ),
 )
+
+
+def _loop(type_: str, yaml: str, item: type) -> NodeSpec:
+    return decorator(
+        type_,
+        yaml,
+        "Takes item after item from a queue and runs the child for each, until it fails.",
+        input_port("queue", Queue[item], "a list, or a text such as `1;2;3`"),  # type: ignore[valid-type]
+        input_port(
+            "if_empty",
+            Literal["SUCCESS", "FAILURE", "SKIPPED"],
+            "the result when the queue is empty, at last or from the start",
+            "SUCCESS",
+        ),
+        output_port("value", item, "the key that holds the item", None),
+        modifier=False,
+        item=("value", "queue"),
+    )
+
+
+_LOOPS = (
+    _loop("LoopInt", "loop_int", int),
+    _loop("LoopDouble", "loop_number", float),
+    _loop("LoopString", "loop_text", str),
+    _loop("LoopBool", "loop_bool", bool),
+)
+
+_ENTRY = input_port("entry", object, "the key that is watched")
+
+_UPDATES = (
+    decorator(
+        "SkipUnlessUpdated",
+        "skip_unless_updated",
+        "Runs the child when a key was written since the last time; is skipped otherwise.",
+        _ENTRY,
+        keys=("entry",),
+        may_be_empty=("entry",),
+    ),
+    decorator(
+        "WaitValueUpdate",
+        "wait_value_update",
+        "Waits until a key is written, then runs the child.",
+        _ENTRY,
+        keys=("entry",),
+        may_be_empty=("entry",),
+    ),
+)
+
+DECORATORS = (*_PLAIN, *_LOOPS, *_UPDATES)
 """All of them."""

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
+from momantu_bt.failure import FAILED
 from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue.spec import TIME, CodeText, ScriptText, input_port, leaf, time_ports
 
@@ -43,6 +46,32 @@ LEAVES = (
         *time_ports("how long"),
         xml={"duration": ""},
         one_of=TIME,
+    ),
+    leaf(
+        "WasEntryUpdated",
+        ("was_entry_updated",),
+        "Succeeds when a key was written since the last time, fails when it was not.",
+        input_port("entry", object, "the key that is watched"),
+        keys=("entry",),
+        may_be_empty=("entry",),
+    ),
+    leaf(
+        "TestNode",
+        ("test_node",),
+        "Does what a test prescribes, in place of a skill.",
+        input_port(
+            "return_status",
+            Literal["SUCCESS", "FAILURE", "RUNNING", "SKIPPED"],
+            "how it ends; RUNNING is never",
+            "SUCCESS",
+        ),
+        input_port("return_status_script", ScriptText, "gives the status instead", ""),
+        input_port("async_delay", float, "how long it runs before its end", 0.0, "s"),
+        input_port("code", CodeText, "what it fails with", FAILED),
+        input_port("message", str, "the failure's sentence", "the test prescribes a failure"),
+        input_port("success_script", ScriptText, "runs at its end with SUCCESS", ""),
+        input_port("failure_script", ScriptText, "runs at its end with FAILURE", ""),
+        input_port("post_script", ScriptText, "runs at its end, after those two", ""),
     ),
 )
 """All of them."""

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 from momantu_bt.skill import MISSING, Port
+
+_T = TypeVar("_T")
 
 
 class Kind(StrEnum):
@@ -26,6 +28,10 @@ class CodeText(str):
     """The type of a port that holds a failure code."""
 
 
+class Queue(Generic[_T]):
+    """The type of a port that takes a list, one value, or a text of values with `;` between."""
+
+
 @dataclass(frozen=True, slots=True)
 class NodeSpec:
     """One built-in node.
@@ -35,6 +41,9 @@ class NodeSpec:
     positions: what each child is, where they have names of their own in YAML (if, then, else).
     handlers: takes `catch:`. xml: attribute names of BehaviorTree.CPP for ports named otherwise;
     empty for a port that it does not have. one_of: groups of inputs, exactly one of which is given.
+    keys: inputs that must be wired to a whole key, because the node looks at the key itself.
+    may_be_empty: inputs whose key need not hold a value. item: the output that holds what the
+    child of a loop works on, and the input where it comes from. switch: how many cases it has.
     """
 
     type: str
@@ -50,11 +59,20 @@ class NodeSpec:
     concurrent: bool = False
     xml: Mapping[str, str] = field(default_factory=dict)
     one_of: tuple[tuple[str, ...], ...] = ()
+    keys: tuple[str, ...] = ()
+    may_be_empty: tuple[str, ...] = ()
+    item: tuple[str, str] | None = None
+    switch: int = 0
 
 
 def by_name(*ports: Port) -> dict[str, Port]:
     """Ports as `NodeSpec.ports` holds them."""
     return {port.name: port for port in ports}
+
+
+def output_port(name: str, type_: Any, doc: str, default: Any = MISSING) -> Port:
+    """An output of a built-in node; with the default None it need not be wired."""
+    return Port(name, "out", type_, doc, default)
 
 
 def input_port(
@@ -84,6 +102,7 @@ def control(
     least: int = 1,
     most: int | None = None,
     concurrent: bool = False,
+    keys: tuple[str, ...] = (),
 ) -> NodeSpec:
     """A node that decides which of its children run."""
     return NodeSpec(
@@ -94,6 +113,7 @@ def control(
         by_name(*ports),
         children=(least, most),
         concurrent=concurrent,
+        keys=keys,
     )
 
 
@@ -105,6 +125,9 @@ def decorator(
     modifier: bool = True,
     xml: Mapping[str, str] | None = None,
     one_of: tuple[tuple[str, ...], ...] = (),
+    keys: tuple[str, ...] = (),
+    may_be_empty: tuple[str, ...] = (),
+    item: tuple[str, str] | None = None,
 ) -> NodeSpec:
     """A node around one child; its first port is what a bare value means."""
     return NodeSpec(
@@ -119,6 +142,9 @@ def decorator(
         modifier=modifier,
         xml=xml or {},
         one_of=one_of,
+        keys=keys,
+        may_be_empty=may_be_empty,
+        item=item,
     )
 
 
@@ -129,6 +155,8 @@ def leaf(
     *ports: Port,
     xml: Mapping[str, str] | None = None,
     one_of: tuple[tuple[str, ...], ...] = (),
+    keys: tuple[str, ...] = (),
+    may_be_empty: tuple[str, ...] = (),
 ) -> NodeSpec:
     """A node without children; its first port is what a bare value means."""
     return NodeSpec(
@@ -140,4 +168,6 @@ def leaf(
         first=ports[0].name if ports else None,
         xml=xml or {},
         one_of=one_of,
+        keys=keys,
+        may_be_empty=may_be_empty,
     )

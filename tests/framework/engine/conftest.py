@@ -11,8 +11,9 @@ from momantu_bt.engine.context import RunContext
 from momantu_bt.engine.node import TreeNode
 from momantu_bt.engine.ports import Inputs
 from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Status
-from momantu_bt.skill import Skill
+from momantu_bt.skill import MISSING, Skill
 from momantu_bt.testing import ManualClock, ScriptedWorld
+from momantu_bt.tree.catalogue import BUILT_IN
 from momantu_bt.tree.model import Node, Place
 from momantu_bt.tree.registry import Registry
 
@@ -59,8 +60,12 @@ class Bench:
             for i, kid in enumerate(kids)
         ]
         named: dict[str, Any] = {}
-        if ports:
-            named["inputs"] = Inputs({name: (lambda v=value: v) for name, value in ports.items()})
+        spec = BUILT_IN.get(kind.__name__)
+        declared = spec.ports.values() if spec is not None else ()
+        defaults = {port.name: port.default for port in declared if port.default is not MISSING}
+        given = {**defaults, **ports}
+        if given:
+            named["inputs"] = Inputs({name: (lambda v=value: v) for name, value in given.items()})
         return kind(self.model(kind.__name__), self.context, children, None, **named)
 
     def tick(self, node: TreeNode) -> str:

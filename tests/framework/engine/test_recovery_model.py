@@ -190,7 +190,7 @@ def test_a_round_robin_of_handlers_goes_round_and_ends_when_all_failed(new_bench
         Planned(bench.model("AlwaysSuccess", f"h{i}"), bench.context, [(0, answer)], events)
         for i, answer in enumerate(answers)
     ]
-    handler = RoundRobin(bench.model("RoundRobin"), bench.context, steps)
+    handler = bench.node(RoundRobin, steps)
     body = Planned(bench.model("AlwaysSuccess", "try"), bench.context, [(0, "A")], events)
     node = Recover(
         bench.model("Recover"),

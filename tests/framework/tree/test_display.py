@@ -111,8 +111,23 @@ WRITTEN = {
     "Timeout": ("{a: , timeout: $t}", ["a  (at most $t)"]),
     "Delay": ("{a: , delay: 0.5}", ["a  (after 0.5 s)"]),
     "Inverter": ("{invert: {child: [a]}}", ["sequence  (inverted)", "a"]),
-    "ElseFail": ("{a: , else_fail: LOST, retry: 2}", ["a  (else LOST, 2 tries)"]),
     "RunOnce": ("{a: , run_once: }", ["a  (once only)"]),
+    "Switch2": (
+        "{switch: $x, cases: {1: a, go: [b]}, default: c}",
+        ["switch $x", "1: a", "go: sequence", "b", "else: c"],
+    ),
+    **{
+        f"Switch{n}": (
+            f"{{switch: $x, cases: {{{', '.join(f'{i}: a' for i in range(n))}}}, default: b}}",
+            ["switch $x", *(f"{i}: a" for i in range(n)), "else: b"],
+        )
+        for n in range(3, 7)
+    },
+    "TryCatch": ("{try_catch: [a, b, c]}", ["try catch", "a", "b", "in any failure: c"]),
+    "RecoveryNode": ("{recovery_node: [a, b]}", ["recovery node", "a", "to recover: b"]),
+    "SkipUnlessUpdated": ("{a: , skip_unless_updated: $k}", ["a  (only when $k is new)"]),
+    "WaitValueUpdate": ("{a: , wait_value_update: $k}", ["a  (waits until $k is written)"]),
+    "SingleTrigger": ("{a: , single_trigger: }", ["a  (once at each start)"]),
     "SubTree": ("{Sub: {x: 3}, name: here}", ["here: Sub x 3"]),
 }
 

@@ -1,0 +1,174 @@
+"""RateController, DistanceController, SpeedController, SingleTrigger: Nav2's decorators of pace.
+
+Each starts its child first, and later when it is due; a child that is RUNNING is ticked on every
+tick, and its status is the node's. In between the node is RUNNING. Time is the world's clock's,
+the way and the speed are odometry's; without a world the robot does not move.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from momantu_bt.engine.node import Decorator
+from momantu_bt.engine.nodes.goals import Goals
+from momantu_bt.engine.ports import Inputs
+from momantu_bt.engine.session import CLOCK_SLACK
+from momantu_bt.engine.status import IDLE, RUNNING, SUCCESS, Status
+from momantu_bt.failure import FAILED, WRONG_TYPE, Failure
+from momantu_bt.geometry import Array
+
+
+class _Paced(Decorator):
+    """Subclasses say when the child is due, and what its start and its success mean to them."""
+
+    def __init__(self, *arguments: Any, inputs: Inputs, **named: Any) -> None:
+        super().__init__(*arguments, **named)
+        self.inputs = inputs
+        self.first = True
+
+    def begin(self) -> None:
+        """The node starts."""
+
+    def is_due(self) -> bool:
+        """Whether the child is to be started, which it is the first time anyway."""
+        raise NotImplementedError(f"{type(self).__name__} has no is_due()")
+
+    def succeeded(self) -> None:
+        """The child has succeeded."""
+
+    def step(self) -> Status:
+        """Tick the child when it is at work, or due."""
+        if self.state is IDLE:
+            self.first = True
+            self.begin()
+        self.state = RUNNING
+        due = self.is_due()
+        if not (self.first or due or self.child.state is RUNNING):
+            return RUNNING
+        self.first = False
+        status = self.child.execute()
+        if status is SUCCESS:
+            self.succeeded()
+        return self.pass_on(status)
+
+
+class RateController(_Paced):
+    """Due when 1 / `hz` has passed since the child's last success, or since the start."""
+
+    since = 0.0
+    period = 0.0
+
+    def begin(self) -> None:
+        """The time begins; `hz` is read."""
+        self.since = self.context.now
+        self.period = 1.0 / positive(self.inputs, "hz")
+
+    def is_due(self) -> bool:
+        """Whether the period is over."""
+        return self.context.now - self.since >= self.period - CLOCK_SLACK
+
+    def succeeded(self) -> None:
+        """The time begins anew."""
+        self.since = self.context.now
+
+
+class DistanceController(_Paced):
+    """Due when the robot is `distance` from where the child last succeeded, or the node began."""
+
+    origin: Array | None = None
+
+    def begin(self) -> None:
+        """The way begins here."""
+        self.origin = self._position()
+
+    def is_due(self) -> bool:
+        """Whether the robot has come far enough."""
+        here = self._position()
+        if here is None or self.origin is None:
+            return False
+        distance: float = self.inputs["distance"]
+        return math.dist(here, self.origin) >= distance
+
+    def succeeded(self) -> None:
+        """The way begins anew."""
+        self.origin = self._position()
+
+    def _position(self) -> Array | None:
+        body = self.context.body
+        if body is None:
+            return None
+        base = self.inputs["robot_base_frame"] or body.actuators.robot.description.base_frame
+        return body.frames.lookup(self.inputs["global_frame"], base).position
+
+
+class SpeedController(_Paced):
+    """Due after a period that is read off the robot's speed when the one before is over.
+
+    The rate goes from `min_rate` at `min_speed` to `max_rate` at `max_speed`. A goal that has
+    changed makes the child due at once, and the period the shortest.
+    """
+
+    since = 0.0
+    period = 0.0
+
+    def __init__(self, *arguments: Any, inputs: Inputs, **named: Any) -> None:
+        super().__init__(*arguments, inputs=inputs, **named)
+        self.goals = Goals(inputs)
+
+    def begin(self) -> None:
+        """The shortest period begins."""
+        self.goals.remember()
+        self._restart()
+
+    def is_due(self) -> bool:
+        """Whether the period is over; then the next one is as long as the speed says."""
+        if self.goals.have_changed():
+            self._restart()
+            self.first = True
+        if self.context.now - self.since < self.period - CLOCK_SLACK:
+            return False
+        self.period = 1.0 / self._rate()
+        self.since = self.context.now
+        return True
+
+    def _restart(self) -> None:
+        self.period = 1.0 / positive(self.inputs, "max_rate")
+        self.since = self.context.now
+
+    def _rate(self) -> float:
+        slow, fast = positive(self.inputs, "min_rate"), positive(self.inputs, "max_rate")
+        lowest, highest = self.inputs["min_speed"], self.inputs["max_speed"]
+        if highest <= lowest:
+            raise Failure(WRONG_TYPE, f"max_speed is {highest:g}, not above min_speed {lowest:g}")
+        share = (self._speed() - lowest) / (highest - lowest)
+        return float(min(max(slow + share * (fast - slow), slow), fast))
+
+    def _speed(self) -> float:
+        body = self.context.body
+        return 0.0 if body is None else abs(body.actuators.robot.state().linear)
+
+
+class SingleTrigger(Decorator):
+    """Runs the child to its end once; FAILURE from then on, until the node is started anew."""
+
+    triggered = False
+
+    def step(self) -> Status:
+        """Tick the child until its end."""
+        if self.state is IDLE:
+            self.triggered = False
+        self.state = RUNNING
+        if self.triggered:
+            return self.fail(FAILED, f"{self.child.name} has had its one run")
+        status = self.child.execute()
+        self.triggered = status.completed
+        return self.pass_on(status)
+
+
+def positive(inputs: Inputs, name: str) -> float:
+    """An input that must be more than 0; Failure WRONG_TYPE where it is not."""
+    value: float = inputs[name]
+    if value <= 0.0:
+        raise Failure(WRONG_TYPE, f"{name} is {value:g}; expected more than 0", port=name)
+    return value
