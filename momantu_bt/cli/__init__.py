@@ -33,7 +33,7 @@ TRACEBACK = "MOMANTU_BT_TRACEBACK"
 VERBS = {
     "run": "Run a tree.",
     "check": "Say everything that is wrong with tree files.",
-    "show": "Print a tree in plain words.",
+    "show": "Print a tree in plain words or as a picture, or the difference of two.",
     "skills": "List skills, or show one with its ports and failure codes.",
     "worlds": "List worlds, or show one with its places and surfaces.",
     "robots": "List robots, or show one with its actuators and named poses.",

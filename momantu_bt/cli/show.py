@@ -1,39 +1,110 @@
-"""`momantu-bt show`: a tree in plain words."""
+"""`momantu-bt show`: a tree in plain words or as a picture, or the difference of two."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from momantu_bt.drawing.boxes import pictures
+from momantu_bt.drawing.difference import difference
+from momantu_bt.drawing.wires import Wire, wire_lines, wires
 from momantu_bt.tree.check import NO_WORLD
 from momantu_bt.tree.load import load
+from momantu_bt.tree.model import Document
 from momantu_bt.tree.printing import lines, value_text
+from momantu_bt.tree.registry import Registry
 
 INDENT = "  "
+EXIT_DIFFERENT = 1
 
 
 def show(
     tree: Annotated[str, typer.Argument(help="A tree file, or the name of a bundled tree.")],
+    other: Annotated[
+        str | None, typer.Argument(help="Another one: print what differs, from the first to it.")
+    ] = None,
     world: Annotated[str | None, typer.Option(help="Check against this world.")] = None,
-) -> None:
-    """Print a tree in plain words, with what is wrapped around each node.
+    as_svg: Annotated[bool, typer.Option("--svg", help="Draw an SVG picture.")] = False,
+    as_dot: Annotated[bool, typer.Option("--dot", help="Print it for Graphviz.")] = False,
+    as_mermaid: Annotated[bool, typer.Option("--mermaid", help="Print a Mermaid chart.")] = False,
+    with_wires: Annotated[
+        bool, typer.Option("--wires/--no-wires", help="Whether wires are shown.")
+    ] = True,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Write to this file instead.")
+    ] = None,
+) -> int:
+    """Print a tree in plain words, with what is wrapped around each node, and its wires.
 
     The tree is checked first; exit code 2: it has errors, and they are shown instead.
+    With two trees, what was added (+), removed (-) and changed (~) on the way from the first to
+    the second, whichever spelling each is written in; exit code 0: they say the same; 1: they
+    differ.
 
     Examples:
       momantu-bt show bring_object
-      momantu-bt show trees/bring_object.yaml
+      momantu-bt show bring_object --svg -o bring_object.svg
+      momantu-bt show trees/bring_object.yaml my_tree.yaml
     """
-    document = load(tree, world=world).document
-    typer.echo(f"{document.file}: {document.main}" + _where(world or document.world))
+    kinds = [name for name, on in (("svg", as_svg), ("dot", as_dot), ("mermaid", as_mermaid)) if on]
+    if len(kinds) > 1:
+        raise typer.BadParameter(f"choose one of --{' and --'.join(kinds)}")
+    if other is not None and kinds:
+        raise typer.BadParameter(f"the difference of two trees is text; leave --{kinds[0]} out")
+    registry = Registry.installed()
+    document = load(tree, registry, world=world).document
+    code = 0
+    if other is not None:
+        found = difference(document, load(other, registry, world=world).document)
+        text = "".join(f"{line.mark} {INDENT * line.depth}{line.text}\n" for line in found)
+        code = EXIT_DIFFERENT if found else 0
+    elif kinds:
+        text = _picture(kinds[0], document, registry, with_wires)
+    else:
+        found_wires = wires(document, registry) if with_wires else []
+        text = "".join(f"{line}\n" for line in _words(document, found_wires, world))
+    _write(text, output)
+    return code
+
+
+def _picture(kind: str, document: Document, registry: Registry, with_wires: bool) -> str:
+    if kind == "svg":
+        from momantu_bt.drawing.svg import svg as draw
+    elif kind == "dot":
+        from momantu_bt.drawing.dot import dot as draw
+    else:
+        from momantu_bt.drawing.mermaid import mermaid as draw
+    return draw(pictures(document, registry), wires=with_wires)
+
+
+def _words(document: Document, found: list[Wire], world: str | None) -> Iterator[str]:
+    yield f"{document.file}: {document.main}" + _where(world or document.world)
     for name, value in document.values.items():
-        typer.echo(f"{INDENT}{name} = {value_text(value)}")
-    for line in lines(document):
-        if line.depth == 0:
-            typer.echo()
-        typer.echo(INDENT * line.depth + line.text)
+        yield f"{INDENT}{name} = {value_text(value)}"
+    names = [document.main, *(name for name in document.trees if name != document.main)]
+    printed = list(lines(document))
+    starts = [at for at, line in enumerate(printed) if line.depth == 0]
+    for name, start, end in zip(names, starts, [*starts[1:], len(printed)], strict=True):
+        yield ""
+        yield from (INDENT * line.depth + line.text for line in printed[start:end])
+        its = list(wire_lines(document, found, name))
+        if its:
+            yield f"{INDENT}wires, with lines of the file"
+            yield from (INDENT * 2 + line for line in its)
 
 
 def _where(world: str | None) -> str:
     return "" if world in (None, NO_WORLD) else f" in {world}"
+
+
+def _write(text: str, output: Path | None) -> None:
+    if output is None:
+        typer.echo(text, nl=False)
+        return
+    try:
+        output.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise typer.BadParameter(f"{output} cannot be written: {error.strerror}") from None

@@ -37,7 +37,7 @@ def lines(document: Document) -> Iterator[Line]:
     """The main tree and, below it, every other tree that the document has."""
     others = [tree for name, tree in document.trees.items() if name != document.main]
     for tree in (document.trees[document.main], *others):
-        yield Line(0, _heading(tree), None)
+        yield Line(0, heading(tree), None)
         yield from tree_lines(tree.root, 1)
 
 
@@ -48,14 +48,26 @@ def tree_lines(root: Node, depth: int = 0) -> Iterator[Line]:
         item, level, role = stack.pop()
         if isinstance(item, Handler):
             node = item.node
-            codes = " or ".join("anything else" if c == "any" else c for c in item.codes)
-            yield Line(level, f"on {codes}:" + ("" if node else " try again"), None)
+            yield Line(level, f"{handler_text(item)}:" + ("" if node else " try again"), None)
             if node is not None:
                 stack.append((node, level + 1, ""))
             continue
         inner, around = unwrap(item)
-        yield Line(level, role + text(inner, around), inner)
-        stack.extend(reversed(_below(inner, level + 1)))
+        yield Line(level, (f"{role}: " if role else "") + text(inner, around), inner)
+        stack.extend((each, level + 1, its_role) for its_role, each in reversed(below(inner)))
+
+
+def below(node: Node) -> list[tuple[str, Node | Handler]]:
+    """A node's children and handlers; children that are not just a list come with what they are."""
+    roles = _roles(node)
+    roles += [""] * (len(node.children) - len(roles))
+    children: list[tuple[str, Node | Handler]] = [*zip(roles, node.children, strict=False)]
+    return children + [("", handler) for handler in node.handlers]
+
+
+def handler_text(handler: Handler) -> str:
+    """The codes of a handler: `on A or B`."""
+    return "on " + " or ".join("anything else" if c == "any" else c for c in handler.codes)
 
 
 def unwrap(node: Node) -> tuple[Node, list[Node]]:
@@ -69,17 +81,21 @@ def unwrap(node: Node) -> tuple[Node, list[Node]]:
 
 def text(node: Node, around: list[Node] | None = None) -> str:
     """One node in one line: what it is, its ports, and what is wrapped around it."""
-    words = _name(node)
-    said = _ports(node)
-    if said:
-        words += f" {said}"
-    extras = [_decorator(outer) for outer in reversed(around or [])]
-    extras += [f"{name} {_script(script)}" for name, script in node.conditions.items()]
-    if node.disabled:
-        extras.append("disabled")
+    words = title(node)
+    ports = ", ".join(port_texts(node))
+    if ports:
+        words += f" {ports}" if len(ports) <= _WIDEST else f" {ports[: _WIDEST - 1]}…"
+    extras = extra_texts(node, around)
     if extras:
         words += f"  ({', '.join(extras)})"
     return words
+
+
+def extra_texts(node: Node, around: list[Node] | None = None) -> list[str]:
+    """What is wrapped around a node, innermost first, and its conditions, in words."""
+    extras = [_decorator(outer) for outer in reversed(around or [])]
+    extras += [f"{name} {_script(script)}" for name, script in node.conditions.items()]
+    return [*extras, "disabled"] if node.disabled else extras
 
 
 def value_text(value: PortValue) -> str:
@@ -109,9 +125,10 @@ def _plain(value: Any) -> str:
     return str(value)
 
 
-def _heading(tree: Tree) -> str:
+def heading(tree: Tree) -> str:
+    """A tree's name, what it takes and what it gives."""
     words = tree.name
-    for direction, verb in (("in", "takes"), ("out", "gives")):
+    for direction, verb in (("in", "takes"), ("inout", "shares"), ("out", "gives")):
         ports = [p for p in tree.ports.values() if p.direction == direction]
         if ports:
             words += f" {verb} " + ", ".join(f"{p.name} ({p.type_name})" for p in ports)
@@ -122,31 +139,23 @@ def _is_decorator(node: Node) -> bool:
     return node.type in _IN_WORDS
 
 
-def _below(node: Node, level: int) -> list[tuple[Node | Handler, int, str]]:
-    named = _roles(node)
-    named += [""] * (len(node.children) - len(named))
-    children: list[tuple[Node | Handler, int, str]] = [
-        (child, level, role) for child, role in zip(node.children, named, strict=False)
-    ]
-    return children + [(handler, level, "") for handler in node.handlers]
-
-
 def _roles(node: Node) -> list[str]:
-    """What stands before each child."""
+    """What each child is to the node."""
     spec = BUILT_IN.get(node.type)
     if spec is None or spec.handlers:
         return []
     if spec.switch:
         cases = (node.ports.get(f"case_{i}", Literal("?")) for i in range(1, spec.switch + 1))
-        return [*(f"{value_text(case)}: " for case in cases), "else: "]
+        return [*(value_text(case) for case in cases), "else"]
     if node.type == "TryCatch":
-        return [*[""] * (len(node.children) - 1), "in any failure: "]
+        return [*[""] * (len(node.children) - 1), "in any failure"]
     if node.type == "RecoveryNode":
-        return ["", "to recover: "]
-    return ["" if role == "child" else f"{role.replace('_do', '')}: " for role in spec.positions]
+        return ["", "to recover"]
+    return ["" if role == "child" else role.replace("_do", "") for role in spec.positions]
 
 
-def _name(node: Node) -> str:
+def title(node: Node) -> str:
+    """What a node is, after its name where it has one."""
     words = {
         "Recover": "recover",
         "IfThenElse": "if",
@@ -160,20 +169,18 @@ def _name(node: Node) -> str:
     return f"{node.name}: {said}" if node.name else said
 
 
-def _ports(node: Node) -> str:
+def port_texts(node: Node) -> list[str]:
+    """A node's ports, each with its value."""
     if node.type == "Recover":
         attempts = node.ports.get("attempts")
-        return f"with {_tries(attempts)}" if attempts is not None else ""
+        return [f"with {_tries(attempts)}"] if attempts is not None else []
     if node.type in ("Script", "ScriptCondition", "Precondition"):
-        scripts = [_script(str(v.value)) for v in node.ports.values() if isinstance(v, Literal)]
-        return ", ".join(scripts)
-    shown = [
+        return [_script(str(v.value)) for v in node.ports.values() if isinstance(v, Literal)]
+    return [
         value_text(value) if _is_bare(node, name) else f"{name} {value_text(value)}"
         for name, value in node.ports.items()
         if not name.startswith("case_") or node.type == SUBTREE
     ]
-    words = ", ".join(shown)
-    return words if len(words) <= _WIDEST else words[: _WIDEST - 1] + "…"
 
 
 def _is_bare(node: Node, port: str) -> bool:

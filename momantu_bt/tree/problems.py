@@ -46,6 +46,7 @@ class Problem:
             "length": self.place.length,
             "message": self.message,
             "hint": self.hint,
+            "help": f"momantu-bt check --explain {self.code}",
         }
 
 

@@ -168,6 +168,9 @@ def test_the_json_of_a_problem_is_the_problem(capsys: Out, tree: Path) -> None:
     assert "日 m" in problem["message"]
     assert (problem["severity"], problem["file"]) == ("error", str(tree))
     assert (problem["line"], problem["column"], problem["length"]) == (4, 17, 3)
+    capsys.readouterr()
+    assert main(problem["help"].split()[1:]) == 0
+    assert "wrong-value" in capsys.readouterr().out
 
 
 def test_a_warning_is_told_and_does_not_fail(capsys: Out, tree: Path) -> None:
