@@ -1,12 +1,16 @@
-"""Finding what is installed: skills, services, robots, worlds, trees and verbs by entry point."""
+"""Finding what is installed: skills, services, robots, worlds, trees and verbs by entry point.
+
+A plug-in is checked when it is loaded. One that is broken, or whose name two packages give, is
+told by `load`; all the others go on working.
+"""
 
 from __future__ import annotations
 
 import difflib
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
-from typing import Any
+from typing import Any, TypeAlias
 
 SKILLS = "momantu_bt.skills"
 SERVICES = "momantu_bt.services"
@@ -17,55 +21,67 @@ COMMANDS = "momantu_bt.commands"
 
 _WHAT = {SKILLS: "skill", SERVICES: "service", ROBOTS: "robot", WORLDS: "world", TREES: "tree"}
 
+_Found: TypeAlias = Mapping[str, tuple[EntryPoint, ...]]
+
 
 class PluginError(Exception):
     """A plug-in is missing, broken, or named twice; the message says which and what to do."""
 
 
-def installed(group: str) -> dict[str, EntryPoint]:
-    """Entry points of a group by name, in the order of their names.
+class PluginClash(PluginError):
+    """Two packages give one name different things; the message names both."""
 
-    Raises:
-        PluginError: two packages give the same name different things; both are named.
+
+def installed(group: str) -> dict[str, EntryPoint]:
+    """Entry points of a group by name, in the order of their names; nothing is imported.
+
+    Of a name that two packages give different things it holds the first; `load` refuses it.
     """
-    return dict(_installed(entry_points, group))
+    return {name: entries[0] for name, entries in _installed(entry_points, group).items()}
 
 
 @cache
-def _installed(find: Callable[..., Iterable[EntryPoint]], group: str) -> dict[str, EntryPoint]:
-    """As `installed`. What is installed does not change while a process runs; asking is slow."""
-    found: dict[str, EntryPoint] = {}
+def _installed(find: Callable[..., Iterable[EntryPoint]], group: str) -> _Found:
+    """All that is called so, by name. It does not change while a process runs; asking is slow."""
+    found: dict[str, dict[str, EntryPoint]] = {}
     for entry in sorted(find(group=group), key=lambda e: (e.name, e.value)):
-        other = found.get(entry.name)
-        if other is not None and other.value != entry.value:
-            raise PluginError(
-                f"two plug-ins are called {entry.name!r}: {_origin(other)} and {_origin(entry)}; "
-                "uninstall one of them or rename its entry point"
-            )
-        found[entry.name] = entry
-    return found
+        found.setdefault(entry.name, {}).setdefault(entry.value, entry)
+    return {name: tuple(entries.values()) for name, entries in found.items()}
 
 
 def load(group: str, name: str) -> Any:
-    """Import one plug-in by name.
+    """Import one plug-in by name and check it.
 
     Raises:
-        PluginError: there is none of that name (with the nearest ones), or it cannot be imported.
+        PluginError: there is none of that name (with the nearest ones), it cannot be imported,
+            or it is not what a plug-in of this group has to be.
+        PluginClash: two packages give this name different things.
     """
-    having = installed(group)
+    having = _installed(entry_points, group)
     what = _WHAT.get(group, "plug-in")
     if name not in having:
         near = difflib.get_close_matches(name, having, n=1)
         hint = f" (did you mean {near[0]!r}?)" if near else ""
         names = ", ".join(having) or "none"
         raise PluginError(f"no {what} is called {name!r}{hint}; installed: {names}")
+    entry, *others = having[name]
+    if others:
+        raise PluginClash(
+            f"two plug-ins are called {name!r}: {_origin(entry)} and {_origin(others[0])}; "
+            "uninstall one of them or rename its entry point"
+        )
     try:
-        return having[name].load()
-    except Exception as error:
-        raise PluginError(
-            f"the {what} {name!r} ({_origin(having[name])}) cannot be loaded: "
-            f"{type(error).__name__}: {error}"
-        ) from error
+        plugin = entry.load()
+    except (Exception, SystemExit) as error:  # other people's code: it may raise anything
+        reason = f"cannot be loaded: {type(error).__name__}: {error}"
+    else:
+        from momantu_bt.plugin_checks import objection
+
+        found = objection(group, name, plugin)
+        if found is None:
+            return plugin
+        reason = f"is broken: {found}"
+    raise PluginError(f"the {what} {name!r} ({_origin(entry)}) {reason}")
 
 
 def _origin(entry: EntryPoint) -> str:

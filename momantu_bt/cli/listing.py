@@ -15,22 +15,28 @@ from momantu_bt.plugins import installed, load
 def listing(group: str, about: Callable[[Any], str], as_json: bool) -> None:
     """Print every plug-in of an entry point group with what `about` says of it.
 
-    One that cannot be loaded is listed with the reason.
+    One that is broken is listed with the reason.
     """
     rows: list[tuple[str, str]] = []
+    broken: set[str] = set()
     for name in installed(group):
         try:
             rows.append((name, about(load(group, name))))
         except Exception as error:  # other people's code: whatever it raises is its reason
-            rows.append((name, f"cannot be loaded: {error}"))
+            rows.append((name, f"broken: {error}"))
+            broken.add(name)
     if as_json:
-        typer.echo(json.dumps([{"name": name, "about": line} for name, line in rows], indent=2))
+        typer.echo(json.dumps(_plain(rows, broken), indent=2))
         return
     width = max((len(name) for name, _ in rows), default=0)
     for name, line in rows:
         typer.echo(f"{name:{width}}  {line}".rstrip())
     if not rows:
         typer.echo("none is installed", err=True)
+
+
+def _plain(rows: list[tuple[str, str]], broken: set[str]) -> list[dict[str, Any]]:
+    return [{"name": name, "about": line, "ok": name not in broken} for name, line in rows]
 
 
 def first_line(plugin: Any) -> str:

@@ -15,6 +15,7 @@ from momantu_bt.plugins import (
     SKILLS,
     TREES,
     WORLDS,
+    PluginClash,
     PluginError,
     installed,
     load,
@@ -29,15 +30,14 @@ def plugins(groups: Iterable[str] = GROUPS) -> Iterator[Diagnosis]:
     """Load every plug-in, count those that load, and collect what they say of themselves."""
     hooks: dict[int, tuple[str, Hook]] = {}
     for group in groups:
-        try:
-            entries = installed(group)
-        except PluginError as error:
-            yield Diagnosis(group, False, str(error), "uninstall or rename one of them")
-            continue
         loaded: list[str] = []
-        for name, entry in entries.items():
+        for name, entry in installed(group).items():
             try:
                 hook = _hook(load(group, name), entry)
+            except PluginClash as error:
+                cure = "uninstall or rename one of them"
+                yield Diagnosis(f"{group} {name}", False, str(error), cure)
+                continue
             except PluginError as error:
                 yield Diagnosis(f"{group} {name}", False, str(error), _reinstall(entry))
                 continue

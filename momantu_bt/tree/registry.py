@@ -13,9 +13,9 @@ from momantu_bt.world import Site, WorldEntry
 
 
 class Plugins(Mapping[str, Any]):
-    """The plug-ins of one entry point group; each is imported when it is asked for.
+    """The plug-ins of one entry point group; each is imported and checked when it is asked for.
 
-    Looking one up raises PluginError when it cannot be imported, KeyError when there is none.
+    Looking one up raises PluginError when it is broken, KeyError when there is none.
     """
 
     def __init__(self, group: str) -> None:

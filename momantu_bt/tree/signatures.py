@@ -73,7 +73,7 @@ class Context:
         return self._trees[tree.name]
 
     def skill(self, name: str) -> type[Skill] | None:
-        """A skill's class; None when there is none or it cannot be imported (reported then)."""
+        """A skill's class; None when there is none or it is broken (reported then)."""
         if name not in self._skills:
             try:
                 self._skills[name] = self.registry.skills[name]

@@ -1,22 +1,71 @@
-"""Plug-ins are found by name, and what is wrong with one is said with its name."""
+"""Plug-ins are found by name; a broken one is told with its name, and the others go on working."""
 
+import json
+import sys
 from importlib.metadata import EntryPoint
+from pathlib import Path
 
 import pytest
 
 from momantu_bt import plugins
-from momantu_bt.plugins import SKILLS, PluginError, installed, load
+from momantu_bt.cli import main
+from momantu_bt.diagnosis.plugins import plugins as diagnosed
+from momantu_bt.plugin_checks import bad_skill_name
+from momantu_bt.plugins import (
+    ROBOTS,
+    SERVICES,
+    SKILLS,
+    WORLDS,
+    PluginClash,
+    PluginError,
+    installed,
+    load,
+)
+from momantu_bt.tree.catalogue import BUILT_IN, MODIFIERS, SPELLED
+from momantu_bt.tree.registry import Registry
+
+GOOD = '''
+from momantu_bt import In, Robot, Run, Skill
+
+
+class Good(Skill):
+    """Does nothing, well."""
+
+    angle: float = In(0.3, unit="rad", doc="how far")
+    failures = {"TOO_FAR": "it does not go that far"}
+
+    def run(self, robot: Robot) -> Run:
+        yield "once"
+'''
 
 
 @pytest.fixture
 def entries(monkeypatch: pytest.MonkeyPatch) -> list[EntryPoint]:
     having: list[EntryPoint] = []
-    monkeypatch.setattr(plugins, "entry_points", lambda group: having)
+    monkeypatch.setattr(
+        plugins, "entry_points", lambda group: [e for e in having if e.group == group]
+    )
     return having
 
 
-def entry(name: str, value: str) -> EntryPoint:
-    return EntryPoint(name, value, SKILLS)
+def entry(name: str, value: str, group: str = SKILLS) -> EntryPoint:
+    return EntryPoint(name, value, group)
+
+
+@pytest.fixture
+def module(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest):
+    """`module(text)`: the name of a module with that text, which can be imported in this test."""
+    monkeypatch.syspath_prepend(tmp_path)
+    made: list[str] = []
+
+    def write(text: str) -> str:
+        made.append(f"plugin_of_a_test_{len(made)}")
+        (tmp_path / f"{made[-1]}.py").write_text(text, encoding="utf-8")
+        return made[-1]
+
+    yield write
+    for name in made:
+        sys.modules.pop(name, None)
 
 
 def test_names_come_in_order(entries: list[EntryPoint]) -> None:
@@ -24,15 +73,19 @@ def test_names_come_in_order(entries: list[EntryPoint]) -> None:
     assert list(installed(SKILLS)) == ["a", "b"]
 
 
-def test_two_of_one_name_are_both_named(entries: list[EntryPoint]) -> None:
-    entries += [entry("a", "one:A"), entry("a", "two:A")]
-    with pytest.raises(PluginError, match=r"one:A .* two:A"):
-        installed(SKILLS)
+def test_two_of_one_name_are_both_named_and_harm_nobody(entries: list[EntryPoint], module) -> None:
+    good = module(GOOD)
+    entries += [entry("a", "one:A"), entry("a", "two:A"), entry("good", f"{good}:Good")]
+    assert list(installed(SKILLS)) == ["a", "good"]
+    with pytest.raises(PluginClash, match=r"one:A .* two:A"):
+        load(SKILLS, "a")
+    assert load(SKILLS, "good").__name__ == "Good"
 
 
-def test_the_same_one_twice_is_one(entries: list[EntryPoint]) -> None:
-    entries += [entry("a", "one:A"), entry("a", "one:A")]
-    assert list(installed(SKILLS)) == ["a"]
+def test_the_same_one_twice_is_one(entries: list[EntryPoint], module) -> None:
+    good = module(GOOD)
+    entries += [entry("good", f"{good}:Good"), entry("good", f"{good}:Good")]
+    assert load(SKILLS, "good").__name__ == "Good"
 
 
 def test_an_unknown_name_is_answered_with_the_nearest(entries: list[EntryPoint]) -> None:
@@ -41,12 +94,100 @@ def test_an_unknown_name_is_answered_with_the_nearest(entries: list[EntryPoint])
         load(SKILLS, "navigat")
 
 
-def test_a_broken_plugin_is_named_with_the_reason(entries: list[EntryPoint]) -> None:
-    entries.append(entry("a", "no_such_module_anywhere:A"))
-    with pytest.raises(PluginError, match=r"'a' .*no_such_module_anywhere.* cannot be loaded"):
-        load(SKILLS, "a")
+BROKEN = {
+    "No module named 'no_such_module'": "import no_such_module",
+    "SyntaxError": "def",
+    "SystemExit": "raise SystemExit(3)",
+    "has no attribute 'Good'": "",
+    "not a subclass of momantu_bt.Skill": "class Good: pass",
+    "function is not a subclass": "def Good(): pass",
+    "has no docstring": GOOD.replace('"""Does nothing, well."""', ""),
+    "Good.angle has no doc": GOOD.replace('doc="how far"', 'doc=" "'),
+    "Good.angle has no type": GOOD.replace("angle: float", "angle"),
+    "its type must be imported at run time": GOOD.replace("angle: float", 'angle: "Angle"'),
+    "3 is none": GOOD.replace("angle: float", "angle: 3"),
+    "not UPPER_CASE words": GOOD.replace("TOO_FAR", "too far"),
+    "no sentence explains TOO_FAR": GOOD.replace("it does not go that far", ""),
+    "no mapping of codes": GOOD.replace('{"TOO_FAR": "it does not go that far"}', "set()"),
+    "uses is no set": GOOD.replace("    failures", '    uses = "base"\n    failures'),
+    "has no run": GOOD.replace("def run", "def walk"),
+}
+"""Part of the reason, and a module `Good` of which is broken in that way."""
 
 
-def test_a_good_one_is_loaded(entries: list[EntryPoint]) -> None:
-    entries.append(entry("a", "momantu_bt.skill:Skill"))
-    assert load(SKILLS, "a").__name__ == "Skill"
+@pytest.mark.parametrize("reason", BROKEN)
+def test_a_broken_skill_is_named_with_the_reason(
+    entries: list[EntryPoint], module, reason: str
+) -> None:
+    name = module(BROKEN[reason])
+    entries.append(entry("good", f"{name}:Good"))
+    with pytest.raises(PluginError) as raised:
+        load(SKILLS, "good")
+    assert str(raised.value).startswith(f"the skill 'good' ({name}:Good of an unknown package) ")
+    assert reason in str(raised.value)
+
+
+@pytest.mark.parametrize(
+    ("group", "value", "reason"),
+    [
+        (SERVICES, "momantu_bt.skill:Skill", "not a subclass of momantu_bt.Service"),
+        (ROBOTS, "momantu_bt.skill:NAMES", "no function"),
+        (WORLDS, "momantu_bt.skill:Skill", "has no name and no default_robot and no site"),
+    ],
+)
+def test_other_plugins_are_checked_too(
+    entries: list[EntryPoint], group: str, value: str, reason: str
+) -> None:
+    entries.append(entry("a", value, group))
+    with pytest.raises(PluginError, match=reason):
+        load(group, "a")
+
+
+@pytest.mark.parametrize(
+    "name", [*SPELLED, *BUILT_IN, *MODIFIERS, "again", "Two Words", "2x", "if"]
+)
+def test_a_name_that_means_something_else_is_refused(name: str) -> None:
+    assert bad_skill_name(name)
+
+
+@pytest.mark.parametrize("name", installed(SKILLS))
+def test_installed_names_are_good(name: str) -> None:
+    assert bad_skill_name(name) is None
+    assert load(SKILLS, name)
+
+
+TREE = "momantu_bt: 1\ntrees:\n  Main:\n"
+
+
+def test_one_broken_skill_and_one_clash_leave_the_rest_alone(
+    entries: list[EntryPoint], module, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    good, broken = module(GOOD), module("import no_such_module")
+    entries += [entry("good", f"{good}:Good"), entry("ill", f"{broken}:Ill")]
+    entries += [entry("twice", "one:A"), entry("twice", "two:A")]
+    assert main(["skills", "list", "--json"]) == 0
+    rows = {row["name"]: row for row in json.loads(capsys.readouterr().out)}
+    assert [name for name, row in rows.items() if row["ok"]] == ["good"]
+    assert "no_such_module" in rows["ill"]["about"]
+    assert "two plug-ins" in rows["twice"]["about"]
+    wrong = {one.name: one for one in diagnosed([SKILLS]) if not one.ok}
+    assert set(wrong) == {f"{SKILLS} ill", f"{SKILLS} twice"}
+    assert "rename" in wrong[f"{SKILLS} twice"].cure
+    file = tmp_path / "tree.yaml"
+    for name, code in (("good", 0), ("ill", 2), ("twice", 2)):
+        file.write_text(f"{TREE}    - {name}\n", encoding="utf-8")
+        assert main(["check", str(file)]) == code
+        assert ("[broken-plugin]" in capsys.readouterr().err) == bool(code)
+
+
+def test_checking_a_tree_imports_only_what_it_names(
+    entries: list[EntryPoint], module, tmp_path: Path
+) -> None:
+    good, other = module(GOOD), module(GOOD)
+    entries += [entry("good", f"{good}:Good"), entry("other", f"{other}:Good")]
+    file = tmp_path / "tree.yaml"
+    file.write_text(f"{TREE}    - good\n", encoding="utf-8")
+    assert main(["check", str(file)]) == 0
+    assert good in sys.modules
+    assert other not in sys.modules
+    assert set(Registry.installed().skills) == {"good", "other"}

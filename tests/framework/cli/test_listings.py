@@ -99,7 +99,7 @@ def test_one_broken_plug_in_does_not_hide_the_others(
 
     monkeypatch.setattr("momantu_bt.cli.listing.load", load)
     about = {row["name"]: row["about"] for row in as_json(capsys, "skills")}
-    assert about["pick"] == "cannot be loaded: its library is missing"
+    assert about["pick"] == "broken: its library is missing"
     assert list(about) == SKILLS
 
 

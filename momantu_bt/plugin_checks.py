@@ -1,0 +1,118 @@
+"""What a plug-in has to be, so that trees can use it: asked once it has been imported."""
+
+from __future__ import annotations
+
+import keyword
+import re
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from momantu_bt.failure import CODE
+from momantu_bt.plugins import ROBOTS, SERVICES, SKILLS, WORLDS
+from momantu_bt.service import Service
+from momantu_bt.skill import Port, Skill
+
+_NAME = re.compile(r"[a-z][a-z0-9_]*")
+WORDS_OF_TREES = ("again", "any", "child", "children", "try", "catch", "then", "else", "do")
+"""Words that stand where a node's name could, and mean something else."""
+
+
+def objection(group: str, name: str, plugin: Any) -> str | None:
+    """Why trees cannot use this plug-in; None when they can."""
+    asked = _CHECKS.get(group)
+    return None if asked is None else asked(name, plugin)
+
+
+def bad_skill_name(name: str) -> str | None:
+    """Why no skill can be called so; None when one can."""
+    from momantu_bt.tree.catalogue import BUILT_IN, MODIFIERS, SPELLED
+
+    if not _NAME.fullmatch(name):
+        return f"{name!r} is no name for a skill: lower-case letters, digits and underscores"
+    if name in SPELLED or name in BUILT_IN:
+        return f"{name!r} is a built-in node; give the entry point another name"
+    if name in MODIFIERS:
+        return f"{name!r} is a modifier of nodes; give the entry point another name"
+    if name in WORDS_OF_TREES or keyword.iskeyword(name):
+        return f"{name!r} is a word of tree files or of Python; give the entry point another name"
+    return None
+
+
+def _skill(name: str, plugin: Any) -> str | None:
+    if not (isinstance(plugin, type) and issubclass(plugin, Skill)):
+        kind = plugin.__name__ if isinstance(plugin, type) else type(plugin).__name__
+        return f"{kind} is not a subclass of momantu_bt.Skill"
+    unfit = bad_skill_name(name)
+    if unfit is not None:
+        return unfit
+    if plugin.run is Skill.run:
+        return f"{plugin.__name__} has no run(self, robot)"
+    if not _own_doc(plugin):
+        return f"{plugin.__name__} has no docstring: one sentence that says what it does"
+    for port in plugin.ports.values():
+        wrong = _port(plugin, port)
+        if wrong is not None:
+            return wrong
+    return _failures(plugin) or _uses(plugin)
+
+
+def _own_doc(kind: type[Skill]) -> bool:
+    """Whether it or a class above it, below Skill itself, says what it does."""
+    above = kind.__mro__[: kind.__mro__.index(Skill)]
+    return any((vars(each).get("__doc__") or "").strip() for each in above)
+
+
+def _port(kind: type[Skill], port: Port) -> str | None:
+    said = f"the port {kind.__name__}.{port.name}"
+    if not isinstance(port.doc, str) or not port.doc.strip():
+        return f"{said} has no doc: write {'In' if port.direction == 'in' else 'Out'}(doc=…)"
+    if isinstance(port.type, str) or port.type is None or not _is_type(port.type):
+        return f"{said} has no type: {port.type!r} is none"
+    return None
+
+
+def _is_type(annotation: Any) -> bool:
+    from momantu_bt.tree.types import is_union, origin
+
+    named = isinstance(annotation, type) or annotation is Any
+    return named or origin(annotation) is not None or is_union(annotation)
+
+
+def _failures(kind: type[Skill]) -> str | None:
+    if not isinstance(kind.failures, Mapping):
+        return f"{kind.__name__}.failures is no mapping of codes to sentences"
+    for code, sentence in kind.failures.items():
+        if not isinstance(code, str) or not CODE.fullmatch(code):
+            return f"{kind.__name__}.failures: {code!r} is no code: UPPER_CASE words"
+        if not isinstance(sentence, str) or not sentence.strip():
+            return f"{kind.__name__}.failures: no sentence explains {code}"
+    return None
+
+
+def _uses(kind: type[Skill]) -> str | None:
+    named = isinstance(kind.uses, set | frozenset) and all(isinstance(u, str) for u in kind.uses)
+    return None if named else f"{kind.__name__}.uses is no set of actuators' names"
+
+
+def _service(name: str, plugin: Any) -> str | None:
+    if isinstance(plugin, type) and issubclass(plugin, Service):
+        return None
+    return f"{plugin!r} is not a subclass of momantu_bt.Service"
+
+
+def _robot(name: str, plugin: Any) -> str | None:
+    return None if callable(plugin) else f"{plugin!r} is no function that gives a description"
+
+
+def _world(name: str, plugin: Any) -> str | None:
+    parts = ("name", "default_robot", "site", "open")
+    lacking = [part for part in parts if not hasattr(plugin, part)]
+    return f"{plugin!r} has no {' and no '.join(lacking)}" if lacking else None
+
+
+_CHECKS: Mapping[str, Callable[[str, Any], str | None]] = {
+    SKILLS: _skill,
+    SERVICES: _service,
+    ROBOTS: _robot,
+    WORLDS: _world,
+}
