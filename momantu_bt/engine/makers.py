@@ -151,6 +151,7 @@ MAKERS: Mapping[str, Maker] = MappingProxyType(
             inputs=parts.inputs(),
             place=parts.key("current_child_idx"),
         ),
+        "ElseFail": _with_inputs(forcing.ElseFail),
         "RetryUntilSuccessful": _with_inputs(loops.RetryUntilSuccessful),
         "Repeat": _with_inputs(loops.Repeat),
         "Timeout": _with_inputs(timing.Timeout),

@@ -65,6 +65,8 @@ def _codes(
     )
     if node.type == "Fail":
         found = _raised(node, meant.get(id(node)))
+    elif node.type == "ElseFail":
+        found = _raised(node, meant.get(id(node))) if below else below
     else:
         found = _own(context, node, below, handled, of_tree)
     if node.conditions:

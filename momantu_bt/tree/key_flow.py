@@ -223,6 +223,7 @@ FLOWS: Mapping[str, Flow] = {
     "Inverter": _inverter,
     "ForceSuccess": _force_success,
     "ForceFailure": _force_failure,
+    "ElseFail": _child,
     "KeepRunningUntilFailure": _again(_until_failure),
     "Precondition": _perhaps,
     "ForEach": _again(_perhaps),

@@ -229,6 +229,7 @@ _IN_WORDS: dict[str, Callable[[Node], str]] = {
     "Inverter": lambda n: "inverted",
     "ForceSuccess": lambda n: "success in any case",
     "ForceFailure": lambda n: "failure in any case",
+    "ElseFail": lambda n: f"else {value_text(n.ports.get('code', Literal('?')))}",
     "KeepRunningUntilFailure": lambda n: "again and again until it fails",
     "RunOnce": lambda n: "once only",
     "SkipUnlessUpdated": lambda n: f"only when {_entry(n)} is new",

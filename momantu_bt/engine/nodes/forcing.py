@@ -1,15 +1,18 @@
-"""Inverter, ForceSuccess, ForceFailure: the child's end, changed.
+"""Inverter, ForceSuccess, ForceFailure, ElseFail: the child's end, changed.
 
-| child returns   | Inverter | ForceSuccess | ForceFailure |
-|-----------------|----------|--------------|--------------|
-| SUCCESS         | FAILURE  | SUCCESS      | FAILURE      |
-| FAILURE         | SUCCESS  | SUCCESS      | FAILURE      |
-| RUNNING SKIPPED | the same | the same     | the same     |
+| child returns   | Inverter | ForceSuccess | ForceFailure | ElseFail                |
+|-----------------|----------|--------------|--------------|-------------------------|
+| SUCCESS         | FAILURE  | SUCCESS      | FAILURE      | SUCCESS                 |
+| FAILURE         | SUCCESS  | SUCCESS      | FAILURE      | FAILURE with its `code` |
+| RUNNING SKIPPED | the same | the same     | the same     | the same                |
 """
 
 from __future__ import annotations
 
+from typing import Any
+
 from momantu_bt.engine.node import Decorator
+from momantu_bt.engine.ports import Inputs
 from momantu_bt.engine.status import FAILURE, RUNNING, SUCCESS, Status
 from momantu_bt.failure import FAILED
 
@@ -55,3 +58,23 @@ class ForceFailure(Decorator):
         if status is FAILURE:
             return self.pass_on(FAILURE)
         return self.fail(FAILED, f"{self.child.name} succeeded, and the tree forces a failure")
+
+
+class ElseFail(Decorator):
+    """The child's failure becomes the cause of one with the code that the tree gives."""
+
+    def __init__(self, *arguments: Any, inputs: Inputs, **named: Any) -> None:
+        super().__init__(*arguments, **named)
+        self.inputs = inputs
+
+    def step(self) -> Status:
+        """Tick the child and answer its failure."""
+        self.state = RUNNING
+        status = self.child.execute()
+        if not status.completed:
+            return status
+        self.child.reset()
+        if status is not FAILURE:
+            return status
+        cause = self.failure_of(self.child)
+        return self.fail(str(self.inputs["code"]), self.inputs["message"], cause)

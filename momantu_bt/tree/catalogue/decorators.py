@@ -6,6 +6,7 @@ from typing import Literal
 
 from momantu_bt.tree.catalogue.spec import (
     TIME,
+    CodeText,
     Kind,
     NodeSpec,
     Queue,
@@ -51,6 +52,13 @@ _PLAIN = (
     decorator("Inverter", "invert", "Success becomes failure and failure success."),
     decorator("ForceSuccess", "force_success", "Whatever the child's end: success."),
     decorator("ForceFailure", "force_failure", "Whatever the child's end: failure."),
+    decorator(
+        "ElseFail",
+        "else_fail",
+        "When the child fails, fails with a code of one's own; the child's failure is its cause.",
+        input_port("code", CodeText, "upper-case words joined by underscores"),
+        input_port("message", str, "one sentence for a person", ""),
+    ),
     decorator(
         "KeepRunningUntilFailure",
         "keep_running_until_failure",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from momantu_bt.engine.nodes.forcing import ForceFailure, ForceSuccess, Inverter
+from momantu_bt.engine.nodes.forcing import ElseFail, ForceFailure, ForceSuccess, Inverter
 from momantu_bt.engine.nodes.loops import (
     KeepRunningUntilFailure,
     Repeat,
@@ -22,6 +22,9 @@ TABLE = [
     (ForceSuccess, "K", {}, "K"),
     (ForceFailure, "RS", {}, "RF"),
     (ForceFailure, "F", {}, "F"),
+    (ElseFail, "RS", {"code": "LOST", "message": ""}, "RS"),
+    (ElseFail, "RF", {"code": "LOST", "message": ""}, "RF"),
+    (ElseFail, "K", {"code": "LOST", "message": ""}, "K"),
     (KeepRunningUntilFailure, "SSF", {}, "RRF"),
     (KeepRunningUntilFailure, "KF", {}, "RF"),
     (Repeat, "S", {"cycles": 3}, "RRS"),
@@ -58,6 +61,20 @@ def test_halting_a_decorator_halts_its_child(bench, kind):
     node.reset()
     assert node.child.halts == 1
     assert node.child.state is IDLE
+
+
+def test_else_fail_gives_the_code_and_keeps_the_childs_failure_as_its_cause(run_yaml):
+    report = run_yaml(
+        "values: {battery: 12}\ntrees:\n  Main:\n    handle:\n      try:\n"
+        "        - condition: $battery > 20\n"
+        '          else_fail: {code: BATTERY_LOW, message: "only ${battery} % left"}\n'
+        "      catch: {BATTERY_LOW: {fail: {code: GAVE_UP, message: '${failure.message}'}}}\n",
+        world="none",
+    )
+    codes = [link.code for link in report.failure.chain()]
+    assert codes[0] == "GAVE_UP"
+    assert codes[-2:] == ["BATTERY_LOW", "FAILED"]
+    assert report.failure.message == "only 12 % left"
 
 
 def test_a_timeout_names_what_was_running(bench):

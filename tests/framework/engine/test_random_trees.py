@@ -17,7 +17,7 @@ from momantu_bt.engine.interrupts import Interrupts
 from momantu_bt.engine.no_world import NoWorld
 from momantu_bt.engine.nodes.branches import IfThenElse, WhileDoElse
 from momantu_bt.engine.nodes.fallbacks import AsyncFallback, Fallback, RoundRobin
-from momantu_bt.engine.nodes.forcing import ForceFailure, ForceSuccess, Inverter
+from momantu_bt.engine.nodes.forcing import ElseFail, ForceFailure, ForceSuccess, Inverter
 from momantu_bt.engine.nodes.loops import (
     KeepRunningUntilFailure,
     Repeat,
@@ -44,6 +44,7 @@ ANY_NUMBER = (
 TWO_OR_THREE = (IfThenElse, WhileDoElse)
 ONE = (Inverter, ForceSuccess, ForceFailure, KeepRunningUntilFailure)
 PORTS = {
+    ElseFail: {"code": st.just("LOST"), "message": st.just("")},
     Parallel: {"success_count": st.sampled_from([-1, 1]), "failure_count": st.just(1)},
     ParallelAll: {"max_failures": st.just(1)},
     Recover: {"attempts": st.integers(1, 3)},
@@ -74,7 +75,7 @@ def above(draw, kids, kinds):
     if kind in TWO_OR_THREE:
         fewest, most = 2, 3
     elif kind in ONE or (
-        issubclass(kind, Repeat | RetryUntilSuccessful | Timeout | Delay | RunOnce)
+        issubclass(kind, ElseFail | Repeat | RetryUntilSuccessful | Timeout | Delay | RunOnce)
     ):
         fewest, most = 1, 1
     else:

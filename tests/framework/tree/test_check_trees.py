@@ -79,6 +79,30 @@ def test_a_code_that_a_handler_has_taken_away(expect: Expect) -> None:
     expect("dead-handler", body)
 
 
+def test_a_code_that_else_fail_gives(fine: Fine, expect: Expect) -> None:
+    body = (
+        "values: {battery: 30}\ntrees:\n  Main:\n    recover:\n      attempts: 2\n"
+        "      try:\n        - condition: $battery > 20\n          else_fail: BATTERY_LOW\n"
+        "        - reset_pose: home\n          else_fail: STUCK\n"
+        "      catch: {BATTERY_LOW: again, STUCK: again%s}\n"
+    )
+    fine(body % "")
+    expect("dead-handler", body % ", «NO_PLAN»: again")
+
+
+def test_else_fail_around_what_cannot_fail(expect: Expect) -> None:
+    body = (
+        "trees:\n  Main:\n    handle:\n      try: {force_success: {child: relocalize}, "
+        "else_fail: STUCK}\n      catch: {«STUCK»: relocalize}\n"
+    )
+    expect("dead-handler", body, hint="it can fail with: nothing")
+
+
+def test_else_fail_wants_a_code(expect: Expect) -> None:
+    expect("bad-code", "trees:\n  Main: [{relocalize: , else_fail: «stuck»}]\n")
+    expect("missing-input", "trees:\n  Main: [{relocalize: , «else_fail»: }]\n")
+
+
 def test_two_handlers_for_one_code(expect: Expect) -> None:
     body = (
         "trees:\n  Main:\n    recover:\n      attempts: 2\n      try: {reset_pose: home}\n"

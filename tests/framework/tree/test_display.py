@@ -111,6 +111,7 @@ WRITTEN = {
     "Timeout": ("{a: , timeout: $t}", ["a  (at most $t)"]),
     "Delay": ("{a: , delay: 0.5}", ["a  (after 0.5 s)"]),
     "Inverter": ("{invert: {child: [a]}}", ["sequence  (inverted)", "a"]),
+    "ElseFail": ("{a: , else_fail: LOST, retry: 2}", ["a  (else LOST, 2 tries)"]),
     "RunOnce": ("{a: , run_once: }", ["a  (once only)"]),
     "Switch2": (
         "{switch: $x, cases: {1: a, go: [b]}, default: c}",

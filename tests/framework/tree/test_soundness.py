@@ -24,7 +24,9 @@ LEAVES = st.one_of(
     st.sampled_from(["succeed", "always_failure", "{fail: OH}", "{wait: 0.1}"]),
 )
 MODIFIERS = st.one_of(
-    st.sampled_from(["invert: ", "force: success", "force: failure", "disabled: true"]),
+    st.sampled_from(
+        ["invert: ", "force: success", "force: failure", "else_fail: OH", "disabled: true"]
+    ),
     st.sampled_from(["retry: 2", "repeat: 2", "timeout: 0.1", "run_once: "]),
     st.tuples(st.sampled_from(["skip_if", "fail_if", "succeed_if", "while"]), KEYS).map(
         lambda t: f"{t[0]}: ${t[1]} > 1"
