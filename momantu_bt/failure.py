@@ -33,6 +33,11 @@ SENSOR_DEAD = "SENSOR_DEAD"
 SCRIPT_ERROR = "SCRIPT_ERROR"
 """A script or a condition could not be evaluated."""
 
+NO_ANSWER = "NO_ANSWER"
+"""Of `ask` and `confirm`: nobody answered, and there is no default."""
+DECLINED = "DECLINED"
+"""Of `confirm`: the answer is no."""
+
 ENGINE_CODES: Mapping[str, str] = MappingProxyType(
     {
         SKILL_ERROR: "the skill raised an exception that it does not declare",

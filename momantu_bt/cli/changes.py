@@ -8,6 +8,7 @@ from itertools import groupby
 from momantu_bt.engine.context import Change
 from momantu_bt.engine.executor import Executor
 from momantu_bt.engine.node import TreeNode
+from momantu_bt.engine.nodes.asking import Ask, Confirm
 from momantu_bt.engine.nodes.recovery import Recover
 from momantu_bt.engine.nodes.skill import SkillLeaf
 from momantu_bt.engine.nodes.subtree import SubTree
@@ -17,7 +18,7 @@ from momantu_bt.failure import FailureValue
 from momantu_bt.record.chain import chain_text
 
 _WORDS = {"RUNNING": "starts", "SUCCESS": "done", "IDLE": "halted", "SKIPPED": "skipped"}
-_TOLD = (SkillLeaf, SubTree, Sleep)
+_TOLD = (SkillLeaf, SubTree, Sleep, Ask, Confirm)
 
 
 class ChangeLines:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 from rich.console import Console, Group
 from rich.live import Live
@@ -34,7 +36,7 @@ class LiveTree:
         self._said: list[str] = []
         self._changes = ChangeLines(self._said.append)
         self._drawn = 0.0
-        self._live = Live(console=console, auto_refresh=False, transient=False)
+        self._live = self._new()
         self._live.start()
 
     def ticked(self, run: Executor) -> None:
@@ -45,6 +47,19 @@ class LiveTree:
         if now - self._drawn >= REFRESH:
             self._drawn = now
             self._live.update(self._picture(run), refresh=True)
+
+    @contextmanager
+    def paused(self) -> Iterator[None]:
+        """Leave the picture standing for what a person reads and types; go on below it."""
+        self._live.stop()
+        try:
+            yield
+        finally:
+            self._live = self._new()
+            self._live.start()
+
+    def _new(self) -> Live:
+        return Live(console=self._console, auto_refresh=False, transient=False)
 
     def close(self) -> None:
         """Leave the last picture standing; safe to call twice."""

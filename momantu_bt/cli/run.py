@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 if TYPE_CHECKING:
+    from momantu_bt.cli.terminal import Terminal
     from momantu_bt.engine.executor import Executor, Observer
     from momantu_bt.record.report import Report
 
@@ -46,6 +47,9 @@ def run(
     referee: Annotated[
         bool, typer.Option("--referee/--no-referee", help="Whether somebody judges the run.")
     ] = True,
+    unattended: Annotated[
+        bool, typer.Option("--unattended", help="Nobody answers: questions take their default.")
+    ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Only the last line.")] = False,
 ) -> int:
     """Run a tree until it ends, and say what happened.
@@ -59,7 +63,10 @@ def run(
       momantu-bt run trees/bring_object.yaml --seed 3 --video run.mp4 --report run.json
       momantu-bt run bring_object --set "tag_edge=150 mm" --view
     """
-    wanted = _Outputs(video, view, view_port, record, report, quiet)
+    from momantu_bt.cli.terminal import Terminal, is_interactive
+
+    terminal = Terminal() if is_interactive() and not unattended else None
+    wanted = _Outputs(video, view, view_port, record, report, quiet, terminal)
     return _guarded(
         lambda: _run(tree, world, robot, seed, set_ or [], values, wanted)(
             max_time=max_time, realtime=realtime, referee=referee
@@ -75,6 +82,7 @@ class _Outputs:
     record: Path | None
     report: Path | None
     quiet: bool
+    terminal: Terminal | None
 
 
 def _guarded(start: Callable[[], Report]) -> int:
@@ -119,6 +127,8 @@ def _run(
     _check_outputs(wanted)
 
     def start(**how: Any) -> Report:
+        if wanted.terminal is not None:
+            how["person"] = wanted.terminal
         options = Options(world=world, robot=robot, seed=seed, remark=_complain, **how)
         result = launch(checked.document, options, registry, lambda run: _watch(run, wanted))
         paths = [wanted.report] if wanted.report is not None else []
@@ -183,12 +193,12 @@ def _watch(run: Executor, wanted: _Outputs) -> list[Observer]:
             add(ViewObserver(scene))
             typer.echo(f"view: {scene.url}")
         if not wanted.quiet:
-            add(_display())
+            add(_display(wanted.terminal))
         stack.pop_all()
     return observers
 
 
-def _display() -> Observer:
+def _display(terminal: Terminal | None) -> Observer:
     """A live tree on a terminal, plain lines elsewhere."""
     from momantu_bt.cli.changes import ChangeLines
 
@@ -198,7 +208,10 @@ def _display() -> Observer:
 
     from momantu_bt.cli.live import LiveTree
 
-    return LiveTree(Console())
+    live = LiveTree(Console())
+    if terminal is not None:
+        terminal.display = live
+    return live
 
 
 def _say_end(result: Report, wanted: _Outputs) -> None:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections import ChainMap
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 from momantu_bt.engine.launch import Options, Watch, launch
+from momantu_bt.engine.person import Scripted
 from momantu_bt.record.report import Report
 from momantu_bt.robot import RobotDescription
 from momantu_bt.tree.load import load
@@ -28,13 +29,15 @@ def run(
     report: Path | None = None,
     registry: Registry | None = None,
     watch: Watch | None = None,
+    answers: Iterable[str | bool] = (),
 ) -> Report:
     """Run a tree file, or a bundled tree by name.
 
     world: a world's name, `"none"`, an open world (which stays open), or None for the tree's
     own. values: keys of the root's board, as `--set` gives them. max_time: simulated seconds.
     report: where to write it as JSON. registry: what trees can name; everything installed
-    unless given. watch: makes observers of the run.
+    unless given. watch: makes observers of the run. answers: what `ask` and `confirm` are told,
+    in turn; afterwards nobody answers.
 
     Raises:
         TreeNotFound: there is no such tree.
@@ -55,6 +58,7 @@ def run(
         realtime=realtime,
         referee=referee,
         keep_world=named is not world,
+        person=Scripted(answers),
     )
     result = launch(checked.document, options, having, watch)
     if report is not None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from momantu_bt.engine.actuators import Actuators
 from momantu_bt.engine.blackboard import Journal
+from momantu_bt.engine.person import Person, Scripted
 from momantu_bt.engine.status import Status
 from momantu_bt.failure import FailureValue
 from momantu_bt.frames import FrameBuffer
@@ -46,7 +47,8 @@ class RunContext:
 
     now: seconds of the world's clock at this tick. tick: its number, from 1.
     writes: cells written in this tick, with what they held before. changes: of statuses.
-    remark: tells a person something that never influences the run.
+    remark: tells a person something that never influences the run. person: answers questions.
+    waited: seconds of wall time that the run has spent waiting for a person.
     """
 
     clock: Clock
@@ -57,6 +59,8 @@ class RunContext:
     writes: Journal = field(default_factory=list)
     changes: list[Change] = field(default_factory=list)
     remark: Callable[[str], None] = print
+    person: Person = field(default_factory=Scripted)
+    waited: float = 0.0
 
     def begin_tick(self) -> None:
         """Take the clock's reading and start empty journals."""

@@ -130,7 +130,8 @@ class Executor:
                 self._failure = self._timed_out()
                 return outcome.FAILURE
             if self._realtime:
-                time.sleep(max(0.0, started + self.context.now - time.perf_counter()))
+                due = started + self.context.waited + self.context.now
+                time.sleep(max(0.0, due - time.perf_counter()))
 
     def _tick(self) -> Status:
         self._stepper.step()

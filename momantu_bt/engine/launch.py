@@ -18,6 +18,7 @@ from momantu_bt.engine.interrupts import Interrupts
 from momantu_bt.engine.no_world import NoWorld
 from momantu_bt.engine.node import TreeNode
 from momantu_bt.engine.nodes.skill import SkillLeaf
+from momantu_bt.engine.person import Person, Scripted
 from momantu_bt.engine.services import Services, in_order
 from momantu_bt.frames import FrameBuffer
 from momantu_bt.record.report import ERROR, NodeReport, Report
@@ -44,7 +45,8 @@ class Options:
     world: a name, `"none"`, or None for the tree's own. robot: a name, or None for the world's
     default. keep_world: it was open before and stays so. max_time: simulated seconds after
     which the run fails with TIMEOUT.
-    referee: False takes it out, which changes nothing else.
+    referee: False takes it out, which changes nothing else. person: who answers `ask` and
+    `confirm`; nobody unless given.
     """
 
     world: str | None = None
@@ -55,6 +57,7 @@ class Options:
     referee: bool = True
     keep_world: bool = False
     remark: Callable[[str], None] = field(default=lambda text: None)
+    person: Person = field(default_factory=Scripted)
 
 
 def launch(
@@ -137,7 +140,7 @@ def _assemble(
     world: World | None,
 ) -> Executor:
     stepper = world if world is not None else NoWorld()
-    context = RunContext(stepper, seed=options.seed, remark=options.remark)
+    context = RunContext(stepper, seed=options.seed, remark=options.remark, person=options.person)
     services = Services({}, None)
     if world is not None:
         actuators = Actuators(world.robot)

@@ -16,6 +16,7 @@ from momantu_bt.engine.context import RunContext
 from momantu_bt.engine.node import TreeNode
 from momantu_bt.engine.nodes import (
     approach,
+    asking,
     branches,
     fallbacks,
     forcing,
@@ -151,7 +152,6 @@ MAKERS: Mapping[str, Maker] = MappingProxyType(
             inputs=parts.inputs(),
             place=parts.key("current_child_idx"),
         ),
-        "ElseFail": _with_inputs(forcing.ElseFail),
         "RetryUntilSuccessful": _with_inputs(loops.RetryUntilSuccessful),
         "Repeat": _with_inputs(loops.Repeat),
         "Timeout": _with_inputs(timing.Timeout),
@@ -159,6 +159,7 @@ MAKERS: Mapping[str, Maker] = MappingProxyType(
         "Inverter": _plain(forcing.Inverter),
         "ForceSuccess": _plain(forcing.ForceSuccess),
         "ForceFailure": _plain(forcing.ForceFailure),
+        "ElseFail": _with_inputs(forcing.ElseFail),
         "KeepRunningUntilFailure": _plain(loops.KeepRunningUntilFailure),
         "RunOnce": _with_inputs(loops.RunOnce),
         "Precondition": _precondition,
@@ -183,6 +184,10 @@ MAKERS: Mapping[str, Maker] = MappingProxyType(
         "AlwaysSuccess": _plain(leaves.AlwaysSuccess),
         "AlwaysFailure": _plain(leaves.AlwaysFailure),
         "Fail": _with_inputs(leaves.Fail),
+        "Ask": lambda parts: parts.make(
+            asking.Ask, inputs=parts.inputs(), answer=parts.key("answer")
+        ),
+        "Confirm": _with_inputs(asking.Confirm),
         "Script": _with_code(scripts.ScriptNode),
         "ScriptCondition": _with_code(scripts.ScriptCondition),
         "SetBlackboard": lambda parts: parts.make(

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from momantu_bt.failure import (
+    DECLINED,
     ENGINE_CODES,
     FAILED,
     HALTED,
     INPUT_MISSING,
+    NO_ANSWER,
     SCRIPT_ERROR,
     TIMEOUT,
     WRONG_TYPE,
@@ -25,6 +27,10 @@ _ANY_SKILL = frozenset(ENGINE_CODES) - {TIMEOUT, FAILED, HALTED, SCRIPT_ERROR}
 Codes = frozenset[str]
 """Codes, bare and as `pick.SLIPPED`. UNKNOWN stands for any."""
 UNKNOWN = "?"
+_OF_BUILT_IN: Mapping[str, Codes] = {
+    "Ask": frozenset({NO_ANSWER}),
+    "Confirm": frozenset({DECLINED, NO_ANSWER}),
+}
 _HANDLED_CODE = Reference("failure", ("code",))
 
 
@@ -91,7 +97,8 @@ def _own(
     if signature.skill is not None:
         own = {*signature.skill.failures, *_ANY_SKILL}
         return frozenset(own | {f"{node.type}.{code}" for code in own})
-    return below | handled | {FAILED, INPUT_MISSING, WRONG_TYPE, SCRIPT_ERROR}
+    answers = _OF_BUILT_IN.get(node.type, frozenset())
+    return below | handled | answers | {FAILED, INPUT_MISSING, WRONG_TYPE, SCRIPT_ERROR}
 
 
 def _raised(node: Node, handled: Codes | None) -> Codes:

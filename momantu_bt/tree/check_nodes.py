@@ -61,6 +61,7 @@ def check_node(context: Context, node: Node) -> None:
     for name in list(node.ports):
         _check_port(context, node, name, signature)
     _check_one_of(context, node, signature)
+    _check_default_answer(context, node)
     for name, port in signature.ports.items():
         if _is_needed(port, signature) and name not in node.ports and name not in node.port_places:
             _report_missing(context, node, port, signature)
@@ -113,6 +114,18 @@ def _check_one_of(context: Context, node: Node, signature: Signature) -> None:
             message = f"{signature.said} takes {given[0]!r} or {name!r}, not both"
             place = node.port_name_places.get(name, node.place)
             context.problems.error("one-of", place, message, "remove one")
+
+
+def _check_default_answer(context: Context, node: Node) -> None:
+    """The default of `ask` is one of its choices, where both are written out."""
+    choices, default = (node.ports.get(name) for name in ("choices", "default"))
+    if node.type != "Ask" or not isinstance(choices, Literal) or not isinstance(default, Literal):
+        return
+    known = choices.value
+    if isinstance(known, list) and known and default.value not in [*known, None]:
+        message = f"{default.value!r} is none of the choices"
+        hint = valid_names(str(default.value), map(str, known), "choices")
+        context.problems.error("wrong-value", node.port_places["default"], message, hint)
 
 
 def _report_missing(context: Context, node: Node, port: Port, signature: Signature) -> None:

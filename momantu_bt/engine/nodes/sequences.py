@@ -80,6 +80,5 @@ class SequenceWithMemory(Sequence):
 
     def _failed(self, child: TreeNode) -> Status:
         failure = self.failure_of(child)
-        for rest in self.kids[self.at :]:
-            rest.reset()
+        self.reset_children()
         return self.fail_with(failure)

@@ -18,6 +18,22 @@ LEAVES = (
         input_port("code", CodeText, "upper-case words joined by underscores"),
         input_port("message", str, "one sentence for a person", ""),
     ),
+    leaf(
+        "Ask",
+        ("ask",),
+        "Asks the person at the terminal.",
+        input_port("question", str, "what to ask"),
+        Port("answer", "out", str, "the key of the answer"),
+        input_port("choices", tuple[str, ...], "the answers it takes; none: any text", ()),
+        input_port("default", str | None, "the answer when nobody gives one", None),
+    ),
+    leaf(
+        "Confirm",
+        ("confirm",),
+        "Asks the person at the terminal; yes is success, no is failure.",
+        input_port("question", str, "what to ask, for yes or no"),
+        input_port("default", bool | None, "the answer when nobody gives one", None),
+    ),
     leaf("Script", ("script",), "Runs a script.", input_port("code", ScriptText, "the script")),
     leaf(
         "ScriptCondition",

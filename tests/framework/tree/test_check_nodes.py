@@ -156,6 +156,15 @@ def test_if_without_then(expect: Expect) -> None:
     expect("missing-child", main("- «if»: {say: a}", "  else: {say: b}"), message="then")
 
 
+def test_a_default_that_is_no_choice(fine: Fine, expect: Expect) -> None:
+    body = (
+        "trees:\n  Main:\n    - ask: {question: Which?, choices: [a, b], default: %s, answer: $x}\n"
+    )
+    body += "    - {condition: $x == 'a'}\n"
+    fine(body % "a")
+    expect("wrong-value", body % "«c»", message="none of the choices", hint="a, b")
+
+
 def test_a_bad_code(expect: Expect) -> None:
     expect("bad-code", main("- fail: «notFound»"), hint="OBJECT_NOT_FOUND")
 

@@ -103,6 +103,15 @@ def test_else_fail_wants_a_code(expect: Expect) -> None:
     expect("missing-input", "trees:\n  Main: [{relocalize: , «else_fail»: }]\n")
 
 
+def test_the_codes_of_a_question(fine: Fine, expect: Expect) -> None:
+    body = (
+        "trees:\n  Main:\n    recover:\n      attempts: 2\n"
+        "      try: [{%s}]\n      catch: {NO_ANSWER: again, %s: again}\n"
+    )
+    fine(body % ("confirm: Well?", "DECLINED"))
+    expect("dead-handler", body % ("ask: {question: Well?, answer: $@a}", "«DECLINED»"))
+
+
 def test_two_handlers_for_one_code(expect: Expect) -> None:
     body = (
         "trees:\n  Main:\n    recover:\n      attempts: 2\n      try: {reset_pose: home}\n"

@@ -1,0 +1,85 @@
+"""Ask and Confirm: a person decides. The tick waits for the answer, so the world holds still."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+from momantu_bt.engine.blackboard import Cell
+from momantu_bt.engine.label import label
+from momantu_bt.engine.node import TreeNode
+from momantu_bt.engine.person import Interrupted, Question, answer
+from momantu_bt.engine.ports import Inputs
+from momantu_bt.engine.status import RUNNING, SUCCESS, Status
+from momantu_bt.failure import DECLINED, NO_ANSWER, WRONG_TYPE
+
+YES, NO = "yes", "no"
+
+
+class _Asking(TreeNode):
+    """Asks in its first tick; RUNNING only where the run is interrupted instead."""
+
+    def __init__(self, *arguments: Any, inputs: Inputs, **named: Any) -> None:
+        super().__init__(*arguments, **named)
+        self.inputs = inputs
+
+    def step(self) -> Status:
+        """Ask, and judge the answer."""
+        values = self.inputs.all()
+        self.label = label(self.model, values)
+        self.state = RUNNING
+        self.show(RUNNING)
+        question = self.question(values)
+        if question.default is not None and question.taken(question.default) is None:
+            return self.fail(WRONG_TYPE, f"the default: {question.complaint(question.default)}")
+        begun = time.perf_counter()
+        try:
+            said = answer(self.context.person, question)
+        except Interrupted:
+            return RUNNING
+        finally:
+            self.context.waited += time.perf_counter() - begun
+        if said is None:
+            return self.fail(NO_ANSWER, f"nobody answers {question.text!r}")
+        return self.judge(said, question)
+
+    def question(self, values: dict[str, Any]) -> Question:
+        """What to ask, from the inputs."""
+        raise NotImplementedError
+
+    def judge(self, said: str, question: Question) -> Status:
+        """What the answer makes of the node."""
+        raise NotImplementedError
+
+
+class Ask(_Asking):
+    """SUCCESS with the answer written; FAILURE with NO_ANSWER when there is none."""
+
+    def __init__(self, *arguments: Any, answer: Cell, **named: Any) -> None:
+        super().__init__(*arguments, **named)
+        self.answer = answer
+
+    def question(self, values: dict[str, Any]) -> Question:
+        """As the tree file writes it."""
+        return Question(values["question"], values["choices"], values["default"])
+
+    def judge(self, said: str, question: Question) -> Status:
+        """Write it."""
+        self.answer.write(said)
+        return SUCCESS
+
+
+class Confirm(_Asking):
+    """SUCCESS for yes; FAILURE with DECLINED for no, with NO_ANSWER when there is none."""
+
+    def question(self, values: dict[str, Any]) -> Question:
+        """A question of yes or no."""
+        default = values["default"]
+        said = None if default is None else YES if default else NO
+        return Question(values["question"], (YES, NO), said)
+
+    def judge(self, said: str, question: Question) -> Status:
+        """Yes or no."""
+        if said == YES:
+            return SUCCESS
+        return self.fail(DECLINED, f"the answer to {question.text!r} is no")
