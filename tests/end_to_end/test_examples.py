@@ -141,7 +141,7 @@ def test_patrol_charges_where_the_battery_runs_low_and_makes_up_for_the_stop() -
 def test_patrol_gives_up_where_the_battery_does_not_last_for_one_leg() -> None:
     report = go("patrol", Script(takes={"navigate": 80.0}), values={"endurance": 40})
     assert report.status == "FAILURE"
-    assert codes(report)[-1] == "BATTERY_LOW"
+    assert codes(report)[-2:] == ["BATTERY_LOW", "FAILED"]
 
 
 def test_escalating_pick_tries_the_hand_then_the_stand_then_the_belief() -> None:
@@ -264,3 +264,18 @@ def test_the_search_goes_on_and_says_when_it_is_nowhere() -> None:
     report = go("search_surfaces", script)
     assert script.given("navigate", "in_front_of") == ["table_b", "table_a"]
     assert codes(report)[-1] == "NOT_FOUND_ANYWHERE"
+
+
+def test_jobs_are_done_in_the_order_of_the_list() -> None:
+    script = Script(detect_object=["OBJECT_NOT_FOUND"])
+    assert go("jobs", script, values={"jobs": ["rest", "inspect", "look"]}).status == "SUCCESS"
+    assert script.given("navigate", "in_front_of") == ["home", "table_a", "corridor"]
+    assert script.names().count("detect_object") == 2
+    assert script.names()[-1] == "look"
+
+
+def test_an_unknown_job_ends_the_list() -> None:
+    script = Script()
+    report = go("jobs", script, values={"jobs": ["rest", "dance", "look"]})
+    assert said(report, "UNKNOWN_JOB") == "nobody knows how to do dance"
+    assert script.names()[-1] == "navigate"
