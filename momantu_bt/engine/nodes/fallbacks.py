@@ -18,7 +18,7 @@ from typing import Any, ClassVar
 
 from momantu_bt.engine.node import TreeNode
 from momantu_bt.engine.ports import Inputs
-from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Status
+from momantu_bt.engine.status import IDLE, RUNNING, SKIPPED, SUCCESS, Status
 from momantu_bt.failure import FailureValue
 
 
@@ -81,46 +81,50 @@ class RoundRobin(TreeNode):
     """One child at a time, each start the next one.
 
     A child's SUCCESS is its own, and next time the one after it begins. A FAILURE hands on to
-    the child after; when each has failed (or was skipped) it fails with the last failure, and
-    next time begins with the first, as after a halt. Without `wrap_around` nothing comes after
-    the last child.
+    the child after, and so does a child that is skipped, which is asked again in a later tick.
+    When all have failed (or are skipped) it fails with the last failure, and next time begins
+    with the first, as after a halt. Without `wrap_around` nothing comes after the last child.
     """
 
     def __init__(self, *arguments: Any, inputs: Inputs, **named: Any) -> None:
         super().__init__(*arguments, **named)
         self.inputs = inputs
-        self.at = self.tried = 0
+        self.at = 0
+        self.failures_seen: list[FailureValue] = []
 
     def step(self) -> Status:
         """Tick the current child, and the ones after it while they fail."""
-        if self.tried == 0:
-            self.failures_seen: list[FailureValue] = []
         wraps: bool = self.inputs["wrap_around"]
         self.state = RUNNING
-        while self.tried < len(self.kids):
+        skipped = 0
+        while len(self.failures_seen) + skipped < len(self.kids):
             child = self.kids[self.at]
             status = child.execute()
             if status is RUNNING:
                 return RUNNING
-            if status is FAILURE:
-                self.failures_seen.append(self.failure_of(child))
-            child.reset()
             self.at = (self.at + 1) % len(self.kids)
-            self.tried += 1
             if status is SUCCESS:
-                self.tried = 0
+                self.failures_seen.clear()
+                self.reset_children()
                 return SUCCESS
+            if status is SKIPPED:
+                skipped += 1
+            else:
+                self.failures_seen.append(self.failure_of(child))
             if self.at == 0 and not wraps:
                 break
+        failures = list(self.failures_seen)
+        self.reset_children()
         self.clear()
-        if not self.failures_seen:
-            self.state = IDLE
-            return SKIPPED
-        return self.fail_with(with_beside(self.failures_seen))
+        if failures:
+            return self.fail_with(with_beside(failures))
+        self.state = IDLE
+        return SKIPPED
 
     def clear(self) -> None:
         """Begin with the first child again."""
-        self.at = self.tried = 0
+        self.at = 0
+        self.failures_seen.clear()
 
     def renew(self) -> None:
         """Begin with the first child again."""

@@ -14,7 +14,9 @@ from momantu_bt.failure import FAILED
 class Precondition(Decorator):
     """Asks `if` before the child starts; when it does not hold, the status that `else` names.
 
-    Once the child has been ticked it is not asked again until the child has ended.
+    Once the child has been ticked it is not asked again until the child has ended. A halt is no
+    end: as in BehaviorTree.CPP, a child that was halted starts again unasked. `fail_if` and
+    `skip_if` are asked at each start.
     """
 
     def __init__(self, *arguments: Any, inputs: Inputs, code: Code, **named: Any) -> None:
@@ -37,8 +39,8 @@ class Precondition(Decorator):
             self.admitted = False
         return self.pass_on(status)
 
-    def clear(self) -> None:
-        """The child has been halted: the next start asks again."""
+    def renew(self) -> None:
+        """The next start asks again."""
         self.admitted = False
 
 

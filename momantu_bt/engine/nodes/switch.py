@@ -61,19 +61,25 @@ class Switch(TreeNode):
 def is_case(value: Any, case: Any) -> bool:
     """Whether a value is the one that a case names: equal as it is, as text or as a number.
 
-    A text that reads as a number is one; numbers are equal within `EPSILON`.
+    A text that reads as a number is one; numbers are equal within `EPSILON`; `true` is no number.
     """
-    value, case = (each.value if isinstance(each, Enum) else each for each in (value, case))
+    value, case = (_bare(value), _bare(case))
     if type(value) is type(case) and value == case:
         return True
-    if isinstance(value, bool) and isinstance(case, str):
-        return case == ("true" if value else "false") or _number(case) == value
     left, right = _number(value), _number(case)
     return left is not None and right is not None and abs(left - right) <= EPSILON
 
 
+def _bare(value: Any) -> Any:
+    if isinstance(value, Enum):
+        return value.value
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return value
+
+
 def _number(value: Any) -> float | None:
-    if isinstance(value, bool | int | float):
+    if isinstance(value, int | float):
         return float(value)
     if isinstance(value, str) and _NUMBER.fullmatch(value):
         return float(value)

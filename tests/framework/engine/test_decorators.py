@@ -1,57 +1,17 @@
-"""Every decorator: its status for each status of its child, and its own memory."""
+"""Decorators beside their tables: failures, counts and what they remember."""
 
 from __future__ import annotations
 
 import pytest
 
-from momantu_bt.engine.nodes.forcing import ElseFail, ForceFailure, ForceSuccess, Inverter
+from momantu_bt.engine.nodes.forcing import ForceSuccess, Inverter
 from momantu_bt.engine.nodes.loops import (
     KeepRunningUntilFailure,
-    Repeat,
     RetryUntilSuccessful,
     RunOnce,
 )
-from momantu_bt.engine.nodes.timing import Delay, Sleep, Timeout
+from momantu_bt.engine.nodes.timing import Timeout
 from momantu_bt.engine.status import IDLE, RUNNING
-
-TABLE = [
-    (Inverter, "RS", {}, "RF"),
-    (Inverter, "F", {}, "S"),
-    (Inverter, "K", {}, "K"),
-    (ForceSuccess, "RF", {}, "RS"),
-    (ForceSuccess, "K", {}, "K"),
-    (ForceFailure, "RS", {}, "RF"),
-    (ForceFailure, "F", {}, "F"),
-    (ElseFail, "RS", {"code": "LOST", "message": ""}, "RS"),
-    (ElseFail, "RF", {"code": "LOST", "message": ""}, "RF"),
-    (ElseFail, "K", {"code": "LOST", "message": ""}, "K"),
-    (KeepRunningUntilFailure, "SSF", {}, "RRF"),
-    (KeepRunningUntilFailure, "KF", {}, "RF"),
-    (Repeat, "S", {"cycles": 3}, "RRS"),
-    (Repeat, "SF", {"cycles": 3}, "RF"),
-    (Repeat, "RS", {"cycles": 1}, "RS"),
-    (Repeat, "K", {"cycles": 3}, "K"),
-    (Repeat, "S", {"cycles": 0}, "S"),
-    (RetryUntilSuccessful, "FFS", {"attempts": 3}, "RRS"),
-    (RetryUntilSuccessful, "F", {"attempts": 3}, "RRF"),
-    (RetryUntilSuccessful, "RFRS", {"attempts": 2}, "RRS"),
-    (RetryUntilSuccessful, "K", {"attempts": 2}, "K"),
-    (RetryUntilSuccessful, "FFFFS", {"attempts": -1}, "RRRRS"),
-    (Timeout, "RRS", {"duration": 1.0}, "RRS"),
-    (Timeout, "R", {"duration": 0.1}, "RRF"),
-    (Timeout, "RRRRS", {"duration": 0.0}, "RRRRS"),
-    (Timeout, "R", {"duration": None, "msec": 100}, "RRF"),
-    (Delay, "S", {"duration": 0.1}, "RRS"),
-    (Delay, "S", {"duration": None, "msec": 100}, "RRS"),
-    (Delay, "F", {"duration": 0.0}, "F"),
-]
-
-
-@pytest.mark.parametrize(("kind", "child", "ports", "expected"), TABLE)
-def test_status_for_each_status_of_the_child(bench, kind, child, ports, expected):
-    node = bench.node(kind, [child], **ports)
-    assert bench.ticks(node) == expected
-    assert node.child.state is IDLE
 
 
 @pytest.mark.parametrize("kind", [Inverter, ForceSuccess, KeepRunningUntilFailure])
@@ -85,28 +45,6 @@ def test_a_timeout_names_what_was_running(bench):
     assert node.failure.cause.code == "HALTED"
     assert node.failure.cause.node == "leaf0"
     assert node.child.halts == 1
-
-
-def test_a_timeout_starts_anew_after_a_halt(bench):
-    node = bench.node(Timeout, ["R"], duration=0.1)
-    bench.tick(node)
-    node.reset()
-    assert bench.ticks(node) == "RRF"
-
-
-def test_a_delay_waits_again_at_its_next_start(bench):
-    node = bench.node(Delay, ["S"], duration=0.1)
-    assert bench.ticks(node) == "RRS"
-    assert bench.ticks(node) == "RRS"
-
-
-def test_sleep_waits_by_the_clock_and_forgets_a_halt(bench):
-    node = bench.node(Sleep, [], duration=0.1)
-    assert bench.ticks(node) == "RRS"
-    bench.tick(node)
-    node.reset()
-    assert bench.ticks(node) == "RRS"
-    assert bench.node(Sleep, [], duration=0.0).execute().value == "SUCCESS"
 
 
 @pytest.mark.parametrize(("then_skip", "later"), [(True, "K"), (False, "F")])

@@ -51,14 +51,17 @@ def test_a_guard_is_not_asked_while_its_child_runs_but_again_after_its_end(bench
     assert node.failure.message == "`open` does not hold"
 
 
-def test_a_guard_is_asked_again_after_a_halt(bench):
+def test_after_a_halt_a_guard_is_asked_again_only_by_a_new_recovery(bench):
     bench.board.set("open", True)
     node = guarded(bench, "R")
     bench.tick(node)
     bench.board.set("open", False)
     node.reset()
+    assert bench.tick(node) == "R"
+    node.reset()
+    node.renew()
     assert bench.tick(node) == "F"
-    assert node.child.ticks == 1
+    assert node.child.ticks == 2
 
 
 def test_a_guard_that_cannot_be_evaluated_fails_with_script_error(bench):
