@@ -279,3 +279,38 @@ def test_an_unknown_job_ends_the_list() -> None:
     report = go("jobs", script, values={"jobs": ["rest", "dance", "look"]})
     assert said(report, "UNKNOWN_JOB") == "nobody knows how to do dance"
     assert script.names()[-1] == "navigate"
+
+
+def test_a_person_says_where_to_look_and_agrees() -> None:
+    script = Script()
+    report = go("ask_first", script, answers=["table_b", True])
+    assert report.status == "SUCCESS", report.failure
+    assert script.given("navigate", "in_front_of")[0] == "table_b"
+    assert script.names().count("pick") == 1
+
+
+def test_a_person_says_no() -> None:
+    script = Script()
+    assert go("ask_first", script, answers=["table_a", False]).status == "SUCCESS"
+    assert "pick" not in script.names()
+    assert script.given("navigate", "in_front_of") == ["table_a", "home"]
+
+
+@pytest.mark.parametrize(
+    ("answers", "picks", "home"),
+    [(["try again", "try again"], 3, False), (["try again", "leave it"], 2, True), ([], 1, True)],
+)
+def test_a_person_says_what_to_do_when_it_did_not_work(
+    answers: list[str], picks: int, home: bool
+) -> None:
+    script = Script(pick=["SLIPPED", "GRASP_MISSED"])
+    report = go("ask_first", script, answers=["table_a", "yes", *answers])
+    assert report.status == "SUCCESS", report.failure
+    assert script.names().count("pick") == picks
+    assert (script.given("navigate", "in_front_of")[-1] == "home") is home
+
+
+def test_what_is_not_there_is_told() -> None:
+    script = Script(detect_object=["OBJECT_NOT_FOUND"])
+    report = go("ask_first", script)
+    assert said(report, "NOT_THERE") == "no can on table_a"

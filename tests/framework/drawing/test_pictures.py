@@ -5,6 +5,7 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
+import pydot
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -224,3 +225,11 @@ def test_long_lines_are_cut_and_unprintable_ones_cleaned(text: str) -> None:
     assert cells(line) <= WIDEST
     assert line.isprintable()
     assert all(cells(each) <= WIDEST for each in wrapped([text, "a", "b"], ", "))
+
+
+@pytest.mark.parametrize("name", sorted(bundled()))
+def test_graphviz_source_follows_its_grammar(name: str, registry: Registry) -> None:
+    trees = pictures(load(name, registry).document, registry)
+    (graph,) = pydot.graph_from_dot_data(dot(trees)) or []
+    clusters = graph.get_subgraphs()
+    assert [len(each.get_nodes()) for each in clusters] == [len(tree.boxes) for tree in trees]
