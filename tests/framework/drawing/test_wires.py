@@ -2,9 +2,12 @@
 
 from pathlib import Path
 
+import pytest
+
 from momantu_bt.drawing.wires import Wire, wire_lines, wires
 from momantu_bt.tree.load import load
 from momantu_bt.tree.lookup import bundled
+from momantu_bt.tree.model import Document
 from momantu_bt.tree.registry import Registry
 
 
@@ -13,20 +16,48 @@ def ends(wire: Wire) -> tuple[list[str], list[str]]:
     return [end.said for end in wire.writers], [end.said for end in wire.readers]
 
 
-def test_the_wires_of_a_tree_with_everything(registry: Registry) -> None:
-    document = load("examples/patrol", registry).document
-    found = {(wire.tree, wire.key): ends(wire) for wire in wires(document, registry)}
-    assert found["Patrol", "stop"] == (["for_each"], ["Visit"])
-    assert found["Patrol", "charged_at"] == (["values", "script"], ["condition"])
-    assert found["Visit", "place"] == (["the caller"], ["navigate"])
-    assert found["", "robot"] == (["the robot"], ["condition", "script"])
-    assert found["Patrol", "endurance"] == (["values"], ["condition", "fail"])
+TREE = """momantu_bt: 1
+world: four_rooms
+main: Patrol
+values: {route: [corridor], endurance: 5 min, charged_at: 0 s}
+trees:
+  Patrol:
+    for_each: {in: $route, as: $stop, child: {Visit: {place: $stop, side: $n}}}
+    while: $endurance > 0
+  Visit:
+    inputs: {place: text}
+    outputs: {side: int}
+    sequence:
+      - set: {key: $side, value: 1}
+      - navigate: {in_front_of: $place, side: $side}
+        skip_if: $@robot.stamp > $@charged_at
+      - handle:
+          try: {script: $@charged_at = $@robot.stamp}
+          catch: {any: {fail: {code: LOST, message: $failure.message}}}
+"""
 
 
-def test_a_failure_is_written_by_the_node_that_caught_it(registry: Registry) -> None:
-    document = load("examples/escalating_pick", registry).document
-    found = {wire.tree: ends(wire) for wire in wires(document, registry) if wire.key == "failure"}
-    assert found == {"PickUp": (["handle"], ["fail"]), "Grasp": (["handle"], ["fail"])}
+@pytest.fixture
+def patrol(tmp_path: Path, registry: Registry) -> Document:
+    """A checked tree with every kind of wire."""
+    path = tmp_path / "patrol.yaml"
+    path.write_text(TREE, encoding="utf-8")
+    return load(str(path), registry).document
+
+
+def test_the_wires_of_a_tree_with_every_kind(patrol: Document, registry: Registry) -> None:
+    found = {(wire.tree, wire.key): ends(wire) for wire in wires(patrol, registry)}
+    assert found == {
+        ("Patrol", "route"): (["values"], ["for_each"]),
+        ("Patrol", "endurance"): (["values"], ["for_each"]),
+        ("Patrol", "charged_at"): (["values", "script"], ["navigate"]),
+        ("Patrol", "stop"): (["for_each"], ["Visit"]),
+        ("Patrol", "n"): (["Visit"], []),
+        ("Visit", "place"): (["the caller"], ["navigate"]),
+        ("Visit", "side"): (["set"], ["the caller", "navigate"]),
+        ("", "robot"): (["the robot"], ["navigate", "script"]),
+        ("Visit", "failure"): (["handle"], ["fail"]),
+    }
 
 
 def test_every_key_that_is_read_in_a_bundled_tree_is_written(registry: Registry) -> None:
@@ -35,13 +66,14 @@ def test_every_key_that_is_read_in_a_bundled_tree_is_written(registry: Registry)
             assert wire.writers, (name, wire.key)
 
 
-def test_lines_say_where_and_align(registry: Registry) -> None:
-    document = load("examples/patrol", registry).document
-    lines = list(wire_lines(document, wires(document, registry), "Charge"))
-    assert lines == [
-        "$@charging    from values               to wait (41)",
-        "$@charged_at  from values, script (42)  to condition (31)",
-        "$@robot       from the robot            to condition (31), script (42)",
+def test_lines_say_where_and_align(patrol: Document, registry: Registry) -> None:
+    found = wires(patrol, registry)
+    assert list(wire_lines(patrol, found, "Visit")) == [
+        "$@charged_at  from values, script (17)  to navigate (14)",
+        "$place        from the caller           to navigate (14)",
+        "$side         from set (13)             to the caller, navigate (14)",
+        "$@robot       from the robot            to navigate (14), script (17)",
+        "$failure      from handle (16)          to fail (18)",
     ]
 
 
