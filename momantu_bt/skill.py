@@ -204,6 +204,14 @@ class Skill:
         self.frames: FrameBuffer
         self.site: Site
 
+    @classmethod
+    def rehearsal(cls, seed: int) -> Mapping[str, Any]:
+        """What `momantu-bt skills test` runs it with: arguments of `momantu_bt.testing.run_skill`.
+
+        Made anew at each call. What it leaves out, such as inputs, is made from the ports' types.
+        """
+        return {}
+
     def run(self, robot: Robot) -> Run:
         """The skill's work: `yield "phase"` is RUNNING, return SUCCESS, raise Failure FAILURE."""
         raise NotImplementedError(f"{type(self).__name__} has no run(self, robot)")

@@ -11,6 +11,7 @@ import typer
 from momantu_bt.cli.help import help_of
 from momantu_bt.cli.listing import first_line, listing
 from momantu_bt.cli.skills_schema import schema
+from momantu_bt.cli.skills_test import promises
 from momantu_bt.plugins import SKILLS, load
 from momantu_bt.skill import MISSING, Port, Skill
 from momantu_bt.tree.types import label
@@ -62,6 +63,7 @@ def show_one(
 
 
 skills.command("schema", help=help_of(schema))(schema)
+skills.command("test", help=help_of(promises))(promises)
 
 
 def _kind(port: Port) -> str:

@@ -1,20 +1,28 @@
-"""For tests of skills: a robot that does what the test scripts, and `run_skill`.
+"""For tests of skills: a robot that does what the test scripts, `run_skill` and `check_skill`.
 
 result = run_skill(Nod, robot=ScriptedRobot(), inputs={"angle": 0.2})
 assert result.status == "SUCCESS" and result.phases == ("down", "up")
+assert_skill(Nod)
 """
 
+from momantu_bt.testing.check import assert_skill, check_skill
 from momantu_bt.testing.clock import ManualClock
 from momantu_bt.testing.description import small_robot
+from momantu_bt.testing.example_world import ExampleWorld
+from momantu_bt.testing.finding import Finding
 from momantu_bt.testing.robot import ScriptedRobot
 from momantu_bt.testing.skill_run import SkillResult, run_skill
 from momantu_bt.testing.world import ScriptedWorld, scripted_site
 
 __all__ = [
+    "ExampleWorld",
+    "Finding",
     "ManualClock",
     "ScriptedRobot",
     "ScriptedWorld",
     "SkillResult",
+    "assert_skill",
+    "check_skill",
     "run_skill",
     "scripted_site",
     "small_robot",

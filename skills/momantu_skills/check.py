@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any, Literal, TypeAlias
 
 from momantu_bt.failure import Failure
@@ -32,6 +33,11 @@ class Check(Skill):
     }
     localization: Any = Needs()
     planning_scene: Any = Needs()
+
+    @classmethod
+    def rehearsal(cls, seed: int) -> Mapping[str, Any]:
+        """A question whose answer is yes."""
+        return {"inputs": {"what": "gripper_open"}}
 
     def run(self, robot: Robot) -> Run:
         """Answer at once."""

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 from momantu_bt.frames import ODOM
 from momantu_bt.geometry import Array, Pose
 from momantu_bt.robot import CAMERA_CARRIER, Robot
@@ -25,6 +28,11 @@ class Look(Skill):
         "OUT_OF_VIEW": "the camera's carrier cannot turn that far, or is stuck",
     }
     uses = {CAMERA_CARRIER}
+
+    @classmethod
+    def rehearsal(cls, seed: int) -> Mapping[str, Any]:
+        """One target of the three."""
+        return {"inputs": {"surface": "table_a"}}
 
     def run(self, robot: Robot) -> Run:
         """Work out the point, then look."""

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, ClassVar
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from momantu_bt.geometry import Pose, Pose2D
 from momantu_bt.robot import CAMERA_CARRIER, Robot
@@ -39,6 +40,11 @@ class Navigate(Skill):
 
     localization: Localization = Needs()
     planning_scene: PlanningScene = Needs()
+
+    @classmethod
+    def rehearsal(cls, seed: int) -> Mapping[str, Any]:
+        """One destination of the three."""
+        return {"inputs": {"in_front_of": "table_a"}}
 
     def run(self, robot: Robot) -> Run:
         """Check the goal, then travel."""

@@ -1,6 +1,7 @@
 """What check, show, skills, worlds and robots print, against what they print it about."""
 
 import json
+from importlib.metadata import EntryPoint
 from pathlib import Path
 from typing import Any
 
@@ -225,3 +226,23 @@ def test_a_broken_plugin_is_left_out_of_the_schema(
     said = capsys.readouterr()
     assert "left out: the skill 'pick'" in said.err
     assert "pick" not in json.loads(said.out)["$defs"]["mapping"]["properties"]
+
+
+def test_skills_are_tested_by_name(capsys: Out) -> None:
+    said = printed(capsys, "skills", "test", "look", "reset_pose", "--halts", "1")
+    assert said.split() == ["ok", "look", "ok", "reset_pose"]
+    told = as_json(capsys, "skills", "test", "look", "--halts", "1")
+    assert told == {"ok": True, "skills": {"look": []}}
+
+
+def test_a_skill_that_breaks_a_promise_does_not_pass(
+    capsys: Out, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    entry = EntryPoint("odd", "momantu_skills.check:Odd", plugins.SKILLS)
+    monkeypatch.setattr(plugins, "entry_points", lambda group: [entry])
+    assert main(["skills", "test"]) == 1
+    said = capsys.readouterr().out
+    assert said.startswith("WRONG odd\n")
+    assert "broken: the skill 'odd'" in said
+    assert main(["skills", "test", "od"]) == 2
+    assert "did you mean 'odd'?" in capsys.readouterr().err

@@ -1,0 +1,55 @@
+"""`momantu-bt skills test`: do installed skills keep what every skill promises."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from typing import Annotated
+
+import typer
+
+from momantu_bt import plugins
+
+EXIT_FAILED = 1
+
+
+def promises(
+    names: Annotated[
+        list[str] | None, typer.Argument(help="Skills, as in trees; all when none is named.")
+    ] = None,
+    seed: Annotated[int, typer.Option(help="The seed of the runs.")] = 0,
+    halts: Annotated[
+        int, typer.Option(min=1, help="At how many ticks of a run each is halted, at most.")
+    ] = 20,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,
+) -> int:
+    """Run skills in a scripted room, without a simulator, and say what is wrong with them.
+
+    Ports, codes, docs, clocks and random numbers; halting at each tick, starting again, dead
+    sensors, and the same run twice. Exit code 1 when one does not pass.
+
+    Examples:
+      momantu-bt skills test
+      momantu-bt skills test pick place
+    """
+    from momantu_bt.testing import Finding, check_skill
+
+    passed, told = True, dict[str, list[Finding]]()
+    for name in names or plugins.installed(plugins.SKILLS):
+        try:
+            found = check_skill(plugins.load(plugins.SKILLS, name), seed=seed, halts=halts)
+        except plugins.PluginError as error:
+            if names and name not in plugins.installed(plugins.SKILLS):
+                raise
+            found = [Finding("broken", str(error))]
+        told[name] = found
+        wrong = any(not finding.note for finding in found)
+        passed = passed and not wrong
+        if not as_json:
+            typer.echo(f"{'WRONG' if wrong else 'ok   '} {name}")
+            for finding in found:
+                typer.echo(f"      {finding}")
+    if as_json:
+        shown = {name: [asdict(finding) for finding in found] for name, found in told.items()}
+        typer.echo(json.dumps({"ok": passed, "skills": shown}, indent=2))
+    return 0 if passed else EXIT_FAILED

@@ -1,0 +1,94 @@
+"""The fixture `run_tree` for pytest; it is there wherever momantu-bt is installed."""
+
+from __future__ import annotations
+
+from collections import ChainMap
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
+
+import pytest
+
+if TYPE_CHECKING:
+    from momantu_bt.record.report import Report
+    from momantu_bt.skill import Skill
+    from momantu_bt.testing import ScriptedRobot
+    from momantu_bt.world import Site, World
+
+
+class RunTree(Protocol):
+    """What the fixture `run_tree` is."""
+
+    def __call__(
+        self,
+        tree: str | Path,
+        *,
+        skills: Mapping[str, type[Skill]] | None = None,
+        services: Mapping[str, Any] | None = None,
+        robot: ScriptedRobot | None = None,
+        site: Site | None = None,
+        world: World | None = None,
+        values: Mapping[str, Any] | None = None,
+        seed: int = 0,
+        max_time: float = 60.0,
+    ) -> Report:
+        """Run a tree; see `run_tree`."""
+        ...
+
+
+@pytest.fixture
+def run_tree(tmp_path: Path) -> RunTree:
+    """`run_tree(tree, …)` runs a tree in a scripted world and returns its Report.
+
+    tree: the text of a tree, YAML or XML (it has several lines), a path, or a bundled tree's
+    name. skills, services: by name, beside the installed ones and before them. robot, site: a
+    ScriptedRobot and a scripted site unless given; or give `world`, which has both. values: keys
+    of the root's board. max_time: simulated seconds.
+    Raises TreeError when the tree is wrong.
+    """
+
+    def start(
+        tree: str | Path,
+        *,
+        skills: Mapping[str, type[Skill]] | None = None,
+        services: Mapping[str, Any] | None = None,
+        robot: ScriptedRobot | None = None,
+        site: Site | None = None,
+        world: World | None = None,
+        values: Mapping[str, Any] | None = None,
+        seed: int = 0,
+        max_time: float = 60.0,
+    ) -> Report:
+        from momantu_bt.engine.api import run
+        from momantu_bt.testing import ScriptedWorld
+        from momantu_bt.tree.registry import Registry
+
+        having = Registry.installed()
+        registry = Registry(
+            skills=_before(skills, having.skills),
+            worlds=having.worlds,
+            robots=having.robots,
+            services=_before(services, having.services),
+        )
+        place = world if world is not None else ScriptedWorld(robot, site)
+        file = _file(tree, tmp_path)
+        return run(
+            file, world=place, seed=seed, values=values, max_time=max_time, registry=registry
+        )
+
+    return start
+
+
+def _before(mine: Mapping[str, Any] | None, installed: Mapping[str, Any]) -> Mapping[str, Any]:
+    # ChainMap writes to its first mapping only, though it asks for more
+    return ChainMap(dict(mine or {}), installed)  # type: ignore[arg-type]
+
+
+def _file(tree: str | Path, folder: Path) -> str | Path:
+    """The tree's file; a text becomes one."""
+    if isinstance(tree, Path) or "\n" not in tree:
+        return tree
+    suffix = "xml" if tree.lstrip().startswith("<") else "yaml"
+    file = folder / f"tree.{suffix}"
+    file.write_text(tree, encoding="utf-8")
+    return file

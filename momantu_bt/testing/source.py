@@ -1,0 +1,107 @@
+"""The source of a skill: its class, and the modules of its own package that it reaches."""
+
+from __future__ import annotations
+
+import ast
+import importlib.util
+import inspect
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from momantu_bt.skill import Skill
+
+MOST_MODULES = 500
+"""Modules of one package that are looked at."""
+
+
+@dataclass(frozen=True, slots=True)
+class Module:
+    """One module's source. name: dotted; is_package: whether it is an `__init__`."""
+
+    name: str
+    path: Path
+    tree: ast.Module
+    is_package: bool = False
+
+    def place(self, node: ast.AST) -> str:
+        """`file:line` of a part of it."""
+        return f"{self.path}:{getattr(node, 'lineno', 1)}"
+
+
+def classes(skill: type[Skill]) -> list[tuple[Module, ast.ClassDef]]:
+    """The class statements of a skill and of what it inherits from, below Skill."""
+    found: list[tuple[Module, ast.ClassDef]] = []
+    for kind in skill.__mro__[: skill.__mro__.index(Skill)]:
+        module = _module(kind.__module__)
+        if module is None:
+            continue
+        named = (n for n in ast.walk(module.tree) if isinstance(n, ast.ClassDef))
+        found += [(module, node) for node in named if node.name == kind.__name__][:1]
+    return found
+
+
+def reached(skill: type[Skill]) -> list[Module]:
+    """The skill's module and all that it imports from its own package, directly or not.
+
+    Imports inside functions count. Nothing is imported for it but parent packages.
+    """
+    top = skill.__module__.partition(".")[0]
+    waiting, found = [skill.__module__], dict[str, Module]()
+    while waiting and len(found) < MOST_MODULES:
+        name = waiting.pop()
+        module = None if name in found else _module(name)
+        if module is None:
+            continue
+        found[name] = module
+        waiting += [other for other in _imported(module) if other.partition(".")[0] == top]
+    return list(found.values())
+
+
+@cache
+def _module(name: str) -> Module | None:
+    """A module's source; None when it has none, as built-in modules."""
+    path = _path(name)
+    if path is None or path.suffix != ".py":
+        return None
+    tree = ast.parse(path.read_text(encoding="utf-8"), str(path))
+    return Module(name, path, tree, path.name == "__init__.py")
+
+
+def _path(name: str) -> Path | None:
+    import sys
+
+    if name in sys.modules:
+        file = inspect.getsourcefile(sys.modules[name]) if _has_file(name) else None
+        return None if file is None else Path(file)
+    try:
+        spec = importlib.util.find_spec(name)
+    except (ImportError, ValueError):
+        return None
+    return None if spec is None or not spec.has_location else Path(str(spec.origin))
+
+
+def _has_file(name: str) -> bool:
+    import sys
+
+    return getattr(sys.modules[name], "__file__", None) is not None
+
+
+def _imported(module: Module) -> Iterator[str]:
+    """Dotted names of what a module imports; names that are no modules are among them."""
+    for node in ast.walk(module.tree):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            base = _base(module, node)
+            yield base
+            yield from (f"{base}.{alias.name}" for alias in node.names)
+
+
+def _base(module: Module, node: ast.ImportFrom) -> str:
+    if not node.level:
+        return node.module or ""
+    parts = module.name.split(".")
+    keep = len(parts) - node.level + (1 if module.is_package else 0)
+    return ".".join([*parts[:keep], *([node.module] if node.module else [])])

@@ -1,0 +1,111 @@
+"""What a skill's source tells: ports that are none, codes that nobody declared, missing docs."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+
+from momantu_bt.failure import ENGINE_CODES
+from momantu_bt.plugin_checks import objection
+from momantu_bt.plugins import SKILLS
+from momantu_bt.skill import Skill
+from momantu_bt.testing.finding import Finding
+from momantu_bt.testing.source import Module, classes, reached
+
+_GIVEN = {"port_values", "services", "clock", "random", "frames", "site"}
+"""Attributes that the engine sets."""
+
+
+def documented(skill: type[Skill]) -> Iterator[Finding]:
+    """What a plug-in needs to be loaded at all, and sentences that a person can read."""
+    wrong = objection(SKILLS, "a_skill", skill)
+    if wrong is not None:
+        yield Finding("docs", wrong)
+    for code, sentence in skill.failures.items():
+        if " " not in sentence.strip():
+            yield Finding("docs", f"{code}: {sentence!r} is no sentence that explains it")
+
+
+def ports(skill: type[Skill]) -> Iterator[Finding]:
+    """Attributes used as if they were ports, inputs written, outputs that are never given."""
+    known = {*dir(skill), *_GIVEN}
+    uses = list(_attributes(skill))
+    written = {node.attr for _, node in uses if isinstance(node.ctx, ast.Store)}
+    for module, node in uses:
+        name, place = node.attr, module.place(node)
+        port = skill.ports.get(name)
+        if isinstance(node.ctx, ast.Load):
+            if name not in known and name not in written:
+                yield Finding("undeclared-port", f"reads self.{name}, which is no port", place)
+        elif port is not None and port.direction == "in":
+            yield Finding("input-written", f"writes its input {name!r}", place)
+        elif port is None and name not in known and not name.startswith("_"):
+            message = (
+                f"writes self.{name}, which is no port: declare it with Out(doc=…), or call it "
+                f"self._{name}"
+            )
+            yield Finding("undeclared-port", message, place)
+    yield from _unused(skill)
+
+
+def codes(skill: type[Skill]) -> Iterator[Finding]:
+    """Failures that its class raises by a code which neither it nor the engine declares."""
+    for module, owner in classes(skill):
+        for node in ast.walk(owner):
+            code = _raised_code(node)
+            if code is not None and code not in skill.failures and code not in ENGINE_CODES:
+                message = f"raises {code}, which `failures` does not declare"
+                yield Finding("undeclared-code", message, module.place(node))
+
+
+def _raised_code(node: ast.AST) -> str | None:
+    """The code of `Failure("CODE", …)`."""
+    if not isinstance(node, ast.Call) or not node.args:
+        return None
+    called, first = node.func, node.args[0]
+    name = called.id if isinstance(called, ast.Name) else getattr(called, "attr", None)
+    if name != "Failure" or not isinstance(first, ast.Constant):
+        return None
+    return str(first.value)
+
+
+def _attributes(skill: type[Skill]) -> Iterator[tuple[Module, ast.Attribute]]:
+    """Every `self.name` in the methods of the skill and of what it inherits from."""
+    for module, owner in classes(skill):
+        methods = (n for n in owner.body if isinstance(n, ast.FunctionDef | ast.AsyncFunctionDef))
+        for method in methods:
+            if not method.args.args or _is_static(method):
+                continue
+            own = method.args.args[0].arg
+            for node in ast.walk(method):
+                if (
+                    isinstance(node, ast.Attribute)
+                    and isinstance(node.value, ast.Name)
+                    and node.value.id == own
+                ):
+                    yield module, node
+
+
+def _is_static(method: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
+    names = {getattr(each, "id", "") for each in method.decorator_list}
+    return bool(names & {"staticmethod", "classmethod"})
+
+
+def _unused(skill: type[Skill]) -> Iterator[Finding]:
+    """Outputs that no line gives, inputs that no line reads, in all that the skill reaches."""
+    given, read = set[str](), set[str]()
+    for module in reached(skill):
+        for node in ast.walk(module.tree):
+            if isinstance(node, ast.Attribute):
+                (read if isinstance(node.ctx, ast.Load) else given).add(node.attr)
+            elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+                # getattr and setattr take names
+                read.add(node.value)
+                given.add(node.value)
+    if not read:
+        return
+    for port in skill.ports.values():
+        if port.direction == "out" and port.name not in given:
+            yield Finding("output-never-given", f"no line gives the output {port.name!r}")
+        elif port.direction == "in" and port.name not in read:
+            yield Finding("input-never-read", f"no line reads the input {port.name!r}")
