@@ -136,7 +136,7 @@ def _written_by(context: Context, node: Node) -> Iterator[tuple[Scope, str]]:
     scripts = list(node.conditions.values())
     for name, value in node.ports.items():
         port = ports.get(name)
-        if port is not None and port.direction == "out" and isinstance(value, Reference):
+        if port is not None and port.direction != "in" and isinstance(value, Reference):
             yield value.scope, value.key
         elif port is not None and port.type is ScriptText and isinstance(value, Literal):
             scripts.append(str(value.value))

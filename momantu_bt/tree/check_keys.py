@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from typing import get_args
 
-from momantu_bt.tree.catalogue import BUILT_IN, PRE_CONDITIONS, ScriptText
-from momantu_bt.tree.key_flow import FLOWS, After, Walk, removed
+from momantu_bt.tree.catalogue import BUILT_IN, PRE_CONDITIONS, SUBTREE, ScriptText
+from momantu_bt.tree.key_flow import FLOWS, After, Walk
 from momantu_bt.tree.key_reads import Demand, KeyReads, Written, references
 from momantu_bt.tree.keys import NEVER, Key, Known, both, meet
 from momantu_bt.tree.model import Literal, Node, Place, Reference, Scope, Tree
 from momantu_bt.tree.problems import valid_names, within
 from momantu_bt.tree.script import Script, ScriptSyntaxError, parse
+from momantu_bt.tree.shared_keys import Call, call_of, shared_keys
 from momantu_bt.tree.signatures import Context, Signature
 from momantu_bt.tree.types import ValueType, assignable, label, origin
 
@@ -25,25 +26,33 @@ def check_keys(context: Context, order: list[Tree], root_keys: frozenset[str]) -
     root_keys: every name that `$@name` can mean.
     """
     demands: dict[tuple[str, str], set[Demand]] = {}
+    keys = shared_keys(context, order)
     for tree in order:
-        _KeyCheck(KeyReads(context, tree, root_keys, demands)).run()
+        _KeyCheck(KeyReads(context, tree, root_keys, demands, keys)).run()
 
 
 class _KeyCheck:
     def __init__(self, reads: KeyReads) -> None:
         self.reads, self.context, self.tree = reads, reads.context, reads.tree
         self.ports = self.context.tree_signature(self.tree).ports
+        self.walk = Walk(self.node, self.removed)
 
     def run(self) -> None:
-        success = self.node(self.tree.root, self.start()).passed
+        after = self.node(self.tree.root, self.start())
+        success, mine = after.passed, self.reads.keys[self.tree.name]
+        mine.success = frozenset(success.keys or ())
+        mine.failure = frozenset(after.failure.keys or ())
+        if self.tree.name == self.context.document.main:
+            self.reads.report_needed()
         for name, port in self.ports.items():
             if port.direction == "out":
                 self.reads.seen.add(name)
                 self.output_of_tree(name, success.get(name), success)
         self.watched()
         for written in self.reads.written:
-            if written.key not in self.reads.seen:
-                message = f"nothing reads ${written.key}, which {written.said} writes"
+            if written.key not in self.reads.seen and not mine.goes_out(written.key):
+                wire = self.context.wire(written.key, written.place)
+                message = f"nothing reads {wire}, which {written.said} writes"
                 self.context.problems.warning("unread-output", written.place, message)
 
     def watched(self) -> None:
@@ -80,11 +89,24 @@ class _KeyCheck:
                 "wrong-type", place, message + f"but {label(key.type)} comes", hint
             )
 
+    def removed(self, *nodes: Node) -> set[str]:
+        """Keys of the tree's board that the nodes, or something below them, may take away."""
+        keys: set[str] = set()
+        for root in nodes:
+            for node in root.walk():
+                key = node.ports.get("key") if node.type == "UnsetBlackboard" else None
+                if isinstance(key, Reference) and key.scope is Scope.LOCAL:
+                    keys.add(key.key)
+                elif node.type == SUBTREE:
+                    call = call_of(self.context, node)
+                    keys |= call.local(self.reads.keys[call.tree.name].removed).keys()
+        return keys
+
     def node(self, node: Node, before: Known) -> After:
         if node.disabled:
             return After(NEVER, NEVER, before)
         # `while` and `on_halt` come at any tick, also after something below has taken a key away
-        anytime = before.lacking(removed(node))
+        anytime = before.lacking(self.removed(node))
         for name in PRE_CONDITIONS:
             if name in node.conditions:
                 self.condition(node, name, anytime if name == "while" else before)
@@ -136,13 +158,15 @@ class _KeyCheck:
             return self.leaf(node, signature, before)
         if signature.spec is not None and signature.spec.item is not None:
             return flow(self.with_item(node, signature.spec.item), node, before)
-        return flow(self.node, node, self.handed_on(node, signature, before))
+        return flow(self.walk, node, self.handed_on(node, signature, before))
 
     def leaf(self, node: Node, signature: Signature, before: Known) -> After:
         key = node.ports.get("key")
         if node.type == "UnsetBlackboard":
             gone = before.lacking([key.key]) if isinstance(key, Reference) else before
             return After(gone, before)
+        if node.type == SUBTREE:
+            return self.subtree(call_of(self.context, node), signature, before)
         after = self.outputs(node, signature, before)
         if node.type == "AlwaysSuccess":
             return After(after, NEVER)
@@ -169,6 +193,28 @@ class _KeyCheck:
             return After(success, before, before)
         ends = {"SUCCESS": After(success, before), "SKIPPED": After(NEVER, before, before)}
         return ends.get(str(status.value), After(NEVER, before))
+
+    def subtree(self, call: Call, signature: Signature, before: Known) -> After:
+        """A tree that is run: what it needs, and which of the keys it shares have a value then."""
+        inside = self.reads.keys[call.tree.name]
+        self.reads.of_call(call, inside, before)
+        kept = before.lacking(call.local(inside.removed))
+        success = self.outputs(call.node, signature, kept)
+        for outer, inner in call.local(inside.success).items():
+            success = self.known_after(success, call, outer, inner)
+        failure = kept
+        for outer, inner in call.local(inside.failure).items():
+            failure = self.known_after(failure, call, outer, inner)
+        return After(success, failure)
+
+    def known_after(self, known: Known, call: Call, outer: str, inner: str) -> Known:
+        """A key that the tree inside shares has a value; what was known of it may be outdated."""
+        having, writes = known.get(outer), self.reads.keys[call.tree.name].written
+        if having is not None and inner not in writes:
+            return known
+        declared = self.context.tree_signature(call.tree).ports.get(inner)
+        type_ = object if declared is None else declared.type
+        return known.having(outer, Key(type_, call.place(inner)))
 
     def outputs(self, node: Node, signature: Signature, before: Known) -> Known:
         after = before
@@ -213,7 +259,7 @@ class _KeyCheck:
                 self.reads.given.add(value.key)
             return self.node(child, before)
 
-        return walk
+        return Walk(walk, self.removed)
 
     def item_type(self, loop: Node, output: str, source: str, before: Known) -> ValueType:
         declared = BUILT_IN[loop.type].ports[output].type
@@ -236,7 +282,8 @@ class _KeyCheck:
         """Keys that a script needs, those that it reads, and what it leaves written."""
         self.reads.seen.update(variable.key for variable in script.reads)
         for variable in script.needs:
-            where = within(place, f"${variable.key}", self.context.document.source)
+            shown = variable.key if self.context.is_xml(place) else f"${variable.key}"
+            where = within(place, shown, self.context.document.source)
             self.reads.lookup(_reference(variable.key), before, where)
         after = before
         self.reads.given.update(variable.key for variable in script.writes)

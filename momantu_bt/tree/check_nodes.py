@@ -5,7 +5,7 @@ from __future__ import annotations
 from momantu_bt.failure import CODE
 from momantu_bt.messages import VALUE_TYPES
 from momantu_bt.skill import MISSING, Port
-from momantu_bt.tree.catalogue import MODIFIERS, CodeText
+from momantu_bt.tree.catalogue import AUTOREMAP, MODIFIERS, CodeText
 from momantu_bt.tree.model import (
     FIRST_INPUT,
     Literal,
@@ -63,7 +63,8 @@ def check_node(context: Context, node: Node) -> None:
     _check_one_of(context, node, signature)
     _check_default_answer(context, node)
     for name, port in signature.ports.items():
-        if _is_needed(port, signature) and name not in node.ports and name not in node.port_places:
+        needed = _is_needed(port, signature) and not autoremaps(node)
+        if needed and name not in node.ports and name not in node.port_places:
             _report_missing(context, node, port, signature)
 
 
@@ -71,6 +72,11 @@ def _is_needed(port: Port, signature: Signature) -> bool:
     """Whether it must be given: an output of a built-in node, too, unless it has a default."""
     written = port.direction == "out" and port.default is MISSING
     return port.required or (signature.spec is not None and written)
+
+
+def autoremaps(node: Node) -> bool:
+    """Whether a SubTree takes every key that is not given from the key of the same name."""
+    return node.ports.get(AUTOREMAP) == Literal(True)
 
 
 def _name_first_input(context: Context, node: Node, signature: Signature) -> None:
@@ -98,10 +104,14 @@ def _check_children(context: Context, node: Node, signature: Signature) -> None:
         context.problems.error("children", node.place, message)
     elif count < least and count == 0 and signature.spec.positions == ("child",):
         message = f"{signature.said} has no child"
-        context.problems.error("children", node.place, message, "write `child:` among its ports")
+        context.problems.error("children", node.place, message, _child_hint(context, node))
     elif most is not None and count > most:
         message = f"{signature.said} has {count} children; at most {most}"
         context.problems.error("children", node.place, message)
+
+
+def _child_hint(context: Context, node: Node) -> str:
+    return "put one node inside" if context.is_xml(node.place) else "write `child:` among its ports"
 
 
 def _check_one_of(context: Context, node: Node, signature: Signature) -> None:
@@ -162,10 +172,12 @@ def _check_key(
     if isinstance(value, Reference):
         if value.fields:
             message = f"a part of a value cannot be {doing}"
-            context.problems.error("not-a-key", place, message, f"write ${value.key}")
+            hint = f"write {context.wire(value.key, place)}"
+            context.problems.error("not-a-key", place, message, hint)
         return
     text = str(value.value) if isinstance(value, Literal) else "key"
-    hint = f"did you mean ${text}?" if text.isidentifier() else "write $key"
+    hint = f"did you mean {context.wire(text, place)}?" if text.isidentifier() else ""
+    hint = hint or f"write {context.wire('key', place)}"
     what = "is an output of" if port.direction == "out" else "names what is watched by"
     message = f"{port.name!r} {what} {signature.said}: it needs a key"
     context.problems.error("not-a-key", place, message, hint)
@@ -219,5 +231,6 @@ def _report_unknown_port(context: Context, node: Node, name: str, signature: Sig
     if not signature.ports:
         hint = f"{signature.said} has no ports"
         if signature.spec is None and signature.skill is None:
-            hint = f"declare it under `inputs:` or `outputs:` of {signature.said}"
+            section = "the model" if context.is_xml(place) else "`inputs:` or `outputs:`"
+            hint = f"declare it in {section} of {signature.said}"
     context.problems.error("unknown-port", place, f"{signature.said} has no port {name!r}", hint)

@@ -80,13 +80,16 @@ def check_unused(context: Context) -> None:
                 reached.add(name)
                 waiting.append(name)
     for name, tree in document.trees.items():
-        if name not in reached:
+        if name not in reached and tree.place.file == document.file:
             message = f"nothing runs the tree {name!r}"
             context.problems.warning("unused-tree", tree.place, message)
 
 
 def check_given_names(context: Context, tree: Tree) -> None:
-    """Names given with `name:` are unique within a tree: records and statistics use them."""
+    """Names given with `name:` are unique within a tree: records and statistics use them.
+
+    BehaviorTree.CPP does not ask for that, so that an open tree is only warned of.
+    """
     first: dict[str, Node] = {}
     for node in tree.root.walk():
         if node.name is None:
@@ -94,7 +97,10 @@ def check_given_names(context: Context, tree: Tree) -> None:
         if node.name in first:
             message = f"two nodes of {tree.name} are named {node.name!r}"
             hint = f"the first is in line {first[node.name].place.line}"
-            context.problems.error("duplicate-name", node.place, message, hint)
+            if tree.open:
+                context.problems.warning("duplicate-name", node.place, message, hint)
+            else:
+                context.problems.error("duplicate-name", node.place, message, hint)
         first.setdefault(node.name, node)
 
 

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import NamedTuple, TypeAlias
 
 from momantu_bt.failure import FailureValue
 from momantu_bt.tree.keys import NEVER, Key, Known, both, meet
-from momantu_bt.tree.model import Literal, Node, Reference, Scope
+from momantu_bt.tree.model import Literal, Node
 
 
 class After(NamedTuple):
@@ -26,22 +27,26 @@ class After(NamedTuple):
         return meet(self.success, self.skipped)
 
 
-Walk: TypeAlias = Callable[[Node, Known], After]
+@dataclass(frozen=True, slots=True)
+class Walk:
+    """What a flow asks of the nodes below it.
+
+    into: what is known after each end that a node can have. removed: keys of the tree's board that
+    nodes, or something below them, may take away.
+    """
+
+    into: Callable[[Node, Known], After]
+    removed: Callable[..., set[str]]
+
+    def __call__(self, node: Node, before: Known) -> After:
+        """What is known after each end that the node can have."""
+        return self.into(node, before)
+
+
 Flow: TypeAlias = Callable[[Walk, Node, Known], After]
 
 FAILURE_KEY = "failure"
 """What a handler reads as `$failure`."""
-
-
-def removed(*nodes: Node) -> set[str]:
-    """Keys of the tree's board that a node, or something below it, takes away."""
-    keys: set[str] = set()
-    for root in nodes:
-        for node in root.walk():
-            key = node.ports.get("key") if node.type == "UnsetBlackboard" else None
-            if isinstance(key, Reference) and key.scope is Scope.LOCAL:
-                keys.add(key.key)
-    return keys
 
 
 def _in_turn(walk: Walk, node: Node, before: Known) -> After:
@@ -68,7 +73,7 @@ def _again(flow: Flow) -> Flow:
     """Children may be asked again after a later one has run: what that takes away is not known."""
 
     def known_each_time(walk: Walk, node: Node, before: Known) -> After:
-        return flow(walk, node, before.lacking(removed(node)))
+        return flow(walk, node, before.lacking(walk.removed(node)))
 
     return known_each_time
 
@@ -86,7 +91,7 @@ def _together(walk: Walk, node: Node, before: Known) -> After:
     if node.type == "ParallelAll" or not all_succeed:
         return After(before, before, skipped)
     passed = [end.passed for end in ends if end.passed.reached]
-    return After(both(before, *passed).lacking(removed(node)), before, skipped)
+    return After(both(before, *passed).lacking(walk.removed(node)), before, skipped)
 
 
 def _anywhere(walk: Walk, node: Node, before: Known) -> After:
@@ -117,7 +122,7 @@ def _try_catch(walk: Walk, node: Node, before: Known) -> After:
         all_skipped = all_skipped and after.skipped.reached
     failed = meet(*failures)
     if node.ports.get("catch_on_halt", Literal(False)) != Literal(False):
-        failed = meet(failed, before.lacking(removed(*tried)))
+        failed = meet(failed, before.lacking(walk.removed(*tried)))
     cleaned = walk(cleaner, failed)
     ends = meet(cleaned.success, cleaned.failure, cleaned.skipped)
     return After(known, ends, known if all_skipped else NEVER)

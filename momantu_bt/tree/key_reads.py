@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from momantu_bt.skill import Port
-from momantu_bt.tree.catalogue import SUBTREE, ScriptText
-from momantu_bt.tree.check_nodes import check_name
+from momantu_bt.tree.catalogue import AUTOREMAP, SUBTREE, ScriptText
+from momantu_bt.tree.check_nodes import autoremaps, check_name
 from momantu_bt.tree.keys import Key, Known, part_type
 from momantu_bt.tree.model import (
     BROKEN,
@@ -21,6 +21,7 @@ from momantu_bt.tree.model import (
     Tree,
 )
 from momantu_bt.tree.problems import valid_names
+from momantu_bt.tree.shared_keys import Call, TreeKeys
 from momantu_bt.tree.signatures import Context, Signature
 from momantu_bt.tree.types import assignable, label
 from momantu_bt.tree.units import UnitError, in_unit
@@ -46,13 +47,15 @@ class KeyReads:
     root_keys: names that `$@key` may read. demands: by tree and input, what nodes below expect of
     a text there; trees that are run come before those that run them. written: what has been written
     so far in the order of the file. given: keys that may come from elsewhere: a script, a loop, the
-    tree's inputs. watched: keys that a node only looks at; nobody knows yet who writes them.
+    tree's inputs. watched: keys that a node only looks at; nobody knows yet who writes them. keys:
+    what is known of each tree's keys by its name.
     """
 
     context: Context
     tree: Tree
     root_keys: frozenset[str]
     demands: dict[tuple[str, str], set[Demand]]
+    keys: dict[str, TreeKeys]
     seen: set[str] = field(default_factory=set)
     written: list[Written] = field(default_factory=list)
     given: set[str] = field(default_factory=set)
@@ -71,6 +74,9 @@ class KeyReads:
             place = node.port_places.get(name, node.place)
             if name in lenient:
                 self._watch(name, value, place, signature.said)
+                continue
+            if port.direction == "inout" and isinstance(value, Reference) and not value.fields:
+                self._shared(value, before, place, port, signature.said)
                 continue
             if isinstance(value, Reference):
                 self._wire(value, before, place, port, signature.said)
@@ -98,18 +104,74 @@ class KeyReads:
             return None
         key = before.get(reference.key)
         if key is None:
-            self._report_unwritten(reference.key, before, place)
+            self._unwritten(reference.key, before, place)
         return key
 
-    def _report_unwritten(self, name: str, before: Known, place: Place) -> None:
+    def _unwritten(self, name: str, before: Known, place: Place) -> None:
+        """A key without a value: whoever runs the tree may give it one, otherwise it is wrong."""
+        declared = self.tree.ports.get(name)
+        from_outside = self.tree.open if declared is None else declared.direction == "inout"
+        if from_outside:
+            self.keys[self.tree.name].needed.setdefault(name, place)
+            return
+        shown = self.context.wire(name, place)
         writer = next((w for w in self.written if w.key == name), None)
         if writer is not None:
-            message = f"${name} may have no value here"
+            message = f"{shown} may have no value here"
             hint = f"{writer.said} (line {writer.place.line}) writes it, but not on every way here"
         else:
-            message = f"nothing writes ${name} before it is read here"
+            message = f"nothing writes {shown} before it is read here"
             hint = valid_names(name, sorted(before.keys or {}), "keys that have a value here")
         self.context.problems.error("read-before-write", place, message, hint)
+
+    def of_call(self, call: Call, inside: TreeKeys, before: Known) -> None:
+        """What a tree that is run needs, and attributes that it never mentions."""
+        for name, place in inside.needed.items():
+            reference = call.outside(name)
+            if reference is not None:
+                self.lookup(reference, before, call.place(name))
+            elif not call.gives_value(name):
+                self._report_needed(name, place, inside)
+        if autoremaps(call.node):
+            for name, port in self.context.tree_signature(call.tree).ports.items():
+                if port.required and name not in call.node.ports:
+                    self.lookup(Reference(name), before, call.node.place)
+        for name in call.node.ports if call.tree.open else ():
+            if name not in inside.mentioned and name not in (AUTOREMAP, *call.tree.ports):
+                place = call.node.port_name_places.get(name, call.node.place)
+                message = f"the tree {call.tree.name!r} never mentions {name!r}"
+                hint = valid_names(name, sorted(inside.mentioned), "its keys")
+                self.context.problems.warning("unused-port", place, message, hint)
+        self.seen.update(call.local(inside.mentioned))
+
+    def report_needed(self) -> None:
+        """Keys that the main tree reads: nobody outside gives them a value."""
+        mine = self.keys[self.tree.name]
+        for name, place in mine.needed.items():
+            self._report_needed(name, place, mine)
+
+    def _report_needed(self, name: str, place: Place, keys: TreeKeys) -> None:
+        shown = self.context.wire(name, place)
+        if name in keys.written:
+            message = f"{shown} may have no value here"
+            hint = "something writes it, but perhaps not before"
+            self.context.problems.warning("read-before-write", place, message, hint)
+        else:
+            hint = valid_names(name, sorted(keys.written), "keys that something writes")
+            message = f"nothing writes {shown}, which is read here"
+            self.context.problems.error("read-before-write", place, message, hint)
+
+    def _shared(
+        self, reference: Reference, before: Known, place: Place, port: Port, said: str
+    ) -> None:
+        """A key that may come in with a value: what is known of it fits."""
+        self.seen.add(reference.key)
+        key = before.get(reference.key) if reference.scope is Scope.LOCAL else None
+        if key is not None and not assignable(key.type, port.type):
+            message = f"{self.context.wire(reference.key, place)} is {label(key.type)}; "
+            hint = f"it comes from line {key.place.line}"
+            message += f"{port.name!r} of {said} takes {label(port.type)}"
+            self.context.problems.error("wrong-type", place, message, hint)
 
     def _wire(
         self, reference: Reference, before: Known, place: Place, port: Port, said: str
@@ -122,7 +184,8 @@ class KeyReads:
             try:
                 convert(key.literal.value, port)
             except ConversionError as error:
-                message = f"${reference.key} does not fit {port.name!r} of {said}: {error}"
+                wire = self.context.wire(reference.key, place)
+                message = f"{wire} does not fit {port.name!r} of {said}: {error}"
                 self.context.problems.error("wrong-value", place, message, origin)
             return
         try:
@@ -136,8 +199,9 @@ class KeyReads:
             return
         if not assignable(type_, port.type):
             shown = ".".join((reference.key, *reference.fields))
-            message = f"${shown} is {label(type_)}; {port.name!r} of {said} takes "
-            self.context.problems.error("wrong-type", place, message + label(port.type), origin)
+            wire = self.context.wire(shown, place)
+            message = f"{wire} is {label(type_)}; {port.name!r} of {said} takes {label(port.type)}"
+            self.context.problems.error("wrong-type", place, message, origin)
 
     def _demands(self, node: Node, name: str, value: PortValue, before: Known, port: Port) -> None:
         """Names and quantities that reach a port by wire or through a subtree."""

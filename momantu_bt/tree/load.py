@@ -9,12 +9,13 @@ from pathlib import Path
 from typing import Any
 
 from momantu_bt.tree.check import check
+from momantu_bt.tree.files import read_text
+from momantu_bt.tree.includes import read_project
 from momantu_bt.tree.lookup import TreeNotFound, find
 from momantu_bt.tree.model import Document, Literal, Place, Reference, Template
 from momantu_bt.tree.problems import Problem, Problems, TreeError, errors, valid_names
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.yaml_format import read
-from momantu_bt.tree.yaml_source import MAX_BYTES, YamlSyntaxError, compose, plain_value
+from momantu_bt.tree.yaml_source import YamlSyntaxError, compose, plain_value
 
 WORD = re.compile(r"[^\W\d]\w*")
 """What can be a key in a script."""
@@ -47,11 +48,12 @@ def load(
         TreeNotFound: there is no such file.
         TreeError: the file has errors; all of them are in it.
     """
-    document, problems = read_file(find(tree))
+    having = registry if registry is not None else Registry.installed()
+    document, problems = read_file(find(tree), having)
     _override(document, values or {}, problems)
     found = check(
         document,
-        registry if registry is not None else Registry.installed(),
+        having,
         world=world,
         robot=robot,
         reading=problems,
@@ -61,14 +63,16 @@ def load(
     return Checked(document, found)
 
 
-def read_file(path: Path) -> tuple[Document, Problems]:
-    """Read one tree file, unchecked.
+def read_file(path: Path, registry: Registry | None = None) -> tuple[Document, Problems]:
+    """Read one tree file, in either spelling, and those that it includes, unchecked.
+
+    registry: whose skills' port types XML is read with; the installed ones unless given.
 
     Raises:
         TreeNotFound: the file cannot be opened.
-        TreeError: it is not YAML, or holds no tree.
+        TreeError: it is neither YAML nor XML, or holds no tree.
     """
-    return read(_text(path), str(path))
+    return read_project(path, registry if registry is not None else Registry.installed())
 
 
 def read_values(path: Path) -> dict[str, Any]:
@@ -78,7 +82,8 @@ def read_values(path: Path) -> dict[str, Any]:
         TreeNotFound: the file cannot be opened.
         TreeError: it is not a YAML mapping.
     """
-    text, name = _text(path), str(path)
+    name = str(path)
+    text = read_text(path, name)
     try:
         value = plain_value(compose(text, name))
     except YamlSyntaxError as error:
@@ -87,24 +92,6 @@ def read_values(path: Path) -> dict[str, Any]:
         problem = Problem("wrong-value", "a file of values is a mapping", Place(name, 1, 1))
         raise TreeError([problem], {name: text})
     return value
-
-
-def _text(path: Path) -> str:
-    try:
-        data = path.read_bytes()[: MAX_BYTES + 1]
-        return data.decode("utf-8-sig")
-    except OSError as error:
-        raise TreeNotFound(f"{path} cannot be read: {error.strerror}") from None
-    except UnicodeDecodeError as error:
-        line = data.count(b"\n", 0, error.start) + 1
-        column = error.start - (data.rfind(b"\n", 0, error.start) + 1) + 1
-        problem = Problem(
-            "syntax",
-            "the file is not UTF-8 text",
-            Place(str(path), line, column),
-            "save it as UTF-8",
-        )
-        raise TreeError([problem], {}) from None
 
 
 def _override(document: Document, values: Mapping[str, Any], problems: Problems) -> None:

@@ -7,6 +7,9 @@ from pathlib import Path
 from momantu_bt.tree.problems import nearest
 
 SUFFIX = ".yaml"
+"""Of bundled trees."""
+SUFFIXES = (SUFFIX, ".yml", ".xml", ".btproj")
+"""Of tree files in either spelling."""
 _PACKAGE = Path(__file__).resolve().parent.parent
 
 
@@ -31,6 +34,14 @@ def bundled() -> dict[str, Path]:
     return {path.relative_to(folder).with_suffix("").as_posix(): path for path in paths}
 
 
+def tree_files(folder: Path) -> list[Path]:
+    """Files in a folder that are trees by their suffix, by name."""
+    try:
+        return sorted(each for each in folder.iterdir() if each.suffix.lower() in SUFFIXES)
+    except OSError:
+        return []
+
+
 def find(name: str) -> Path:
     """The file that a tree argument means: a path, or the name of a bundled tree.
 
@@ -47,7 +58,7 @@ def find(name: str) -> Path:
     if name in having:
         return having[name]
     if path.is_dir():
-        inside = ", ".join(p.name for p in sorted(path.glob(f"*{SUFFIX}"))) or "none"
+        inside = ", ".join(p.name for p in tree_files(path)) or "none"
         raise TreeNotFound(f"{name} is a folder; tree files in it: {inside}")
     raise TreeNotFound(_not_found(path, having))
 
@@ -61,7 +72,7 @@ def _not_found(path: Path, having: dict[str, Path]) -> str:
         folder = path.parent
         if not folder.is_dir():
             return f"there is no folder {folder} for the tree file {path.name}"
-        beside = {p.name: str(p) for p in sorted(folder.glob(f"*{SUFFIX}"))}
+        beside = {p.name: str(p) for p in tree_files(folder)}
         near = nearest(path.name, beside)
         if near is not None:
             return f"there is no file {path}; did you mean {beside[near]}?"

@@ -98,7 +98,7 @@ class Node:
     "on_success", …) to a script in canonical form (`&& || !`).
     For a SubTree, `ports` are the wires to its inputs and outputs and `target` is its name.
     port_places: of the ports' values; port_name_places: of their names. condition_places: of the
-    conditions' scripts, and of `name`, `note` and `disabled`.
+    conditions' scripts, and of `name`, `note` and `disabled`; of `ID`, which names a target.
     comments: those written before the node or at the end of its line (`Beside`), without their
     signs; port_comments: the same of its ports; end_comments: those after all that is inside it.
     """
@@ -176,12 +176,28 @@ class Include:
     place: Place = field(compare=False)
 
 
+@dataclass(frozen=True, slots=True)
+class NodeModel:
+    """What a file says of a kind of node, for an editor's palette; nothing here reads it.
+
+    kind: "Action", "Condition", "Control" or "Decorator". ports: types and defaults as written.
+    editable: as an editor set it, None where it did not. metadata: pairs of name and value.
+    """
+
+    name: str
+    kind: str
+    ports: tuple[PortDeclaration, ...] = ()
+    editable: bool | None = None
+    metadata: tuple[tuple[str, str], ...] = ()
+
+
 @dataclass(slots=True)
 class Document:
     """A tree file with everything it includes.
 
     trees: the file's own and those of the files it includes; `Tree.place.file` tells them apart.
-    values: initial keys of the root's board. source: the text, by file, for error displays.
+    values: initial keys of the root's board. models: of leaves, as the file has them. source: the
+    text, by file, for error displays.
     header_comments: those above and beside the first keys of the file; value_comments: those of
     `values`, by key; comments: those after the last tree.
     """
@@ -192,6 +208,7 @@ class Document:
     world: str | None = None
     values: dict[str, Literal] = field(default_factory=dict)
     includes: tuple[Include, ...] = ()
+    models: tuple[NodeModel, ...] = ()
     value_places: dict[str, Place] = field(default_factory=dict, compare=False)
     world_place: Place | None = field(default=None, compare=False)
     source: dict[str, str] = field(default_factory=dict, compare=False)

@@ -9,13 +9,15 @@ from typing import Any
 from momantu_bt.plugins import PluginError
 from momantu_bt.robot import RobotDescription
 from momantu_bt.skill import Port, Skill
-from momantu_bt.tree.catalogue import BUILT_IN, SUBTREE, NodeSpec
-from momantu_bt.tree.model import BROKEN, Document, Node, Tree
+from momantu_bt.tree.catalogue import AUTOREMAP, BUILT_IN, SUBTREE, NodeSpec
+from momantu_bt.tree.model import BROKEN, Document, Node, Place, Tree
 from momantu_bt.tree.problems import Problems, nearest, valid_names
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.types import parse_type
 from momantu_bt.tree.values import port_of
 from momantu_bt.world import Site
+
+_AUTOREMAP_PORT = Port(AUTOREMAP, "in", bool, "whether keys of one name are one key", False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,11 +56,30 @@ class Context:
         if spec is not None:
             return Signature(spec.yaml[0], spec.ports, spec.first, spec=spec)
         if node.type == SUBTREE:
-            return self.tree_signature(self.document.trees[node.target or ""])
+            return self._call_signature(node, self.document.trees[node.target or ""])
         skill = None if node.type == BROKEN else self.skill(node.type)
         if skill is None:
             return None
         return Signature(node.type, skill.ports, _first(skill.ports), skill=skill)
+
+    def _call_signature(self, node: Node, tree: Tree) -> Signature:
+        """A subtree's, with what this node may give besides: of an open tree any key."""
+        declared = self.tree_signature(tree)
+        ports = dict(declared.ports)
+        if AUTOREMAP in node.ports:
+            ports[AUTOREMAP] = _AUTOREMAP_PORT
+        for name in node.ports if tree.open else ():
+            if name and name not in ports:
+                ports[name] = Port(name, "inout", object, "")
+        return Signature(tree.name, ports, declared.first)
+
+    def is_xml(self, place: Place) -> bool:
+        """Whether the file of this place is XML, so that its words are used."""
+        return self.document.source.get(place.file, "").lstrip("\ufeff \t\r\n").startswith("<")
+
+    def wire(self, key: str, place: Place) -> str:
+        """A wire as the file of this place spells it."""
+        return f"{{{key}}}" if self.is_xml(place) else f"${key}"
 
     def tree_signature(self, tree: Tree) -> Signature:
         """What a subtree takes and gives. An unknown type counts as `any`; `tree_ports` says so."""

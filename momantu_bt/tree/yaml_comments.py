@@ -36,7 +36,7 @@ class _Anchor:
 @dataclass(slots=True)
 class _Attacher:
     document: Document
-    lines: list[str]
+    lines: tuple[str, ...]
     anchors: list[_Anchor] = field(default_factory=list)
     parents: dict[int, Node] = field(default_factory=dict)
 

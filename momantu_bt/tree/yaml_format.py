@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from momantu_bt.tree.catalogue import MODIFIERS, SPELLED
 from momantu_bt.tree.model import (
     Document,
+    Include,
     Literal,
     Node,
     Place,
@@ -23,6 +25,7 @@ from momantu_bt.tree.yaml_source import (
     Entries,
     Items,
     Raw,
+    Remark,
     Scalar,
     YamlSyntaxError,
     compose_with_remarks,
@@ -33,39 +36,88 @@ from momantu_bt.tree.yaml_values import KEY, drop_duplicates, port_value
 VERSION = 1
 """What `momantu_bt:` says; a later one may read differently."""
 
-_TOP = ("momantu_bt", "world", "main", "values", "trees")
+TREE_NAME = re.compile(r"[^\W\d][\w.-]*(?: [\w.-]+)*")
+"""Names that a tree can have; BehaviorTree.CPP's may hold more than letters."""
+TREE_NAME_HINT = "letters, digits, `_`, `-`, `.` and single spaces, a letter first"
+
+_TOP = ("momantu_bt", "include", "world", "main", "values", "trees")
 PORTS = {"inputs": "in", "outputs": "out", "inouts": "inout"}
 HEADER = (*PORTS, "open", "doc")
 _DECLARATION = ("type", "default", "doc")
 
 
 def read(text: str, file: str) -> tuple[Document, Problems]:
-    """Read a tree file. The document holds BROKEN nodes where problems were found.
+    """Read a tree file by itself, without those that it includes.
 
-    file: the name that places carry.
+    The document holds BROKEN nodes where problems were found. file: the name that places carry.
 
     Raises:
         TreeError: the text is not YAML, or has no trees; nothing else can be said then.
     """
-    source = {file: text}
-    try:
-        raw, remarks = compose_with_remarks(text, file)
-    except YamlSyntaxError as error:
-        raise TreeError([error.problem], source) from None
     problems = Problems()
-    document = _Reader(file, problems).document(raw)
+    document = YamlSource.of(text, file, problems).document({})
     if document is None:
-        raise TreeError(errors(problems.sorted()), source)
-    document.source = source
-    if remarks:
-        attach(document, raw, text, remarks)
+        raise TreeError(errors(problems.sorted()), {file: text})
     return document, problems
+
+
+@dataclass(slots=True)
+class YamlSource:
+    """A file that is YAML; its trees are read when those that it includes are known."""
+
+    text: str
+    file: str
+    raw: Raw
+    remarks: list[Remark]
+    problems: Problems
+
+    @classmethod
+    def of(cls, text: str, file: str, problems: Problems) -> YamlSource:
+        """Parse a text; TreeError when it is not YAML."""
+        try:
+            return cls(text, file, *compose_with_remarks(text, file), problems)
+        except YamlSyntaxError as error:
+            raise TreeError([error.problem], {file: text}) from None
+
+    def includes(self) -> tuple[Include, ...]:
+        """The files it includes; those that are not written well are reported."""
+        raw = self.raw
+        listed = (
+            [value for key, value in raw.entries if key.text == "include"]
+            if isinstance(raw, Entries)
+            else []
+        )
+        found: list[Include] = []
+        for value in listed[:1]:
+            for item in value.items if isinstance(value, Items) else [value]:
+                if isinstance(item, Scalar) and item.text and isinstance(item.value, str):
+                    found.append(Include(item.text, item.place))
+                else:
+                    hint = "write `include: [other.yaml]`"
+                    self.problems.error("include", item.place, "a file's name is expected", hint)
+        return tuple(found)
+
+    def document(self, outside: Mapping[str, Tree], *, included: bool = False) -> Document | None:
+        """The file's own trees. outside: trees of the files that it includes.
+
+        included: it need not say which tree to run. None, with what is wrong reported, where
+        there is nothing to read.
+        """
+        document = _Reader(self.file, self.problems, outside, included).document(self.raw)
+        if document is not None:
+            document.includes = self.includes()
+            document.source = {self.file: self.text}
+            if self.remarks:
+                attach(document, self.raw, self.text, self.remarks)
+        return document
 
 
 @dataclass(slots=True)
 class _Reader:
     file: str
     problems: Problems
+    outside: Mapping[str, Tree]
+    included: bool
 
     def document(self, raw: Raw) -> Document | None:
         if not isinstance(raw, Entries):
@@ -85,7 +137,8 @@ class _Reader:
         trees = self.trees(having.get("trees"), raw.place)
         if trees is None:
             return None
-        document = Document(self.file, self.main(having.get("main"), trees), trees)
+        main = "" if self.included else self.main(having.get("main"), trees)
+        document = Document(self.file, main, trees)
         self.world(document, having.get("world"))
         self.values(document, having.get("values"))
         return document
@@ -107,21 +160,23 @@ class _Reader:
             )
 
     def main(self, entry: tuple[Scalar, Raw] | None, trees: dict[str, Tree]) -> str:
+        known = {**trees, **self.outside}
+        first = next(iter(known))
         if entry is None:
-            if len(trees) > 1:
+            if len(trees or known) > 1:
                 self.problems.error(
                     "no-main",
-                    next(iter(trees.values())).place,
+                    known[first].place,
                     "the file does not say which tree to run",
-                    f"write `main: {next(iter(trees))}`",
+                    f"write `main: {first}`",
                 )
-            return next(iter(trees))
+            return first
         raw = entry[1]
         name = raw.text if isinstance(raw, Scalar) else ""
-        if name not in trees:
-            hint = valid_names(name, trees, "trees")
+        if name not in known:
+            hint = valid_names(name, known, "trees")
             self.problems.error("unknown-tree", raw.place, f"no tree is called {name!r}", hint)
-            return next(iter(trees))
+            return first
         return name
 
     def world(self, document: Document, entry: tuple[Scalar, Raw] | None) -> None:
@@ -181,13 +236,15 @@ class _Reader:
         having: list[tuple[Scalar, Raw]] = []
         if entry is not None:
             having = self.mapping(entry[1], "trees", "Name: [node, node]")
+        if not having and entry is None and self.outside:
+            return {}
         if not having:
             where = entry[0].place if entry is not None else Place(place.file, place.line, 1)
             self.problems.error(
                 "no-trees", where, "the file has no tree", "write `trees:` and under it `Name:`"
             )
             return None
-        names = {key.text for key, _ in having}
+        names = {*(key.text for key, _ in having), *self.outside}
         reader = NodeReader(names, self.problems)
         trees: dict[str, Tree] = {}
         for key, raw in having:
@@ -197,10 +254,9 @@ class _Reader:
         return trees
 
     def tree_name(self, key: Scalar) -> None:
-        if not isinstance(key.value, str) or not KEY.fullmatch(key.text):
-            hint = "letters, digits and underscores, no digit first"
+        if not isinstance(key.value, str) or not TREE_NAME.fullmatch(key.text):
             message = f"{key.text!r} cannot be the name of a tree"
-            self.problems.error("bad-name", key.place, message, hint)
+            self.problems.error("bad-name", key.place, message, TREE_NAME_HINT)
         elif key.text in SPELLED or key.text in MODIFIERS or key.text == AGAIN:
             message = f"{key.text!r} is a word of the language"
             self.problems.error("bad-name", key.place, message, "give the tree another name")

@@ -395,7 +395,7 @@ class NodeReader:
             return
         drop_duplicates(raw, self.problems)
         for key, value in raw.entries:
-            handler = Handler(self._codes(key), None, key.place)
+            handler = Handler(handler_codes(key.text, key.place, self.problems), None, key.place)
             node.handlers.append(handler)
             if isinstance(value, Scalar) and value.text == AGAIN:
                 if node.type != "Recover":
@@ -403,14 +403,15 @@ class NodeReader:
                 continue
             self._waiting.append((value, _handler_setter(handler)))
 
-    def _codes(self, key: Scalar) -> tuple[str, ...]:
-        """What a handler is for, without what cannot be a code."""
-        codes = tuple(part.strip() for part in key.text.split("|"))
-        wrong = [code for code in codes if not _HANDLER_CODE.fullmatch(code)]
-        for code in wrong:
-            hint = "codes are upper-case words, `A | B` several, `any` the rest"
-            self._error("bad-code", key.place, f"{code!r} is no failure code", hint)
-        return tuple(code for code in codes if code not in wrong)
+
+def handler_codes(text: str, place: Place, problems: Problems) -> tuple[str, ...]:
+    """What a handler is for (`A | B`), without what cannot be a code, which is reported."""
+    codes = tuple(part.strip() for part in text.split("|"))
+    wrong = [code for code in codes if not _HANDLER_CODE.fullmatch(code)]
+    for code in wrong:
+        hint = "codes are upper-case words, `A | B` several, `any` the rest"
+        problems.error("bad-code", place, f"{code!r} is no failure code", hint)
+    return tuple(code for code in codes if code not in wrong)
 
 
 def _handler_setter(handler: Handler) -> Put:

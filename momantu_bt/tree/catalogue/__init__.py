@@ -21,11 +21,13 @@ __all__ = [
     "FORCED",
     "MODIFIERS",
     "NODE_KEYS",
+    "OWN_NODES",
     "POST_SCRIPTS",
     "PRE_CONDITIONS",
     "SPELLED",
     "SUBTREE",
     "SWITCHES",
+    "XML_CONDITIONS",
     "CodeText",
     "Kind",
     "NodeSpec",
@@ -61,6 +63,21 @@ POST_SCRIPTS = ("on_success", "on_failure", "on_halt", "after")
 
 CONDITIONS = (*PRE_CONDITIONS, *POST_SCRIPTS)
 """Keys of `Node.conditions`."""
+
+XML_CONDITIONS: Mapping[str, str] = {
+    "fail_if": "_failureIf",
+    "succeed_if": "_successIf",
+    "skip_if": "_skipIf",
+    "while": "_while",
+    "on_success": "_onSuccess",
+    "on_failure": "_onFailure",
+    "on_halt": "_onHalted",
+    "after": "_post",
+}
+"""BehaviorTree.CPP's attributes for the conditions."""
+
+OWN_NODES = frozenset({"Recover", "Handle", "ForEach", "Fail", "Ask", "Confirm", "ElseFail"})
+"""Nodes that BehaviorTree.CPP and Nav2 do not have; in XML they stand in our namespace."""
 
 NODE_KEYS = ("name", "note", "disabled")
 """Modifiers that are neither decorators nor conditions."""

@@ -12,6 +12,7 @@ from momantu_bt.skill import In, Out, Skill
 from momantu_bt.tree.check import check as check_document
 from momantu_bt.tree.problems import Problem, TreeError
 from momantu_bt.tree.registry import Registry
+from momantu_bt.tree.xml_format import read as read_xml
 from momantu_bt.tree.yaml_format import read
 from momantu_bt.world import Site, Surface
 
@@ -124,11 +125,14 @@ Check = Callable[[str], list[Problem]]
 
 @pytest.fixture(scope="session")
 def check(registry: Registry) -> Check:
-    """Every problem of a text, as if it were the file `t.yaml`."""
+    """Every problem of a text in either spelling, as if it were a file `t.yaml` or `t.xml`."""
 
     def problems(text: str) -> list[Problem]:
         try:
-            document, found = read(text, "t.yaml")
+            if text.startswith("<"):
+                document, found = read_xml(text, "t.xml", registry)
+            else:
+                document, found = read(text, "t.yaml")
         except TreeError as error:
             return error.problems
         return check_document(document, registry, reading=found)

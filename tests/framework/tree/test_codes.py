@@ -4,13 +4,16 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import pytest
 
 from momantu_bt.plugins import PluginError
+from momantu_bt.tree import xml_format
 from momantu_bt.tree.check import check
 from momantu_bt.tree.codes import UnknownCode, codes, explanation, pages_folder
+from momantu_bt.tree.load import read_file
 from momantu_bt.tree.problems import Problem, Severity, TreeError
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.yaml_format import read
@@ -22,7 +25,8 @@ HEADER = "momantu_bt: 1\nworld: four_rooms\ntrees:\n  Main:\n    - reset_pose: h
 
 def problems(text: str, registry: Registry | None = None, **asked: Any) -> list[Problem]:
     try:
-        document, reading = read(text, "example.yaml")
+        reader = xml_format.read if text.startswith("<") else read
+        document, reading = reader(text, "example")
     except TreeError as error:
         return error.problems
     return check(document, registry or Registry.installed(), reading=reading, **asked)
@@ -32,7 +36,7 @@ def examples(kind: str) -> Mapping[str, str]:
     """The first fenced tree below `Wrong:` or `Right:`, by code."""
     found = {}
     for code in codes():
-        block = re.search(rf"^{kind}:\n\n```yaml\n(.*?)```", explanation(code), re.S | re.M)
+        block = re.search(rf"^{kind}:\n\n```(?:yaml|xml)\n(.*?)```", explanation(code), re.S | re.M)
         if block is not None:
             found[code] = block[1]
     return found
@@ -76,7 +80,15 @@ class World:
     site: Callable[[], Any] = lambda: None
 
 
+def included_by_itself() -> list[Problem]:
+    with TemporaryDirectory() as folder:
+        file = Path(folder, "a.yaml")
+        file.write_text("momantu_bt: 1\ninclude: [a.yaml]\ntrees: {Main: {wait: 1 s}}\n")
+        return read_file(file, Registry())[1].sorted()
+
+
 WITHOUT_A_TREE = {
+    "include-cycle": included_by_itself,
     "too-large": lambda: problems("[" * 200),
     "unknown-robot": lambda: problems(HEADER, robot="fecth"),
     "broken-plugin": lambda: problems(

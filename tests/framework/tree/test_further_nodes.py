@@ -7,9 +7,9 @@ from collections.abc import Callable
 import pytest
 
 from momantu_bt.tree.catalogue import BUILT_IN, SWITCHES
-from momantu_bt.tree.load import read
 from momantu_bt.tree.model import Literal, Reference
 from momantu_bt.tree.problems import Problem, Severity
+from momantu_bt.tree.yaml_format import read
 
 Check = Callable[[str], list[Problem]]
 
