@@ -5,7 +5,6 @@ A box is a node with the decorators around it; each node of the document is in o
 
 from __future__ import annotations
 
-import unicodedata
 from dataclasses import dataclass
 
 from momantu_bt.drawing.wires import Wire, wires
@@ -20,10 +19,19 @@ from momantu_bt.tree.printing import (
     title,
     unwrap,
 )
+from momantu_bt.tree.problems import cells
 from momantu_bt.tree.registry import Registry
 
 WIDEST = 56
 """Cells of a terminal that a line in a box takes at most; the rest is cut."""
+COLOURS = {
+    "control": "#dbe7f6",
+    "decorator": "#ece4f5",
+    "leaf": "#f1efe6",
+    "skill": "#dcf0dd",
+    "subtree": "#fbe9c6",
+}
+"""What a box of each kind is filled with."""
 SKILL = "skill"
 """Kind of a box, besides those of built-in nodes and `subtree`."""
 
@@ -131,23 +139,16 @@ def _threads(tree: Tree, boxes: tuple[Box, ...], found: list[Wire]) -> tuple[Thr
     return tuple(threads)
 
 
-def cells(text: str) -> int:
+def width_of(text: str) -> int:
     """How many cells of a terminal, or characters of a fixed width, a text takes."""
-    return sum(
-        0
-        if unicodedata.category(c) in ("Mn", "Me")
-        else 2
-        if unicodedata.east_asian_width(c) in "WF"
-        else 1
-        for c in text
-    )
+    return sum(map(cells, text))
 
 
 def cut(text: str) -> str:
     """A text on one line, at most `WIDEST` cells wide, without what cannot be printed."""
     plain = "".join(c if c.isprintable() else " " for c in text)
-    if cells(plain) <= WIDEST:
+    if width_of(plain) <= WIDEST:
         return plain
-    while cells(plain) >= WIDEST:
-        plain = plain[: max(1, len(plain) * WIDEST // cells(plain)) - 1]
+    while width_of(plain) >= WIDEST:
+        plain = plain[: max(1, len(plain) * WIDEST // width_of(plain)) - 1]
     return plain + "…"

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from momantu_bt.drawing.boxes import Box, TreePicture, cut
+from momantu_bt.drawing.boxes import COLOURS, Box, TreePicture, cut
 
-_LOOKS = {
-    "control": 'shape=box style="filled" fillcolor="#dbe7f6"',
-    "decorator": 'shape=box style="filled,rounded" fillcolor="#ece4f5"',
-    "leaf": 'shape=box style="filled,rounded" fillcolor="#f1efe6"',
-    "skill": 'shape=box style="filled,rounded" fillcolor="#dcf0dd"',
-    "subtree": 'shape=box3d style="filled" fillcolor="#fbe9c6"',
+_SHAPES = {
+    "control": 'shape=box style="filled"',
+    "decorator": 'shape=box style="filled,rounded"',
+    "leaf": 'shape=box style="filled,rounded"',
+    "skill": 'shape=box style="filled,rounded"',
+    "subtree": 'shape=box3d style="filled"',
 }
 
 
@@ -44,9 +44,8 @@ def dot(trees: Sequence[TreePicture], *, wires: bool = True) -> str:
 
 
 def _node(box: Box) -> str:
-    return (
-        f"n{box.number} [label={quoted(chr(10).join((box.title, *box.lines)))} {_LOOKS[box.kind]}];"
-    )
+    label = quoted("\n".join((box.title, *box.lines)))
+    return f'n{box.number} [label={label} {_SHAPES[box.kind]} fillcolor="{COLOURS[box.kind]}"];'
 
 
 def quoted(text: str) -> str:

@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from momantu_bt.drawing.boxes import WIDEST, Box, Thread, TreePicture, cells, cut
+from momantu_bt.drawing.boxes import WIDEST, Box, Thread, TreePicture, cut, width_of
 
 CELL = 7.3
 """Width of a character; the SVG makes each text exactly as wide as this says."""
@@ -96,13 +96,13 @@ def _outline(tree: TreePicture, top: float, wires: bool) -> Outline:
         role = wrapped(box.role.split())
         y += LINE * len(role)
         height = max(LINE * len(lines) + PAD, PLUG * plugs[box.number] + PAD)
-        width = max(map(cells, lines)) * CELL + 2 * PAD
+        width = max(map(width_of, lines)) * CELL + 2 * PAD
         placed.append(Placed(box, MARGIN + box.depth * INDENT, y, width, height, lines, role))
         y += height + GAP
     lanes = _lanes(placed, keys)
     ends = [each.right for each in placed] + [lane.x for lane in lanes]
-    ends += [MARGIN + cells(tree.title) * CELL]
-    ends += [each.x + cells(line) * SMALL_CELL for each in placed for line in each.role]
+    ends += [MARGIN + width_of(tree.title) * CELL]
+    ends += [each.x + width_of(line) * SMALL_CELL for each in placed for line in each.role]
     return Outline(tree, top, tuple(placed), lanes, max(ends) + MARGIN, y - top)
 
 
@@ -121,17 +121,16 @@ def _lanes(placed: Sequence[Placed], keys: dict[str, dict[int, bool]]) -> tuple[
     used: dict[int, int] = {}
     where = {each.box.number: each for each in placed}
     plugged: list[tuple[str, list[Plug]]] = []
-    for key, ends in keys.items():
+    for key, joined in keys.items():
         plugs: list[Plug] = []
-        for number, writes in sorted(ends.items()):
+        for number, writes in sorted(joined.items()):
             box = where[number]
             used[number] = used.get(number, 0) + 1
             y = box.y + PAD / 2 + PLUG * (used[number] - 0.5)
             plugs.append(Plug(number, box.right, y, writes))
         plugged.append((key, plugs))
-    first = max(
-        (plug.x + cells(key) * SMALL_CELL for key, plugs in plugged for plug in plugs), default=0.0
-    )
+    ends = (plug.x + width_of(key) * SMALL_CELL for key, plugs in plugged for plug in plugs)
+    first = max(ends, default=0.0)
     taken: list[list[tuple[float, float]]] = []
     lanes: list[Lane] = []
     # short ones go inside, where they cross fewer others
@@ -152,7 +151,7 @@ def wrapped(texts: Sequence[str], between: str = " ") -> tuple[str, ...]:
     """Texts one after the other, in as few lines as they fit in."""
     lines: list[str] = []
     for text in map(cut, texts):
-        if lines and cells(lines[-1]) + len(between) + cells(text) <= WIDEST:
+        if lines and width_of(lines[-1]) + len(between) + width_of(text) <= WIDEST:
             lines[-1] += between + text
         else:
             lines.append(text)

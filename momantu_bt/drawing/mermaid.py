@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from momantu_bt.drawing.boxes import Box, TreePicture, cut
+from momantu_bt.drawing.boxes import COLOURS, Box, TreePicture, cut
 
 _SHAPES = {
     "control": ("[", "]"),
@@ -12,13 +12,6 @@ _SHAPES = {
     "leaf": ("(", ")"),
     "skill": ("(", ")"),
     "subtree": ("[[", "]]"),
-}
-_COLOURS = {
-    "control": "#dbe7f6",
-    "decorator": "#ece4f5",
-    "leaf": "#f1efe6",
-    "skill": "#dcf0dd",
-    "subtree": "#fbe9c6",
 }
 _PLAIN = frozenset("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789 _.,:-")
 
@@ -39,7 +32,7 @@ def mermaid(trees: Sequence[TreePicture], *, wires: bool = True) -> str:
                 for thread in tree.threads
             ]
         lines.append("  end")
-    lines += [f"  classDef {kind} fill:{colour},stroke:#666" for kind, colour in _COLOURS.items()]
+    lines += [f"  classDef {kind} fill:{colour},stroke:#666" for kind, colour in COLOURS.items()]
     return "\n".join(lines) + "\n"
 
 

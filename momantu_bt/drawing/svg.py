@@ -7,7 +7,7 @@ from typing import Any
 
 from lxml import etree
 
-from momantu_bt.drawing.boxes import TreePicture, cells
+from momantu_bt.drawing.boxes import COLOURS, TreePicture, width_of
 from momantu_bt.drawing.layout import (
     CELL,
     INDENT,
@@ -21,13 +21,6 @@ from momantu_bt.drawing.layout import (
     outlines,
 )
 
-_FILLS = {
-    "control": "#dbe7f6",
-    "decorator": "#ece4f5",
-    "leaf": "#f1efe6",
-    "skill": "#dcf0dd",
-    "subtree": "#fbe9c6",
-}
 _WIRE = "#b3541e"
 _FONT = "'DejaVu Sans Mono', Menlo, Consolas, monospace"
 _ROUND = {"control": "2", "subtree": "2"}
@@ -89,7 +82,7 @@ def _box(group: etree._Element, placed: Placed) -> None:
         width=placed.width,
         height=placed.height,
         rx=_ROUND.get(box.kind, "8"),
-        fill=_FILLS[box.kind],
+        fill=COLOURS[box.kind],
         stroke="#666666",
     )
     for row, line in enumerate(placed.lines):
@@ -117,7 +110,7 @@ def _text(
     parent: etree._Element, text: str, x: float, y: float, *, small: bool = False, **look: str
 ) -> None:
     """One line; it takes the room that the layout gave it in any font."""
-    width = cells(text) * (SMALL_CELL if small else CELL)
+    width = width_of(text) * (SMALL_CELL if small else CELL)
     element = _add(parent, "text", x=x, y=y, textLength=width, **look)
     if small:
         _set(element, font_size="10")

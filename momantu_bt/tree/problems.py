@@ -146,13 +146,13 @@ def show(problem: Problem, source: Mapping[str, str]) -> str:
     number = str(place.line)
     shown, column = _window(text, place.column - 1)
     marked = shown[column : column + max(1, place.length)]
-    gap = "".join("\t" if c == "\t" else " " * _cells(c) for c in shown[:column])
-    caret = f"  {' ' * len(number)} | {gap}{'^' * max(1, sum(map(_cells, marked)))}"
+    gap = "".join("\t" if c == "\t" else " " * cells(c) for c in shown[:column])
+    caret = f"  {' ' * len(number)} | {gap}{'^' * max(1, sum(map(cells, marked)))}"
     shown = "".join(c if c == "\t" or c.isprintable() else "\ufffd" for c in shown)
     return f"{head}\n  {number} | {shown}\n{caret}{' ' + problem.hint if problem.hint else ''}"
 
 
-def _cells(character: str) -> int:
+def cells(character: str) -> int:
     """How many cells of a terminal a character takes."""
     if unicodedata.category(character) in ("Mn", "Me"):
         return 0

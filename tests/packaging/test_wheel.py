@@ -109,7 +109,7 @@ def test_it_says_that_it_is_typed(wheel: Path) -> None:
         assert f"{package}/py.typed" in names
 
 
-@pytest.mark.parametrize("tree", ["bring_object", "bring_object_plain"])
+@pytest.mark.parametrize("tree", ["bring_object", "bring_object_plain", "examples/patrol"])
 def test_bundled_trees_are_found_by_name(tree: str, python: Path, tmp_path: Path) -> None:
     done = momantu(python, tmp_path, "check", tree)
     assert done.returncode == 0, done.stdout + done.stderr

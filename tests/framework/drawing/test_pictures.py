@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from lxml import etree
 
-from momantu_bt.drawing.boxes import WIDEST, cells, cut, pictures
+from momantu_bt.drawing.boxes import WIDEST, cut, pictures, width_of
 from momantu_bt.drawing.dot import dot, quoted
 from momantu_bt.drawing.layout import CELL, PAD, Placed, outlines, wrapped
 from momantu_bt.drawing.mermaid import escaped, mermaid
@@ -104,7 +104,7 @@ def test_nothing_lies_on_top_of_another_and_all_text_fits(
     placed = [each for outline in drawn for each in outline.boxes]
     assert not any(meet(*two) for two in itertools.combinations(placed, 2))
     for each in placed:
-        assert all(cells(line) * CELL + 2 * PAD <= each.width + 1e-9 for line in each.lines)
+        assert all(width_of(line) * CELL + 2 * PAD <= each.width + 1e-9 for line in each.lines)
         assert len(each.lines) * 16.0 <= each.height
     for one, two in itertools.pairwise(drawn):
         assert one.y + one.height <= two.y
@@ -222,11 +222,12 @@ def test_escaping_can_be_undone(text: str, evil: str) -> None:
 @pytest.mark.parametrize("text", ["x" * 500, "日" * 80, "a\tb\x07c", "e\u0301" * 90])
 def test_long_lines_are_cut_and_unprintable_ones_cleaned(text: str) -> None:
     line = cut(text)
-    assert cells(line) <= WIDEST
+    assert width_of(line) <= WIDEST
     assert line.isprintable()
-    assert all(cells(each) <= WIDEST for each in wrapped([text, "a", "b"], ", "))
+    assert all(width_of(each) <= WIDEST for each in wrapped([text, "a", "b"], ", "))
 
 
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")  # pydot's, of its parser
 @pytest.mark.parametrize("name", sorted(bundled()))
 def test_graphviz_source_follows_its_grammar(name: str, registry: Registry) -> None:
     trees = pictures(load(name, registry).document, registry)
