@@ -10,6 +10,7 @@ import typer
 
 from momantu_bt.cli.help import help_of
 from momantu_bt.cli.listing import first_line, listing
+from momantu_bt.cli.skills_palette import print_palette
 from momantu_bt.cli.skills_schema import schema
 from momantu_bt.cli.skills_test import promises
 from momantu_bt.plugins import SKILLS, load
@@ -23,9 +24,16 @@ skills = typer.Typer(rich_markup_mode=None, invoke_without_command=True)
 def every(
     context: typer.Context,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,
+    xml_model: Annotated[
+        bool, typer.Option("--xml-model", help="Print them as XML, for Groot2's palette.")
+    ] = False,
 ) -> None:
     """List the installed skills, unless one of them is to be shown."""
-    if context.invoked_subcommand is None:
+    if context.invoked_subcommand is not None:
+        return
+    if xml_model:
+        print_palette()
+    else:
         listing(SKILLS, first_line, as_json)
 
 

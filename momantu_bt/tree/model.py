@@ -181,7 +181,8 @@ class NodeModel:
     """What a file says of a kind of node, for an editor's palette; nothing here reads it.
 
     kind: "Action", "Condition", "Control" or "Decorator". ports: types and defaults as written.
-    editable: as an editor set it, None where it did not. metadata: pairs of name and value.
+    editable: as an editor set it, None where it did not. metadata: pairs of name and value, one
+    for each `<Metadata name="value"/>`.
     """
 
     name: str

@@ -69,19 +69,15 @@ def _read_model(element: Element, models: Models, problems: Problems) -> None:
         return
     ports = tuple(p for each in element.children if (p := _port(each, problems)) is not None)
     metadata = tuple(
-        (_text(pair, "name"), _text(pair, "value"))
+        (attribute.name, attribute.value)
         for each in element.children
         if each.name == _METADATA
         for pair in each.children
+        for attribute in pair.attributes
     )
     editable = element.get("editable")
     shown = None if editable is None else editable.value == "true"
     models.leaves.append(NodeModel(identity.value, element.name, ports, shown, metadata))
-
-
-def _text(element: Element, name: str) -> str:
-    found = element.get(name)
-    return "" if found is None else found.value
 
 
 def _tree_ports(element: Element, problems: Problems) -> dict[str, PortDeclaration]:

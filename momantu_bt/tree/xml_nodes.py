@@ -20,11 +20,10 @@ from momantu_bt.tree.catalogue import (
 from momantu_bt.tree.model import BROKEN, Handler, Node, PortDeclaration
 from momantu_bt.tree.problems import Problems, nearest, valid_names
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.xml_ports import EXPLICIT, PortReader
+from momantu_bt.tree.xml_ports import CATCH, EXPLICIT, PREFIX, PortReader
 from momantu_bt.tree.xml_source import OURS, Element
 from momantu_bt.tree.yaml_nodes import ANY, handler_codes
 
-CATCH = "Catch"
 _ONCE = {"SubTreePlus": SUBTREE, "Subtree": SUBTREE, "SequenceStar": "SequenceWithMemory"}
 """Tags of BehaviorTree.CPP 3, and what they became."""
 
@@ -114,6 +113,8 @@ class NodeReader:
 
     def _explicit_type(self, element: Element) -> str | None:
         identity = element.get("ID")
+        if identity is not None and identity.value.removeprefix(PREFIX) in OWN_NODES:
+            return identity.value.removeprefix(PREFIX)
         if identity is not None and identity.value:
             return identity.value
         message = f"<{element.name}> does not say which node it is"
@@ -148,7 +149,7 @@ class NodeReader:
             message = f"{node.target or node.type} takes no children"
             self.problems.error("children", inside[0].place, message)
             return
-        catches = [e for e in inside if e.space == OURS and e.name == CATCH]
+        catches = [each for each in inside if _is_handler(each)]
         if spec is not None and spec.handlers:
             inside = [each for each in inside if each not in catches]
             for each in catches:
@@ -178,7 +179,7 @@ class NodeReader:
         self._refuse_text(element)
         codes = element.get("codes")
         for each in element.attributes:
-            if each is not codes:
+            if each is not codes and each.name != "ID":
                 message = f"<momantu:{CATCH}> has no attribute {each.name!r}"
                 hint = valid_names(each.name, ["codes"], "attributes")
                 self.problems.error("unknown-key", each.name_place, message, hint)
@@ -198,6 +199,14 @@ class NodeReader:
             message = f"<momantu:{CATCH}> without a child is `again`"
             hint = "it has a meaning in <momantu:Recover> alone"
             self.problems.error("again", element.place, message, hint)
+
+
+def _is_handler(element: Element) -> bool:
+    if element.space == OURS:
+        return element.name == CATCH
+    identity = element.get("ID")
+    explicit = not element.space and element.name in EXPLICIT
+    return explicit and identity is not None and identity.value == PREFIX + CATCH
 
 
 def _handler_setter(handler: Handler) -> Put:

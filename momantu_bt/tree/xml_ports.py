@@ -32,6 +32,9 @@ from momantu_bt.tree.xml_values import WireError, attribute_value, flow_value
 
 EXPLICIT = ("Action", "Condition", "Control", "Decorator")
 """Tags whose ID is the node's type."""
+PREFIX = "momantu:"
+"""Of our own nodes in an ID."""
+CATCH = "Catch"
 
 DISABLED, NOTE, DESCRIPTION = "disabled", "note", "_description"
 _CONDITIONS = {theirs: ours for ours, theirs in XML_CONDITIONS.items()}

@@ -210,11 +210,17 @@ def test_models_of_leaves_are_kept(document: Callable[[str], Document]) -> None:
         OPENING
         + '<BehaviorTree ID="Main"><Go/></BehaviorTree><TreeNodesModel>'
         + '<Action ID="Go" editable="true"><input_port name="to" type="Pose" default="1;2">where'
-        + '</input_port><MetadataFields><Metadata name="a" value="b"/></MetadataFields></Action>'
+        + '</input_port><MetadataFields><Metadata a="b"/><Metadata c="d"/></MetadataFields>'
+        + "</Action>"
         + '<Condition ID="Is"><output_port name="x"/></Condition></TreeNodesModel></root>'
     )
     go, is_ = found.models
-    assert (go.name, go.kind, go.editable, go.metadata) == ("Go", "Action", True, (("a", "b"),))
+    assert (go.name, go.kind, go.editable, go.metadata) == (
+        "Go",
+        "Action",
+        True,
+        (("a", "b"), ("c", "d")),
+    )
     port = go.ports[0]
     assert (port.name, port.direction, port.type_name) == ("to", "in", "Pose")
     assert (port.default, port.doc) == (Literal("1;2"), "where")
