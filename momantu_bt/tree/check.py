@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
+from momantu_bt.messages import RobotState
 from momantu_bt.tree.catalogue import ScriptText
 from momantu_bt.tree.check_codes import check_handlers
 from momantu_bt.tree.check_keys import check_keys
@@ -15,6 +16,7 @@ from momantu_bt.tree.check_trees import (
     check_parallel,
     check_unused,
 )
+from momantu_bt.tree.keys import Key, literal_type
 from momantu_bt.tree.model import Document, Literal, Node, Place, Reference, Scope, Tree
 from momantu_bt.tree.problems import Problem, Problems, valid_names
 from momantu_bt.tree.registry import Registry
@@ -117,33 +119,40 @@ def _check_tree_name(context: Context, tree: Tree) -> None:
         context.problems.error("bad-name", tree.place, message, "give the tree another name")
 
 
-def _root_keys(context: Context) -> frozenset[str]:
-    """Every name that `$@name` can mean."""
+def _root_keys(context: Context) -> Mapping[str, Key | None]:
+    """Every name that `$@name` can mean; what is known of a value that nothing overwrites."""
     document = context.document
-    names = {*document.values, *context.registry.services, ROBOT_KEY}
+    names: dict[str, Key | None] = dict.fromkeys(context.registry.services)
+    names[ROBOT_KEY] = Key(RobotState, _start(document))
+    for name, value in document.values.items():
+        place = document.value_places.get(name, _start(document))
+        names[name] = Key(literal_type(value), place, (value,))
     for tree in document.trees.values():
         for node in tree.root.walk():
-            for scope, key in _written_by(context, node):
-                if scope is Scope.ROOT or tree.name == document.main:
-                    names.add(key)
-    return frozenset(names)
+            for scope, key, makes in _written_by(context, node):
+                on_root = scope is Scope.ROOT or tree.name == document.main
+                if on_root and (makes or key in names):
+                    names[key] = None
+    return names
 
 
-def _written_by(context: Context, node: Node) -> Iterator[tuple[Scope, str]]:
-    """Keys that a node's outputs and scripts write, and on which board."""
+def _written_by(context: Context, node: Node) -> Iterator[tuple[Scope, str, bool]]:
+    """Keys that a node's outputs and scripts write: board, key, whether it may be a new one."""
     signature = context.signature(node)
     ports = signature.ports if signature is not None else {}
     scripts = list(node.conditions.values())
     for name, value in node.ports.items():
         port = ports.get(name)
         if port is not None and port.direction != "in" and isinstance(value, Reference):
-            yield value.scope, value.key
+            yield value.scope, value.key, True
         elif port is not None and port.type is ScriptText and isinstance(value, Literal):
             scripts.append(str(value.value))
     for script in scripts:
-        for variable in parse(script).writes:
-            root = variable.key.startswith("@")
-            yield (Scope.ROOT if root else Scope.LOCAL), variable.key.removeprefix("@")
+        parsed = parse(script)
+        needed = {variable.key for variable in parsed.needs}
+        for variable in parsed.writes:
+            scope = Scope.ROOT if variable.key.startswith("@") else Scope.LOCAL
+            yield scope, variable.key.removeprefix("@"), variable.key not in needed
 
 
 __all__ = ["NO_WORLD", "ROBOT_KEY", "check"]

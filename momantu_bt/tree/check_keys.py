@@ -6,24 +6,27 @@ known after its success and after its failure.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import get_args
 
 from momantu_bt.tree.catalogue import BUILT_IN, PRE_CONDITIONS, SUBTREE, ScriptText
 from momantu_bt.tree.key_flow import FLOWS, After, Walk
 from momantu_bt.tree.key_reads import Demand, KeyReads, Written, references
-from momantu_bt.tree.keys import NEVER, Key, Known, both, meet
+from momantu_bt.tree.keys import NEVER, Key, Known, both, literal_type, meet
 from momantu_bt.tree.model import Literal, Node, Place, Reference, Scope, Tree
 from momantu_bt.tree.problems import valid_names, within
 from momantu_bt.tree.script import Script, ScriptSyntaxError, parse
+from momantu_bt.tree.script_nodes import Variable
+from momantu_bt.tree.script_types import Mismatch, check_types
 from momantu_bt.tree.shared_keys import Call, call_of, shared_keys
 from momantu_bt.tree.signatures import Context, Signature
-from momantu_bt.tree.types import ValueType, assignable, label, origin
+from momantu_bt.tree.types import ValueType, label, origin
 
 
-def check_keys(context: Context, order: list[Tree], root_keys: frozenset[str]) -> None:
+def check_keys(context: Context, order: list[Tree], root_keys: Mapping[str, Key | None]) -> None:
     """All keys of all trees. order: each tree after those it runs.
 
-    root_keys: every name that `$@name` can mean.
+    root_keys: every name that `$@name` can mean, and what is known of it, if anything is.
     """
     demands: dict[tuple[str, str], set[Demand]] = {}
     keys = shared_keys(context, order)
@@ -70,7 +73,7 @@ class _KeyCheck:
         if self.tree.name == document.main:
             for name, value in document.values.items():
                 place = document.value_places.get(name, self.tree.place)
-                keys[name] = Key(_literal_type(value), place, value)
+                keys[name] = Key(literal_type(value), place, (value,))
         for name, port in self.ports.items():
             if port.direction == "in":
                 keys.setdefault(name, Key(port.type, self.tree.ports[name].place))
@@ -82,11 +85,11 @@ class _KeyCheck:
         if key is None and success.reached:
             message = f"the output {name!r} is not written on every way to success"
             self.context.problems.error("unwritten-output", place, message)
-        elif key is not None and not assignable(key.type, self.ports[name].type):
+        for wrong in key.misfits(self.ports[name].type) if key is not None else ():
             message = f"the output {name!r} is {label(self.ports[name].type)}, "
-            hint = f"line {key.place.line} writes it"
+            hint = f"line {wrong.place.line} writes it"
             self.context.problems.error(
-                "wrong-type", place, message + f"but {label(key.type)} comes", hint
+                "wrong-type", place, message + f"but {label(wrong.type)} comes", hint
             )
 
     def removed(self, *nodes: Node) -> set[str]:
@@ -227,7 +230,7 @@ class _KeyCheck:
             place = node.port_places.get(name, node.place)
             self.reads.written.append(Written(value.key, place, signature.said))
             given = node.ports.get("value") if node.type == "SetBlackboard" else None
-            type_ = _literal_type(given) if isinstance(given, Literal) else port.type
+            type_ = literal_type(given) if isinstance(given, Literal) else port.type
             after = after.having(value.key, Key(type_, place))
         return after
 
@@ -255,11 +258,27 @@ class _KeyCheck:
             if isinstance(value, Reference) and value.scope is Scope.LOCAL:
                 place = loop.port_places.get(output, loop.place)
                 key = Key(self.item_type(loop, output, source, before), place)
+                key = self.written_items(loop, source, before) or key
                 before = before.having(value.key, key)
                 self.reads.given.add(value.key)
             return self.node(child, before)
 
         return Walk(walk, self.removed)
+
+    def written_items(self, loop: Node, source: str, before: Known) -> Key | None:
+        """The item of a loop over a list that is written in the file."""
+        items = loop.ports.get(source)
+        place = loop.port_places.get(source, loop.place)
+        if isinstance(items, Reference) and not items.fields:
+            root = items.scope is Scope.ROOT
+            key = self.reads.root_keys.get(items.key) if root else before.get(items.key)
+            if key is not None and len(key.literals) == 1:
+                items, place = key.literals[0], key.place
+        if not isinstance(items, Literal) or not isinstance(items.value, list) or not items.value:
+            return None
+        literals = tuple(Literal(item) for item in items.value)
+        types = {literal_type(literal) for literal in literals}
+        return Key(types.pop() if len(types) == 1 else object, place, literals)
 
     def item_type(self, loop: Node, output: str, source: str, before: Known) -> ValueType:
         declared = BUILT_IN[loop.type].ports[output].type
@@ -278,25 +297,41 @@ class _KeyCheck:
             return before
         return self.script_keys(script, before, place)
 
+    def script_types(self, script: Script, known: Mapping[str, ValueType], place: Place) -> None:
+        """Operands that cannot go together. What the script itself writes is of any type."""
+        written = {variable.key for variable in script.writes}
+
+        def type_of(variable: Variable) -> ValueType:
+            name = ".".join((variable.key, *variable.parts))
+            return object if variable.key in written else known.get(name, object)
+
+        for statement in script.statements:
+            try:
+                check_types(statement, type_of)
+            except Mismatch as mismatch:
+                where, wrong = place, mismatch.variable
+                if wrong is not None:
+                    where = within(place, f"${wrong.key}", self.context.document.source)
+                self.context.problems.error("wrong-type", where, str(mismatch))
+
     def script_keys(self, script: Script, before: Known, place: Place) -> Known:
         """Keys that a script needs, those that it reads, and what it leaves written."""
         self.reads.seen.update(variable.key for variable in script.reads)
+        known: dict[str, ValueType] = {}
         for variable in script.needs:
             shown = variable.key if self.context.is_xml(place) else f"${variable.key}"
             where = within(place, shown, self.context.document.source)
-            self.reads.lookup(_reference(variable.key), before, where)
+            key = self.reads.lookup(_reference(variable.key), before, where)
+            if key is not None:
+                type_ = self.reads.part_of(key, variable.parts, where)
+                known[".".join((variable.key, *variable.parts))] = type_ or object
+        self.script_types(script, known, place)
         after = before
         self.reads.given.update(variable.key for variable in script.writes)
         for variable in script.writes:
             if not variable.key.startswith("@"):
                 after = after.having(variable.key, Key(object, place))
         return after
-
-
-def _literal_type(value: Literal) -> ValueType:
-    """The type of a written value where nothing says otherwise; texts may hold quantities."""
-    plain = value.value
-    return type(plain) if isinstance(plain, bool | int | float) else object
 
 
 def _reference(variable: str) -> Reference:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
@@ -23,7 +24,7 @@ from momantu_bt.tree.model import (
 from momantu_bt.tree.problems import valid_names
 from momantu_bt.tree.shared_keys import Call, TreeKeys
 from momantu_bt.tree.signatures import Context, Signature
-from momantu_bt.tree.types import assignable, label
+from momantu_bt.tree.types import ValueType, label
 from momantu_bt.tree.units import UnitError, in_unit
 from momantu_bt.tree.values import ConversionError, convert
 
@@ -44,16 +45,17 @@ class Written:
 class KeyReads:
     """The reads of one tree, reported as they are met.
 
-    root_keys: names that `$@key` may read. demands: by tree and input, what nodes below expect of
-    a text there; trees that are run come before those that run them. written: what has been written
-    so far in the order of the file. given: keys that may come from elsewhere: a script, a loop, the
-    tree's inputs. watched: keys that a node only looks at; nobody knows yet who writes them. keys:
-    what is known of each tree's keys by its name.
+    root_keys: what `$@key` may read, and what is known of it, if anything is.
+    demands: by tree and input, what nodes below expect of a text there; trees that are run come
+    before those that run them. written: what has been written so far in the order of the file.
+    given: keys that may come from elsewhere: a script, a loop, the tree's inputs. watched: keys
+    that a node only looks at; nobody knows yet who writes them. keys: what is known of each tree's
+    keys by its name.
     """
 
     context: Context
     tree: Tree
-    root_keys: frozenset[str]
+    root_keys: Mapping[str, Key | None]
     demands: dict[tuple[str, str], set[Demand]]
     keys: dict[str, TreeKeys]
     seen: set[str] = field(default_factory=set)
@@ -101,7 +103,7 @@ class KeyReads:
                 message = f"the root's board has no key {reference.key!r}"
                 hint = valid_names(reference.key, sorted(self.root_keys), "keys")
                 self.context.problems.error("unknown-key", place, message, hint)
-            return None
+            return self.root_keys.get(reference.key)
         key = before.get(reference.key)
         if key is None:
             self._unwritten(reference.key, before, place)
@@ -167,7 +169,7 @@ class KeyReads:
         """A key that may come in with a value: what is known of it fits."""
         self.seen.add(reference.key)
         key = before.get(reference.key) if reference.scope is Scope.LOCAL else None
-        if key is not None and not assignable(key.type, port.type):
+        if key is not None and any(key.misfits(port.type)):
             message = f"{self.context.wire(reference.key, place)} is {label(key.type)}; "
             hint = f"it comes from line {key.place.line}"
             message += f"{port.name!r} of {said} takes {label(port.type)}"
@@ -180,28 +182,34 @@ class KeyReads:
         if key is None:
             return
         origin = f"it comes from line {key.place.line}"
-        if key.literal is not None and not reference.fields:
-            try:
-                convert(key.literal.value, port)
-            except ConversionError as error:
-                wire = self.context.wire(reference.key, place)
-                message = f"{wire} does not fit {port.name!r} of {said}: {error}"
-                self.context.problems.error("wrong-value", place, message, origin)
+        if key.literals and not reference.fields:
+            wire = self.context.wire(reference.key, place)
+            for literal in key.literals:
+                try:
+                    convert(literal.value, port)
+                except ConversionError as error:
+                    message = f"{wire} does not fit {port.name!r} of {said}: {error}"
+                    self.context.problems.error("wrong-value", place, message, origin)
             return
+        type_ = self.part_of(key, reference.fields, place)
+        whole = Key(type_, key.place, either=() if reference.fields else key.either)
+        for wrong in whole.misfits(port.type) if type_ is not None else ():
+            wire = self.context.wire(".".join((reference.key, *reference.fields)), place)
+            wanted = f"{port.name!r} of {said} takes {label(port.type)}"
+            origin = f"it comes from line {wrong.place.line}"
+            message = f"{wire} is {label(wrong.type)}; {wanted}"
+            self.context.problems.error("wrong-type", place, message, origin)
+
+    def part_of(self, key: Key, parts: tuple[str, ...], place: Place) -> ValueType | None:
+        """The type of a part of a key's value; None, and reported, where there is none."""
         try:
-            type_ = part_type(key.type, reference.fields)
+            return part_type(key.type, parts)
         except KeyError as error:
             part, valid = error.args
             message = f"{label(key.type)} has no part {part!r}"
-            self.context.problems.error(
-                "unknown-part", place, message, valid_names(part, valid, "parts")
-            )
-            return
-        if not assignable(type_, port.type):
-            shown = ".".join((reference.key, *reference.fields))
-            wire = self.context.wire(shown, place)
-            message = f"{wire} is {label(type_)}; {port.name!r} of {said} takes {label(port.type)}"
-            self.context.problems.error("wrong-type", place, message, origin)
+            hint = valid_names(part, valid, "parts")
+            self.context.problems.error("unknown-part", place, message, hint)
+            return None
 
     def _demands(self, node: Node, name: str, value: PortValue, before: Known, port: Port) -> None:
         """Names and quantities that reach a port by wire or through a subtree."""
@@ -212,14 +220,16 @@ class KeyReads:
             demands |= self.demands.get((node.target or "", name), set())
             if isinstance(value, Literal):
                 self._check_demands(value, node.port_places.get(name, node.place), demands)
-        if not isinstance(value, Reference) or value.fields or value.scope is Scope.ROOT:
+        if not isinstance(value, Reference) or value.fields:
             return
-        key = before.get(value.key)
-        if key is not None and key.literal is not None:
+        root = value.scope is Scope.ROOT
+        key = self.root_keys.get(value.key) if root else before.get(value.key)
+        if key is not None and key.literals:
             if node.type != SUBTREE:  # the wire's own check has converted it with the port's unit
                 demands = {demand for demand in demands if demand[0] == "names"}
-            self._check_demands(key.literal, key.place, demands)
-        elif demands and value.key in self.tree.ports:
+            for literal in key.literals:
+                self._check_demands(literal, key.place, demands)
+        elif demands and value.key in self.tree.ports and not root:
             self.demands.setdefault((self.tree.name, value.key), set()).update(demands)
 
     def _check_demands(self, value: Literal, place: Place, demands: set[Demand]) -> None:

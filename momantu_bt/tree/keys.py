@@ -3,26 +3,35 @@
 from __future__ import annotations
 
 import typing
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, fields, is_dataclass
 from functools import cache
 from typing import Any, cast
 
 from momantu_bt.tree.model import Literal, Place
 from momantu_bt.tree.types import ValueType, assignable, without_none
+from momantu_bt.tree.values import natural
 
 
 @dataclass(frozen=True, slots=True)
 class Key:
     """A key that has a value.
 
-    type: of the value. literal: the value itself, where it is written in the file and nothing
-    has overwritten it. place: where it was written.
+    type: of the value. literals: all that the value can be, where those are written in the file
+    and nothing has overwritten it. place: where it was written. either: what it is on one way or
+    another here, where those have nothing in common.
     """
 
     type: ValueType
     place: Place
-    literal: Literal | None = None
+    literals: tuple[Literal, ...] = ()
+    either: tuple[Key, ...] = ()
+
+    def misfits(self, type_: ValueType) -> Iterator[Key]:
+        """What of it cannot be right where a value of a type is expected."""
+        for key in self.either or (self,):
+            if not assignable(key.type, type_):
+                yield key
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +89,13 @@ def _either(left: Key, right: Key) -> Key:
         return Key(right.type, right.place)
     if assignable(right.type, left.type):
         return Key(left.type, left.place)
-    return Key(object, left.place)
+    return Key(object, left.place, either=(*(left.either or (left,)), *(right.either or (right,))))
+
+
+def literal_type(value: Literal) -> ValueType:
+    """The type of a written value where no port says otherwise: a quantity is a number."""
+    plain = natural(value.value)
+    return type(plain) if isinstance(plain, bool | int | float | str) else object
 
 
 def part_type(type_: ValueType, parts: tuple[str, ...]) -> ValueType:

@@ -9,17 +9,17 @@ from __future__ import annotations
 import math
 import re
 from bisect import bisect_right
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
 from ruamel.yaml import YAML
 from ruamel.yaml import events as yaml_events
-from ruamel.yaml.error import MarkedYAMLError, StringMark
+from ruamel.yaml.error import MarkedYAMLError
 from ruamel.yaml.reader import ReaderError
 
 from momantu_bt.tree.model import Place
 from momantu_bt.tree.problems import Problem, lines_of
+from momantu_bt.tree.yaml_errors import in_our_words
 
 MAX_BYTES = 1_000_000
 MAX_DEPTH = 100
@@ -119,7 +119,7 @@ def compose_with_remarks(text: str, file: str) -> tuple[Raw, list[Remark]]:
         for event in reader.parse(text):
             builder.take(event)
     except MarkedYAMLError as error:
-        raise YamlSyntaxError(_in_our_words(error, text, file)) from None
+        raise YamlSyntaxError(in_our_words(error, text, file)) from None
     except ReaderError as error:
         before = lines_of(text[: error.position])
         line, column = len(before), len(before[-1]) + 1
@@ -291,8 +291,6 @@ class _Builder:
 _NULL = re.compile(r"|~|null|Null|NULL")
 _INT = re.compile(r"[-+]?[0-9]+|0o[0-7]+|0x[0-9a-fA-F]+")
 _FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
-_OPENED_QUOTE = re.compile(r"""[^"'#]*(?:[:-]\s+|[\[{,]\s*)(?:"(?:[^"\\]|\\.)*|'[^']*)""")
-"""A line in which a value begins with a quote that the line does not close."""
 _LARGEST_NUMBER = 40
 """Digits; longer ones stay text, as no port takes them."""
 
@@ -315,112 +313,3 @@ def resolve(text: str) -> Any:
 
 def _bound(place: Place, message: str) -> YamlSyntaxError:
     return YamlSyntaxError(Problem("too-large", message, place))
-
-
-def _in_our_words(error: MarkedYAMLError, text: str, file: str) -> Problem:
-    problem = str(error.problem or "")
-    context = str(error.context or "")
-    at = error.problem_mark or error.context_mark
-    for known, where, message, hint in _WORDS:
-        if known in problem or known in context:
-            mark = error.context_mark if where == "start" and error.context_mark else at
-            hint = _cause_above(text, at) or hint
-            if known.startswith("a block") and error.context_mark is not None:
-                begin = error.context_mark
-                hint += f"; line {begin.line + 1} begins it in column {begin.column + 1}"
-            return Problem("syntax", message, _mark(mark, file), hint)
-    if "cannot start any token" in problem:
-        return _bad_start(problem, _mark(at, file))
-    return Problem("syntax", f"this is not YAML: {problem or context}", _mark(at, file))
-
-
-def _cause_above(text: str, mark: StringMark | None) -> str:
-    """The hint where an earlier line is what is wrong: an open quote, or a `:` that is missing."""
-    above = lines_of(text)[: mark.line + 1 if mark is not None else 0]
-    for number, line in enumerate(above[:-1], 1):
-        opened = _OPENED_QUOTE.fullmatch(line)
-        if opened is not None:
-            return f"line {number} opens a quote that it does not close"
-    start = _start_of_text(above)
-    if start is None:
-        return ""
-    bare = re.fullmatch(r"\s*-\s+(\w+)\s*", above[start])
-    hint = (
-        f"write `{bare[1]}:` when more follows below it" if bare else "a `:` may be missing there"
-    )
-    return f"line {start + 1}: {hint}"
-
-
-def _start_of_text(lines: Sequence[str]) -> int | None:
-    """Index of the line without `:` that YAML reads on from into the last line."""
-    start, least = None, _indent(lines[-1]) if lines else 0
-    for index in range(len(lines) - 2, -1, -1):
-        line = lines[index]
-        if not line.strip() or line.lstrip().startswith("#") or re.search(r":(\s|$)", line):
-            break
-        if _indent(line) < least:
-            start, least = index, _indent(line)
-    return start
-
-
-def _indent(line: str) -> int:
-    return len(line) - len(line.lstrip(" "))
-
-
-def _bad_start(problem: str, place: Place) -> Problem:
-    if r"'\t'" in problem:
-        return Problem("syntax", "a tab", place, "indent with spaces")
-    character = problem.split("'")[1] if "'" in problem else "this"
-    return Problem(
-        "syntax", f"a value cannot begin with {character}", place, "put the whole value in quotes"
-    )
-
-
-_WORDS = (
-    (
-        "mapping values are not allowed",
-        "here",
-        "a `:` that does not belong here",
-        "check the indentation, or put the whole value in quotes",
-    ),
-    ("a quoted scalar", "start", "a quote that is never closed", "close it on the same line"),
-    ("a flow sequence", "start", "a `[` that is never closed, or a `,` that is missing", ""),
-    ("a flow mapping", "start", "a `{` that is never closed, or a `,` that is missing", ""),
-    (
-        "a block collection",
-        "here",
-        "this line is neither the list's next item nor further in",
-        "items of one list begin with `- ` in one column",
-    ),
-    (
-        "a block mapping",
-        "here",
-        "this line does not continue the mapping above",
-        "keys of one mapping begin in one column",
-    ),
-    (
-        "could not find expected ':'",
-        "start",
-        "a key without `:`",
-        "write `key: value`, or indent the line",
-    ),
-    (
-        "sequence entries are not allowed",
-        "here",
-        "a list cannot begin here",
-        "put it on a line of its own",
-    ),
-    (
-        "unknown escape character",
-        "here",
-        "a backslash that means nothing here",
-        "write it twice, or use 'single quotes'",
-    ),
-    ("<document start>", "here", "this follows the end of the file's value", "write one mapping"),
-    ("scanning an directive", "start", "a line cannot begin with `%`", "put it in quotes"),
-    ("scanning a directive", "start", "a line cannot begin with `%`", "put it in quotes"),
-)
-
-
-def _mark(mark: StringMark | None, file: str) -> Place:
-    return Place(file, 1, 1) if mark is None else Place(file, mark.line + 1, mark.column + 1)

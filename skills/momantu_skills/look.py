@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Literal
 
 from momantu_bt.frames import ODOM
 from momantu_bt.geometry import Array, Pose
@@ -14,7 +14,6 @@ AHEAD = 3.0
 """m before the base, at the camera's own height."""
 DOWN = 1.0
 """m before the base, on the floor: near enough to see what the base is about to meet."""
-DIRECTIONS = ("ahead", "down")
 
 
 class Look(Skill):
@@ -22,9 +21,11 @@ class Look(Skill):
 
     at: Pose | None = In(None, doc="look at the origin of this pose (odom or map)")
     surface: str | None = In(None, names="surface", doc="look at the middle of this surface")
-    direction: str | None = In(None, doc="look 'ahead', or 'down' at the floor ahead")
+    direction: Literal["ahead", "down"] | None = In(
+        None, doc="look ahead, or down at the floor ahead"
+    )
     failures = {
-        "BAD_TARGET": "not exactly one of at, surface and direction is given, or it is unknown",
+        "BAD_TARGET": "not exactly one of at, surface, direction is given; an unknown surface",
         "OUT_OF_VIEW": "the camera's carrier cannot turn that far, or is stuck",
     }
     uses = {CAMERA_CARRIER}
@@ -67,11 +68,6 @@ class Look(Skill):
         if self.direction == "ahead":
             height = float(self.frames.lookup(base, camera).position[2])
             point_base = (AHEAD, 0.0, height)
-        elif self.direction == "down":
-            point_base = (DOWN, 0.0, 0.0)
         else:
-            raise Failure(
-                "BAD_TARGET",
-                f"unknown direction {self.direction!r}; directions: {', '.join(DIRECTIONS)}",
-            )
+            point_base = (DOWN, 0.0, 0.0)
         return self.frames.lookup(ODOM, base).apply(point_base)

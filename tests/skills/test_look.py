@@ -76,7 +76,6 @@ def test_looking_where_it_already_looks_takes_no_time() -> None:
         ({}, "given: none"),
         ({"surface": "table_a", "direction": "down"}, "surface, direction"),
         ({"surface": "shelf"}, "table_a, table_b"),
-        ({"direction": "up"}, "ahead, down"),
     ],
 )
 def test_bad_targets_say_what_is_valid(inputs: dict[str, Any], says: str) -> None:

@@ -256,3 +256,86 @@ def test_for_each_gives_its_item(fine: Fine, expect: Expect) -> None:
     fine(main(count, "- for_each: {in: $stops, as: $stop, child: {navigate: {goal: $stop}}}"))
     body = main(count, "- for_each: {in: $stops, as: $stop, child: {navigate: {side: «$stop»}}}")
     expect("wrong-type", body, message="$stop is pose2d")
+
+
+def test_a_written_list_is_checked_item_by_item(fine: Fine, expect: Expect) -> None:
+    loop = "- for_each: {in: $stops, as: $stop, child: {navigate: {in_front_of: $stop}}}"
+    expect("unknown-place", main(loop, values="{stops: «[table_a, tabel_b]»}"), message="'tabel_b'")
+    fine(main(loop, values="{stops: [table_a, table_b]}"))
+    direct = loop.replace("$stops", "«[table_a, tabel_b]»")
+    expect("unknown-place", main(direct), message="'tabel_b'")
+
+
+def test_an_item_that_does_not_fit(expect: Expect) -> None:
+    loop = "- for_each: {in: $sides, as: $side, child: {navigate: {side: «$side»}}}"
+    expect("wrong-value", main(loop, values="{sides: [1, left]}"), message="'left'")
+
+
+def test_a_value_of_the_root_is_checked_where_a_wire_takes_it(fine: Fine, expect: Expect) -> None:
+    sub = "  Main: [Sub]\n  Sub: [{wait: «$@pause»}]\n"
+    expect("wrong-value", f"values: {{pause: 3 m}}\ntrees:\n{sub}", message="'3 m'")
+    fine(f"values: {{pause: 3 s}}\ntrees:\n{sub}".replace("«", "").replace("»", ""))
+
+
+def test_a_value_of_the_root_that_is_overwritten_may_be_anything(fine: Fine) -> None:
+    sub = "  Main: [{script: $pause := 3}, Sub]\n  Sub: [{wait: $@pause}]\n"
+    fine(f"values: {{pause: later}}\ntrees:\n{sub}")
+
+
+def test_a_part_that_the_robot_does_not_have(expect: Expect) -> None:
+    expect("unknown-part", main("- condition: «$@robot».stmp > 3"), hint="did you mean stamp?")
+
+
+def test_only_colon_equals_makes_a_key_of_the_root(fine: Fine, expect: Expect) -> None:
+    expect("unknown-key", main("- script: «$@cuont» = 3", values="{count: 0}"), hint="count?")
+    fine(main("- script: $@count := 3"))
+
+
+@pytest.mark.parametrize(
+    ("script", "values", "message"),
+    [
+        ("$name > 3", "{name: a}", "compares a text with a number"),
+        ("$n + $name > 3", "{n: 1, name: a}", "joins a number and a text"),
+        ("$name - $name == 'b'", "{name: a}", "does not work on texts"),
+        ("-$name > 3", "{name: a}", "needs a number, not a text"),
+        ("$limit > 3", "{limit: 3 sc}", "compares a text with a number"),
+        ("$list > 3", "{list: [1]}", None),
+        ("$n == 3 ? $n > 2 : $n > 1", "{n: 1}", None),
+        ("$limit > 3", "{limit: 3 s}", None),
+        ("$name == 'b'", "{name: a}", None),
+    ],
+)
+def test_types_in_scripts(
+    check: Callable[[str], list[Problem]], script: str, values: str, message: str | None
+) -> None:
+    header = "momantu_bt: 1\nworld: rooms\nmain: Main\n"
+    found = check(header + main(f'- condition: "{script}"', values=values))
+    if message is None:
+        assert found == []
+    else:
+        assert [problem.code for problem in found] == ["wrong-type"]
+        assert message in found[0].message
+
+
+def test_an_output_that_is_of_the_wrong_type_on_one_way(fine: Fine, expect: Expect) -> None:
+    sub = """trees:
+  Main: [{Sub: {good: $good}}, {condition: $good}]
+  Sub:
+    outputs: {good: «bool»}
+    handle:
+      try: {set: {key: $good, value: yes}}
+      catch: {any: {set: {key: $good, value: false}}}
+"""
+    expect("wrong-type", sub, message="but text comes", hint="line 9")
+    fine(sub.replace("yes", "true").replace("«", "").replace("»", ""))
+
+
+def test_a_wire_to_what_is_of_the_wrong_type_on_one_way(expect: Expect) -> None:
+    body = main(
+        "- if: $n > 1",
+        "  then: {set: {key: $side, value: left}}",
+        "  else: {set: {key: $side, value: 2}}",
+        "- navigate: {in_front_of: table_a, side: «$side»}",
+        values="{n: 1}",
+    )
+    expect("wrong-type", body, message="$side is text", hint="line 8")

@@ -1,0 +1,144 @@
+"""What ruamel says of a text that is not YAML, in words that help the one who wrote it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from ruamel.yaml.error import MarkedYAMLError, StringMark
+
+from momantu_bt.tree.model import Place
+from momantu_bt.tree.problems import Problem, lines_of
+
+_OPENED_QUOTE = re.compile(r"""[^"'#]*(?:[:-]\s+|[\[{,]\s*)(?:"(?:[^"\\]|\\.)*|'[^']*)""")
+"""A line in which a value begins with a quote that the line does not close."""
+
+
+def in_our_words(error: MarkedYAMLError, text: str, file: str) -> Problem:
+    """The one problem of a text that is not YAML."""
+    problem = str(error.problem or "")
+    context = str(error.context or "")
+    at = error.problem_mark or error.context_mark
+    for known, where, message, hint in _WORDS:
+        if known in problem or known in context:
+            mark = error.context_mark if where == "start" and error.context_mark else at
+            hint = _cause_above(text, at) or hint
+            if known.startswith("a block") and error.context_mark is not None:
+                hint += _indented_above(text, error.context_mark, at)
+            return Problem("syntax", message, _mark(mark, file), hint)
+    if "cannot start any token" in problem:
+        return _bad_start(problem, _mark(at, file))
+    return Problem("syntax", f"this is not YAML: {problem or context}", _mark(at, file))
+
+
+def _indented_above(text: str, begin: StringMark, at: StringMark | None) -> str:
+    """Where the mapping or list begins, and which lines above may be indented wrongly.
+
+    The line would fit if the one that it stands below were further out or in, or that one's first
+    line were.
+    """
+    said = f"; line {begin.line + 1} begins it in column {begin.column + 1}"
+    lines = lines_of(text)
+    if at is None or at.line >= len(lines):
+        return said
+    indent = _indent(lines[at.line])
+    above = [
+        n for n in range(at.line) if lines[n].strip() and not lines[n].lstrip().startswith("#")
+    ]
+    outer = next((n for n in reversed(above) if _indent(lines[n]) < indent), None)
+    inner = next((n for n in above if outer is not None and n > outer), None)
+    if outer is None or inner is None or _indent(lines[inner]) == indent:
+        return said
+    return f"{said}; or the indentation of line {outer + 1} or of line {inner + 1} is wrong"
+
+
+def _cause_above(text: str, mark: StringMark | None) -> str:
+    """The hint where an earlier line is what is wrong: an open quote, or a `:` that is missing."""
+    above = lines_of(text)[: mark.line + 1 if mark is not None else 0]
+    for number, line in enumerate(above[:-1], 1):
+        opened = _OPENED_QUOTE.fullmatch(line)
+        if opened is not None:
+            return f"line {number} opens a quote that it does not close"
+    start = _start_of_text(above)
+    if start is None:
+        return ""
+    bare = re.fullmatch(r"\s*-\s+(\w+)\s*", above[start])
+    hint = (
+        f"write `{bare[1]}:` when more follows below it" if bare else "a `:` may be missing there"
+    )
+    return f"line {start + 1}: {hint}"
+
+
+def _start_of_text(lines: Sequence[str]) -> int | None:
+    """Index of the line without `:` that YAML reads on from into the last line."""
+    start, least = None, _indent(lines[-1]) if lines else 0
+    for index in range(len(lines) - 2, -1, -1):
+        line = lines[index]
+        if not line.strip() or line.lstrip().startswith("#") or re.search(r":(\s|$)", line):
+            break
+        if _indent(line) < least:
+            start, least = index, _indent(line)
+    return start
+
+
+def _indent(line: str) -> int:
+    return len(line) - len(line.lstrip(" "))
+
+
+def _bad_start(problem: str, place: Place) -> Problem:
+    if r"'\t'" in problem:
+        return Problem("syntax", "a tab", place, "indent with spaces")
+    character = problem.split("'")[1] if "'" in problem else "this"
+    return Problem(
+        "syntax", f"a value cannot begin with {character}", place, "put the whole value in quotes"
+    )
+
+
+_WORDS = (
+    (
+        "mapping values are not allowed",
+        "here",
+        "a `:` that does not belong here",
+        "check the indentation, or put the whole value in quotes",
+    ),
+    ("a quoted scalar", "start", "a quote that is never closed", "close it on the same line"),
+    ("a flow sequence", "start", "a `[` that is never closed, or a `,` that is missing", ""),
+    ("a flow mapping", "start", "a `{` that is never closed, or a `,` that is missing", ""),
+    (
+        "a block collection",
+        "here",
+        "this line is neither the list's next item nor further in",
+        "items of one list begin with `- ` in one column",
+    ),
+    (
+        "a block mapping",
+        "here",
+        "this line does not continue the mapping above",
+        "keys of one mapping begin in one column",
+    ),
+    (
+        "could not find expected ':'",
+        "start",
+        "a key without `:`",
+        "write `key: value`, or indent the line",
+    ),
+    (
+        "sequence entries are not allowed",
+        "here",
+        "a list cannot begin here",
+        "put it on a line of its own",
+    ),
+    (
+        "unknown escape character",
+        "here",
+        "a backslash that means nothing here",
+        "write it twice, or use 'single quotes'",
+    ),
+    ("<document start>", "here", "this follows the end of the file's value", "write one mapping"),
+    ("scanning an directive", "start", "a line cannot begin with `%`", "put it in quotes"),
+    ("scanning a directive", "start", "a line cannot begin with `%`", "put it in quotes"),
+)
+
+
+def _mark(mark: StringMark | None, file: str) -> Place:
+    return Place(file, 1, 1) if mark is None else Place(file, mark.line + 1, mark.column + 1)
