@@ -77,7 +77,10 @@ def compute(function: Callable[[], T], budget: float) -> Generator[Compute, Any,
 
 @dataclass(frozen=True, slots=True)
 class Port:
-    """One port as declared. type: the resolved annotation. names: see `NAMES`, or None."""
+    """One port as declared. type: the resolved annotation. names: see `NAMES`, or None.
+
+    least, most: bounds of a number, in the port's unit. endless: -1 is valid besides, for no end.
+    """
 
     name: str
     direction: str
@@ -87,6 +90,28 @@ class Port:
     unit: str | None = None
     live: bool = False
     names: str | None = None
+    least: float | None = None
+    most: float | None = None
+    endless: bool = False
+
+    @property
+    def bounded(self) -> bool:
+        """Whether a number may be too small or too large."""
+        return self.least is not None or self.most is not None
+
+    def allows(self, number: float) -> bool:
+        """Whether a number is within the bounds."""
+        if self.endless and number == -1:
+            return True
+        above = self.least is None or number >= self.least
+        return above and (self.most is None or number <= self.most)
+
+    @property
+    def bounds(self) -> str:
+        """The bounds in words: "at least 1, or -1 for no end"; empty where there are none."""
+        words = [] if self.least is None else [f"at least {self.least:g}"]
+        words += [] if self.most is None else [f"at most {self.most:g}"]
+        return " and ".join(words) + (", or -1 for no end" if self.endless else "")
 
     @property
     def required(self) -> bool:
@@ -105,11 +130,15 @@ class _PortDescriptor:
         unit: str | None = None,
         live: bool = False,
         names: str | None = None,
+        least: float | None = None,
+        most: float | None = None,
     ) -> None:
         if names is not None and names not in NAMES:
             raise TypeError(f"names={names!r}; valid: {', '.join(NAMES)}")
+        if least is not None and most is not None and least > most:
+            raise TypeError(f"least={least:g} is more than most={most:g}")
         self.default, self.doc, self.unit, self.live = default, doc, unit, live
-        self.names = names
+        self.names, self.least, self.most = names, least, most
         self.name = ""
 
     def __set_name__(self, owner: type, name: str) -> None:
@@ -155,12 +184,17 @@ def In(
     unit: str | None = None,
     live: bool = False,
     names: str | None = None,
+    least: float | None = None,
+    most: float | None = None,
 ) -> Any:
     """Declare an input. Without a default it is required. live: read again on each tick.
 
     unit: SI unit that numbers in trees are converted to. names: see `NAMES`.
+    least, most: bounds of a number, in `unit`; a tree that gives another one is wrong.
     """
-    return _InDescriptor(default, doc=doc, unit=unit, live=live, names=names)
+    return _InDescriptor(
+        default, doc=doc, unit=unit, live=live, names=names, least=least, most=most
+    )
 
 
 def Out(*, doc: str, unit: str | None = None, live: bool = False) -> Any:
@@ -178,11 +212,13 @@ class Skill:
 
     failures: each code this skill raises, with the sentence that explains it.
     uses: actuators it commands, or CAMERA_CARRIER.
+    one_of: groups of inputs with defaults; of each group a tree gives exactly one.
     A fresh instance is made for each start; the engine sets what stands below `run`.
     """
 
     failures: ClassVar[Mapping[str, str]] = {}
     uses: ClassVar[frozenset[str] | set[str]] = frozenset()
+    one_of: ClassVar[tuple[tuple[str, ...], ...]] = ()
 
     ports: ClassVar[Mapping[str, Port]] = {}
     needs: ClassVar[tuple[str, ...]] = ()
@@ -195,6 +231,10 @@ class Skill:
         wrong = [code for code in cls.failures if not CODE.fullmatch(code)]
         if wrong:
             raise TypeError(f"{cls.__name__}.failures: {', '.join(wrong)}: not UPPER_CASE words")
+        optional = [p.name for p in cls.ports.values() if p.direction == "in" and not p.required]
+        wrong = [name for group in cls.one_of for name in group if name not in optional]
+        if wrong:
+            raise TypeError(f"{cls.__name__}.one_of: {', '.join(wrong)}: no input with a default")
 
     def __init__(self) -> None:
         self.port_values: dict[str, Any] = {}
@@ -235,7 +275,7 @@ def _declared_ports(cls: type) -> dict[str, Port]:
                 raise TypeError(
                     f"port {cls.__name__}.{name}: {error}; its type must be imported at run time"
                 ) from None
-        ports[name] = Port(
+        port = Port(
             name,
             value.direction,
             annotation,
@@ -244,5 +284,10 @@ def _declared_ports(cls: type) -> dict[str, Port]:
             value.unit,
             value.live,
             value.names,
+            value.least,
+            value.most,
         )
+        if isinstance(port.default, int | float) and not port.allows(port.default):
+            raise TypeError(f"port {cls.__name__}.{name}: the default is not {port.bounds}")
+        ports[name] = port
     return ports

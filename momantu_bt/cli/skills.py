@@ -80,6 +80,8 @@ def _kind(port: Port) -> str:
         words += f", a {port.names.replace('_', ' ')}"
     if port.unit is not None:
         words += f" in {port.unit}"
+    if port.bounds:
+        words += f", {port.bounds}"
     if port.direction == "out":
         return words
     if port.default is MISSING:
@@ -98,6 +100,8 @@ def _plain(name: str, skill: type[Skill]) -> dict[str, Any]:
                 "type": label(port.type),
                 "unit": port.unit,
                 "names": port.names,
+                "least": port.least,
+                "most": port.most,
                 "required": port.required,
                 "default": None if port.default is MISSING else str(port.default),
                 "doc": port.doc,
@@ -106,5 +110,6 @@ def _plain(name: str, skill: type[Skill]) -> dict[str, Any]:
         ],
         "uses": sorted(skill.uses),
         "needs": list(skill.needs),
+        "one_of": [list(group) for group in skill.one_of],
         "failures": dict(skill.failures),
     }

@@ -116,9 +116,14 @@ def _child_hint(context: Context, node: Node) -> str:
 
 def _check_one_of(context: Context, node: Node, signature: Signature) -> None:
     """Of some inputs exactly one is given, such as a time in seconds or in milliseconds."""
-    for group in signature.spec.one_of if signature.spec is not None else ():
-        given = [name for name in group if name in node.port_places or name in node.ports]
-        if not given:
+    for group in signature.one_of:
+        nothing = [name for name in group if node.ports.get(name) == Literal(None)]
+        named = [name for name in group if name in node.port_places or name in node.ports]
+        given = [name for name in named if name not in nothing]
+        if not given and signature.skill is not None:
+            message = f"{signature.said} needs exactly one of the inputs {', '.join(group)}"
+            context.problems.error("missing-input", node.place, message)
+        elif not given:
             _report_missing(context, node, signature.ports[group[0]], signature)
         for name in given[1:]:
             message = f"{signature.said} takes {given[0]!r} or {name!r}, not both"

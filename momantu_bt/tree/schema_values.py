@@ -38,6 +38,7 @@ def value_schema(port: Port, names: Names) -> dict[str, Any]:
 
 def _about(port: Port) -> str:
     kind = label(port.type) + (f" in {port.unit}" if port.unit else "")
+    kind += f", {port.bounds}" if port.bounds else ""
     return f"{port.doc} ({kind})" if port.doc else kind
 
 

@@ -33,6 +33,12 @@ class Signature:
     spec: NodeSpec | None = None
     skill: type[Skill] | None = None
 
+    @property
+    def one_of(self) -> tuple[tuple[str, ...], ...]:
+        """Groups of inputs of which exactly one is given."""
+        owner = self.spec or self.skill
+        return () if owner is None else owner.one_of
+
     def inputs(self) -> list[str]:
         """Names of its inputs."""
         return [name for name, port in self.ports.items() if port.direction == "in"]

@@ -43,9 +43,21 @@ def convert(value: Any, port: Port) -> Any:
     Numbers with units become SI numbers, mappings become the port's dataclass, lists tuples.
 
     Raises:
-        ConversionError: it does not fit.
+        ConversionError: it does not fit, or a number is out of the port's bounds.
     """
-    return _convert(value, port.type, port.unit)
+    found = _convert(value, port.type, port.unit)
+    if port.bounded:
+        _check_bounds(value, found, port)
+    return found
+
+
+def _check_bounds(value: Any, found: Any, port: Port) -> None:
+    """Each number of a list by itself; what is no number has no bounds."""
+    for number in found if isinstance(found, tuple) else (found,):
+        if isinstance(number, int | float) and not port.allows(number):
+            shown = value if isinstance(value, str) else _shown(number)
+            unit = f" {port.unit}" if port.unit is not None else ""
+            raise ConversionError(f"{shown} is out of range; expected {port.bounds}{unit}")
 
 
 def natural(value: Any) -> Any:

@@ -32,7 +32,7 @@ class DetectObject(Skill):
 
     object: ObjectClass = In(doc="what to find: its category and the sizes that are known")
     on: str = In(names="surface", doc="the surface that it stands on")
-    views: int = In(2, doc="from how many angles to see it before it counts as measured")
+    views: int = In(2, least=1, doc="from how many angles to see it before it counts as measured")
     found: DetectedObject = Out(doc="the best match; pose in odom, stamped")
     failures = {
         "OBJECT_NOT_FOUND": "nothing on the surface is the asked thing; data lists what is there",

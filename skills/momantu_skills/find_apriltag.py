@@ -28,8 +28,8 @@ little, and sees past what hid the tag."""
 class FindAprilTag(Skill):
     """Look over a surface (or around) until a tag36h11 tag is seen, and measure its pose."""
 
-    tag_id: int = In(doc="which tag")
-    edge: float = In(unit="m", doc="length of the black square's side")
+    tag_id: int = In(least=0, doc="which tag")
+    edge: float = In(unit="m", least=0.001, doc="length of the black square's side")
     on: str | None = In(None, names="surface", doc="surface that it lies on; None: look around")
     tag_pose: Pose = Out(doc="centre of the tag, z out of it, x to its right; odom, stamped")
     tag_sigma: float = Out(unit="m", doc="standard uncertainty of its position")

@@ -29,6 +29,7 @@ class Look(Skill):
         "OUT_OF_VIEW": "the camera's carrier cannot turn that far, or is stuck",
     }
     uses = {CAMERA_CARRIER}
+    one_of = (("at", "surface", "direction"),)
 
     @classmethod
     def rehearsal(cls, seed: int) -> Mapping[str, Any]:

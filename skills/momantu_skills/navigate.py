@@ -23,9 +23,11 @@ class Navigate(Skill):
     in_front_of: str | None = In(None, names="place", doc="a place, or a surface to look over")
     goal: Pose2D | None = In(None, doc="a pose in the map")
     within_reach_of: Pose | None = In(None, doc="stand where the hand reaches this pose")
-    side: int = In(0, doc="0: the best stand; 1, 2, …: the next best, to try from elsewhere")
-    tolerance: float = In(0.05, unit="m", doc="distance from the stand at the end")
-    angle_tolerance: float = In(0.05, unit="rad", doc="heading off the stand's at the end")
+    side: int = In(
+        0, least=0, doc="0: the best stand; 1, 2, …: the next best, to try from elsewhere"
+    )
+    tolerance: float = In(0.05, unit="m", least=0, doc="distance from the stand at the end")
+    angle_tolerance: float = In(0.05, unit="rad", least=0, doc="heading off the stand's at the end")
     recovery: bool = In(True, doc="when blocked: look again, back up, turn, and retry")
 
     failures: ClassVar = {
@@ -37,6 +39,7 @@ class Navigate(Skill):
         "NOT_LOCALIZED": "the robot does not know well enough where it is",
     }
     uses: ClassVar = {"base", CAMERA_CARRIER}
+    one_of: ClassVar = (("in_front_of", "goal", "within_reach_of"),)
 
     localization: Localization = Needs()
     planning_scene: PlanningScene = Needs()

@@ -34,7 +34,7 @@ class Pick(Skill):
     """
 
     object: DetectedObject = In(doc="what to grasp, as detected; pose in odom, not old")
-    lift: float = In(0.12, unit="m", doc="how far it is lifted straight up")
+    lift: float = In(0.12, unit="m", least=0, doc="how far it is lifted straight up")
     failures = {
         "STALE_POSE": "the pose is too old, or something was touched since it was seen",
         "NOTHING_THERE": "the camera sees nothing where the object should stand",

@@ -62,7 +62,7 @@ class RateController(_Paced):
     def begin(self) -> None:
         """The time begins; `hz` is read."""
         self.since = self.context.now
-        self.period = 1.0 / positive(self.inputs, "hz")
+        self.period = 1.0 / self.inputs["hz"]
 
     def is_due(self) -> bool:
         """Whether the period is over."""
@@ -133,11 +133,11 @@ class SpeedController(_Paced):
         return True
 
     def _restart(self) -> None:
-        self.period = 1.0 / positive(self.inputs, "max_rate")
+        self.period = 1.0 / self.inputs["max_rate"]
         self.since = self.context.now
 
     def _rate(self) -> float:
-        slow, fast = positive(self.inputs, "min_rate"), positive(self.inputs, "max_rate")
+        slow, fast = self.inputs["min_rate"], self.inputs["max_rate"]
         lowest, highest = self.inputs["min_speed"], self.inputs["max_speed"]
         if highest <= lowest:
             raise Failure(WRONG_TYPE, f"max_speed is {highest:g}, not above min_speed {lowest:g}")
@@ -164,11 +164,3 @@ class SingleTrigger(Decorator):
         status = self.child.execute()
         self.triggered = status.completed
         return self.pass_on(status)
-
-
-def positive(inputs: Inputs, name: str) -> float:
-    """An input that must be more than 0; Failure WRONG_TYPE where it is not."""
-    value: float = inputs[name]
-    if value <= 0.0:
-        raise Failure(WRONG_TYPE, f"{name} is {value:g}; expected more than 0", port=name)
-    return value

@@ -97,7 +97,7 @@ _RECOVERY = (
         ("recover",),
         Kind.CONTROL,
         "Runs `try`; when it fails runs the handler of its code, then `try` again.",
-        by_name(input_port("attempts", int, "how often `try` runs at most")),
+        by_name(input_port("attempts", int, "how often `try` runs at most", least=1)),
         children=(1, 1),
         positions=("try",),
         handlers=True,

@@ -23,14 +23,14 @@ _PLAIN = (
         "RetryUntilSuccessful",
         "retry",
         "Runs the child again when it fails.",
-        input_port("attempts", int, "tries in all; -1 is without end"),
+        input_port("attempts", int, "tries in all; -1 is without end", least=1, endless=True),
         xml={"attempts": "num_attempts"},
     ),
     decorator(
         "Repeat",
         "repeat",
         "Runs the child again when it succeeds.",
-        input_port("cycles", int, "runs in all; -1 is without end"),
+        input_port("cycles", int, "runs in all; -1 is without end", least=1, endless=True),
         xml={"cycles": "num_cycles"},
     ),
     decorator(

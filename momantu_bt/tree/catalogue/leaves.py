@@ -82,7 +82,7 @@ LEAVES = (
             "SUCCESS",
         ),
         input_port("return_status_script", ScriptText, "gives the status instead", ""),
-        input_port("async_delay", float, "how long it runs before its end", 0.0, "s"),
+        input_port("async_delay", float, "how long it runs before its end", 0.0, "s", least=0),
         input_port("code", CodeText, "what it fails with", FAILED),
         input_port("message", str, "the failure's sentence", "the test prescribes a failure"),
         input_port("success_script", ScriptText, "runs at its end with SUCCESS", ""),

@@ -13,13 +13,17 @@ _GOALS = (
     input_port("goals", object, "the goals that are watched; $goals unless given", None),
 )
 _GOAL_NAMES = ("goal", "goals")
+SLOWEST = 0.001
+"""Hz: the least of a rate, which one is divided by."""
 
 _CONTROLS = (
     control(
         "RecoveryNode",
         "recovery_node",
         "Runs the first child; when it fails the second one, and then the first one again.",
-        input_port("number_of_retries", int, "how often the first child runs once more", 1),
+        input_port(
+            "number_of_retries", int, "how often the first child runs once more", 1, least=0
+        ),
         least=2,
         most=2,
     ),
@@ -55,13 +59,13 @@ _DECORATORS = (
         "RateController",
         "rate_controller",
         "Starts the child at most so often.",
-        input_port("hz", float, "starts per second", 10.0, "Hz"),
+        input_port("hz", float, "starts per second", 10.0, "Hz", least=SLOWEST),
     ),
     decorator(
         "DistanceController",
         "distance_controller",
         "Starts the child each time the robot has come so far.",
-        input_port("distance", float, "how far", 1.0, "m"),
+        input_port("distance", float, "how far", 1.0, "m", least=0),
         input_port("global_frame", str, "where it is measured", "odom"),
         input_port("robot_base_frame", str | None, "what is measured; the robot's base", None),
     ),
@@ -69,10 +73,14 @@ _DECORATORS = (
         "SpeedController",
         "speed_controller",
         "Starts the child the more often the faster the robot drives, and at a new goal.",
-        input_port("min_rate", float, "starts per second at the lowest speed", 0.1, "Hz"),
-        input_port("max_rate", float, "starts per second at the highest speed", 1.0, "Hz"),
-        input_port("min_speed", float, "the lowest speed", 0.0, "m/s"),
-        input_port("max_speed", float, "the highest speed", 0.5, "m/s"),
+        input_port(
+            "min_rate", float, "starts per second at the lowest speed", 0.1, "Hz", least=SLOWEST
+        ),
+        input_port(
+            "max_rate", float, "starts per second at the highest speed", 1.0, "Hz", least=SLOWEST
+        ),
+        input_port("min_speed", float, "the lowest speed", 0.0, "m/s", least=0),
+        input_port("max_speed", float, "the highest speed", 0.5, "m/s", least=0),
         *_GOALS,
         may_be_empty=_GOAL_NAMES,
     ),
@@ -103,8 +111,8 @@ _DECORATORS = (
         "path_longer_on_approach",
         "Runs the child when a new path is much longer than the last, near its end.",
         input_port("path", tuple, "the path: a list of poses"),
-        input_port("prox_len", float, "how near: the length of the last path", 3.0, "m"),
-        input_port("length_factor", float, "how much longer", 2.0),
+        input_port("prox_len", float, "how near: the length of the last path", 3.0, "m", least=0),
+        input_port("length_factor", float, "how much longer", 2.0, least=0),
     ),
 )
 

@@ -76,17 +76,25 @@ def output_port(name: str, type_: Any, doc: str, default: Any = MISSING) -> Port
 
 
 def input_port(
-    name: str, type_: Any, doc: str, default: Any = MISSING, unit: str | None = None
+    name: str,
+    type_: Any,
+    doc: str,
+    default: Any = MISSING,
+    unit: str | None = None,
+    *,
+    least: float | None = None,
+    most: float | None = None,
+    endless: bool = False,
 ) -> Port:
-    """An input of a built-in node."""
-    return Port(name, "in", type_, doc, default, unit)
+    """An input of a built-in node. least, most, endless: see `Port`."""
+    return Port(name, "in", type_, doc, default, unit, least=least, most=most, endless=endless)
 
 
 def time_ports(doc: str) -> tuple[Port, Port]:
     """A time in either spelling, ours and BehaviorTree.CPP's; exactly one is given."""
     return (
-        input_port("duration", float, doc, None, unit="s"),
-        input_port("msec", int, f"{doc}, in milliseconds", None),
+        input_port("duration", float, doc, None, unit="s", least=0),
+        input_port("msec", int, f"{doc}, in milliseconds", None, least=0),
     )
 
 
