@@ -80,6 +80,8 @@ def _tree() -> Schema:
     header = {
         "inputs": {"$ref": "#/$defs/declarations"},
         "outputs": {"$ref": "#/$defs/declarations"},
+        "inouts": {"$ref": "#/$defs/declarations"},
+        "open": {"type": "boolean", "description": "takes any key as a port"},
         "doc": {"type": "string"},
     }
     return {"anyOf": [_BARE, _NODES, {"allOf": [{"properties": header}, _MAPPING]}]}

@@ -1,4 +1,4 @@
-"""The language's page: its examples are right, its tables complete, its tests exist."""
+"""The language's pages: their examples are right, tables complete, the tests they name exist."""
 
 import ast
 import re
@@ -13,13 +13,14 @@ from momantu_bt.tree.problems import Problem
 
 ROOT = Path(__file__).parents[3]
 PAGE = (ROOT / "docs" / "tree_language.md").read_text(encoding="utf-8")
-EXAMPLES = re.findall(r"```yaml\n(.*?)```", PAGE, re.DOTALL)
+XML_PAGE = (ROOT / "docs" / "xml.md").read_text(encoding="utf-8")
+EXAMPLES = re.findall(r"```(?:yaml|xml)\n(.*?)```", PAGE + XML_PAGE, re.DOTALL)
 SOURCES = [*(ROOT / "momantu_bt" / "tree").rglob("*.py")]
 
 
 @pytest.mark.parametrize("example", EXAMPLES)
 def test_examples_have_no_errors(check: Callable[[str], list[Problem]], example: str) -> None:
-    if not example.startswith("momantu_bt"):
+    if not example.startswith(("momantu_bt", "<root")):
         indented = "".join(f"    {line}\n" for line in example.splitlines())
         example = f"momantu_bt: 1\nworld: rooms\ntrees:\n  Main:\n{indented}"
     assert check(example) == []
@@ -32,8 +33,9 @@ def test_the_table_has_every_built_in_node() -> None:
     assert shown == {spec.type: (spec.yaml[0], set(spec.ports)) for spec in BUILT_IN.values()}
 
 
-def test_every_test_that_a_rule_names_exists() -> None:
-    named = re.findall(r"\b(test_\w+): ((?:test_\w+,?\s*)+)", PAGE)
+@pytest.mark.parametrize("page", [PAGE, XML_PAGE], ids=["tree_language", "xml"])
+def test_every_test_that_a_rule_names_exists(page: str) -> None:
+    named = re.findall(r"\b(test_\w+):\s+((?:test_\w+,?\s*)+)", page)
     assert len(named) > 30
     for file, tests in named:
         text = (Path(__file__).parent / f"{file}.py").read_text(encoding="utf-8")
