@@ -11,6 +11,7 @@ from momantu_bt.engine.node import TreeNode
 from momantu_bt.engine.nodes.asking import Ask, Confirm
 from momantu_bt.engine.nodes.recovery import Recover
 from momantu_bt.engine.nodes.skill import SkillLeaf
+from momantu_bt.engine.nodes.substituted import Substituted
 from momantu_bt.engine.nodes.subtree import SubTree
 from momantu_bt.engine.nodes.timing import Sleep
 from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, Status
@@ -18,7 +19,7 @@ from momantu_bt.failure import FailureValue
 from momantu_bt.record.chain import chain_text
 
 _WORDS = {"RUNNING": "starts", "SUCCESS": "done", "IDLE": "halted", "SKIPPED": "skipped"}
-_TOLD = (SkillLeaf, SubTree, Sleep, Ask, Confirm)
+_TOLD = (SkillLeaf, SubTree, Sleep, Ask, Confirm, Substituted)
 
 
 class ChangeLines:

@@ -47,6 +47,9 @@ def run(
     referee: Annotated[
         bool, typer.Option("--referee/--no-referee", help="Whether somebody judges the run.")
     ] = True,
+    substitute: Annotated[
+        Path | None, typer.Option(help="A YAML file that says what nodes do instead, for tests.")
+    ] = None,
     unattended: Annotated[
         bool, typer.Option("--unattended", help="Nobody answers: questions take their default.")
     ] = False,
@@ -68,7 +71,7 @@ def run(
     terminal = Terminal() if is_interactive() and not unattended else None
     wanted = _Outputs(video, view, view_port, record, report, quiet, terminal)
     return _guarded(
-        lambda: _run(tree, world, robot, seed, set_ or [], values, wanted)(
+        lambda: _run(tree, world, robot, seed, set_ or [], values, substitute, wanted)(
             max_time=max_time, realtime=realtime, referee=referee
         )
     )
@@ -113,6 +116,7 @@ def _run(
     seed: int,
     settings: Sequence[str],
     values: Path | None,
+    substitute: Path | None,
     wanted: _Outputs,
 ) -> Callable[..., Report]:
     """Check what was asked for; the result starts the run and says how it ended."""
@@ -120,16 +124,27 @@ def _run(
     from momantu_bt.record.log import REPORT
     from momantu_bt.tree.load import load
     from momantu_bt.tree.registry import Registry
+    from momantu_bt.tree.substitution import Substitution, load_substitution
 
     registry = Registry.installed()
     board = _values(settings, values)
     checked = load(tree, registry, world=world, robot=robot, values=board)
+    replacing = Substitution()
+    if substitute is not None:
+        replacing = load_substitution(substitute, checked.document, registry, world)
     _check_outputs(wanted)
 
     def start(**how: Any) -> Report:
         if wanted.terminal is not None:
             how["person"] = wanted.terminal
-        options = Options(world=world, robot=robot, seed=seed, remark=_complain, **how)
+        options = Options(
+            world=world,
+            robot=robot,
+            seed=seed,
+            remark=_complain,
+            substitution=replacing,
+            **how,
+        )
         result = launch(checked.document, options, registry, lambda run: _watch(run, wanted))
         paths = [wanted.report] if wanted.report is not None else []
         if wanted.record is not None:

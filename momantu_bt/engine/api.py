@@ -13,6 +13,7 @@ from momantu_bt.record.report import Report
 from momantu_bt.robot import RobotDescription
 from momantu_bt.tree.load import load
 from momantu_bt.tree.registry import Registry
+from momantu_bt.tree.substitution import Substitution, load_substitution
 from momantu_bt.world import Site, World
 
 
@@ -30,6 +31,7 @@ def run(
     registry: Registry | None = None,
     watch: Watch | None = None,
     answers: Iterable[str | bool] = (),
+    substitute: str | Path | None = None,
 ) -> Report:
     """Run a tree file, or a bundled tree by name.
 
@@ -37,7 +39,8 @@ def run(
     own. values: keys of the root's board, as `--set` gives them. max_time: simulated seconds.
     report: where to write it as JSON. registry: what trees can name; everything installed
     unless given. watch: makes observers of the run. answers: what `ask` and `confirm` are told,
-    in turn; afterwards nobody answers.
+    in turn; afterwards nobody answers. substitute: a file of rules that say what nodes do
+    instead of themselves.
 
     Raises:
         TreeNotFound: there is no such tree.
@@ -50,6 +53,9 @@ def run(
     if world is not None and not isinstance(world, str):
         having = with_world(having, world)
     checked = load(str(tree), having, world=named, robot=robot, values=values)
+    replacing = Substitution()
+    if substitute is not None:
+        replacing = load_substitution(Path(substitute), checked.document, having, named)
     options = Options(
         world=named,
         robot=robot,
@@ -59,6 +65,7 @@ def run(
         referee=referee,
         keep_world=named is not world,
         person=Scripted(answers),
+        substitution=replacing,
     )
     result = launch(checked.document, options, having, watch)
     if report is not None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, TypeAlias, TypeGuard
 
 from momantu_bt.engine.blackboard import Board, Cell
@@ -13,11 +13,13 @@ from momantu_bt.engine.makers import MAKERS, BuildError, Parts
 from momantu_bt.engine.node import TreeNode
 from momantu_bt.engine.nodes import guards, recovery
 from momantu_bt.engine.nodes.skill import SkillLeaf
+from momantu_bt.engine.nodes.substituted import Substituted
 from momantu_bt.engine.nodes.subtree import SubTree
 from momantu_bt.engine.ports import Reader, cell_of, inputs_of, outputs_of, reader
 from momantu_bt.skill import Port, Skill
 from momantu_bt.tree.catalogue import AUTOREMAP, BUILT_IN, SUBTREE
 from momantu_bt.tree.model import Document, Literal, Node, PortValue, Reference, Tree
+from momantu_bt.tree.substitution import Substitution, reached
 from momantu_bt.tree.values import ConversionError, port_of
 
 MAX_DEPTH = 250
@@ -36,19 +38,24 @@ class Built:
 
 
 def build(
-    document: Document, context: RunContext, skill_of: SkillFinder, board: Board | None = None
+    document: Document,
+    context: RunContext,
+    skill_of: SkillFinder,
+    board: Board | None = None,
+    substitution: Substitution | None = None,
 ) -> Built:
     """Make the nodes of a document's main tree, subtrees included.
 
     skill_of: a skill's class by name; PluginError passes through. board: the root's, an empty
-    one unless given.
+    one unless given. substitution: what nodes do instead of themselves.
 
     Raises:
         BuildError: an unknown node, a literal that does not fit, nesting beyond MAX_DEPTH.
     """
     board = board or Board(context.writes)
     tree = _tree(document, document.main)
-    root = _Builder(document, context, skill_of).node(tree.root, board, "0")
+    replacing = substitution or Substitution()
+    root = _Builder(document, context, skill_of, replacing).node(tree.root, board, "0")
     nodes = (root, *root.below)
     for index, node in enumerate(nodes):
         node.index = index
@@ -69,10 +76,17 @@ def _tree(document: Document, name: str) -> Tree:
 
 
 class _Builder:
-    def __init__(self, document: Document, context: RunContext, skill_of: SkillFinder) -> None:
+    def __init__(
+        self,
+        document: Document,
+        context: RunContext,
+        skill_of: SkillFinder,
+        substitution: Substitution,
+    ) -> None:
         self.document = document
         self.context = context
         self.skill_of = skill_of
+        self.substitution = substitution
 
     def node(self, model: Node, board: Board, path: str) -> TreeNode:
         """One node and what is below it. path: positions from the root, such as `0.2.1`."""
@@ -87,6 +101,8 @@ class _Builder:
         conditions = Conditions(model.conditions, board) if model.conditions else None
         if model.disabled:
             return guards.Disabled(model, self.context)
+        if self.substitution.of(model):
+            return self._substituted(model, board, path, conditions)
         if model.type == SUBTREE:
             return self._subtree(model, board, path, conditions)
         if model.type in ("Recover", "Handle"):
@@ -98,6 +114,16 @@ class _Builder:
             raise BuildError(f"{model.place}: the engine has no node {model.type!r}")
         kids = [self.node(m, board, f"{path}.{i}") for i, m in enumerate(model.children)]
         return MAKERS[model.type](Parts(model, spec, self.context, kids, conditions, board))
+
+    def _substituted(
+        self, model: Node, board: Board, path: str, conditions: Conditions | None
+    ) -> Substituted:
+        kids: tuple[TreeNode, ...] = ()
+        if not self.substitution.replaces(model):
+            kids = (self.node(replace(model, conditions={}), board, path),)
+        cells = {n: cell_of(v, board) for n, v in model.ports.items() if _is_wire(v)}
+        results = self.substitution.of(model)
+        return Substituted(model, self.context, kids, conditions, results=results, outputs=cells)
 
     def _skill(
         self, model: Node, board: Board, path: str, conditions: Conditions | None
@@ -176,18 +202,15 @@ def _declared(tree: Tree, name: str) -> Port:
     return Port(name, "in", object, "") if declaration is None else port_of(declaration)
 
 
-def skills_in(document: Document) -> tuple[str, ...]:
-    """Names of the skills that the main tree can reach, in the order of the file."""
-    found: dict[str, None] = {}
-    waiting, seen = [document.main], {document.main}
-    while waiting:
-        for node in _tree(document, waiting.pop(0)).root.walk():
-            if node.disabled:
-                continue
-            if node.type == SUBTREE and node.target is not None:
-                if node.target not in seen:
-                    seen.add(node.target)
-                    waiting.append(node.target)
-            elif node.type not in BUILT_IN:
-                found[node.type] = None
+def skills_in(document: Document, substitution: Substitution | None = None) -> tuple[str, ...]:
+    """Names of the skills that a run can reach, in the order of the file.
+
+    substitution: what it replaces for good is not run.
+    """
+    replacing = substitution or Substitution()
+    found = {
+        node.type: None
+        for node in reached(document, replacing.results)
+        if node.type not in BUILT_IN and node.type != SUBTREE and not replacing.replaces(node)
+    }
     return tuple(found)

@@ -28,6 +28,7 @@ from momantu_bt.skill import Skill
 from momantu_bt.tree.check import NO_WORLD, ROBOT_KEY
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.registry import Registry
+from momantu_bt.tree.substitution import Substitution
 from momantu_bt.tree.values import natural
 from momantu_bt.world import World
 
@@ -46,7 +47,7 @@ class Options:
     default. keep_world: it was open before and stays so. max_time: simulated seconds after
     which the run fails with TIMEOUT.
     referee: False takes it out, which changes nothing else. person: who answers `ask` and
-    `confirm`; nobody unless given.
+    `confirm`; nobody unless given. substitution: what nodes do instead of themselves.
     """
 
     world: str | None = None
@@ -58,6 +59,7 @@ class Options:
     keep_world: bool = False
     remark: Callable[[str], None] = field(default=lambda text: None)
     person: Person = field(default_factory=Scripted)
+    substitution: Substitution = field(default_factory=Substitution)
 
 
 def launch(
@@ -73,7 +75,7 @@ def launch(
         KeyboardInterrupt: Ctrl-C before the first tick.
     """
     begun = time.perf_counter()
-    kinds = {name: registry.skills[name] for name in skills_in(document)}
+    kinds = {name: registry.skills[name] for name in skills_in(document, options.substitution)}
     with ExitStack() as stack:
         interrupts = stack.enter_context(Interrupts())
         world = _open(document, options, registry, kinds)
@@ -150,7 +152,9 @@ def _assemble(
         frames = FrameBuffer(world.robot.description.kinematics())
         context.body = Body(actuators, frames, world.site, services.running)
     board = _board(context, document, services, world)
-    built = build(document, context, kinds.__getitem__, board)
+    for key, value in options.substitution.values.items():
+        board.set(key, natural(value))
+    built = build(document, context, kinds.__getitem__, board, options.substitution)
     return Executor(
         built,
         context,

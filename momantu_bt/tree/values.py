@@ -8,12 +8,15 @@ from __future__ import annotations
 
 import dataclasses
 import difflib
+import inspect
 import math
 import re
 from collections.abc import Mapping, Sequence
 from enum import Enum
 from types import MappingProxyType
 from typing import Any, Literal, get_args, get_type_hints
+
+import numpy as np
 
 from momantu_bt.skill import MISSING, Port
 from momantu_bt.tree import model
@@ -120,6 +123,8 @@ def _convert(value: Any, type_: ValueType, unit: str | None) -> Any:
         return _to_queue(value, get_args(type_)[0])
     if type_ is tuple or origin(type_) is tuple:
         return _to_tuple(value, type_, unit)
+    if origin(type_) is np.ndarray:
+        return _to_array(value)
     if type_ is bool:
         return _to_bool(value)
     if type_ is int or type_ is float:
@@ -275,6 +280,20 @@ def _to_text(value: Any, type_: type[str]) -> Any:
     raise _unfit(value, type_, None)
 
 
+def _to_array(value: Any) -> Any:
+    """A list of numbers, or of such lists, each perhaps with a unit."""
+    if isinstance(value, np.ndarray):
+        return value
+    try:
+        array = np.array(natural(value), dtype=np.float64)
+    except (TypeError, ValueError):
+        array = np.array(math.nan)
+    if array.ndim == 0 or not np.isfinite(array).all():
+        raise ConversionError(f"{_shown(value)} does not fit; expected a list of numbers")
+    array.flags.writeable = False
+    return array
+
+
 def _to_dataclass(value: Mapping[str, Any], type_: Any) -> Any:
     hints = get_type_hints(type_)
     having = {field.name: field for field in dataclasses.fields(type_) if field.init}
@@ -286,15 +305,14 @@ def _to_dataclass(value: Mapping[str, Any], type_: Any) -> Any:
                 f"{label(type_)} has no field {key!r}{hint} Fields: {', '.join(having)}"
             )
     arguments: dict[str, Any] = {}
+    made_of = inspect.signature(type_).parameters
     for name, field in having.items():
         if name in value:
             try:
                 arguments[name] = _convert(value[name], hints[name], field.metadata.get("unit"))
             except ConversionError as error:
                 raise ConversionError(f"field {name!r}: {error}") from None
-        elif field.default is dataclasses.MISSING and (
-            field.default_factory is dataclasses.MISSING
-        ):
+        elif made_of[name].default is inspect.Parameter.empty:
             raise ConversionError(f"{label(type_)} needs the field {name!r}")
     try:
         return type_(**arguments)

@@ -16,6 +16,7 @@ from momantu_bt.tree.codes import UnknownCode, codes, explanation, pages_folder
 from momantu_bt.tree.load import read_file
 from momantu_bt.tree.problems import Problem, Severity, TreeError
 from momantu_bt.tree.registry import Registry
+from momantu_bt.tree.substitution import load_substitution
 from momantu_bt.tree.yaml_format import read
 from momantu_bt.world import WorldError
 
@@ -87,8 +88,23 @@ def included_by_itself() -> list[Problem]:
         return read_file(file, Registry())[1].sorted()
 
 
+def of_a_rule(rule: str) -> list[Problem]:
+    """Problems of a rule for a tree of one skill."""
+    with TemporaryDirectory() as folder:
+        rules = Path(folder) / "rules.yaml"
+        rules.write_text(f"momantu_bt: 1\nsubstitute: [{{{rule}}}]\n", encoding="utf-8")
+        document, _ = read(HEADER, "example.yaml")
+        try:
+            load_substitution(rules, document, Registry.installed())
+        except TreeError as error:
+            return error.problems
+    return []
+
+
 WITHOUT_A_TREE = {
     "include-cycle": included_by_itself,
+    "unmatched-rule": lambda: of_a_rule("node: reset_pos, status: SUCCESS"),
+    "undeclared-code": lambda: of_a_rule("node: reset_pose, status: FAILURE, code: BROKEN"),
     "too-large": lambda: problems("[" * 200),
     "unknown-robot": lambda: problems(HEADER, robot="fecth"),
     "broken-plugin": lambda: problems(

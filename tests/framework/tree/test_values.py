@@ -65,6 +65,24 @@ def test_what_fits(value: Any, type_: Any, unit: str | None, expected: Any) -> N
     assert type(found) is type(expected)
 
 
+def test_a_pose_is_written_as_lists() -> None:
+    pose = into({"transform": {"position": ["20 cm", 0, 1]}, "frame": "map", "stamp": 0}, Pose)
+    assert pose.position.tolist() == [0.2, 0.0, 1.0]
+    assert pose.transform.quaternion.tolist() == [1.0, 0.0, 0.0, 0.0]
+    assert not pose.position.flags.writeable
+
+
+@pytest.mark.parametrize("position", [3, "x", [1, "x", 2], [1, None], [[1, 2], [3]], [".inf"]])
+def test_what_is_no_list_of_numbers(position: Any) -> None:
+    with pytest.raises(ConversionError, match="field 'position'"):
+        into({"position": position}, Transform)
+
+
+def test_a_list_of_another_length_than_the_types() -> None:
+    with pytest.raises(ConversionError, match="Transform: "):
+        into({"position": [1, 2]}, Transform)
+
+
 @pytest.mark.parametrize(
     ("value", "type_", "message"),
     [
