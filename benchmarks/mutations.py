@@ -11,7 +11,7 @@ that many places per tree and kind, spread evenly). A slip is no mistake, and is
 - it lies in free text, which only a person can judge: a comment, a name, a note, a message, an
   input of type text that names nothing of the world, or a code that the tree itself makes up and
   no handler answers (`free`);
-- what was left out may be left out: an input with a default, an output, a whole line (`allowed`).
+- what was left out may be left out: an input with a default, an output, a case (`allowed`).
 
 All others count. One is found when there is an error before the first tick. The place is right
 when an error stands in the line of the slip, or names that line, or stands where the name that was
@@ -61,7 +61,7 @@ class Mutant:
 
 @dataclass
 class GoodTree:
-    """A tree without errors, and what is known of its places.
+    """A tree without problems, and what is known of its places.
 
     free: where free text stands. optional: places of the names of ports that may be left out.
     """
@@ -76,7 +76,7 @@ class GoodTree:
     def __post_init__(self) -> None:
         self.text = self.text or self.path.read_text(encoding="utf-8")
         self.document, reading = read(self.text, "t.yaml")
-        wrong = errors(check(self.document, self.registry, reading=reading))
+        wrong = check(self.document, self.registry, reading=reading)
         assert not wrong, f"{self.path}: {wrong[0].place}: {wrong[0].message}"
         context = Context(self.document, self.registry, Problems())
         for tree in self.document.trees.values():
@@ -193,7 +193,7 @@ SLIPS: dict[str, Slip] = {
     "input left out": each(r"(?<=\{|,)( ?\w+: [^{},]+,?)(?=.*\})", lambda _: ""),
     "key written twice": each(r"(?<=[{ ])(\w+: [^{},\n]+)(?=\})", lambda m: f"{m[1]}, {m[1]}"),
     "line written twice": each(r"^( *\w[^-].*)$", lambda m: f"{m[1]}\n{m[1]}"),
-    "modifier among the ports": each(r"^ +- \w+: \{[^{}]+(\})$", lambda _: ", retry: 3}"),
+    "modifier among the ports": each(r"^ +- (?!if)\w+: \{[^{}]+(\})$", lambda _: ", retry: 3}"),
     "script without a dollar": each(r"(?:_if|condition|script): .*(\$)\w", lambda _: ""),
     "signs the wrong way round": each(
         r" ([<>]=|==) ", lambda m: "=>" if m[1] == "==" else "=" + m[1][0]
@@ -338,6 +338,8 @@ def is_allowed(tree: GoodTree, mutant: Mutant) -> bool:
     """Whether what was left out may be left out."""
     if mutant.kind in ("input left out", "then left out"):
         old = tree.text.splitlines()[mutant.line - 1].partition(" #")[0]
+        if re.match(r"\s*cases:", old):
+            return True
         start, end = _span(old, mutant.changed)
         names = [m.start() for m in re.finditer(r"\w+(?=:)", old) if start - 1 <= m.start() <= end]
         places = tree.optional

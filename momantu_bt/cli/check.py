@@ -96,7 +96,8 @@ def report(problems: Sequence[Problem], source: Mapping[str, str]) -> None:
         for severity in Severity
         if (count := sum(problem.severity is severity for problem in problems))
     ]
-    more = f"momantu-bt check --explain {problems[0].code} says more"
+    gravest = min(problems, key=lambda problem: problem.severity)
+    more = f"momantu-bt check --explain {gravest.code} says more"
     typer.echo(f"{', '.join(counts)}; {more}", err=True)
 
 

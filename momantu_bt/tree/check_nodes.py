@@ -58,6 +58,7 @@ def check_node(context: Context, node: Node) -> None:
         return
     _name_first_input(context, node, signature)
     _check_children(context, node, signature)
+    _check_switch(context, node, signature)
     for name in list(node.ports):
         _check_port(context, node, name, signature)
     _check_one_of(context, node, signature)
@@ -141,6 +142,17 @@ def _check_default_answer(context: Context, node: Node) -> None:
         message = f"{default.value!r} is none of the choices"
         hint = valid_names(str(default.value), map(str, known), "choices")
         context.problems.error("wrong-value", node.port_places["default"], message, hint)
+
+
+def _check_switch(context: Context, node: Node, signature: Signature) -> None:
+    """A switch on a text that is written out always goes one way; XML's authors may mean that."""
+    value = node.ports.get("variable")
+    if signature.spec is None or not signature.spec.switch or not isinstance(value, Literal):
+        return
+    place = node.port_places.get("variable", node.place)
+    if not context.is_xml(place):
+        message = f"`{signature.said}` chooses by a key"
+        context.problems.error("not-a-key", place, message, f"write ${value.value}")
 
 
 def _report_missing(context: Context, node: Node, port: Port, signature: Signature) -> None:

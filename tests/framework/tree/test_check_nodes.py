@@ -190,3 +190,9 @@ def test_wrong_default_of_an_input(expect: Expect) -> None:
         "    say: hi\n"
     )
     expect("wrong-value", tree, message="the default of 'n'")
+
+
+def test_a_switch_on_a_written_value(expect: Expect) -> None:
+    cases = "{red: succeed, green: succeed}"
+    body = f"trees:\n  Main: {{switch: «colour», cases: {cases}, default: succeed}}\n"
+    expect("not-a-key", body, message="chooses by a key", hint="write $colour")

@@ -5,13 +5,17 @@ place; here a sample of them is made.
 """
 
 import importlib.util
+import re
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 import pytest
 
+from momantu_bt.tree.catalogue import BUILT_IN, MODIFIERS
+from momantu_bt.tree.model import Node
 from momantu_bt.tree.registry import Registry
 
 ROOT = Path(__file__).parents[3]
@@ -104,3 +108,15 @@ def test_the_judgement_of_free_text_and_of_what_may_be_left_out() -> None:
     assert verdict(good, 6, '    - fail: {code: B, message: "so"}') == "free"
     left_out = verdict(good, 5, "    - navigate: {in_front_of: home}", "input left out")
     assert left_out == "allowed"
+
+
+def test_good_trees_use_every_node_and_modifier(trees: list[Any]) -> None:
+    used = {node.type for good in trees for node in nodes_of(good)}
+    assert set(BUILT_IN) <= used
+    written = set(re.findall(r"\b(\w+):", "".join(good.text for good in trees)))
+    assert set(MODIFIERS) <= written
+
+
+def nodes_of(good: Any) -> Iterator[Node]:
+    for each in good.document.trees.values():
+        yield from each.root.walk()
