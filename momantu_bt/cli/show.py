@@ -92,7 +92,9 @@ def _words(document: Document, found: list[Wire], world: str | None) -> Iterator
         yield from (INDENT * line.depth + line.text for line in printed[start:end])
         its = list(wire_lines(document, found, name))
         if its:
-            yield f"{INDENT}wires, with lines of the file"
+            file = document.trees[name].place.file
+            where = "the file" if file == document.file else Path(file).name
+            yield f"{INDENT}wires, with lines of {where}"
             yield from (INDENT * 2 + line for line in its)
 
 

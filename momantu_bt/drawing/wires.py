@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from momantu_bt.tree.catalogue import ScriptText
 from momantu_bt.tree.check import ROBOT_KEY
@@ -159,10 +160,11 @@ def _spelled(reference: Reference) -> str:
 def wire_lines(document: Document, found: list[Wire], tree: str) -> Iterator[str]:
     """The wires of one tree in words: `$seen  from detect_object (12)  to pick (14, 17)`.
 
-    Numbers are lines of the document's file; of an included file they come after its name.
+    Numbers are lines of the file that the tree is in; of another they come after its name.
     """
+    file = document.trees[tree].place.file
     rows = [
-        (wire.spelling(tree), _ends(document, wire.writers), _ends(document, wire.readers))
+        (wire.spelling(tree), _ends(file, wire.writers), _ends(file, wire.readers))
         for wire in found
         if wire.touches(tree)
     ]
@@ -172,11 +174,11 @@ def wire_lines(document: Document, found: list[Wire], tree: str) -> Iterator[str
         yield f"{line}  to {readers}" if readers else line.rstrip()
 
 
-def _ends(document: Document, ends: list[End]) -> str:
+def _ends(file: str, ends: list[End]) -> str:
     said: dict[str, list[str]] = {}
     for end in ends:
         lines = said.setdefault(end.said, [])
         if end.node is not None and end.place is not None:
-            file = "" if end.place.file == document.file else f"{end.place.file}:"
-            lines.append(f"{file}{end.place.line}")
+            other = "" if end.place.file == file else f"{Path(end.place.file).name}:"
+            lines.append(f"{other}{end.place.line}")
     return ", ".join(f"{who} ({', '.join(at)})" if at else who for who, at in said.items())

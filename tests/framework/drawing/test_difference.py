@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -9,7 +10,7 @@ from hypothesis import strategies as st
 
 from momantu_bt.drawing import matching
 from momantu_bt.drawing.difference import Marked, difference
-from momantu_bt.tree.load import load
+from momantu_bt.tree.load import load, read_file
 from momantu_bt.tree.lookup import bundled
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.registry import Registry
@@ -152,3 +153,40 @@ def test_long_lists_are_compared_too(document: Read, monkeypatch: pytest.MonkeyP
 @pytest.mark.parametrize("name", sorted(bundled()))
 def test_a_bundled_tree_is_itself(name: str, registry: Registry) -> None:
     assert difference(load(name, registry).document, load(name, registry).document) == []
+
+
+XML = """<root BTCPP_format="4" main_tree_to_execute="Main" xmlns:momantu="urn:momantu-bt:1">
+  <BehaviorTree ID="Main">
+    <Sequence>
+      <RetryUntilSuccessful num_attempts="3"><a x="1"/></RetryUntilSuccessful>
+      <SubTree ID="Sub" at="{n}" _skipIf="n &gt; 2"/>
+      <momantu:Recover attempts="2"><b/><momantu:Catch codes="A | B"/></momantu:Recover>
+    </Sequence>
+  </BehaviorTree>
+  <BehaviorTree ID="Sub"><g to="{at}"/></BehaviorTree>
+  <TreeNodesModel>
+    <SubTree ID="Main"/><SubTree ID="Sub"><input_port name="at" type="int"/></SubTree>
+  </TreeNodesModel>
+</root>
+"""
+YAML = """momantu_bt: 1
+main: Main
+trees:
+  Main:
+    - {a: {x: 1}, retry: 3}
+    - {Sub: {at: $n}, skip_if: $n > 2}
+    - recover: {attempts: 2, try: b, catch: {A | B: again}}
+  Sub: {inputs: {at: int}, g: {to: $at}}
+"""
+
+
+def test_a_tree_says_the_same_in_either_spelling(document: Read, tmp_path: Path) -> None:
+    path = tmp_path / "t.xml"
+    path.write_text(XML, encoding="utf-8")
+    other, problems = read_file(path)
+    assert problems.sorted() == []
+    assert difference(document(YAML), other) == []
+    changed = difference(document(YAML.replace("retry: 3", "retry: 4")), other)
+    assert [line.text for line in changed if line.mark != " "] == [
+        "a x 1  (3 tries)  [retry 4 -> 3]"
+    ]

@@ -83,3 +83,27 @@ def test_an_output_nobody_reads_has_no_readers(tmp_path: Path, registry: Registr
     document = load(str(path), registry).document
     found = wires(document, registry)
     assert list(wire_lines(document, found, "Main")) == ["$n  from set (3)"]
+
+
+def test_lines_of_an_included_tree_are_those_of_its_own_file(
+    tmp_path: Path, registry: Registry
+) -> None:
+    part = (
+        "momantu_bt: 1\ntrees:\n  Go:\n    inputs: {to: text}\n    navigate: {in_front_of: $to}\n"
+    )
+    (tmp_path / "part.yaml").write_text(part + "    skip_if: $@done\n", encoding="utf-8")
+    path = tmp_path / "whole.yaml"
+    path.write_text(
+        "momantu_bt: 1\ninclude: [part.yaml]\nmain: Main\nvalues: {done: false}\n"
+        "trees:\n  Main:\n    - script: $done = true\n    - Go: {to: corridor}\n",
+        encoding="utf-8",
+    )
+    document = load(str(path), registry).document
+    found = wires(document, registry)
+    assert list(wire_lines(document, found, "Go")) == [
+        "$@done  from values, script (whole.yaml:7)  to navigate (5)",
+        "$to     from the caller                     to navigate (5)",
+    ]
+    assert list(wire_lines(document, found, "Main")) == [
+        "$done  from values, script (7)  to navigate (part.yaml:5)"
+    ]
