@@ -107,4 +107,7 @@ class GoalUpdater(Decorator):
             value = peek(self.inputs, name.replace("output", "input"))
             if value is not None and value is not MISSING:
                 cell.write(value)
-        return self.pass_on(self.child.execute())
+        status = self.child.execute()
+        if status is not RUNNING:
+            self.child.reset()
+        return self.pass_on(status)

@@ -12,7 +12,7 @@ from typing import Any
 
 from momantu_bt.engine.node import TreeNode
 from momantu_bt.engine.ports import Inputs
-from momantu_bt.engine.status import FAILURE, RUNNING, SKIPPED, Status
+from momantu_bt.engine.status import FAILURE, RUNNING, Status
 from momantu_bt.failure import INPUT_MISSING, Failure
 from momantu_bt.tree.script_nodes import EPSILON
 
@@ -35,8 +35,8 @@ class Switch(TreeNode):
         child = self.kids[chosen]
         status = child.execute()
         self.at = chosen if status is RUNNING else None
-        if status is RUNNING or status is SKIPPED:
-            return status
+        if status is RUNNING:
+            return RUNNING
         if status is FAILURE:
             self.fail_with(self.failure_of(child))
         self.reset_children()

@@ -60,6 +60,8 @@ class SkipUnlessUpdated(Decorator):
             return self.instead
         status = self.child.execute()
         self.at_work = status is RUNNING
+        if not self.at_work:
+            self.child.reset()
         return self.pass_on(status)
 
     def clear(self) -> None:

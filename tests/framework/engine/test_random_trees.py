@@ -15,6 +15,7 @@ from momantu_bt.engine.build import Built
 from momantu_bt.engine.executor import Executor
 from momantu_bt.engine.interrupts import Interrupts
 from momantu_bt.engine.no_world import NoWorld
+from momantu_bt.engine.node import Decorator
 from momantu_bt.engine.nodes.branches import IfThenElse, WhileDoElse
 from momantu_bt.engine.nodes.fallbacks import AsyncFallback, Fallback, RoundRobin
 from momantu_bt.engine.nodes.forcing import ElseFail, ForceFailure, ForceSuccess, Inverter
@@ -25,10 +26,16 @@ from momantu_bt.engine.nodes.loops import (
     RunOnce,
 )
 from momantu_bt.engine.nodes.parallel import Parallel, ParallelAll
+from momantu_bt.engine.nodes.pipelines import NonblockingSequence, PipelineSequence
+from momantu_bt.engine.nodes.queues import QueueLoop
+from momantu_bt.engine.nodes.rates import RateController, SingleTrigger
 from momantu_bt.engine.nodes.reactive import ReactiveFallback, ReactiveSequence
 from momantu_bt.engine.nodes.recovery import Catch, Handle, Recover
+from momantu_bt.engine.nodes.retreat import RecoveryNode
 from momantu_bt.engine.nodes.sequences import AsyncSequence, Sequence, SequenceWithMemory
+from momantu_bt.engine.nodes.switch import Switch
 from momantu_bt.engine.nodes.timing import Delay, Timeout
+from momantu_bt.engine.nodes.try_catch import TryCatch
 from momantu_bt.engine.ports import Inputs
 from momantu_bt.engine.status import FAILURE, IDLE, RUNNING
 
@@ -39,10 +46,14 @@ ANY_NUMBER = (
     Fallback,
     AsyncFallback,
     ReactiveFallback,
+    PipelineSequence,
+    NonblockingSequence,
     Handle,
 )
-TWO_OR_THREE = (IfThenElse, WhileDoElse)
-ONE = (Inverter, ForceSuccess, ForceFailure, KeepRunningUntilFailure)
+TWO = (RecoveryNode,)
+TWO_OR_THREE = (IfThenElse, WhileDoElse, TryCatch)
+SIDE_BY_SIDE = (Parallel, ParallelAll, WhileDoElse, PipelineSequence, NonblockingSequence)
+ONE = (Inverter, ForceSuccess, ForceFailure, KeepRunningUntilFailure, SingleTrigger)
 PORTS = {
     ElseFail: {"code": st.just("LOST"), "message": st.just("")},
     Parallel: {"success_count": st.sampled_from([-1, 1]), "failure_count": st.just(1)},
@@ -54,10 +65,17 @@ PORTS = {
     Delay: {"duration": st.sampled_from([0.0, 0.1])},
     RunOnce: {"then_skip": st.booleans()},
     RoundRobin: {"wrap_around": st.booleans()},
+    RecoveryNode: {"number_of_retries": st.integers(0, 2)},
+    TryCatch: {"catch_on_halt": st.booleans()},
+    RateController: {"hz": st.sampled_from([5.0, 20.0])},
+    Switch: {"variable": st.sampled_from(["a", "b", "c"])},
+    QueueLoop: {"queue": st.sampled_from([(), (1,), (1, 2)])},
 }
 REMEMBERING = (SequenceWithMemory, RoundRobin, RunOnce)
 """Nodes that keep something over their end or a halt, and are meant to."""
-FAILING_THEMSELVES = (Inverter, ForceFailure, Parallel, Delay)
+GOING_ON = (QueueLoop, RateController, SingleTrigger)
+"""Nodes that go on after an end that nobody collects, as `if` without `else` leaves its own."""
+FAILING_THEMSELVES = (Inverter, ForceFailure, Parallel, Delay, SingleTrigger)
 """Of a delay a timeout says that it was waiting."""
 
 ROUNDS = st.sampled_from(["K", "S", "F", "RS", "RF", "RRS", "RRF"])
@@ -74,9 +92,11 @@ def above(draw, kids, kinds):
     kind = draw(st.sampled_from(kinds))
     if kind in TWO_OR_THREE:
         fewest, most = 2, 3
-    elif kind in ONE or (
-        issubclass(kind, ElseFail | Repeat | RetryUntilSuccessful | Timeout | Delay | RunOnce)
-    ):
+    elif kind in TWO:
+        fewest, most = 2, 2
+    elif kind is Switch:
+        fewest, most = 3, 3
+    elif issubclass(kind, Decorator):
         fewest, most = 1, 1
     else:
         fewest, most = 1, 3
@@ -115,6 +135,11 @@ class Plant:
         kind, children, ports = spec
         kids = [self.node(child) for child in children]
         named = {}
+        if kind is Switch:
+            ports = {**ports, "case_1": "a", "case_2": "b"}
+        if kind is QueueLoop:
+            ports = {**ports, "if_empty": "SUCCESS"}
+            named["value"] = None
         if ports:
             named["inputs"] = Inputs({key: (lambda v=value: v) for key, value in ports.items()})
         if issubclass(kind, Recover | Handle):
@@ -146,7 +171,7 @@ CHECKS = settings(max_examples=70, suppress_health_check=[HealthCheck.too_slow])
 
 
 @CHECKS
-@given(spec=trees(Parallel, ParallelAll, WhileDoElse))
+@given(spec=trees(*SIDE_BY_SIDE))
 def test_where_nothing_is_side_by_side_at_most_one_leaf_is_running(new_bench, spec):
     plant = Plant(new_bench(), spec)
     for _ in range(12):
@@ -173,22 +198,31 @@ def test_an_end_leaves_nothing_running(new_bench, spec):
 
 
 @CHECKS
-@given(spec=trees(), ticks=st.integers(0, 6))
-def test_a_halt_ends_each_running_leaf_once_however_often_it_is_repeated(new_bench, spec, ticks):
+@given(spec=trees(), ticks=st.lists(st.integers(0, 6), min_size=1, max_size=3))
+def test_every_leaf_that_was_started_ends_once_however_often_its_tree_is_halted(
+    new_bench, spec, ticks
+):
     plant = Plant(new_bench(), spec)
-    for _ in range(ticks):
-        if plant.bench.tick(plant.root) != "R":
-            break
-    expected = [leaf.halts + (leaf.state is RUNNING) for leaf in plant.leaves]
-    for _ in range(2):
+    for before_halt in ticks:
+        for _ in range(before_halt):
+            plant.bench.tick(plant.root)
         plant.root.reset()
-        assert [leaf.halts for leaf in plant.leaves] == expected
+        halts = [leaf.halts for leaf in plant.leaves]
+        plant.root.reset()
+        assert [leaf.halts for leaf in plant.leaves] == halts
+        assert [leaf.runs for leaf in plant.leaves] == [ends(leaf) for leaf in plant.leaves]
         assert plant.root.state is IDLE
         assert not any(RUNNING in (node.state, node.shown) for node in plant.nodes)
 
 
+def ends(leaf):
+    """How often a leaf has returned anything but RUNNING, or was halted."""
+    given = (leaf.script[min(i, len(leaf.script) - 1)] for i in range(leaf.given))
+    return leaf.halts + sum(status is not RUNNING for status in given)
+
+
 @CHECKS
-@given(spec=trees(*REMEMBERING), ticks=st.integers(1, 8))
+@given(spec=trees(*REMEMBERING, *GOING_ON), ticks=st.integers(1, 8))
 def test_after_a_halt_or_an_end_a_tree_runs_as_if_for_the_first_time(new_bench, spec, ticks):
     fresh, used = Plant(new_bench(), spec), Plant(new_bench(), spec)
     for _ in range(ticks):
@@ -200,7 +234,9 @@ def test_after_a_halt_or_an_end_a_tree_runs_as_if_for_the_first_time(new_bench, 
 
 
 FORGETTING = [
-    kind for kind in (*ANY_NUMBER, *TWO_OR_THREE, *ONE, *PORTS) if kind not in REMEMBERING
+    kind
+    for kind in dict.fromkeys((*ANY_NUMBER, *TWO_OR_THREE, *ONE, *PORTS))
+    if kind not in REMEMBERING
 ]
 
 
