@@ -8,6 +8,7 @@ from momantu_bt.failure import (
     DECLINED,
     ENGINE_CODES,
     FAILED,
+    FRAME_UNKNOWN,
     HALTED,
     INPUT_MISSING,
     NO_ANSWER,
@@ -30,6 +31,7 @@ UNKNOWN = "?"
 _OF_BUILT_IN: Mapping[str, Codes] = {
     "Ask": frozenset({NO_ANSWER}),
     "Confirm": frozenset({DECLINED, NO_ANSWER}),
+    "DistanceController": frozenset({FRAME_UNKNOWN}),
 }
 _HANDLED_CODE = Reference("failure", ("code",))
 
@@ -71,6 +73,9 @@ def _codes(
     )
     if node.type == "Fail":
         found = _raised(node, meant.get(id(node)))
+    elif node.type == "TestNode":
+        raised = _raised(node, meant.get(id(node))) if "code" in node.ports else frozenset()
+        found = raised | {FAILED, SCRIPT_ERROR}
     elif node.type == "ElseFail":
         found = _raised(node, meant.get(id(node))) if below else below
     else:
