@@ -1,4 +1,4 @@
-"""A TreeNodesModel of skills and of our own nodes, for the palette of an editor such as Groot2."""
+"""A TreeNodesModel of skills, our own nodes and Nav2's, for the palette of editors like Groot2."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any, get_args
 from lxml import etree
 
 from momantu_bt.skill import MISSING, Port, Skill
-from momantu_bt.tree.catalogue import BUILT_IN, OWN_NODES, Kind
+from momantu_bt.tree.catalogue import BUILT_IN, NAV2_NODES, OWN_NODES, Kind
 from momantu_bt.tree.types import label, origin, without_none
 from momantu_bt.tree.xml_format import FORMAT
 from momantu_bt.tree.xml_ports import CATCH, PREFIX
@@ -20,7 +20,7 @@ _TYPES = {"text": "std::string", "number": "double"}
 
 
 def palette(skills: Mapping[str, type[Skill]]) -> str:
-    """An XML file without trees: the models of skills, and of nodes that only we have.
+    """An XML file without trees: the models of skills, of nodes that only we have, and of Nav2's.
 
     An editor includes or imports it, so that the nodes can be dragged into a tree.
     """
@@ -31,6 +31,9 @@ def palette(skills: Mapping[str, type[Skill]]) -> str:
     for name in sorted(OWN_NODES & BUILT_IN.keys()):
         spec = BUILT_IN[name]
         _model(section, _KINDS[spec.kind], PREFIX + name, spec.ports, spec.doc)
+    for name in sorted(NAV2_NODES):
+        spec = BUILT_IN[name]
+        _model(section, _KINDS[spec.kind], name, spec.ports, spec.doc)
     codes = Port("codes", "in", str, "codes of failures, `A | B` several, `any` the rest")
     doc = "What Recover or Handle do after these failures; without a child: try again."
     _model(section, "Decorator", PREFIX + CATCH, {"codes": codes}, doc)

@@ -29,6 +29,7 @@ from momantu_bt.tree.types import ValueType, parse_type
 from momantu_bt.tree.units import UnitError, in_unit
 from momantu_bt.tree.xml_source import OURS, Attribute, Element
 from momantu_bt.tree.xml_values import WireError, attribute_value, flow_value
+from momantu_bt.tree.yaml_values import KEY
 
 EXPLICIT = ("Action", "Condition", "Control", "Decorator")
 """Tags whose ID is the node's type."""
@@ -167,6 +168,9 @@ class PortReader:
                 self._unknown_port(attribute, list(self._plain))
                 return
             name = self._plain[name]
+        if self.spec is not None and name in self.spec.keys and KEY.fullmatch(attribute.value):
+            self._put(name, attribute, Reference(attribute.value))
+            return
         type_ = type_of(name)
         if type_ is ScriptText:
             self._keep_places(name, attribute)

@@ -20,6 +20,7 @@ __all__ = [
     "CONDITIONS",
     "FORCED",
     "MODIFIERS",
+    "NAV2_NODES",
     "NODE_KEYS",
     "OWN_NODES",
     "POST_SCRIPTS",
@@ -78,6 +79,9 @@ XML_CONDITIONS: Mapping[str, str] = {
 
 OWN_NODES = frozenset({"Recover", "Handle", "ForEach", "Fail", "Ask", "Confirm", "ElseFail"})
 """Nodes that BehaviorTree.CPP and Nav2 do not have; in XML they stand in our namespace."""
+
+NAV2_NODES = frozenset(spec.type for spec in NAV2)
+"""Nodes of Nav2's plug-ins, which BehaviorTree.CPP does not have of itself."""
 
 NODE_KEYS = ("name", "note", "disabled")
 """Modifiers that are neither decorators nor conditions."""

@@ -48,12 +48,14 @@ LEAVES = (
         Port("key", "out", object, "the key"),
         input_port("value", object, "what it becomes"),
         xml={"key": "output_key"},
+        keys=("key",),
     ),
     leaf(
         "UnsetBlackboard",
         ("unset",),
         "Removes a key.",
         Port("key", "out", object, "the key"),
+        keys=("key",),
     ),
     leaf(
         "Sleep",

@@ -41,7 +41,7 @@ class NodeSpec:
     positions: what each child is, where they have names of their own in YAML (if, then, else).
     handlers: takes `catch:`. xml: attribute names of BehaviorTree.CPP for ports named otherwise;
     empty for a port that it does not have. one_of: groups of inputs, exactly one of which is given.
-    keys: inputs that must be wired to a whole key, because the node looks at the key itself.
+    keys: ports that mean a key and not its value; in XML its bare name will do.
     may_be_empty: inputs whose key need not hold a value. item: the output that holds what the
     child of a loop works on, and the input where it comes from. switch: how many cases it has.
     """

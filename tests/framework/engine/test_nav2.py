@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import pytest
 
+from momantu_bt.engine.api import run
 from momantu_bt.failure import Failure
 from momantu_bt.messages import BaseVelocity
 from momantu_bt.skill import In, Out, Run, Skill
 from momantu_bt.testing import ScriptedRobot, ScriptedWorld
+from momantu_bt.tree.registry import Registry
 
 
 class Drive(Skill):
@@ -79,8 +81,8 @@ class ComputePath(Skill):
 
     def run(self, robot) -> Run:
         yield "planning"
-        type(self).calls.append(self.goal)
-        if len(type(self).calls) <= self.broken:
+        ComputePath.calls.append(self.goal)
+        if len(ComputePath.calls) <= ComputePath.broken:
             raise Failure("NO_VALID_PATH", "blocked")
         self.path = (1, 2)
 
@@ -101,7 +103,7 @@ class ClearCostmap(Skill):
     cleared = 0
 
     def run(self, robot) -> Run:
-        type(self).cleared += 1
+        ClearCostmap.cleared += 1
         yield "clearing"
 
 
@@ -111,7 +113,7 @@ class Spin(Skill):
     turns = 0
 
     def run(self, robot) -> Run:
-        type(self).turns += 1
+        Spin.turns += 1
         yield "spinning"
 
 
@@ -175,3 +177,68 @@ def test_nav2s_tree_gives_up_after_its_retries_with_the_planners_failure(run_yam
     assert report.failure.code == "NO_VALID_PATH"
     assert len(ComputePath.calls) == 7 * 2
     assert report.failure.most_tries == 7
+
+
+NAVIGATE_XML = """<root BTCPP_format="4" main_tree_to_execute="MainTree">
+  <BehaviorTree ID="MainTree">
+    <RecoveryNode number_of_retries="6" name="NavigateRecovery">
+      <PipelineSequence name="NavigateWithReplanning">
+        <RateController hz="1.0">
+          <RecoveryNode number_of_retries="1" name="ComputePathToPose">
+            <ComputePathToPose goal="{goal}" path="{path}" error_code_id="{compute_path_error}"/>
+            <ClearEntireCostmap service_name="global_costmap/clear"/>
+          </RecoveryNode>
+        </RateController>
+        <RecoveryNode number_of_retries="1" name="FollowPath">
+          <FollowPath path="{path}"/>
+          <ClearEntireCostmap service_name="local_costmap/clear"/>
+        </RecoveryNode>
+      </PipelineSequence>
+      <ReactiveFallback name="RecoveryFallback">
+        <GoalUpdated goals="{goals}" goal="{goal}"/>
+        <RoundRobin name="RecoveryActions">
+          <Sequence name="ClearingActions">
+            <ClearEntireCostmap name="ClearLocalCostmap" service_name="local_costmap/clear"/>
+          </Sequence>
+          <Spin spin_dist="1.57"/>
+        </RoundRobin>
+      </ReactiveFallback>
+    </RecoveryNode>
+  </BehaviorTree>
+</root>
+"""
+
+
+class ComputePathToPose(ComputePath):
+    """Says, too, what went wrong."""
+
+    error_code_id: int = Out(doc="0 for nothing")
+
+    def run(self, robot) -> Run:
+        yield from super().run(robot)
+        self.error_code_id = 0
+
+
+class ClearEntireCostmap(ClearCostmap):
+    """Of one service."""
+
+    service_name: str = In(doc="which")
+
+
+class SpinAround(Spin):
+    """By an angle."""
+
+    spin_dist: float = In(doc="how far", unit="rad")
+
+
+def test_nav2s_tree_in_xml_loads_and_runs_once_its_leaves_are_registered(tmp_path):
+    file = tmp_path / "navigate.xml"
+    file.write_text(NAVIGATE_XML, encoding="utf-8")
+    leaves = (ComputePathToPose, ClearEntireCostmap, FollowPath)
+    registry = Registry(skills={"Spin": SpinAround} | {leaf.__name__: leaf for leaf in leaves})
+    ComputePath.broken = 3
+    report = run(file, world=ScriptedWorld(), registry=registry, values={"goal": 7})
+    assert report.status == "SUCCESS"
+    assert ComputePath.calls == [7] * len(ComputePath.calls)
+    # twice two plans with a clearing between, a clearing to recover, a third try that succeeds
+    assert (len(ComputePath.calls), ClearCostmap.cleared, Spin.turns) == (5, 3, 0)

@@ -9,6 +9,7 @@ import pytest
 from momantu_bt.tree.catalogue import BUILT_IN, SWITCHES
 from momantu_bt.tree.model import Literal, Reference
 from momantu_bt.tree.problems import Problem, Severity
+from momantu_bt.tree.xml_format import read as read_xml
 from momantu_bt.tree.yaml_format import read
 
 Check = Callable[[str], list[Problem]]
@@ -151,6 +152,23 @@ def test_a_switch_may_be_written_with_its_ports() -> None:
     switch = document.trees["Main"].root.children[0]
     assert switch.type == "Switch2"
     assert switch.ports["case_2"] == Reference("n")
+
+
+@pytest.mark.parametrize(
+    "node",
+    [
+        '<UnsetBlackboard key="k"/>',
+        '<SetBlackboard output_key="k" value="1"/>',
+        '<WasEntryUpdated entry="k"/>',
+        '<SkipUnlessUpdated entry="k"><AlwaysSuccess/></SkipUnlessUpdated>',
+    ],
+)
+def test_in_xml_a_key_is_also_named_without_braces(node: str) -> None:
+    text = f'<root BTCPP_format="4"><BehaviorTree ID="Main">{node}</BehaviorTree></root>'
+    document, problems = read_xml(text, "t.xml")
+    found = document.trees["Main"].root.ports
+    assert problems.sorted() == []
+    assert Reference("k") in found.values()
 
 
 def test_nodes_with_a_queue_or_a_watched_key_say_so_in_the_catalogue() -> None:

@@ -5,7 +5,7 @@ import pytest
 from momantu_bt.cli import main
 from momantu_bt.plugins import SKILLS, installed
 from momantu_bt.skill import MISSING, Port
-from momantu_bt.tree.catalogue import BUILT_IN, OWN_NODES
+from momantu_bt.tree.catalogue import BUILT_IN, NAV2_NODES, OWN_NODES
 from momantu_bt.tree.model import Literal, NodeModel
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.types import label, parse_type
@@ -58,11 +58,12 @@ def test_defaults_that_fit_an_attribute_are_there(registry: Registry) -> None:
             assert (shown[port.name] is not None) == simple
 
 
-def test_our_own_nodes_and_handlers() -> None:
+def test_our_own_nodes_nav2s_and_handlers() -> None:
     found = models(palette({}))
-    assert set(found) == {f"momantu:{name}" for name in OWN_NODES & BUILT_IN.keys()} | {
-        "momantu:Catch"
-    }
+    ours = {f"momantu:{name}" for name in OWN_NODES & BUILT_IN.keys()}
+    assert set(found) == {*ours, "momantu:Catch", *NAV2_NODES}
+    assert found["RecoveryNode"].kind == "Control"
+    assert [port.name for port in found["RateController"].ports] == ["hz"]
     for name in OWN_NODES & BUILT_IN.keys():
         assert {port.name for port in found[f"momantu:{name}"].ports} == set(BUILT_IN[name].ports)
     assert parse_type(our_type(found["momantu:ForEach"].ports[0].type_name)) == tuple[object, ...]
