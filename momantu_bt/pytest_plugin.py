@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import ChainMap
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -37,15 +37,16 @@ class RunTree(Protocol):
 
 
 @pytest.fixture
-def run_tree(tmp_path: Path) -> RunTree:
+def run_tree(tmp_path: Path) -> Iterator[RunTree]:
     """`run_tree(tree, …)` runs a tree in a scripted world and returns its Report.
 
     tree: the text of a tree, YAML or XML (it has several lines), a path, or a bundled tree's
-    name. skills, services: by name, beside the installed ones and before them. robot, site: a
-    ScriptedRobot and a scripted site unless given; or give `world`, which has both. values: keys
-    of the root's board. max_time: simulated seconds.
+    name. skills, services: by name, beside the installed ones and before them. robot: it stands
+    in the room of `ExampleWorld`, unless `site` is given; or give `world`, which has both.
+    values: keys of the root's board. max_time: simulated seconds.
     Raises TreeError when the tree is wrong.
     """
+    opened: list[World] = []
 
     def start(
         tree: str | Path,
@@ -60,7 +61,7 @@ def run_tree(tmp_path: Path) -> RunTree:
         max_time: float = 60.0,
     ) -> Report:
         from momantu_bt.engine.api import run
-        from momantu_bt.testing import ScriptedWorld
+        from momantu_bt.testing import ExampleWorld, ScriptedWorld
         from momantu_bt.tree.registry import Registry
 
         having = Registry.installed()
@@ -70,13 +71,18 @@ def run_tree(tmp_path: Path) -> RunTree:
             robots=having.robots,
             services=_before(services, having.services),
         )
-        place = world if world is not None else ScriptedWorld(robot, site)
+        place = world
+        if place is None:
+            place = ExampleWorld(seed, robot) if site is None else ScriptedWorld(robot, site)
+            opened.append(place)
         file = _file(tree, tmp_path)
         return run(
             file, world=place, seed=seed, values=values, max_time=max_time, registry=registry
         )
 
-    return start
+    yield start
+    for each in opened:
+        each.close()
 
 
 def _before(mine: Mapping[str, Any] | None, installed: Mapping[str, Any]) -> Mapping[str, Any]:

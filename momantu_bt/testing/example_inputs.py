@@ -12,6 +12,7 @@ from momantu_bt.geometry import Pose, Pose2D, Transform
 from momantu_bt.messages import DetectedObject, ObjectClass, SupportPlane
 from momantu_bt.robot import RobotDescription
 from momantu_bt.skill import Port, Skill
+from momantu_bt.tree.skill_example import within
 from momantu_bt.tree.types import is_union, origin, without_none
 from momantu_bt.world import Site
 
@@ -54,8 +55,7 @@ def example_inputs(
         NoExample: nothing is known of the type of one of them.
     """
     having = dict(given or {})
-    groups = getattr(skill, "one_of", ())
-    chosen = {group[0] for group in groups if not having.keys() & set(group)}
+    chosen = {group[0] for group in skill.one_of if not having.keys() & set(group)}
     for port in skill.ports.values():
         if port.name not in having and (port.required or port.name in chosen):
             having[port.name] = example_value(port, site, description)
@@ -75,19 +75,7 @@ def example_value(port: Port, site: Site, description: RobotDescription) -> Any:
         value = of_type(port.type)
     except NoExample as error:
         raise NoExample(f"no example of the input {port.name!r}: {error}") from None
-    return _within(value, port)
-
-
-def _within(value: Any, port: Port) -> Any:
-    """A number moved into the port's range."""
-    least, most = getattr(port, "least", None), getattr(port, "most", None)
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return value
-    if least is not None and value < least:
-        value = least
-    if most is not None and value > most:
-        value = most
-    return value
+    return type(value)(within(value, port)) if port.bounded else value
 
 
 def of_type(type_: Any) -> Any:

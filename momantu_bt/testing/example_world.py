@@ -41,14 +41,15 @@ _WALLS = (
 class ExampleWorld(ScriptedWorld):
     """A scripted world with the tables of `scripted_site`, a can on table A, walls, and a map.
 
+    robot: the small robot unless given; sensors for which it has no reading see the room.
     Tables reach down to the floor. The map lies in a temporary folder that goes with the world.
     """
 
-    def __init__(self, seed: int = 0, description: RobotDescription | None = None) -> None:
+    def __init__(self, seed: int = 0, robot: ScriptedRobot | None = None) -> None:
         self._folder = tempfile.TemporaryDirectory(prefix="momantu_bt_map_")
         site = scripted_site(map_file=_write_map(Path(self._folder.name)))
-        robot = ScriptedRobot(description or _seeing(small_robot()))
-        robot.readings = _readings(robot.description, seed)
+        robot = robot or ScriptedRobot(_seeing(small_robot()))
+        robot.readings = _readings(robot.description, seed) | robot.readings
         super().__init__(robot, site)
 
     def close(self) -> None:

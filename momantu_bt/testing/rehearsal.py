@@ -195,7 +195,10 @@ class Rehearsals:
 
     def _arguments(self) -> dict[str, Any]:
         """Keyword arguments of `run_skill`: the example's, and made ones where it gives none."""
-        arguments = dict((self.example or self.skill.rehearsal)(self.seed))
+        try:
+            arguments = dict((self.example or self.skill.rehearsal)(self.seed))
+        except Exception as error:  # other people's code: it may raise anything
+            raise CannotRehearse(f"its example raises {type(error).__name__}: {error}") from error
         if "world" not in arguments:
             if "robot" in arguments or "site" in arguments:
                 world = ScriptedWorld(arguments.pop("robot", None), arguments.pop("site", None))

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import re
 import sys
+from inspect import signature
 from pathlib import Path
 from types import ModuleType
 
 import pytest
 
 from momantu_bt.cli import VERBS, main
+from momantu_bt.pytest_plugin import RunTree
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]
+PAGES += sorted((ROOT / "docs" / "skills").glob("*.md"))
 
 
 def blocks(page: Path, language: str) -> list[str]:
@@ -32,16 +35,18 @@ def test_commands_exist(page: Path) -> None:
     assert set(verbs) - set(VERBS) == set()
 
 
-def test_the_worked_skill_passes_its_own_test(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_worked_skill_passes_its_own_tests(
+    monkeypatch: pytest.MonkeyPatch, run_tree: RunTree
+) -> None:
     page = ModuleType("worked_skill")
     # Port types are looked up in the module that declares the class.
     monkeypatch.setitem(sys.modules, page.__name__, page)
     for block in blocks(ROOT / "docs" / "writing_a_skill.md", "python"):
         exec(block, page.__dict__)
     tests = [value for name, value in vars(page).items() if name.startswith("test_")]
-    assert len(tests) == 2
+    assert len(tests) == 4
     for test in tests:
-        test()
+        test(*([run_tree] if "run_tree" in signature(test).parameters else []))
 
 
 def test_the_readmes_tree_is_free_of_mistakes(

@@ -1,0 +1,33 @@
+"""`momantu-bt skills new`: a package for a skill of one's own."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+EXIT_WRONG_INPUT = 2
+
+
+def new(
+    name: Annotated[str, typer.Argument(help="The skill's name, as trees will write it.")],
+    into: Annotated[
+        Path, typer.Option(help="The folder to make the package's folder in.")
+    ] = Path(),
+) -> int:
+    """Make a package with a skill that works, its entry point, a test that passes and a README.
+
+    Examples:
+      momantu-bt skills new turn
+      momantu-bt skills new turn --into ~/robots
+    """
+    from momantu_bt.scaffold import CannotCreate, new_skill
+
+    try:
+        folder = new_skill(name, into)
+    except CannotCreate as error:
+        typer.echo(f"momantu-bt: {error}", err=True)
+        return EXIT_WRONG_INPUT
+    typer.echo(f"{folder}: `pip install -e {folder}`, then trees may say `{name}:`")
+    return 0

@@ -1,0 +1,81 @@
+"""A package for a new skill: a skill that works, its entry point, a test that passes, a README."""
+
+from __future__ import annotations
+
+import importlib.util
+import shutil
+import tempfile
+from pathlib import Path
+from string import Template
+
+from momantu_bt import plugins
+from momantu_bt.plugin_checks import bad_skill_name
+
+FILES = {
+    "pyproject.toml": "pyproject.toml",
+    "README.md": "README.md",
+    "src/${package}/__init__.py": "init.py",
+    "src/${package}/${name}.py": "skill.py",
+    "tests/test_${name}.py": "test_skill.py",
+}
+"""Files of the package, and the templates beside this module that they are made from."""
+
+_IMPORTED = ("Failure", "In", "Out", "Robot", "Run", "Skill")
+"""Names that the skill's module imports."""
+_HERE = Path(__file__).parent
+
+
+class CannotCreate(Exception):
+    """The package cannot be made as asked; the message says why. Nothing was written."""
+
+
+def new_skill(name: str, into: Path) -> Path:
+    """Make the package of a skill called `name`; returns its folder, `into/name`.
+
+    Raises:
+        CannotCreate: the name is none for a skill or is taken, or the folder cannot be made.
+    """
+    words = {"name": name, "package": f"{name}_skill", "title": _title(name)}
+    words["distribution"] = words["package"].replace("_", "-")
+    _check_name(name, words["package"])
+    target = into / name
+    if target.exists():
+        raise CannotCreate(f"{target} is there already; choose another name, or --into a folder")
+    if not into.is_dir():
+        raise CannotCreate(f"there is no folder {into}")
+    draft: Path | None = None
+    try:
+        draft = Path(tempfile.mkdtemp(prefix=f".{name}-", dir=into))
+        _fill(draft, words)
+        draft.chmod(0o755)
+        draft.rename(target)
+    except OSError as error:
+        if draft is not None:
+            shutil.rmtree(draft, ignore_errors=True)
+        raise CannotCreate(f"{target} cannot be made: {error.strerror or error}") from None
+    return target
+
+
+def _check_name(name: str, package: str) -> None:
+    wrong = bad_skill_name(name)
+    if wrong is not None:
+        raise CannotCreate(wrong.replace("; give the entry point another name", ""))
+    taken = plugins.installed(plugins.SKILLS).get(name)
+    if taken is not None:
+        raise CannotCreate(f"a skill called {name!r} is installed already: {taken.value}")
+    if importlib.util.find_spec(package) is not None:
+        raise CannotCreate(f"a Python package called {package!r} is there already")
+
+
+def _fill(folder: Path, words: dict[str, str]) -> None:
+    for path, template in FILES.items():
+        file = folder / Template(path).substitute(words)
+        file.parent.mkdir(parents=True, exist_ok=True)
+        text = (_HERE / f"{template}.txt").read_text(encoding="utf-8")
+        file.write_text(Template(text).substitute(words), encoding="utf-8")
+
+
+def _title(name: str) -> str:
+    """`turn_round` as the name of a class."""
+    title = "".join(part.capitalize() for part in name.split("_"))
+    return f"{title}Skill" if title in _IMPORTED else title

@@ -1,0 +1,89 @@
+"""The tutorial works: its files are saved and its commands run, in order, in an empty folder."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+BLOCK = re.compile(r"```(\w+)\n(.*?)```", re.DOTALL)
+FILE = re.compile(r"`([\w/]+\.(?:yaml|py))`:\s*$")
+PIP = """#!/bin/sh
+# without network, into a folder of the test's own
+[ "$1" = install ] && shift
+exec "{python}" -m pip install -q --no-deps --no-index --no-build-isolation \
+    --disable-pip-version-check --target "{site}" "$@"
+"""
+
+
+def steps() -> list[tuple[str, str]]:
+    """(path, text) of each file to save and ("", line) of each command, in order."""
+    text = (ROOT / "docs" / "tutorial.md").read_text(encoding="utf-8")
+    found: list[tuple[str, str]] = []
+    for block in BLOCK.finditer(text):
+        language, body = block.groups()
+        if language == "sh":
+            found += [("", line) for line in body.splitlines()]
+            continue
+        named = FILE.search(text[: block.start()].rstrip())
+        assert named is not None, f"which file is this?\n{body}"
+        found.append((named[1], body))
+    return found
+
+
+@pytest.fixture
+def environment(tmp_path: Path) -> dict[str, str]:
+    """`momantu-bt`, `pip` and `pytest` of this Python; what pip installs stays in the test."""
+    tools, site = tmp_path / "tools", tmp_path / "site"
+    tools.mkdir()
+    site.mkdir()
+    # folders on PYTHONPATH do not read .pth files, which editable installs are made of
+    (site / "sitecustomize.py").write_text(f"import site\nsite.addsitedir({str(site)!r})\n")
+    scripts = {
+        "pip": PIP.format(python=sys.executable, site=site),
+        "pytest": f'#!/bin/sh\nexec "{sys.executable}" -m pytest -q "$@"\n',
+        "momantu-bt": f'#!/bin/sh\nexec "{sys.executable}" -m momantu_bt "$@"\n',
+    }
+    for name, text in scripts.items():
+        (tools / name).write_text(text, encoding="utf-8")
+        (tools / name).chmod(0o755)
+    path = [str(site), *filter(None, [os.environ.get("PYTHONPATH")])]
+    return {
+        **os.environ,
+        "PATH": f"{tools}{os.pathsep}{os.environ['PATH']}",
+        "PYTHONPATH": os.pathsep.join(path),
+        "PYTEST_PLUGINS": "momantu_bt.pytest_plugin",
+    }
+
+
+@pytest.mark.slow
+def test_every_command_of_the_tutorial_succeeds(
+    tmp_path: Path, environment: dict[str, str]
+) -> None:
+    folder = tmp_path / "empty"
+    folder.mkdir()
+    told = ""
+    for path, text in steps():
+        if path:
+            file = folder / path
+            file.write_text(text, encoding="utf-8")
+            continue
+        done = subprocess.run(
+            ["sh", "-c", text], cwd=folder, env=environment, capture_output=True, text=True
+        )
+        assert done.returncode == 0, f"{text}\n{done.stdout}\n{done.stderr}"
+        told += done.stdout + done.stderr
+    assert (folder / "report.json").is_file()
+    assert "no node is called 'check_turn'" in told
+    assert "ok    turn" in told
+
+
+def test_the_tutorial_saves_and_runs_something() -> None:
+    found = steps()
+    assert {path for path, _ in found} > {"first.yaml", "look_round.yaml", "test_look_round.py"}
+    assert len([line for path, line in found if not path]) > 10
