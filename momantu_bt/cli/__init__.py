@@ -33,6 +33,7 @@ TRACEBACK = "MOMANTU_BT_TRACEBACK"
 VERBS = {
     "run": "Run a tree.",
     "check": "Say everything that is wrong with tree files.",
+    "convert": "Write a tree in the other spelling, YAML or BehaviorTree.CPP's XML.",
     "show": "Print a tree in plain words or as a picture, or the difference of two.",
     "skills": "List skills, or show one with its ports and failure codes.",
     "worlds": "List worlds, or show one with its places and surfaces.",

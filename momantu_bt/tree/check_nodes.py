@@ -80,6 +80,15 @@ def autoremaps(node: Node) -> bool:
     return node.ports.get(AUTOREMAP) == Literal(True)
 
 
+def name_first_inputs(context: Context) -> None:
+    """Name the ports of bare values, for the nodes that are known."""
+    for tree in context.document.trees.values():
+        for node in tree.root.walk():
+            signature = context.signature(node) if FIRST_INPUT in node.ports else None
+            if signature is not None and signature.first is not None:
+                _name_first_input(context, node, signature)
+
+
 def _name_first_input(context: Context, node: Node, signature: Signature) -> None:
     if FIRST_INPUT not in node.ports:
         return
@@ -97,6 +106,9 @@ def _name_first_input(context: Context, node: Node, signature: Signature) -> Non
 
 def _check_children(context: Context, node: Node, signature: Signature) -> None:
     if signature.spec is None:
+        if node.children:
+            message = f"{signature.said} takes no children"
+            context.problems.error("children", node.children[0].place, message, "remove them")
         return
     least, most = signature.spec.children
     count = len(node.children)

@@ -13,6 +13,9 @@ from typing import Any
 
 from momantu_bt.tree.model import Place
 
+NOT_TEXT = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+"""Control characters and the like, which stand in values alone: XML cannot hold them."""
+
 
 class Severity(IntEnum):
     """An error keeps the tree from starting; a warning and a hint do not."""

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+from momantu_bt.tree.problems import NOT_TEXT
+
 MAX_LENGTH = 4000
 """Characters of one script; more than a person writes, less than hurts."""
 
@@ -55,7 +57,7 @@ def tokens(text: str, *, dollar: bool) -> list[Token]:
     position = 0
     while position < len(text):
         match = _TOKEN.match(text, position)
-        if match is None:
+        if match is None or (match.lastgroup == "text" and NOT_TEXT.search(match[0])):
             raise _stray(text, position)
         position = match.end()
         if match.lastgroup != "space":
@@ -97,6 +99,10 @@ def _glued(match: re.Match[str]) -> bool:
 
 def _stray(text: str, position: int) -> ScriptSyntaxError:
     character = text[position]
+    control = NOT_TEXT.search(text, position)
+    if control is not None:
+        message = f"the character U+{ord(control[0]):04X} cannot stand in a script"
+        return ScriptSyntaxError(message, control.start(), 1, "remove it")
     if character in "'\"":
         return ScriptSyntaxError("a text that is never closed", position, len(text) - position)
     if character == "$":

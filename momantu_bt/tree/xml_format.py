@@ -121,10 +121,28 @@ class XmlSource:
         document.models = tuple(self.models.leaves)
         self._world(document, root)
         self._values(document, root)
-        document.header_comments = root.comments
-        document.comments = (*root.end_comments, *self.parsed.comments)
+        self._comments(document, root)
         document.source = {self.file: self.text}
         return document
+
+    def _comments(self, document: Document, root: Element) -> None:
+        """Those that belong to no tree: to the header, to the last value, or to the end."""
+        above, below = root.comments, tuple[str, ...]()
+        for element in root.children:
+            inside = [each.comments for each in element.children if each.name != "Value"]
+            if element.name == "include":
+                above += element.comments
+            elif element.name == "Values":
+                above += element.comments
+                last = next(reversed(document.values), None)
+                if last is not None:
+                    before = document.value_comments.get(last, ())
+                    document.value_comments[last] = before + element.end_comments
+            elif element.name == "TreeNodesModel":
+                models = [text for texts in inside for text in texts]
+                below += (*element.comments, *models, *element.end_comments)
+        document.header_comments = above
+        document.comments = (*below, *root.end_comments, *self.parsed.comments)
 
     # the header
 
@@ -288,6 +306,7 @@ class XmlSource:
             message = f"the tree {name!r} has {len(element.children)} nodes at its root; it has one"
             self.problems.error("children", extra.place, message, "put them into a <Sequence>")
         reader.read(element.children[0], _root_setter(tree))
+        tree.root.end_comments += element.end_comments
         return tree
 
     def _report_models_of_nothing(self, root: Element, known: Mapping[str, Tree]) -> None:

@@ -108,13 +108,14 @@ def _port(element: Element, problems: Problems) -> PortDeclaration | None:
         problems.error("unknown-key", element.place, f"<{element.said}> is no port", hint)
         return None
     type_, default = element.get("type"), element.get("default")
+    doc = element.get("doc", OURS)
     return PortDeclaration(
         name.value,
         PORTS[element.name],
         "" if type_ is None else type_.value,
         name.place if type_ is None else type_.place,
         None if default is None else Literal(default.value),
-        " ".join(element.text.split()),
+        " ".join(element.text.split()) if doc is None else doc.value,
         comments=element.comments,
     )
 

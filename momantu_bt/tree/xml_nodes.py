@@ -24,7 +24,9 @@ from momantu_bt.tree.xml_ports import CATCH, EXPLICIT, PREFIX, PortReader
 from momantu_bt.tree.xml_source import OURS, Element
 from momantu_bt.tree.yaml_nodes import ANY, handler_codes
 
-_ONCE = {"SubTreePlus": SUBTREE, "Subtree": SUBTREE, "SequenceStar": "SequenceWithMemory"}
+PORT = "Port"
+"""Our element inside a node that is none itself: a port that no attribute can be named after."""
+ONCE = {"SubTreePlus": SUBTREE, "Subtree": SUBTREE, "SequenceStar": "SequenceWithMemory"}
 """Tags of BehaviorTree.CPP 3, and what they became."""
 
 Put = Callable[[Node], None]
@@ -66,8 +68,21 @@ class NodeReader:
             reader.of_tree(self.trees.get(node.target or "", {}))
         else:
             reader.of_skill(skill)
+        ports = [e for e in element.children if e.space == OURS and e.name == PORT]
+        for each in ports:
+            self._port_apart(reader, each)
+        element.children = [each for each in element.children if each not in ports]
         self._inside(node, element, spec, leaf=type_ == SUBTREE or skill is not None)
         return node
+
+    def _port_apart(self, reader: PortReader, element: Element) -> None:
+        name = element.get("name")
+        if name is None or reader.spec is not None:
+            message = f"<momantu:{PORT}> is for a port that no attribute can be named after"
+            hint = f'write <momantu:{PORT} name="a b">value</momantu:{PORT}> in a node of your own'
+            self.problems.error("unknown-port", element.place, message, hint)
+            return
+        reader.apart(name.value, element)
 
     def _refuse_text(self, element: Element) -> None:
         if element.text_place is not None:
@@ -90,8 +105,8 @@ class NodeReader:
             return self._explicit_type(element)
         if name in OWN_NODES:
             return self._unknown(element, f"did you mean momantu:{name}?")
-        if name in _ONCE and name not in self.registry.skills:
-            return self._unknown(element, f"did you mean {_ONCE[name]}?")
+        if name in ONCE and name not in self.registry.skills:
+            return self._unknown(element, f"did you mean {ONCE[name]}?")
         if name in self.trees and name not in self.registry.skills:
             return self._unknown(element, f'a tree is run by <SubTree ID="{name}"/>')
         return name

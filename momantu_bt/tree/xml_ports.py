@@ -16,6 +16,7 @@ from momantu_bt.tree.catalogue import (
 )
 from momantu_bt.tree.model import (
     BROKEN,
+    FIRST_INPUT,
     Literal,
     Node,
     Place,
@@ -39,7 +40,7 @@ CATCH = "Catch"
 
 DISABLED, NOTE, DESCRIPTION = "disabled", "note", "_description"
 _CONDITIONS = {theirs: ours for ours, theirs in XML_CONDITIONS.items()}
-_RESERVED = ("ID", "name", DESCRIPTION, AUTOREMAP, *_CONDITIONS)
+RESERVED = ("ID", "name", DESCRIPTION, AUTOREMAP, *_CONDITIONS)
 _EDITORS = ("_uid", "_fullpath", "_collapsed", "__shared_blackboard")
 """What editors keep for themselves; it says nothing about the tree."""
 _BOOLS = {"true": True, "1": True, "false": False, "0": False}
@@ -78,6 +79,18 @@ class PortReader:
     def _error(self, code: str, place: Place, message: str, hint: str = "") -> None:
         self.problems.error(code, place, message, hint)
 
+    def apart(self, name: str, element: Element) -> None:
+        """A port that no attribute can be named after: `<momantu:Port name="a b">5</…>`."""
+        place = element.text_place or element.place
+        value = flow_value(element.text.strip(), name, place, self.problems)
+        if name in self.node.ports:
+            message = f"{name!r} is given twice"
+            self._error("duplicate-key", element.place, message, "remove one")
+            return
+        self.node.ports[name] = Reference(BROKEN) if value is None else value
+        self.node.port_places[name] = place
+        self.node.port_name_places[name] = place if name == FIRST_INPUT else element.place
+
     def _read(self, type_of: TypeOf) -> None:
         for attribute in self.element.attributes:
             if attribute.space == OURS:
@@ -85,7 +98,7 @@ class PortReader:
             elif attribute.space:
                 message = f"{attribute.name!r} of the namespace {attribute.space!r} has no meaning"
                 self._error("unknown-port", attribute.name_place, message, "remove it")
-            elif attribute.name.startswith("_") or attribute.name in _RESERVED:
+            elif attribute.name.startswith("_") or attribute.name in RESERVED:
                 self._reserved(attribute)
             else:
                 self._port(attribute, type_of)

@@ -15,6 +15,7 @@ from lxml import etree
 
 from momantu_bt.tree.model import Beside, Place
 from momantu_bt.tree.problems import Problem
+from momantu_bt.tree.xml_comments import show_dashes
 from momantu_bt.tree.xml_syntax import first_error, in_our_words
 
 MAX_BYTES = 1_000_000
@@ -257,7 +258,10 @@ class _Scan:
         return bisect_right(self.starts, position)
 
     def comment(self, start: int, end: int) -> None:
-        lines = [line.strip() for line in self.text[start + 4 : end - 3].strip().split("\n")]
+        inside = self.text[start + 4 : end - 3]
+        lines = [line.strip() for line in inside.strip().split("\n")]
+        if len(lines) == 1:
+            lines = [show_dashes(inside.removeprefix(" ").rstrip())]
         self.count(1, self.place(start, end))
         line, element = self.ended
         if element is not None and line == self.line(start):

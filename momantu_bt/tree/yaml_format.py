@@ -20,6 +20,7 @@ from momantu_bt.tree.model import (
 )
 from momantu_bt.tree.problems import Problems, TreeError, errors, nearest, valid_names
 from momantu_bt.tree.yaml_comments import attach
+from momantu_bt.tree.yaml_models import read_models
 from momantu_bt.tree.yaml_nodes import AGAIN, NodeReader
 from momantu_bt.tree.yaml_source import (
     Entries,
@@ -29,9 +30,8 @@ from momantu_bt.tree.yaml_source import (
     Scalar,
     YamlSyntaxError,
     compose_with_remarks,
-    plain_value,
 )
-from momantu_bt.tree.yaml_values import KEY, drop_duplicates, port_value
+from momantu_bt.tree.yaml_values import KEY, drop_duplicates, port_value, words
 
 VERSION = 1
 """What `momantu_bt:` says; a later one may read differently."""
@@ -40,7 +40,7 @@ TREE_NAME = re.compile(r"[^\W\d][\w.-]*(?: [\w.-]+)*")
 """Names that a tree can have; BehaviorTree.CPP's may hold more than letters."""
 TREE_NAME_HINT = "letters, digits, `_`, `-`, `.` and single spaces, a letter first"
 
-_TOP = ("momantu_bt", "include", "world", "main", "values", "trees")
+_TOP = ("momantu_bt", "include", "world", "main", "values", "trees", "models")
 PORTS = {"inputs": "in", "outputs": "out", "inouts": "inout"}
 HEADER = (*PORTS, "open", "doc")
 _DECLARATION = ("type", "default", "doc")
@@ -141,6 +141,8 @@ class _Reader:
         document = Document(self.file, main, trees)
         self.world(document, having.get("world"))
         self.values(document, having.get("values"))
+        if "models" in having:
+            document.models = read_models(having["models"][1], self.problems)
         return document
 
     def version(self, entry: tuple[Scalar, Raw] | None, place: Place) -> None:
@@ -276,7 +278,7 @@ class _Reader:
             if "open" in header:
                 self.open(tree, header["open"])
             if "doc" in header:
-                tree.doc = str(plain_value(header["doc"]))
+                tree.doc = words(header["doc"], self.problems, "`doc`")
             if not body.entries:
                 self.problems.error("no-node", key.place, f"the tree {key.text!r} has no node")
                 return tree
@@ -342,7 +344,7 @@ class _Reader:
             type_.text if isinstance(type_, Scalar) else "any",
             type_.place if type_ is not None else raw.place,
             found,
-            str(plain_value(having["doc"])) if "doc" in having else "",
+            words(having["doc"], self.problems, "`doc`") if "doc" in having else "",
         )
 
     def default(self, raw: Raw) -> Literal | Reference | None:

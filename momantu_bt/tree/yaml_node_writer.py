@@ -75,10 +75,13 @@ class NodeWriter:
             piece = stack.pop()
             if isinstance(piece, str):
                 lines.append(piece)
-            elif isinstance(piece, _Value):
-                stack.extend(reversed(self._value(piece)))
-            else:
-                stack.extend(reversed(self._body(piece)))
+                continue
+            try:
+                below = self._value(piece) if isinstance(piece, _Value) else self._body(piece)
+            except CannotWrite as error:
+                error.place = piece.node.place
+                raise
+            stack.extend(reversed(below))
         return lines
 
     def _value(self, piece: _Value) -> list[_Piece]:
@@ -216,8 +219,10 @@ class NodeWriter:
             f"{lead}{SWITCH}: {variable}{beside(node.comments)}",
             f"{pad}cases:",
         ]
-        for case, child in zip(cases, chosen, strict=True):
-            pieces.append(_Value(child, f"{pad}{STEP}{case}:", deeper))
+        for number, (case, child) in enumerate(zip(cases, chosen, strict=True), start=1):
+            comments = node.port_comments.get(f"case_{number}", ())
+            pieces += above(comments, pad + STEP)
+            pieces.append(_Value(child, f"{pad}{STEP}{case}:", deeper, comments))
         return [*pieces, _Value(default, f"{pad}default:", pad + STEP)]
 
     def _recovery(self, node: Node, pad: str) -> list[_Piece]:
@@ -285,7 +290,7 @@ def _cases(node: Node) -> list[str] | None:
     values = [node.ports.get(name) for name in BUILT_IN[node.type].ports]
     if len(node.ports) != len(values) or len(node.children) != len(values):
         return None
-    if node.port_comments or any(value is None or is_nested(value) for value in values):
+    if any(value is None or is_nested(value) for value in values):
         return None
     variable, *cases = (port_text(value) for value in values if value is not None)
     bare = {case.strip("\"'") for case in cases}

@@ -31,7 +31,7 @@ from momantu_bt.tree.model import (
 from momantu_bt.tree.problems import Problems, nearest
 from momantu_bt.tree.script import ScriptSyntaxError, canonical, parse
 from momantu_bt.tree.yaml_source import Entries, Items, Raw, Scalar
-from momantu_bt.tree.yaml_values import drop_duplicates, port_value, reported_braces
+from momantu_bt.tree.yaml_values import drop_duplicates, port_value, reported_braces, words
 
 AGAIN = "again"
 BTCPP = "btcpp"
@@ -151,10 +151,7 @@ class NodeReader:
             found = self._flag(value)
             node.disabled = bool(found)
             return
-        if isinstance(value, Scalar) and value.value is not None:
-            setattr(node, key.text, value.text)
-            return
-        self._error("wrong-value", value.place, f"`{key.text}` is a text")
+        setattr(node, key.text, words(value, self.problems, f"`{key.text}`") or None)
 
     def _flag(self, value: Raw) -> bool | None:
         if isinstance(value, Scalar) and isinstance(value.value, bool):
@@ -240,7 +237,10 @@ class NodeReader:
         if spec is None:
             target = name if name in self.trees else None
             node = Node(SUBTREE if target else name, key.place, target=target)
-            self._leaf(node, value, None)
+            if target is None and isinstance(value, Entries) and _has_children(value):
+                self._split(node, value, None, ("children",))
+            else:
+                self._leaf(node, value, None)
             return node
         node = Node(spec.type, key.place)
         if name in COMPANIONS:
@@ -302,7 +302,9 @@ class NodeReader:
         elif value.value is not None:
             self._misfit(node, value, f"{_said(node)} takes a list of nodes")
 
-    def _split(self, node: Node, raw: Entries, spec: NodeSpec, kept: tuple[str, ...]) -> list[Raw]:
+    def _split(
+        self, node: Node, raw: Entries, spec: NodeSpec | None, kept: tuple[str, ...]
+    ) -> list[Raw]:
         """Ports of a mapping to the node; the values of the kept keys, `children` read."""
         drop_duplicates(raw, self.problems)
         values: list[Raw] = []
@@ -428,6 +430,11 @@ def _without(raw: Entries, name: str) -> Entries:
 
 def _has_child(value: Raw) -> bool:
     return isinstance(value, Entries) and any(key.text == "child" for key, _ in value.entries)
+
+
+def _has_children(value: Entries) -> bool:
+    """Whether it is a control node that nobody knows here."""
+    return any(key.text == "children" and isinstance(raw, Items) for key, raw in value.entries)
 
 
 def _near_modifier(name: str) -> str | None:

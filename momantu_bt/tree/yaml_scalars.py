@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from momantu_bt.tree.model import Literal, PortValue, Reference, Scope, Template
+from momantu_bt.tree.model import Literal, Place, PortValue, Reference, Scope, Template
 from momantu_bt.tree.script import ScriptSyntaxError, canonical, yaml_spelling
 from momantu_bt.tree.yaml_nodes import BTCPP
 from momantu_bt.tree.yaml_source import resolve
@@ -19,7 +19,12 @@ _ESCAPES = {"\n": "\\n", "\t": "\\t", "\r": "\\r", '"': '\\"', "\\": "\\\\", "\0
 
 
 class CannotWrite(ValueError):
-    """A value or node for which a spelling has no words; the message says which."""
+    """A value or node for which a spelling has no words; the message says which.
+
+    place: of the node, where that is known.
+    """
+
+    place: Place | None = None
 
 
 def scalar(text: str, *, flow: bool = False, typed: bool = True) -> str:

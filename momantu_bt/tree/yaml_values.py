@@ -6,7 +6,7 @@ import re
 from typing import Any
 
 from momantu_bt.tree.model import Literal, Place, PortValue, Reference, Scope, Template
-from momantu_bt.tree.problems import Problems
+from momantu_bt.tree.problems import NOT_TEXT, Problems
 from momantu_bt.tree.yaml_source import Entries, Items, Raw, Scalar
 
 _NAME = r"[^\W\d]\w*"
@@ -27,6 +27,19 @@ def port_value(raw: Raw, same_name: str, problems: Problems) -> PortValue | None
         return None
     value = _nested(raw, problems)
     return None if value is _BROKEN else Literal(value)
+
+
+def words(raw: Raw, problems: Problems, what: str) -> str:
+    """A name or a sentence, as it is written; empty where a problem was reported."""
+    text = raw.text if isinstance(raw, Scalar) and raw.value is not None else ""
+    forbidden = NOT_TEXT.search(text)
+    if not isinstance(raw, Scalar) or (raw.value is None and not raw.quoted):
+        problems.error("wrong-value", raw.place, f"{what} is a text")
+    elif forbidden is not None:
+        message = f"the character U+{ord(forbidden[0]):04X} cannot stand in {what}"
+        problems.error("wrong-value", raw.place, message, "remove it")
+        return ""
+    return text
 
 
 def reference(raw: Raw, problems: Problems, what: str) -> Reference | None:

@@ -9,6 +9,7 @@ from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.yaml_format import HEADER, PORTS, VERSION
 from momantu_bt.tree.yaml_leaf_writer import LeafWriter
 from momantu_bt.tree.yaml_lines import WIDTH, above, beside, spread
+from momantu_bt.tree.yaml_models import write_models
 from momantu_bt.tree.yaml_node_writer import NodeWriter
 from momantu_bt.tree.yaml_scalars import CannotWrite, literal, port_text, scalar
 
@@ -26,6 +27,8 @@ def write(document: Document, registry: Registry | None = None) -> str:
     lines = _header(document)
     if document.values:
         lines += ["", "values:", *_values(document)]
+    if document.models:
+        lines += ["", "models:", *write_models(document.models)]
     own = [tree for tree in document.trees.values() if tree.place.file == document.file]
     lines += ["", "trees:"]
     writer = NodeWriter(LeafWriter(frozenset(document.trees), registry or Registry()))

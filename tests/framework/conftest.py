@@ -2,7 +2,6 @@
 
 import random
 from collections.abc import Callable, Sequence
-from dataclasses import fields, is_dataclass
 from typing import Any
 
 import pytest
@@ -56,6 +55,7 @@ _TEXTS += (
     "<&>",
     "--",
 )
+_NAMES = tuple(text for text in _TEXTS if text and "\x07" not in text)
 _KEYS = ("a", "found", "n", "target_pose", "größe")
 _PORTS = ("object", "at", "side", "name", "timeout", "ID", "_x", "a b", "5", "note", "value")
 _SCRIPTS = ("a > 1", "!a && b", "a && b || c", "!a == 1", "n := 'x: y'", "x = a ? b : c; @y += 1")
@@ -102,8 +102,8 @@ class Sower:
             inner = [spec for spec in BUILT_IN.values() if spec.kind is not Kind.LEAF]
             node = self.inner(r.choice(inner), names, depth)
         if r.random() < 0.2:
-            node.name, node.disabled = r.choice(_TEXTS), r.random() < 0.5
-            node.note = r.choice([None, *_TEXTS])
+            node.name, node.disabled = r.choice([None, *_NAMES]), r.random() < 0.5
+            node.note = r.choice([None, *_NAMES])
             node.conditions = {key: r.choice(_SCRIPTS) for key in self.some(CONDITIONS)}
         return node
 
@@ -126,7 +126,7 @@ class Sower:
     def with_ports(self, spec: NodeSpec) -> Node:
         r = self.random
         node = Node(spec.type, _HERE)
-        excluded = {name for group in spec.one_of for name in group if name != r.choice(group)}
+        excluded = {name for group in spec.one_of for name in r.sample(group, len(group) - 1)}
         for name, port in spec.ports.items():
             if name in excluded or (not port.required and r.random() < 0.5):
                 continue
@@ -178,20 +178,3 @@ class Sower:
 def random_document() -> Callable[[random.Random], Document]:
     """A random document that is right in form; places and comments aside, all there can be."""
     return lambda seeded: Sower(seeded).document()
-
-
-@pytest.fixture(scope="session")
-def meaning() -> Callable[[object], object]:
-    """What of a document counts when two are compared, the types of its values with it."""
-    return _meaning
-
-
-def _meaning(value: object) -> object:
-    if is_dataclass(value):
-        kept = [f.name for f in fields(value) if f.compare]
-        return (type(value).__name__, {name: _meaning(getattr(value, name)) for name in kept})
-    if isinstance(value, dict):
-        return {key: _meaning(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_meaning(item) for item in value]
-    return (type(value).__name__, value)

@@ -161,6 +161,16 @@ def test_a_tree_may_be_open_and_a_key_may_come_in_and_go_out() -> None:
     assert (trees["Any"].open, trees["Sub"].open) == (True, False)
 
 
+def test_a_script_of_behaviortree_cpp() -> None:
+    node = root("{succeed: , skip_if: {btcpp: a && b || c}}")
+    assert node.conditions == {"skip_if": "a && b || c"}
+
+
+def test_names_and_notes() -> None:
+    node = root('{succeed: , name: "", note: 5}')
+    assert (node.name, node.note) == (None, "5")
+
+
 def test_every_node_knows_its_place() -> None:
     found = document("trees:\n  Main:\n    - a\n    - b: {x: $k}\n      retry: 2\n")
     places = {n.type: (n.place.line, n.place.column) for n in found.trees["Main"].root.walk()}
@@ -203,6 +213,16 @@ def test_every_node_knows_its_place() -> None:
         ("momantu_bt: 1\ntrees: {A: {say: «$5 off»}}\n", "dollar", "$$ for a dollar"),
         ("momantu_bt: 1\ntrees: {A: {say: {text: a, pace: [«$a»]}}}\n", "wire-inside", ""),
         ("momantu_bt: 1\ntrees: {A: {wait: 1, skip_if: «[a]»}}\n", "script", ""),
+        ("momantu_bt: 1\ntrees: {A: {wait: 1, skip_if: {btcpp: «&&»}}}\n", "script", ""),
+        ('momantu_bt: 1\ntrees: {A: {wait: 1, name: «"a\\0"»}}\n', "wrong-value", "remove it"),
+        ("momantu_bt: 1\ntrees: {A: {wait: 1, note: «[a]»}}\n", "wrong-value", ""),
+        ("momantu_bt: 1\nmodels: «3»\ntrees: {A: {wait: 1}}\n", "wrong-value", "Action: Name"),
+        ("momantu_bt: 1\nmodels: [«{editable: true}»]\ntrees: {A: {wait: 1}}\n", "wrong-value", ""),
+        (
+            "momantu_bt: 1\nmodels: [{Action: a, «b»: c}]\ntrees: {A: {wait: 1}}\n",
+            "unknown-key",
+            "",
+        ),
     ],
 )
 def test_what_is_refused(expect: Expect, text: str, code: str, hint: str) -> None:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from momantu_bt.tree.convert import meaning
 from momantu_bt.tree.lookup import bundled_folder
 from momantu_bt.tree.model import Document, Literal, Node, Place
 from momantu_bt.tree.script import canonical
@@ -45,7 +46,7 @@ def test_a_bundled_tree_comes_back_the_same(path: Path) -> None:
 
 
 def test_random_documents_come_back_the_same(
-    random_document: Callable[[random.Random], Document], meaning: Callable[[object], object]
+    random_document: Callable[[random.Random], Document],
 ) -> None:
     for seed in range(250):
         document = random_document(random.Random(seed))

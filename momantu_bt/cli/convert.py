@@ -1,0 +1,98 @@
+"""`momantu-bt convert`: a tree file in its other spelling."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from momantu_bt.record.files import OutputError, check_writable, write_whole
+from momantu_bt.tree.convert import (
+    CannotWrite,
+    Spelling,
+    document_spelling,
+    read_right,
+    spelling_of,
+    write,
+)
+from momantu_bt.tree.lookup import find
+from momantu_bt.tree.model import Document
+from momantu_bt.tree.registry import Registry
+
+EXIT_WRONG_INPUT = 2
+
+
+def convert(
+    tree: Annotated[str, typer.Argument(help="A tree file, or the name of a bundled tree.")],
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Write to this file, not to the terminal.")
+    ] = None,
+    to: Annotated[
+        Spelling | None, typer.Option(help="yaml or xml; else what OUTPUT ends with, or the other.")
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite OUTPUT.")] = False,
+) -> int:
+    """Write a tree file in the other spelling, YAML or BehaviorTree.CPP's XML. Nothing is lost.
+
+    Comments come along. Nodes need not be installed, but a file that is wrong in form is refused.
+    Files that it includes stay as they are. Exit code 2: nothing was written.
+
+    Examples:
+      momantu-bt convert trees/bring_object.yaml
+      momantu-bt convert from_groot.xml -o trees/mine.yaml
+      momantu-bt convert mine.yaml --to yaml -o mine.yaml --force
+    """
+    try:
+        if output is not None:
+            _check(output, force)
+        registry = Registry.installed()
+        document = read_right(find(tree), registry)
+        spelling = to or _wanted(document, output)
+        if output is not None:
+            _move_includes(document, output)
+        text = write(document, spelling, registry)
+        if output is not None:
+            write_whole(output, text)
+    except CannotWrite as error:
+        return _refuse(f"{error.place or tree}: {error}")
+    except OutputError as error:
+        return _refuse(str(error))
+    if output is None:
+        typer.echo(text, nl=False)
+    else:
+        typer.echo(f"wrote {output}")
+    return 0
+
+
+def _refuse(message: str) -> int:
+    typer.echo(f"momantu-bt: {message}", err=True)
+    return EXIT_WRONG_INPUT
+
+
+def _check(output: Path, force: bool) -> None:
+    """Before anything is read."""
+    check_writable(output)
+    if output.exists() and not force:
+        raise OutputError(f"{output} is there already; --force overwrites it")
+
+
+def _wanted(document: Document, output: Path | None) -> Spelling:
+    if output is None:
+        return document_spelling(document).other
+    found = spelling_of(output)
+    if found is None:
+        raise OutputError(f"{output} ends with neither .yaml nor .xml; say --to yaml or --to xml")
+    return found
+
+
+def _move_includes(document: Document, output: Path) -> None:
+    """Paths of included files are relative to the file that includes them."""
+    before, after = Path(document.file).resolve().parent, output.resolve().parent
+    if before != after:
+        document.includes = tuple(
+            replace(each, path=Path(os.path.relpath(before / each.path, after)).as_posix())
+            for each in document.includes
+        )
