@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from momantu_bt.engine.blackboard import Board, Cell, ReadOnlyCell, rollback
+from momantu_bt.engine.nodes.updates import WasEntryUpdated
 from momantu_bt.failure import Failure
 from momantu_bt.skill import MISSING
 
@@ -103,3 +104,29 @@ def test_the_journal_can_be_rolled_back(writes):
     rollback(first.items())
     assert board.values() == before
     assert all(cell.value is MISSING or cell.name == "a" for cell in first)
+
+
+def test_a_cell_counts_its_writes_also_of_equal_values():
+    board = Board([])
+    cell = board.cell("k")
+    assert cell.writes == 0
+    board.set("k", 1)
+    board.set("k", 1)
+    assert cell.writes == 2
+
+
+def test_a_published_key_counts_as_written_when_another_value_is_found_there():
+    values = ["a"]
+    cell = ReadOnlyCell("robot", lambda: values[-1])
+    assert [cell.writes, cell.writes] == [1, 1]
+    values.append("b")
+    assert [cell.writes, cell.writes] == [2, 2]
+
+
+def test_a_node_that_watches_a_published_key_sees_each_new_value(bench):
+    values = ["a"]
+    cell = ReadOnlyCell("robot", lambda: values[-1])
+    node = WasEntryUpdated(bench.model("WasEntryUpdated"), bench.context, (), None, entry=cell)
+    assert [bench.tick(node), bench.tick(node)] == ["S", "F"]
+    values.append("b")
+    assert [bench.tick(node), bench.tick(node)] == ["S", "F"]

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from momantu_bt.geometry import Pose, Pose2D, Transform
 from momantu_bt.messages import VALUE_TYPES, ObjectClass
 from momantu_bt.skill import Port
+from momantu_bt.tree.catalogue import Queue
 from momantu_bt.tree.types import assignable, label, parse_type
 from momantu_bt.tree.values import ConversionError, convert, natural, render
 
@@ -176,3 +177,42 @@ def test_a_type_is_known_by_its_label(name: str, depth: int) -> None:
     text = "list of " * depth + name
     assert label(parse_type(text)) == text
     assert assignable(parse_type(text), parse_type(text))
+
+
+@pytest.mark.parametrize(
+    ("value", "item", "expected"),
+    [
+        ("1;2;3", int, (1, 2, 3)),
+        ("1; 2;", int, (1, 2)),
+        ("", int, ()),
+        (7, int, (7,)),
+        ([1, 2], float, (1.0, 2.0)),
+        ("1.5;2", float, (1.5, 2.0)),
+        ("a; b", str, ("a", " b")),
+        (5, str, ("5",)),
+        ("true;0;FALSE", bool, (True, False, False)),
+        ((), bool, ()),
+    ],
+)
+def test_a_queue_is_a_list_one_value_or_a_text_of_several(
+    value: Any, item: type, expected: tuple[Any, ...]
+) -> None:
+    found = into(value, Queue[item])
+    assert found == expected
+    assert [type(each) for each in found] == [item] * len(found)
+
+
+@pytest.mark.parametrize(
+    ("value", "item"), [("1;x", int), ("1;;2", int), ("2", bool), (None, str), ([1], str)]
+)
+def test_what_no_queue_can_be_made_of(value: Any, item: type) -> None:
+    with pytest.raises(ConversionError):
+        into(value, Queue[item])
+
+
+def test_what_may_flow_into_a_queue() -> None:
+    assert label(Queue[int]) == "list of int"
+    for fits in (str, int, tuple[int, ...], object):
+        assert assignable(fits, Queue[int])
+    for other in (Pose, tuple[str, ...], bool):
+        assert not assignable(other, Queue[int])
