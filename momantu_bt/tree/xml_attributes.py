@@ -111,6 +111,8 @@ class AttributeWriter:
         reserved = shown.startswith("_") or shown in RESERVED
         if name == AUTOREMAP and node.type == SUBTREE:
             reserved = False
+        if spec is not None and name in spec.keys and isinstance(value, Literal):
+            reserved = True  # a bare word there names a key
         text = plain(value, name, type_) if shown and not reserved else None
         if text is not None:
             return attribute(shown, text)

@@ -40,6 +40,8 @@ def _xml(body: str, registry: Registry | None = None, head: str = "") -> str:
             '<SetBlackboard output_key="{a}" momantu:value="&quot;5&quot;"/>',
         ),
         ("fail: {code: OH, message: '5'}", '<momantu:Fail code="OH" message="5"/>'),
+        ("was_entry_updated: $a", '<WasEntryUpdated entry="{a}"/>'),
+        ("was_entry_updated: a", '<WasEntryUpdated momantu:entry="a"/>'),
         ("script: $a := $b > 1", '<Script code="a := b &gt; 1"/>'),
         ("two words", '<Action ID="two words"/>'),
     ],
