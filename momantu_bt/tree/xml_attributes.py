@@ -114,6 +114,8 @@ class AttributeWriter:
         if spec is not None and name in spec.keys and isinstance(value, Literal):
             reserved = True  # a bare word there names a key
         text = plain(value, name, type_) if shown and not reserved else None
+        if spec is not None and name in spec.keys:
+            text = _key(node, value, text)
         if text is not None:
             return attribute(shown, text)
         ours = attribute(PREFIX + name, port_text(value))
@@ -145,6 +147,17 @@ class AttributeWriter:
 def _has_attribute(node: Node, name: str) -> bool:
     """Whether an attribute can be named after a port."""
     return is_name(name) and (node.type in BUILT_IN or name not in (DISABLED, NOTE))
+
+
+def _key(node: Node, value: PortValue, text: str | None) -> str | None:
+    """The text for a port that means a key: a bare text would be read as the key's name.
+
+    UnsetBlackboard takes nothing else: in BehaviorTree.CPP `{k}` is there the key that $k names.
+    """
+    bare = isinstance(value, Reference) and not value.fields and value.scope is Scope.LOCAL
+    if node.type == "UnsetBlackboard" and isinstance(value, Reference) and bare:
+        return value.key
+    return None if isinstance(value, Literal) else text
 
 
 def _script(node: Node, value: PortValue) -> str:

@@ -10,6 +10,7 @@ from momantu_bt.tree.catalogue import BUILT_IN, SWITCHES
 from momantu_bt.tree.model import Literal, Reference
 from momantu_bt.tree.problems import Problem, Severity
 from momantu_bt.tree.xml_format import read as read_xml
+from momantu_bt.tree.xml_writer import write as write_xml
 from momantu_bt.tree.yaml_format import read
 
 Check = Callable[[str], list[Problem]]
@@ -183,3 +184,11 @@ def _tree(node: str) -> str:
         "momantu_bt: 1\nvalues: {n: 1, flags: [true]}\n"
         f"trees:\n  Main:\n    - {node}\n    - {{fallback: [{{condition: $n > 0}}, succeed]}}\n"
     )
+
+
+def test_xml_names_the_key_that_is_unset_without_braces() -> None:
+    document, _ = read(_tree("{unset: $n}"), "t.yaml")
+    assert '<UnsetBlackboard key="n"/>' in write_xml(document)
+    wrong, _ = read(_tree("{unset: n}"), "t.yaml")
+    again, _ = read_xml(write_xml(wrong), "t.xml")
+    assert again == wrong
