@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 
 from momantu_bt.messages import RobotState
 from momantu_bt.tree.catalogue import ScriptText
@@ -18,7 +19,7 @@ from momantu_bt.tree.check_trees import (
 )
 from momantu_bt.tree.keys import Key, literal_type
 from momantu_bt.tree.model import Document, Literal, Node, Place, Reference, Scope, Tree
-from momantu_bt.tree.problems import Problem, Problems, valid_names
+from momantu_bt.tree.problems import Problem, Problems, TooManyProblems, valid_names
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.script import parse
 from momantu_bt.tree.signatures import Context
@@ -46,7 +47,13 @@ def check(
     Returns: errors, warnings and hints in the order of the file.
     """
     problems = reading if reading is not None else Problems()
-    context = Context(document, registry, problems)
+    with suppress(TooManyProblems):  # the last of them says that there are more
+        _check(Context(document, registry, problems), world, robot)
+    return problems.sorted()
+
+
+def _check(context: Context, world: str | None, robot: str | None) -> None:
+    document = context.document
     _look_up(context, world, robot)
     for tree in document.trees.values():
         check_tree_ports(context, tree)
@@ -61,7 +68,6 @@ def check(
         check_parallel(context, order)
         check_handlers(context, order)
         check_keys(context, order, _root_keys(context))
-    return problems.sorted()
 
 
 def _look_up(context: Context, world: str | None, robot: str | None) -> None:

@@ -25,6 +25,8 @@ from momantu_bt.tree.yaml_nodes import ANY
 _ANY_SKILL = frozenset(ENGINE_CODES) - {TIMEOUT, FAILED, HALTED, SCRIPT_ERROR}
 """What the engine makes of a skill's end beside the codes that it declares."""
 
+_ANY_BUILT_IN = frozenset({FAILED, INPUT_MISSING, WRONG_TYPE, SCRIPT_ERROR})
+
 Codes = frozenset[str]
 """Codes, bare and as `pick.SLIPPED`. UNKNOWN stands for any."""
 UNKNOWN = "?"
@@ -67,10 +69,8 @@ def _codes(
     of_tree: Mapping[str, Codes],
     meant: Mapping[int, Codes],
 ) -> Codes:
-    below: Codes = frozenset().union(*(of_node[id(child)] for child in node.children))
-    handled: Codes = frozenset().union(
-        *(of_node[id(h.node)] for h in node.handlers if h.node is not None)
-    )
+    below = _joined(*(of_node[id(child)] for child in node.children))
+    handled = _joined(*(of_node[id(h.node)] for h in node.handlers if h.node is not None))
     if node.type == "Fail":
         found = _raised(node, meant.get(id(node)))
     elif node.type == "TestNode":
@@ -81,8 +81,18 @@ def _codes(
     else:
         found = _own(context, node, below, handled, of_tree)
     if node.conditions:
-        found |= {FAILED, SCRIPT_ERROR} if "fail_if" in node.conditions else {SCRIPT_ERROR}
+        asked = {FAILED, SCRIPT_ERROR} if "fail_if" in node.conditions else {SCRIPT_ERROR}
+        found = _joined(found, frozenset(asked))
     return frozenset() if node.disabled else found
+
+
+def _joined(*parts: Codes) -> Codes:
+    """All codes of some sets: a set of them itself where it has them all, to copy no big ones."""
+    distinct = set(parts)
+    largest = max(distinct, key=len, default=frozenset())
+    if all(part <= largest for part in distinct):
+        return largest
+    return frozenset().union(*distinct)
 
 
 def _own(
@@ -95,7 +105,7 @@ def _own(
     if node.type == "ForceSuccess":
         return frozenset()
     if node.type == "Timeout":
-        return below | {TIMEOUT}
+        return _joined(below, frozenset({TIMEOUT}))
     signature = context.signature(node)
     if signature is None:
         return frozenset({UNKNOWN})
@@ -103,7 +113,7 @@ def _own(
         own = {*signature.skill.failures, *_ANY_SKILL}
         return frozenset(own | {f"{node.type}.{code}" for code in own})
     answers = _OF_BUILT_IN.get(node.type, frozenset())
-    return below | handled | answers | {FAILED, INPUT_MISSING, WRONG_TYPE, SCRIPT_ERROR}
+    return _joined(below, handled, answers, _ANY_BUILT_IN)
 
 
 def _raised(node: Node, handled: Codes | None) -> Codes:

@@ -108,15 +108,14 @@ class _KeyCheck:
     def node(self, node: Node, before: Known) -> After:
         if node.disabled:
             return After(NEVER, NEVER, before)
+        if not node.conditions:
+            return self.inside(node, before)
         # `while` and `on_halt` come at any tick, also after something below has taken a key away
         anytime = before.lacking(self.removed(node))
         for name in PRE_CONDITIONS:
             if name in node.conditions:
                 self.condition(node, name, anytime if name == "while" else before)
-        after = self.inside(node, before)
-        if not node.conditions:
-            return after
-        success, failure, skipped = after
+        success, failure, skipped = self.inside(node, before)
         if not node.conditions.keys().isdisjoint(PRE_CONDITIONS):
             # a condition may fail the node by its value, or because it cannot be evaluated
             failure = meet(failure, before)
@@ -318,20 +317,20 @@ class _KeyCheck:
         """Keys that a script needs, those that it reads, and what it leaves written."""
         self.reads.seen.update(variable.key for variable in script.reads)
         known: dict[str, ValueType] = {}
-        for variable in script.needs:
-            shown = variable.key if self.context.is_xml(place) else f"${variable.key}"
+        for name, parts in dict.fromkeys((needed.key, needed.parts) for needed in script.needs):
+            shown = name if self.context.is_xml(place) else f"${name}"
             where = within(place, shown, self.context.document.source)
-            key = self.reads.lookup(_reference(variable.key), before, where)
+            key = self.reads.lookup(_reference(name), before, where)
             if key is not None:
-                type_ = self.reads.part_of(key, variable.parts, where)
-                known[".".join((variable.key, *variable.parts))] = type_ or object
+                known[".".join((name, *parts))] = (
+                    self.reads.part_of(key, parts, where) or object
+                )
         self.script_types(script, known, place)
-        after = before
         self.reads.given.update(variable.key for variable in script.writes)
-        for variable in script.writes:
-            if not variable.key.startswith("@"):
-                after = after.having(variable.key, Key(object, place))
-        return after
+        written = (variable.key for variable in script.writes)
+        return before.having_all(
+            {key: Key(object, place) for key in written if not key.startswith("@")}
+        )
 
 
 def _reference(variable: str) -> Reference:

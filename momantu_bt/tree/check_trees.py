@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from itertools import combinations
+from typing import TypeAlias
 
-from momantu_bt.tree.catalogue import SUBTREE
+from momantu_bt.tree.catalogue import BUILT_IN, SUBTREE
 from momantu_bt.tree.model import Node, Place, Tree
 from momantu_bt.tree.signatures import Context
 
 MAX_NESTING = 150
 """Nodes within nodes, decorators counted; bounds the stack of whatever walks a tree."""
+
+
+Uses: TypeAlias = dict[str, Node]
+"""Actuators by name, each with the node that commands it."""
 
 
 def calls(tree: Tree) -> dict[str, Place]:
@@ -106,35 +110,44 @@ def check_given_names(context: Context, tree: Tree) -> None:
 
 def check_parallel(context: Context, order: list[Tree]) -> None:
     """Children of a parallel node must not command the same actuator."""
-    of_tree: dict[str, dict[str, Node]] = {}
+    of_tree: dict[str, Uses] = {}
     for tree in order:
-        of_tree[tree.name] = _uses(context, tree.root, of_tree)
+        of_node: dict[int, Uses] = {}
+        for node in reversed(list(tree.root.walk())):
+            of_node[id(node)] = _uses(context, node, of_node, of_tree)
+        of_tree[tree.name] = of_node[id(tree.root)]
         for node in tree.root.walk():
-            signature = context.signature(node)
-            if signature is None or signature.spec is None or not signature.spec.concurrent:
-                continue
-            used = [(child, _uses(context, child, of_tree)) for child in node.children]
-            for (_, left), (other, right) in combinations(used, 2):
-                for actuator in sorted(left.keys() & right.keys()):
-                    a, b = left[actuator], right[actuator]
-                    message = f"{_said(a)} (line {a.place.line}) and {_said(b)} both use {actuator}"
-                    hint = "run them one after the other"
-                    context.problems.error("overlapping-uses", other.place, message, hint)
+            spec = BUILT_IN.get(node.type)
+            if spec is not None and spec.concurrent:
+                _check_overlap(context, node, of_node)
 
 
-def _uses(context: Context, root: Node, of_tree: dict[str, dict[str, Node]]) -> dict[str, Node]:
-    """Actuators that a node or something below it commands, each with who does."""
-    used: dict[str, Node] = {}
-    for node in root.walk():
-        if node.disabled:
-            continue
-        signature = context.signature(node)
-        if node.type == SUBTREE:
-            for actuator in of_tree.get(node.target or "", {}):
-                used.setdefault(actuator, node)
-        elif signature is not None and signature.skill is not None:
-            for use in sorted(signature.skill.uses):
-                used.setdefault(_resolved(context, use), node)
+def _check_overlap(context: Context, parallel: Node, of_node: dict[int, Uses]) -> None:
+    """Report each child that commands what one before it commands."""
+    first: Uses = {}
+    for child in parallel.children:
+        used = of_node[id(child)]
+        for actuator in sorted(first.keys() & used.keys()):
+            a, b = first[actuator], used[actuator]
+            message = f"{_said(a)} (line {a.place.line}) and {_said(b)} both use {actuator}"
+            hint = "run them one after the other"
+            context.problems.error("overlapping-uses", child.place, message, hint)
+        first = {**used, **first}
+
+
+def _uses(context: Context, node: Node, of_node: dict[int, Uses], of_tree: dict[str, Uses]) -> Uses:
+    """Actuators that a node or something below it commands, each with the first who does."""
+    if node.disabled:
+        return {}
+    if node.type == SUBTREE:
+        return dict.fromkeys(of_tree.get(node.target or "", {}), node)
+    signature = context.signature(node)
+    used: Uses = {}
+    if signature is not None and signature.skill is not None:
+        used = {_resolved(context, use): node for use in sorted(signature.skill.uses)}
+    handlers = (handler.node for handler in node.handlers if handler.node is not None)
+    for below in (*node.children, *handlers):
+        used = {**of_node[id(below)], **used}
     return used
 
 

@@ -11,7 +11,7 @@ from typing import Protocol
 from momantu_bt.tree.files import is_xml, read_text
 from momantu_bt.tree.lookup import TreeNotFound, tree_files
 from momantu_bt.tree.model import Document, Include, Tree
-from momantu_bt.tree.problems import Problem, Problems, TreeError, errors, nearest
+from momantu_bt.tree.problems import Problem, Problems, TooManyProblems, TreeError, errors, nearest
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.resolve import resolve
 from momantu_bt.tree.xml_format import XmlSource
@@ -47,9 +47,13 @@ def read_project(path: Path, registry: Registry) -> tuple[Document, Problems]:
 
     Raises:
         TreeNotFound: the file itself cannot be opened.
-        TreeError: a file is neither YAML nor XML, or holds no tree.
+        TreeError: a file is neither YAML nor XML, holds no tree, or has too many problems.
     """
-    return _Project(registry, Problems(), project_folder(path)).read(path)
+    project = _Project(registry, Problems(), project_folder(path))
+    try:
+        return project.read(path)
+    except TooManyProblems as error:
+        raise TreeError(errors(error.problems), project.source) from None
 
 
 def project_folder(path: Path) -> Path:

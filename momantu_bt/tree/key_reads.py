@@ -253,5 +253,5 @@ def references(value: PortValue) -> list[Reference]:
     if isinstance(value, Reference):
         return [value]
     if isinstance(value, Template):
-        return [part for part in value.parts if isinstance(part, Reference)]
+        return list(dict.fromkeys(part for part in value.parts if isinstance(part, Reference)))
     return []

@@ -51,13 +51,19 @@ class Known:
 
     def having(self, name: str, key: Key) -> Known:
         """The same with one more key."""
-        return self if self.keys is None else Known({**self.keys, name: key})
+        return self.having_all({name: key})
+
+    def having_all(self, keys: Mapping[str, Key]) -> Known:
+        """The same with further keys."""
+        return self if self.keys is None or not keys else Known({**self.keys, **keys})
 
     def lacking(self, names: Iterable[str]) -> Known:
         """The same without some keys."""
         if self.keys is None:
             return self
-        gone = set(names)
+        gone = self.keys.keys() & set(names)
+        if not gone:
+            return self
         return Known({name: key for name, key in self.keys.items() if name not in gone})
 
 
@@ -69,9 +75,10 @@ def meet(*points: Known) -> Known:
     reached = [point.keys for point in points if point.keys is not None]
     if not reached:
         return NEVER
-    common = dict(reached[0])
+    common = reached[0]
     for keys in reached[1:]:
-        common = {n: _either(k, keys[n]) for n, k in common.items() if n in keys}
+        if keys is not common:
+            common = {n: _either(k, keys[n]) for n, k in common.items() if n in keys}
     return Known(common)
 
 
@@ -83,7 +90,7 @@ def both(*points: Known) -> Known:
 
 
 def _either(left: Key, right: Key) -> Key:
-    if left == right:
+    if left is right or left == right:
         return left
     if assignable(left.type, right.type):
         return Key(right.type, right.place)

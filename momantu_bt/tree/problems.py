@@ -9,12 +9,19 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import IntEnum
 from functools import lru_cache
+from itertools import islice
 from typing import Any
 
 from momantu_bt.tree.model import Place
 
 NOT_TEXT = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 """Control characters and the like, which stand in values alone: XML cannot hold them."""
+MOST_PROBLEMS = 500
+"""Problems of one file that are kept."""
+_MOST_COMPARED = 300
+"""Known names that a mistyped one is compared with."""
+_MOST_LISTED = 60
+"""Known names that a hint lists."""
 
 
 class Severity(IntEnum):
@@ -62,23 +69,39 @@ class TreeError(Exception):
         super().__init__("\n".join(f"{p.place}: {p.message}" for p in self.problems))
 
 
+class TooManyProblems(TreeError):
+    """Nothing is gained by looking on."""
+
+
 class Problems:
-    """A growing list of problems; the same one is kept once."""
+    """A growing list of problems; the same one is kept once.
+
+    The error after the first MOST_PROBLEMS raises TooManyProblems: what else is wrong, and what
+    would have been valid, would cost more than anyone reads. Warnings are then left out.
+    """
 
     def __init__(self) -> None:
         self._found: dict[Problem, None] = {}
 
     def error(self, code: str, place: Place, message: str, hint: str = "") -> None:
         """Add an error."""
-        self._found[Problem(code, message, place, hint)] = None
+        self._add(Problem(code, message, place, hint))
 
     def warning(self, code: str, place: Place, message: str, hint: str = "") -> None:
         """Add a warning."""
-        self._found[Problem(code, message, place, hint, Severity.WARNING)] = None
+        self._add(Problem(code, message, place, hint, Severity.WARNING))
 
     def hint(self, code: str, place: Place, message: str, hint: str = "") -> None:
         """Add a hint."""
-        self._found[Problem(code, message, place, hint, Severity.HINT)] = None
+        self._add(Problem(code, message, place, hint, Severity.HINT))
+
+    def _add(self, problem: Problem) -> None:
+        if len(self._found) < MOST_PROBLEMS:
+            self._found[problem] = None
+        elif problem.severity is Severity.ERROR and problem not in self._found:
+            message = f"more than {MOST_PROBLEMS} problems; from here on, nothing is looked at"
+            self._found[Problem("too-large", message, problem.place)] = None
+            raise TooManyProblems(self._found, {})
 
     def sorted(self) -> list[Problem]:
         """All of them, in the order of the file."""
@@ -100,12 +123,12 @@ def errors(problems: Iterable[Problem]) -> list[Problem]:
 
 def nearest(word: str, candidates: Iterable[str]) -> str | None:
     """The known name that a mistyped one most likely means."""
-    names = list(candidates)
-    folded = {name.lower().replace("-", "_"): name for name in names}
+    folded = {name.lower().replace("-", "_"): name for name in candidates}
     exact = folded.get(word.lower().replace("-", "_"))
     if exact is not None:
         return exact
-    close = difflib.get_close_matches(word.lower(), folded, n=1, cutoff=0.6)
+    compared = islice(folded, _MOST_COMPARED)
+    close = difflib.get_close_matches(word.lower(), compared, n=1, cutoff=0.6)
     return folded[close[0]] if close else None
 
 
@@ -115,7 +138,8 @@ def valid_names(word: str, candidates: Iterable[str], what: str) -> str:
     near = nearest(word, names)
     if near is not None:
         return f"did you mean {near}?"
-    return f"{what}: {', '.join(names)}" if names else f"there are no {what}"
+    listed = names[:_MOST_LISTED] + ["…"] * (len(names) > _MOST_LISTED)
+    return f"{what}: {', '.join(listed)}" if names else f"there are no {what}"
 
 
 @lru_cache(maxsize=16)
@@ -124,12 +148,20 @@ def lines_of(text: str) -> tuple[str, ...]:
     return tuple(re.split(r"\r\n|\r|\n", text))
 
 
+_LONGEST_STRETCH = 5000
+"""Characters in which a word is looked for; more than a script or a list of codes has."""
+
+
 def within(place: Place, word: str, source: Mapping[str, str]) -> Place:
     """The stretch of a place's line that holds a word; the place itself where it does not."""
     lines = lines_of(source.get(place.file, ""))
     line = lines[place.line - 1] if 0 < place.line <= len(lines) else ""
-    found = re.compile(rf"{re.escape(word)}(?!\w)").search(line, place.column - 1)
-    return place if found is None else Place(place.file, place.line, found.start() + 1, len(word))
+    begin = place.column - 1
+    stretch = line[begin : begin + max(place.length, _LONGEST_STRETCH)]
+    at = stretch.find(word)
+    while at >= 0 and re.match(r"\w", stretch[at + len(word) : at + len(word) + 1]):
+        at = stretch.find(word, at + 1)
+    return place if at < 0 else Place(place.file, place.line, begin + at + 1, len(word))
 
 
 def show(problem: Problem, source: Mapping[str, str]) -> str:

@@ -14,7 +14,7 @@ from momantu_bt.tree.model import (
     PortDeclaration,
     Tree,
 )
-from momantu_bt.tree.problems import Problems, TreeError, errors, valid_names
+from momantu_bt.tree.problems import Problems, TooManyProblems, TreeError, errors, valid_names
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.resolve import resolve
 from momantu_bt.tree.xml_models import Models, read_models
@@ -41,11 +41,15 @@ def read(text: str, file: str, registry: Registry | None = None) -> tuple[Docume
     nothing is known without one.
 
     Raises:
-        TreeError: the text is not XML, or has no trees; nothing else can be said then.
+        TreeError: the text is not XML, has no trees, or too many problems; nothing else can be
+            said then.
     """
     problems = Problems()
     source = XmlSource.of(text, file, registry or Registry(), problems)
-    document = source.document({})
+    try:
+        document = source.document({})
+    except TooManyProblems:
+        document = None
     if document is None:
         raise TreeError(errors(problems.sorted()), {file: text})
     resolve(document, problems)

@@ -17,10 +17,10 @@ from momantu_bt.tree.model import Beside, Place
 from momantu_bt.tree.problems import Problem
 from momantu_bt.tree.xml_comments import show_dashes
 from momantu_bt.tree.xml_syntax import first_error, in_our_words
+from momantu_bt.tree.yaml_source import MAX_BYTES
 
-MAX_BYTES = 1_000_000
 MAX_DEPTH = 200
-MAX_NODES = 20_000
+MAX_NODES = 10_000
 """Elements, attributes and comments of a file."""
 
 OURS = "urn:momantu-bt:1"

@@ -6,7 +6,7 @@ indented further than what follows ends the list or mapping above it.
 
 from __future__ import annotations
 
-from bisect import bisect_left
+from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -37,6 +37,7 @@ class _Anchor:
 class _Attacher:
     document: Document
     lines: tuple[str, ...]
+    written: list[int]
     anchors: list[_Anchor] = field(default_factory=list)
     parents: dict[int, Node] = field(default_factory=dict)
 
@@ -147,10 +148,10 @@ class _Attacher:
 
     def is_deeper(self, remark: Remark) -> bool:
         """Whether a comment is indented further than the next line that is none."""
-        for line in range(remark.line + 1, len(self.lines) + 1):
-            if self.lines[line - 1].split("#")[0].strip():
-                return remark.column > self.indent(line)
-        return True
+        following = bisect_right(self.written, remark.line)
+        if following == len(self.written):
+            return True
+        return remark.column > self.indent(self.written[following])
 
     def ended(self, node: Node | None, column: int) -> Node | None:
         """The node whose inside a comment in this column ends, after all there is in it."""
@@ -166,7 +167,9 @@ class _Attacher:
 
 def attach(document: Document, raw: Raw, text: str, remarks: Sequence[Remark]) -> None:
     """Give each comment of a file to a part of its document. raw: the file's mapping."""
-    attacher = _Attacher(document, lines_of(text))
+    lines = lines_of(text)
+    written = [number for number, line in enumerate(lines, 1) if line.split("#")[0].strip()]
+    attacher = _Attacher(document, lines, written)
     attacher.collect(raw)
     for remark in remarks:
         attacher.give(remark)

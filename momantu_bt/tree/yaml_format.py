@@ -18,7 +18,14 @@ from momantu_bt.tree.model import (
     Template,
     Tree,
 )
-from momantu_bt.tree.problems import Problems, TreeError, errors, nearest, valid_names
+from momantu_bt.tree.problems import (
+    Problems,
+    TooManyProblems,
+    TreeError,
+    errors,
+    nearest,
+    valid_names,
+)
 from momantu_bt.tree.yaml_comments import attach
 from momantu_bt.tree.yaml_models import read_models
 from momantu_bt.tree.yaml_nodes import AGAIN, NodeReader
@@ -52,10 +59,14 @@ def read(text: str, file: str) -> tuple[Document, Problems]:
     The document holds BROKEN nodes where problems were found. file: the name that places carry.
 
     Raises:
-        TreeError: the text is not YAML, or has no trees; nothing else can be said then.
+        TreeError: the text is not YAML, has no trees, or too many problems; nothing else can be
+            said then.
     """
     problems = Problems()
-    document = YamlSource.of(text, file, problems).document({})
+    try:
+        document = YamlSource.of(text, file, problems).document({})
+    except TooManyProblems:
+        document = None
     if document is None:
         raise TreeError(errors(problems.sorted()), {file: text})
     return document, problems

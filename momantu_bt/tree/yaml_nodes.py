@@ -409,7 +409,7 @@ class NodeReader:
 def handler_codes(text: str, place: Place, problems: Problems) -> tuple[str, ...]:
     """What a handler is for (`A | B`), without what cannot be a code, which is reported."""
     codes = tuple(part.strip() for part in text.split("|"))
-    wrong = [code for code in codes if not _HANDLER_CODE.fullmatch(code)]
+    wrong = dict.fromkeys(code for code in codes if not _HANDLER_CODE.fullmatch(code))
     for code in wrong:
         hint = "codes are upper-case words, `A | B` several, `any` the rest"
         problems.error("bad-code", place, f"{code!r} is no failure code", hint)

@@ -21,10 +21,10 @@ from momantu_bt.tree.model import Place
 from momantu_bt.tree.problems import Problem, lines_of
 from momantu_bt.tree.yaml_errors import in_our_words
 
-MAX_BYTES = 1_000_000
+MAX_BYTES = 500_000
 MAX_DEPTH = 100
-MAX_NODES = 20_000
-"""Values in a file, those behind aliases counted each time they are used."""
+MAX_NODES = 10_000
+"""Values in a file, those behind aliases counted each time they are used; and comments."""
 MAX_ALIASES = 500
 
 
@@ -132,7 +132,11 @@ def compose_with_remarks(text: str, file: str) -> tuple[Raw, list[Remark]]:
         raise YamlSyntaxError(
             Problem("syntax", "the file is empty", place, "begin with `momantu_bt: 1`")
         )
-    return builder.root, _remarks(text, builder.spans) if "#" in text else []
+    remarks = _remarks(text, builder.spans) if "#" in text else []
+    if len(remarks) > MAX_NODES:
+        place = Place(file, remarks[MAX_NODES].line, remarks[MAX_NODES].column)
+        raise _bound(place, f"more than {MAX_NODES} comments")
+    return builder.root, remarks
 
 
 def _span(event: Any) -> list[tuple[int, int]]:

@@ -1,0 +1,1 @@
+"""What fuzzing gives to the reader and the checker of tree files."""
