@@ -16,13 +16,15 @@ from fuzzing.bomb import LARGEST, Bomb
 from fuzzing.deep_bombs import DEEP_BOMBS
 from fuzzing.wide_bombs import WIDE_BOMBS
 from fuzzing.words import Words
+from fuzzing.xml_bombs import XML_BOMBS
+from fuzzing.xml_files import xml_file
 from fuzzing.yaml_files import yaml_file
 
 _SHARES = {"bytes": 20, "tokens": 45, "nodes": 32, "bomb": 3}
 _ENCODINGS = ("utf-16", "utf-16-le", "utf-32", "utf-8-sig", "cp037", "utf-7")
 _SMUGGLED = (b"\0", b"\x1b[2J", b"\r", b"\x85", b"\xe2\x80\xa8", b"\t")
-_BOMBS: Mapping[str, Sequence[Bomb]] = {".yaml": (*DEEP_BOMBS, *WIDE_BOMBS, *WIDE_BOMBS)}
-_FILES: Mapping[str, Callable[[random.Random, Words], str]] = {".yaml": yaml_file}
+_BOMBS: Mapping[str, Sequence[Bomb]] = {".yaml": (*DEEP_BOMBS, *WIDE_BOMBS), ".xml": XML_BOMBS}
+_FILES: Mapping[str, Callable[[random.Random, Words], str]] = {".yaml": yaml_file, ".xml": xml_file}
 
 
 @dataclass(frozen=True)

@@ -91,11 +91,12 @@ def _flows(size: int, r: random.Random) -> str:
         ]
     )
     calls = "".join(f"    - {node.replace('{n}', str(i))}\n" for i in range(rest))
-    below = "".join(f"    - fail: C{i}\n" for i in range(min(known, 3000)))
+    inside = r.choice(["fail: C{n}", "script: $s{n} := 1", "{set: {key: $s{n}, value: $v{n}}}"])
+    below = "".join(f"    - {inside.replace('{n}', str(i))}\n" for i in range(min(known, 3000)))
     head = f"momantu_bt: 1\nmain: Main\nvalues: {{{values}}}\ntrees:\n"
     deep = r.choice(["", f"    - {'{reactive_sequence: [' * 30}"])
-    inside = f"[{', '.join(['{wait: 1}'] * min(size, 8000))}]{']}' * 30}\n" if deep else ""
-    return f"{head}  Main:\n{calls}{deep}{inside}  Sub:\n{below or '    - wait: 1'}\n"
+    bottom = f"[{', '.join(['{wait: 1}'] * min(size, 8000))}]{']}' * 30}\n" if deep else ""
+    return f"{head}  Main:\n{calls}{deep}{bottom}  Sub:\n{below or '    - wait: 1'}\n"
 
 
 def _comments(size: int, r: random.Random) -> str:

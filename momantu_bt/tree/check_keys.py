@@ -6,7 +6,7 @@ known after its success and after its failure.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import get_args
 
 from momantu_bt.tree.catalogue import BUILT_IN, PRE_CONDITIONS, SUBTREE, ScriptText
@@ -30,6 +30,8 @@ def check_keys(context: Context, order: list[Tree], root_keys: Mapping[str, Key 
     """
     demands: dict[tuple[str, str], set[Demand]] = {}
     keys = shared_keys(context, order)
+    if keys is None:
+        return
     for tree in order:
         _KeyCheck(KeyReads(context, tree, root_keys, demands, keys)).run()
 
@@ -38,6 +40,7 @@ class _KeyCheck:
     def __init__(self, reads: KeyReads) -> None:
         self.reads, self.context, self.tree = reads, reads.context, reads.tree
         self.ports = self.context.tree_signature(self.tree).ports
+        self.removals = self.all_removals()
         self.walk = Walk(self.node, self.removed)
 
     def run(self) -> None:
@@ -94,16 +97,25 @@ class _KeyCheck:
 
     def removed(self, *nodes: Node) -> set[str]:
         """Keys of the tree's board that the nodes, or something below them, may take away."""
-        keys: set[str] = set()
-        for root in nodes:
-            for node in root.walk():
-                key = node.ports.get("key") if node.type == "UnsetBlackboard" else None
-                if isinstance(key, Reference) and key.scope is Scope.LOCAL:
-                    keys.add(key.key)
-                elif node.type == SUBTREE:
-                    call = call_of(self.context, node)
-                    keys |= call.local(self.reads.keys[call.tree.name].removed).keys()
-        return keys
+        return set().union(*(self.removals[id(node)] for node in nodes))
+
+    def all_removals(self) -> dict[int, frozenset[str]]:
+        """For each node of the tree the keys that it, or something below it, may take away."""
+        found: dict[int, frozenset[str]] = {}
+        for node in reversed(list(self.tree.root.walk())):
+            handlers = (handler.node for handler in node.handlers if handler.node is not None)
+            below = {found[id(each)] for each in (*node.children, *handlers)}
+            found[id(node)] = frozenset(self.own_removals(node)).union(*below)
+        return found
+
+    def own_removals(self, node: Node) -> Iterable[str]:
+        key = node.ports.get("key") if node.type == "UnsetBlackboard" else None
+        if isinstance(key, Reference) and key.scope is Scope.LOCAL:
+            return [key.key]
+        if node.type != SUBTREE:
+            return []
+        call = call_of(self.context, node)
+        return call.local(self.reads.keys[call.tree.name].removed)
 
     def node(self, node: Node, before: Known) -> After:
         if node.disabled:
@@ -202,21 +214,23 @@ class _KeyCheck:
         self.reads.of_call(call, inside, before)
         kept = before.lacking(call.local(inside.removed))
         success = self.outputs(call.node, signature, kept)
-        for outer, inner in call.local(inside.success).items():
-            success = self.known_after(success, call, outer, inner)
-        failure = kept
-        for outer, inner in call.local(inside.failure).items():
-            failure = self.known_after(failure, call, outer, inner)
-        return After(success, failure)
+        success = self.known_after(success, call, call.local(inside.success))
+        return After(success, self.known_after(kept, call, call.local(inside.failure)))
 
-    def known_after(self, known: Known, call: Call, outer: str, inner: str) -> Known:
-        """A key that the tree inside shares has a value; what was known of it may be outdated."""
-        having, writes = known.get(outer), self.reads.keys[call.tree.name].written
-        if having is not None and inner not in writes:
-            return known
-        declared = self.context.tree_signature(call.tree).ports.get(inner)
-        type_ = object if declared is None else declared.type
-        return known.having(outer, Key(type_, call.place(inner)))
+    def known_after(self, known: Known, call: Call, shared: Mapping[str, str]) -> Known:
+        """Keys that the tree inside shares have values; what was known of them may be outdated.
+
+        shared: their names outside, each with that inside.
+        """
+        writes, ports = self.reads.keys[call.tree.name].written, call.tree.ports
+        types = self.context.tree_signature(call.tree).ports
+        having = known.keys or {}
+        found: dict[str, Key] = {}
+        for outer, inner in shared.items():
+            if inner in writes or outer not in having:
+                type_ = types[inner].type if inner in ports else object
+                found[outer] = Key(type_, call.place(inner))
+        return known.having_all(found)
 
     def outputs(self, node: Node, signature: Signature, before: Known) -> Known:
         after = before

@@ -22,6 +22,10 @@ from momantu_bt.tree.model import (
 from momantu_bt.tree.script import Script, ScriptSyntaxError, parse
 from momantu_bt.tree.signatures import Context
 
+MAX_KEYS = 1000
+"""Different keys of one tree; each node knows of all that there are before it."""
+MAX_SHARED = 50_000
+"""Keys that trees share with trees that run them, counted at each of these calls."""
 _PRIVATE = re.compile("_")
 """A key that begins so is never remapped automatically (BehaviorTree.CPP's rule)."""
 
@@ -48,11 +52,16 @@ class Call:
 
     def local(self, keys: Iterable[str]) -> dict[str, str]:
         """Those of the keys inside that are keys of the tree around, by their names there."""
+        inside = set(keys)
+        named = {*self.node.ports, *self.tree.ports}
         found: dict[str, str] = {}
-        for key in keys:
+        for key in sorted(inside & named):
             reference = self.outside(key)
             if reference is not None and reference.scope is Scope.LOCAL and reference.key != BROKEN:
                 found[reference.key] = key
+        if autoremaps(self.node):
+            others = inside - named - {BROKEN}
+            found |= {key: key for key in others if not _PRIVATE.match(key)}
         return found
 
     def place(self, key: str) -> Place:
@@ -90,16 +99,29 @@ class TreeKeys:
         return key in self.shared or (self.remapped and not _PRIVATE.match(key))
 
 
-def shared_keys(context: Context, order: list[Tree]) -> dict[str, TreeKeys]:
-    """What each tree mentions, writes and removes. order: trees after those that they run."""
+def shared_keys(context: Context, order: list[Tree]) -> dict[str, TreeKeys] | None:
+    """What each tree mentions, writes and removes; None, reported, where there are too many keys.
+
+    order: trees after those that they run.
+    """
     found = {tree.name: TreeKeys() for tree in order}
+    shared = 0
     for tree in order:
         keys = found[tree.name]
         for node in tree.root.walk():
             _own_keys(context, node, keys)
             if node.type == SUBTREE:
                 call = call_of(context, node)
-                _keys_of_call(call, keys, found[call.tree.name])
+                shared += _keys_of_call(call, keys, found[call.tree.name])
+                if shared > MAX_SHARED:
+                    message = f"trees share more than {MAX_SHARED} keys with those that run them"
+                    hint = "share fewer keys, or run it in fewer places"
+                    context.problems.error("too-large", node.place, message, hint)
+                    return None
+        if len(keys.mentioned) > MAX_KEYS:
+            message = f"{tree.name!r} has {len(keys.mentioned)} keys; at most {MAX_KEYS}"
+            context.problems.error("too-large", tree.place, message, "make trees of its parts")
+            return None
     return found
 
 
@@ -125,13 +147,16 @@ def _own_keys(context: Context, node: Node, keys: TreeKeys) -> None:
         keys.written |= {v.key for v in script.writes}
 
 
-def _keys_of_call(call: Call, keys: TreeKeys, inside: TreeKeys) -> None:
-    keys.mentioned |= call.local(inside.mentioned).keys()
+def _keys_of_call(call: Call, keys: TreeKeys, inside: TreeKeys) -> int:
+    """Add what a call says of the keys of the tree around it; returns how many they share."""
+    mentioned = call.local(inside.mentioned)
+    keys.mentioned |= mentioned.keys()
     keys.written |= call.local(inside.written).keys()
     keys.removed |= call.local(inside.removed).keys()
     inside.remapped = inside.remapped or autoremaps(call.node)
     inside.shared |= {name for name in call.node.ports if name != AUTOREMAP}
     inside.shared |= {name for name, port in call.tree.ports.items() if port.default is not None}
+    return len(mentioned)
 
 
 def scripts_of(context: Context, node: Node) -> Iterator[Script]:

@@ -166,7 +166,7 @@ class NodeReader:
             return
         catches = [each for each in inside if _is_handler(each)]
         if spec is not None and spec.handlers:
-            inside = [each for each in inside if each not in catches]
+            inside = [each for each in inside if not _is_handler(each)]
             for each in catches:
                 self._handler(node, each)
             if not catches:
@@ -176,7 +176,7 @@ class NodeReader:
         elif catches:
             message = f"<momantu:{CATCH}> stands in <momantu:Recover> or <momantu:Handle>"
             self.problems.error("not-a-node", catches[0].place, message)
-            inside = [each for each in inside if each not in catches]
+            inside = [each for each in inside if not _is_handler(each)]
         self._count(node, element, len(inside), spec)
         for child in inside:
             self._waiting.append((child, node.children.append))

@@ -22,6 +22,8 @@ from momantu_bt.tree.yaml_source import MAX_BYTES
 MAX_DEPTH = 200
 MAX_NODES = 10_000
 """Elements, attributes and comments of a file."""
+MAX_ATTRIBUTES = 500
+"""Of one element."""
 
 OURS = "urn:momantu-bt:1"
 """Namespace of what only this language has."""
@@ -211,6 +213,9 @@ class _Scan:
         assert match is not None
         element = Element(tag.localname, tag.namespace or "", self.place(*match.span(1)), [])
         written = [m for m in self.attributes(match.end()) if not _declares_prefix(m[1])]
+        self.count(1 + len(written), element.place)
+        if len(written) > MAX_ATTRIBUTES:
+            raise _bound(element.place, f"more than {MAX_ATTRIBUTES} attributes")
         for (name, value), found in zip(made.attrib.items(), written, strict=True):
             key = etree.QName(str(name))
             at = found.span(2) if found[2] is not None else found.span(3)
@@ -224,7 +229,6 @@ class _Scan:
                 )
             )
         element.text = str(made.text or "")
-        self.count(1 + len(written), element.place)
         return element
 
     def attributes(self, position: int) -> Iterator[re.Match[str]]:
