@@ -26,12 +26,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from fuzzing.checking import check_file
+from fuzzing.good import good_trees
 from fuzzing.inputs import Input, Inputs
 from fuzzing.words import Words
 
 from momantu_bt.tree.registry import Registry
 
-ROOT = Path(__file__).resolve().parent.parent
 LONGEST = 1.0
 """Seconds of processor time that one input may take."""
 HANGS = 30
@@ -59,15 +59,6 @@ class Found:
     def took(self, seconds: float, what: str) -> None:
         """Keep the slowest ten."""
         self.slowest = sorted([*self.slowest, (seconds, what)], reverse=True)[:10]
-
-
-def good_trees() -> dict[str, list[str]]:
-    """Texts of the bundled trees and of those that tests use, by suffix."""
-    found: dict[str, list[str]] = {}
-    for folder in (ROOT / "trees", ROOT / "tests"):
-        for path in sorted(p for p in folder.rglob("*") if p.suffix in (".yaml", ".xml")):
-            found.setdefault(path.suffix, []).append(path.read_text(encoding="utf-8"))
-    return found
 
 
 def peak() -> float:

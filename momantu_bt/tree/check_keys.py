@@ -336,9 +336,7 @@ class _KeyCheck:
             where = within(place, shown, self.context.document.source)
             key = self.reads.lookup(_reference(name), before, where)
             if key is not None:
-                known[".".join((name, *parts))] = (
-                    self.reads.part_of(key, parts, where) or object
-                )
+                known[".".join((name, *parts))] = self.reads.part_of(key, parts, where) or object
         self.script_types(script, known, place)
         self.reads.given.update(variable.key for variable in script.writes)
         written = (variable.key for variable in script.writes)
