@@ -92,7 +92,7 @@ def measure(nodes: int, rounds: int, folder: Path) -> None:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--nodes", type=int, nargs="+", default=[100, 1000, 3000])
+    parser.add_argument("--nodes", type=int, nargs="+", default=[100, 1000, 2000])
     parser.add_argument("--rounds", type=int, default=5)
     asked = parser.parse_args()
     print("seconds, median")
