@@ -19,7 +19,7 @@ from momantu_bt.tree.catalogue import (
     Kind,
     NodeSpec,
 )
-from momantu_bt.tree.schema_values import Names, value_schema
+from momantu_bt.tree.schema_values import SCRIPT, Names, value_schema
 from momantu_bt.tree.yaml_nodes import AGAIN, ANY, COMPANIONS
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
@@ -31,7 +31,7 @@ _NODES: Schema = {"type": "array", "items": _NODE}
 _BARE: Schema = {"$ref": "#/$defs/bare"}
 _MAPPING: Schema = {"$ref": "#/$defs/mapping"}
 _WORD = r"^[^\W\d]\w*$"
-_SCRIPT: Schema = {"type": ["string", "boolean", "number"], "description": "a condition or script"}
+_SCRIPT: Schema = {**SCRIPT, "description": "a condition or script"}
 
 
 def tree_schema(skills: Mapping[str, type[Skill]], names: Names | None = None) -> Schema:
@@ -66,6 +66,7 @@ def _header() -> Schema:
         "world": {"type": "string", "description": "the world that the tree is meant for"},
         "main": {"type": "string", "description": "the tree to run"},
         "values": {"type": "object", "description": "the first keys of the root's board"},
+        "models": {"type": "array", "description": "what an XML file says of nodes for a palette"},
         "trees": {
             "type": "object",
             "propertyNames": {"pattern": _WORD},

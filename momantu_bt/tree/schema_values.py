@@ -12,6 +12,16 @@ from momantu_bt.skill import MISSING, Port
 from momantu_bt.tree.catalogue import CodeText, ScriptText
 from momantu_bt.tree.types import ValueType, is_union, label, origin, without_none
 from momantu_bt.tree.units import units_of
+from momantu_bt.tree.yaml_nodes import BTCPP
+
+_KEPT = {"type": "object", "properties": {BTCPP: {"type": "string"}}, "required": [BTCPP]}
+SCRIPT: dict[str, Any] = {
+    "anyOf": [
+        {"type": ["string", "boolean", "number"]},
+        {**_KEPT, "additionalProperties": False, "description": "in BehaviorTree.CPP's spelling"},
+    ]
+}
+"""A condition or script."""
 
 Names: TypeAlias = Mapping[str, Sequence[str]]
 """Valid values by kind: "place", "surface", "named_pose"."""
@@ -28,7 +38,7 @@ def value_schema(port: Port, names: Names) -> dict[str, Any]:
     if port.direction == "out":
         return found | {"type": "string", "pattern": r"^\$"}
     if port.type is ScriptText:
-        return found | {"type": ["string", "boolean", "number"]}
+        return found | SCRIPT
     known = names.get(port.names or "")
     literal = {"enum": list(known)} if known else _of(port.type, port.unit, _DEEPEST)
     if port.default is not MISSING and isinstance(port.default, bool | int | float | str):

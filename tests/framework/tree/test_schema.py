@@ -24,7 +24,7 @@ HEADER = "momantu_bt: 1\nworld: rooms\ntrees:\n  Main:\n"
 GOOD = """
     - reset_pose: home
       retry: 3
-      skip_if: $@robot.gripper_width > 0.05
+      skip_if: {btcpp: 1 > 2 && 2 > 3 || 1 > 3}
     - navigate: {in_front_of: table_a, tolerance: 3 cm}
       timeout: 2 min
     - if: $@robot.gripper_width > 0.05
@@ -84,6 +84,7 @@ def test_bundled_trees_are_valid(installed: Draft202012Validator, tree: Path) ->
 
 def test_every_form_of_a_node_is_valid(validator: Draft202012Validator) -> None:
     validator.validate(data(HEADER + GOOD))
+    validator.validate(data("momantu_bt: 1\nmodels: [{Action: Go}]\ntrees: {Main: succeed}\n"))
 
 
 BLOCKS = [block for code in codes() for block in explanation(code).split("```yaml\n")[1:]]
