@@ -114,8 +114,8 @@ class AttributeWriter:
         if spec is not None and name in spec.keys and isinstance(value, Literal):
             reserved = True  # a bare word there names a key
         text = plain(value, name, type_) if shown and not reserved else None
-        if spec is not None and name in spec.keys:
-            text = _key(node, value, text)
+        if node.type == "UnsetBlackboard":
+            text = _unset_key(value, text)
         if text is not None:
             return attribute(shown, text)
         ours = attribute(PREFIX + name, port_text(value))
@@ -149,15 +149,11 @@ def _has_attribute(node: Node, name: str) -> bool:
     return is_name(name) and (node.type in BUILT_IN or name not in (DISABLED, NOTE))
 
 
-def _key(node: Node, value: PortValue, text: str | None) -> str | None:
-    """The text for a port that means a key: a bare text would be read as the key's name.
-
-    UnsetBlackboard takes nothing else: in BehaviorTree.CPP `{k}` is there the key that $k names.
-    """
-    bare = isinstance(value, Reference) and not value.fields and value.scope is Scope.LOCAL
-    if node.type == "UnsetBlackboard" and isinstance(value, Reference) and bare:
+def _unset_key(value: PortValue, text: str | None) -> str | None:
+    """The bare name of the key: `{k}` is in BehaviorTree.CPP the key that $k names."""
+    if isinstance(value, Reference) and not value.fields and value.scope is Scope.LOCAL:
         return value.key
-    return None if isinstance(value, Literal) else text
+    return text
 
 
 def _script(node: Node, value: PortValue) -> str:
