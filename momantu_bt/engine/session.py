@@ -68,6 +68,8 @@ class Session:
         self._generator: Run | None = None
         self._waiting: _Pending | None = None
         self.skill: Skill | None = None
+        self._live = [p for p in kind.ports.values() if p.direction == "out" and p.live]
+        self._given: dict[str, Any] = {}
 
     @property
     def outputs(self) -> dict[str, Any]:
@@ -87,6 +89,8 @@ class Session:
             elif live_inputs and self.skill is not None:
                 self.skill.port_values.update(self._admitted(live_inputs))
             self._advance(self._generator)
+            if self.status is RUNNING:
+                self._admit_live_outputs()
         except Failure as failure:
             self._fail(self._declared(failure))
         except Exception as error:
@@ -180,6 +184,19 @@ class Session:
                 f"{self.kind.__name__}.run yielded {said!r}; it may yield a phase's name, or "
                 "`yield from compute(...)`"
             )
+
+    def _admit_live_outputs(self) -> None:
+        """Others read these while the skill runs: what does not fit fails at once.
+
+        Raises:
+            Failure: WRONG_TYPE.
+        """
+        assert self.skill is not None
+        values = self.skill.port_values
+        for port in self._live:
+            value = values.get(port.name, MISSING)
+            if value is not self._given.get(port.name, MISSING):
+                values[port.name] = self._given[port.name] = admit(freeze(value), port)
 
     def _finish(self) -> None:
         self._generator = None

@@ -8,6 +8,7 @@ from contextlib import suppress
 from momantu_bt.messages import RobotState
 from momantu_bt.tree.catalogue import ScriptText
 from momantu_bt.tree.check_codes import check_handlers
+from momantu_bt.tree.check_guards import check_guards
 from momantu_bt.tree.check_keys import check_keys
 from momantu_bt.tree.check_nodes import check_node, check_tree_ports
 from momantu_bt.tree.check_trees import (
@@ -67,6 +68,7 @@ def _check(context: Context, world: str | None, robot: str | None) -> None:
     if order is not None and all(shallow):
         check_parallel(context, order)
         check_handlers(context, order)
+        check_guards(context, order, frozenset({ROBOT_KEY, *registry.services}))
         check_keys(context, order, _root_keys(context))
 
 

@@ -32,8 +32,14 @@ def check_keys(context: Context, order: list[Tree], root_keys: Mapping[str, Key 
     keys = shared_keys(context, order)
     if keys is None:
         return
-    for tree in order:
-        _KeyCheck(KeyReads(context, tree, root_keys, demands, keys)).run()
+    on_root: set[str] = set()
+    checks = [
+        _KeyCheck(KeyReads(context, tree, root_keys, demands, keys, on_root)) for tree in order
+    ]
+    for check in checks:
+        check.run()
+    for check in checks:
+        check.report_unread()
 
 
 class _KeyCheck:
@@ -55,8 +61,14 @@ class _KeyCheck:
                 self.reads.seen.add(name)
                 self.output_of_tree(name, success.get(name), success)
         self.watched()
+
+    def report_unread(self) -> None:
+        """What is written and read nowhere; any tree may read what the main one has."""
+        mine, seen = self.reads.keys[self.tree.name], self.reads.seen
+        if self.tree.name == self.context.document.main:
+            seen = seen | self.reads.seen_on_root
         for written in self.reads.written:
-            if written.key not in self.reads.seen and not mine.goes_out(written.key):
+            if written.key not in seen and not mine.goes_out(written.key):
                 wire = self.context.wire(written.key, written.place)
                 message = f"nothing reads {wire}, which {written.said} writes"
                 self.context.problems.warning("unread-output", written.place, message)
@@ -159,7 +171,8 @@ class _KeyCheck:
         if signature is None:
             for value in node.ports.values():
                 # an unknown node may read or write: what it names is not called unread
-                self.reads.seen.update(reference.key for reference in references(value))
+                for reference in references(value):
+                    self.reads.see(reference)
             return After(before, before)
         self.reads.inputs(node, signature, before)
         for name, port in signature.ports.items():
@@ -310,6 +323,17 @@ class _KeyCheck:
             return before
         return self.script_keys(script, before, place)
 
+    def written_by_script(self, written: Written) -> None:
+        """What a script computes in the main tree may be a result: the report shows it."""
+        self.reads.written.append(written)
+        if self.tree.name == self.context.document.main:
+            self.reads.seen.add(written.key)
+
+    def in_script(self, key: str, place: Place) -> Place:
+        """Where in a script a key stands."""
+        shown = key if self.context.is_xml(place) else f"${key}"
+        return within(place, shown, self.context.document.source)
+
     def script_types(self, script: Script, known: Mapping[str, ValueType], place: Place) -> None:
         """Operands that cannot go together. What the script itself writes is of any type."""
         written = {variable.key for variable in script.writes}
@@ -329,20 +353,21 @@ class _KeyCheck:
 
     def script_keys(self, script: Script, before: Known, place: Place) -> Known:
         """Keys that a script needs, those that it reads, and what it leaves written."""
-        self.reads.seen.update(variable.key for variable in script.reads)
+        for variable in script.reads:
+            self.reads.see(_reference(variable.key))
         known: dict[str, ValueType] = {}
         for name, parts in dict.fromkeys((needed.key, needed.parts) for needed in script.needs):
-            shown = name if self.context.is_xml(place) else f"${name}"
-            where = within(place, shown, self.context.document.source)
+            where = self.in_script(name, place)
             key = self.reads.lookup(_reference(name), before, where)
             if key is not None:
                 known[".".join((name, *parts))] = self.reads.part_of(key, parts, where) or object
         self.script_types(script, known, place)
         self.reads.given.update(variable.key for variable in script.writes)
-        written = (variable.key for variable in script.writes)
-        return before.having_all(
-            {key: Key(object, place) for key in written if not key.startswith("@")}
-        )
+        written = {v.key: v for v in script.writes if not v.key.startswith("@")}
+        for key_name in written:
+            where = self.in_script(key_name, place)
+            self.written_by_script(Written(key_name, where, "the script"))
+        return before.having_all({name: Key(object, place) for name in written})
 
 
 def _reference(variable: str) -> Reference:

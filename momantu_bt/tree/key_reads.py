@@ -50,7 +50,7 @@ class KeyReads:
     before those that run them. written: what has been written so far in the order of the file.
     given: keys that may come from elsewhere: a script, a loop, the tree's inputs. watched: keys
     that a node only looks at; nobody knows yet who writes them. keys: what is known of each tree's
-    keys by its name.
+    keys by its name. seen: keys of this tree that are read; seen_on_root: by any tree as `$@key`.
     """
 
     context: Context
@@ -58,6 +58,7 @@ class KeyReads:
     root_keys: Mapping[str, Key | None]
     demands: dict[tuple[str, str], set[Demand]]
     keys: dict[str, TreeKeys]
+    seen_on_root: set[str]
     seen: set[str] = field(default_factory=set)
     written: list[Written] = field(default_factory=list)
     given: set[str] = field(default_factory=set)
@@ -89,13 +90,17 @@ class KeyReads:
 
     def _watch(self, port: str, value: PortValue, place: Place, said: str) -> None:
         for reference in references(value):
-            self.seen.add(reference.key)
+            self.see(reference)
             if reference.scope is Scope.LOCAL and reference.key not in (port, BROKEN):
                 self.watched.append(Written(reference.key, place, said))
 
+    def see(self, reference: Reference) -> None:
+        """A key that something reads, whether it has a value or not."""
+        (self.seen_on_root if reference.scope is Scope.ROOT else self.seen).add(reference.key)
+
     def lookup(self, reference: Reference, before: Known, place: Place) -> Key | None:
         """What is known of a key that is read here; None, and reported, where it may be empty."""
-        self.seen.add(reference.key)
+        self.see(reference)
         if reference.key == BROKEN or not before.reached:
             return None
         if reference.scope is Scope.ROOT:
@@ -167,7 +172,7 @@ class KeyReads:
         self, reference: Reference, before: Known, place: Place, port: Port, said: str
     ) -> None:
         """A key that may come in with a value: what is known of it fits."""
-        self.seen.add(reference.key)
+        self.see(reference)
         key = before.get(reference.key) if reference.scope is Scope.LOCAL else None
         if key is not None and any(key.misfits(port.type)):
             message = f"{self.context.wire(reference.key, place)} is {label(key.type)}; "

@@ -324,3 +324,32 @@ def test_a_dead_sensor_fails_the_skill_that_reads_it():
     robot = ScriptedRobot()
     robot.dead.add("laser")
     assert run_skill(Read, world=ScriptedWorld(robot)).code == "SENSOR_DEAD"
+
+
+class Track(Skill):
+    """Publishes a number at each tick, as it is told."""
+
+    values: tuple[object, ...] = In(doc="one a tick")
+    place: float = Out(doc="the newest", live=True)
+    uses = {"base"}
+
+    def run(self, robot) -> Run:
+        for value in self.values:
+            robot.command("base", FORWARD)
+            self.place = value
+            yield "tracking"
+
+
+def test_a_live_output_that_does_not_fit_fails_at_once():
+    result = run_skill(Track, inputs={"values": (1.0, "two", 3.0, 4.0)})
+    assert (result.status, result.code) == ("FAILURE", "WRONG_TYPE")
+    assert "port place got 'two'" in result.failure.message
+    assert len([goal for _, _, goal in result.robot.commands if goal is not None]) == 2
+    assert len(stops(result.robot)) == 1
+
+
+def test_live_outputs_that_fit_are_given_as_the_port_takes_them():
+    result = run_skill(Track, inputs={"values": (1.0, 2, 3)})
+    assert result.status == "SUCCESS"
+    assert result.outputs == {"place": 3.0}
+    assert type(result.outputs["place"]) is float
