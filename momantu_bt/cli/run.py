@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from momantu_bt.cli.terminal import Terminal
     from momantu_bt.engine.executor import Executor, Observer
     from momantu_bt.record.report import Report
+    from momantu_bt.tree.settings import Given
 
 EXIT_WRONG_ARGUMENTS, EXIT_INTERRUPTED = 2, 130
 VIEW_PORT = 8080
@@ -157,19 +158,17 @@ def _run(
     return start
 
 
-def _values(settings: Sequence[str], file: Path | None) -> dict[str, Any]:
+def _values(settings: Sequence[str], file: Path | None) -> Given:
     """What `--values` and `--set` give, the latter winning."""
     from momantu_bt.engine.launch import LaunchError
     from momantu_bt.tree.load import read_values
-    from momantu_bt.tree.settings import setting
+    from momantu_bt.tree.settings import Given
 
-    board = {} if file is None else read_values(file)
-    for text in settings:
-        try:
-            key, value = setting(text)
-        except ValueError as error:
-            raise LaunchError(f"--set {text}: {error}") from None
-        board[key] = value
+    board = Given() if file is None else read_values(file)
+    try:
+        board.set(settings)
+    except ValueError as error:
+        raise LaunchError(str(error)) from None
     return board
 
 

@@ -176,9 +176,16 @@ class KeyReads:
         key = before.get(reference.key) if reference.scope is Scope.LOCAL else None
         if key is not None and any(key.misfits(port.type)):
             message = f"{self.context.wire(reference.key, place)} is {label(key.type)}; "
-            hint = f"it comes from line {key.place.line}"
+            hint = f"it comes from {key.place.seen_from(place)}"
             message += f"{port.name!r} of {said} takes {label(port.type)}"
             self.context.problems.error("wrong-type", place, message, hint)
+
+    def _report_misfit(self, key: Key, place: Place, message: str) -> None:
+        """A value of the tree's own is wrong where it is used; one given from outside is wrong."""
+        where, hint = place, f"it comes from {key.place.seen_from(place)}"
+        if key.place.file != place.file:
+            where, hint = key.place, f"it is used in {place.seen_from(key.place)}"
+        self.context.problems.error("wrong-value", where, message, hint)
 
     def _wire(
         self, reference: Reference, before: Known, place: Place, port: Port, said: str
@@ -186,7 +193,6 @@ class KeyReads:
         key = self.lookup(reference, before, place)
         if key is None:
             return
-        origin = f"it comes from line {key.place.line}"
         if key.literals and not reference.fields:
             wire = self.context.wire(reference.key, place)
             for literal in key.literals:
@@ -194,14 +200,14 @@ class KeyReads:
                     convert(literal.value, port)
                 except ConversionError as error:
                     message = f"{wire} does not fit {port.name!r} of {said}: {error}"
-                    self.context.problems.error("wrong-value", place, message, origin)
+                    self._report_misfit(key, place, message)
             return
         type_ = self.part_of(key, reference.fields, place)
         whole = Key(type_, key.place, either=() if reference.fields else key.either)
         for wrong in whole.misfits(port.type) if type_ is not None else ():
             wire = self.context.wire(".".join((reference.key, *reference.fields)), place)
             wanted = f"{port.name!r} of {said} takes {label(port.type)}"
-            origin = f"it comes from line {wrong.place.line}"
+            origin = f"it comes from {wrong.place.seen_from(place)}"
             message = f"{wire} is {label(wrong.type)}; {wanted}"
             self.context.problems.error("wrong-type", place, message, origin)
 

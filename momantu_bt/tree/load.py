@@ -15,7 +15,7 @@ from momantu_bt.tree.lookup import TreeNotFound, find
 from momantu_bt.tree.model import Document, Literal, Place, Reference, Template
 from momantu_bt.tree.problems import Problem, Problems, TreeError, errors, valid_names
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.yaml_source import YamlSyntaxError, compose, plain_value
+from momantu_bt.tree.settings import Given
 
 WORD = re.compile(r"[^\W\d]\w*")
 """What can be a key in a script."""
@@ -42,7 +42,8 @@ def load(
     """Find, read and check a tree.
 
     tree: a path or the name of a bundled tree. values: keys of the root's board that replace or
-    join the file's own (`--set`, `--values`), raw as in the file ("66 mm").
+    join the file's own (`--set`, `--values`), raw as in the file ("66 mm"); `Given` knows where
+    they are written.
 
     Raises:
         TreeNotFound: there is no such file.
@@ -75,32 +76,29 @@ def read_file(path: Path, registry: Registry | None = None) -> tuple[Document, P
     return read_project(path, registry if registry is not None else Registry.installed())
 
 
-def read_values(path: Path) -> dict[str, Any]:
+def read_values(path: Path) -> Given:
     """A file of values: one YAML mapping.
 
     Raises:
         TreeNotFound: the file cannot be opened.
-        TreeError: it is not a YAML mapping.
+        TreeError: it is not a YAML mapping, or has a key twice.
     """
-    name = str(path)
-    text = read_text(path, name)
-    try:
-        value = plain_value(compose(text, name))
-    except YamlSyntaxError as error:
-        raise TreeError([error.problem], {name: text}) from None
-    if not isinstance(value, dict):
-        problem = Problem("wrong-value", "a file of values is a mapping", Place(name, 1, 1))
-        raise TreeError([problem], {name: text})
-    return value
+    given = Given()
+    given.read(read_text(path, str(path)), str(path))
+    return given
 
 
 def _override(document: Document, values: Mapping[str, Any], problems: Problems) -> None:
     known = {*document.values, *_keys_read(document)}
+    given = values if isinstance(values, Given) else None
+    document.source.update(given.source if given is not None else {})
     for name, value in values.items():
-        place = Place(f"given value of {name}", 1, 1)
+        key_place = place = Place(f"given value of {name}", 1, 1)
+        if given is not None:
+            key_place, place = given.key_places[name], given.places[name]
         if name not in known:
             hint = valid_names(name, document.values or known, "its values")
-            problems.error("unknown-value", place, f"the tree has no value {name!r}", hint)
+            problems.error("unknown-value", key_place, f"the tree has no value {name!r}", hint)
         document.values[name] = Literal(value)
         document.value_places[name] = place
 

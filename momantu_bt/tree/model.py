@@ -24,6 +24,10 @@ class Place:
         """`file:line:column`, as editors understand it."""
         return f"{self.file}:{self.line}:{self.column}"
 
+    def seen_from(self, here: Place) -> str:
+        """In words, for a person who looks at another place: "line 3", or with another file."""
+        return f"line {self.line}" + (f" of {self.file}" if self.file != here.file else "")
+
 
 class Scope(Enum):
     """Which board a reference means."""
