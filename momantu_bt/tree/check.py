@@ -68,7 +68,7 @@ def _check(context: Context, world: str | None, robot: str | None) -> None:
     if order is not None and all(shallow):
         check_parallel(context, order)
         check_handlers(context, order)
-        check_guards(context, order, frozenset({ROBOT_KEY, *registry.services}))
+        check_guards(context, order, frozenset({ROBOT_KEY, *context.registry.services}))
         check_keys(context, order, _root_keys(context))
 
 

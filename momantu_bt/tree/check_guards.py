@@ -33,8 +33,10 @@ def _check_sequence(
         if child.type not in _CONDITIONS or child.disabled:
             continue
         changing = sorted(_read_on_root(context, child) & published)
+        if not changing:
+            continue
         later = _first_long(context, sequence.children[index + 1 :], long)
-        if not changing or later is None:
+        if later is None:
             continue
         said = later.name or later.target or later.type
         keys = ", ".join(f"$@{key}" for key in changing)

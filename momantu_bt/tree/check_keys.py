@@ -57,8 +57,9 @@ class _KeyCheck:
         if self.tree.name == self.context.document.main:
             self.reads.report_needed()
         for name, port in self.ports.items():
-            if port.direction == "out":
+            if port.direction != "in":
                 self.reads.seen.add(name)
+            if port.direction == "out":
                 self.output_of_tree(name, success.get(name), success)
         self.watched()
 
@@ -358,16 +359,15 @@ class _KeyCheck:
         known: dict[str, ValueType] = {}
         for name, parts in dict.fromkeys((needed.key, needed.parts) for needed in script.needs):
             where = self.in_script(name, place)
-            key = self.reads.lookup(_reference(name), before, where)
-            if key is not None:
-                known[".".join((name, *parts))] = self.reads.part_of(key, parts, where) or object
+            read = self.reads.lookup(_reference(name), before, where)
+            if read is not None:
+                known[".".join((name, *parts))] = self.reads.part_of(read, parts, where) or object
         self.script_types(script, known, place)
         self.reads.given.update(variable.key for variable in script.writes)
-        written = {v.key: v for v in script.writes if not v.key.startswith("@")}
-        for key_name in written:
-            where = self.in_script(key_name, place)
-            self.written_by_script(Written(key_name, where, "the script"))
-        return before.having_all({name: Key(object, place) for name in written})
+        keys = dict.fromkeys(v.key for v in script.writes if not v.key.startswith("@"))
+        for key in keys:
+            self.written_by_script(Written(key, self.in_script(key, place), "the script"))
+        return before.having_all({name: Key(object, place) for name in keys})
 
 
 def _reference(variable: str) -> Reference:
