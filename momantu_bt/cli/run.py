@@ -12,10 +12,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 if TYPE_CHECKING:
+    from momantu_bt.cli.breakpoints import Breakpoints
     from momantu_bt.cli.terminal import Terminal
     from momantu_bt.engine.executor import Executor, Observer
     from momantu_bt.record.report import Report
+    from momantu_bt.tree.model import Document
     from momantu_bt.tree.settings import Given
+    from momantu_bt.tree.substitution import Substitution
 
 EXIT_WRONG_ARGUMENTS, EXIT_INTERRUPTED = 2, 130
 VIEW_PORT = 8080
@@ -51,6 +54,10 @@ def run(
     substitute: Annotated[
         Path | None, typer.Option(help="A YAML file that says what nodes do instead, for tests.")
     ] = None,
+    break_: Annotated[
+        list[str] | None,
+        typer.Option("--break", metavar="NODE", help="Stop before a node: its name, type or line."),
+    ] = None,
     unattended: Annotated[
         bool, typer.Option("--unattended", help="Nobody answers: questions take their default.")
     ] = False,
@@ -70,7 +77,7 @@ def run(
     from momantu_bt.cli.terminal import Terminal, is_interactive
 
     terminal = Terminal() if is_interactive() and not unattended else None
-    wanted = _Outputs(video, view, view_port, record, report, quiet, terminal)
+    wanted = _Outputs(video, view, view_port, record, report, quiet, terminal, break_ or [])
     return _guarded(
         lambda: _run(tree, world, robot, seed, set_ or [], values, substitute, wanted)(
             max_time=max_time, realtime=realtime, referee=referee
@@ -87,6 +94,7 @@ class _Outputs:
     report: Path | None
     quiet: bool
     terminal: Terminal | None
+    breaks: Sequence[str]
 
 
 def _guarded(start: Callable[[], Report]) -> int:
@@ -133,6 +141,7 @@ def _run(
     replacing = Substitution()
     if substitute is not None:
         replacing = load_substitution(substitute, checked.document, registry, world)
+    stops = _breakpoints(wanted, checked.document, replacing)
     _check_outputs(wanted)
 
     def start(**how: Any) -> Report:
@@ -146,7 +155,7 @@ def _run(
             substitution=replacing,
             **how,
         )
-        result = launch(checked.document, options, registry, lambda run: _watch(run, wanted))
+        result = launch(checked.document, options, registry, lambda run: _watch(run, wanted, stops))
         paths = [wanted.report] if wanted.report is not None else []
         if wanted.record is not None:
             paths.append(wanted.record / REPORT)
@@ -156,6 +165,20 @@ def _run(
         return result
 
     return start
+
+
+def _breakpoints(
+    wanted: _Outputs, document: Document, replacing: Substitution
+) -> Breakpoints | None:
+    """Where a person wants to stop, who must be there for it."""
+    from momantu_bt.cli.breakpoints import Breakpoints
+    from momantu_bt.engine.launch import LaunchError
+
+    if not wanted.breaks:
+        return None
+    if wanted.terminal is None:
+        raise LaunchError("--break needs a person at a terminal, and no --unattended")
+    return Breakpoints(wanted.breaks, document, wanted.terminal, replacing)
 
 
 def _values(settings: Sequence[str], file: Path | None) -> Given:
@@ -183,7 +206,7 @@ def _check_outputs(wanted: _Outputs) -> None:
         prepare_folder(wanted.record)
 
 
-def _watch(run: Executor, wanted: _Outputs) -> list[Observer]:
+def _watch(run: Executor, wanted: _Outputs, stops: Breakpoints | None) -> list[Observer]:
     """Observers of what the user asked to see; those opened are closed when one cannot be."""
     from momantu_bt.engine.launch import LaunchError
     from momantu_bt.record.film import FilmObserver, ViewObserver
@@ -208,6 +231,8 @@ def _watch(run: Executor, wanted: _Outputs) -> list[Observer]:
             typer.echo(f"view: {scene.url}")
         if not wanted.quiet:
             add(_display(wanted.terminal))
+        if stops is not None:
+            stops.attach(run)
         stack.pop_all()
     return observers
 

@@ -47,6 +47,16 @@ class Terminal:
         """The terminal for text alone."""
         return nullcontext() if self.display is None else self.display.paused()
 
+    def try_read(self, prompt: str) -> str | None:
+        """One line; None when the run is interrupted, by a signal or the end of the input."""
+        try:
+            line = self.read(prompt)
+        except Interrupted:
+            return None
+        if line is None:
+            signal.raise_signal(signal.SIGINT)
+        return line
+
     def read(self, prompt: str) -> str | None:
         """One line; None at the end of the input.
 

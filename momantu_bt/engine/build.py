@@ -175,7 +175,8 @@ class _Builder:
         )
         given = self._given(tree, values, board, inner)
         child = self.node(tree.root, inner, f"{path}.0")
-        return SubTree(model, self.context, (child,), conditions, given=given, wires=wires)
+        made: Any = (model, self.context, (child,), conditions)
+        return SubTree(*made, given=given, wires=wires, board=inner)
 
     def _given(
         self, tree: Tree, values: Mapping[str, PortValue], outer: Board, inner: Board

@@ -93,6 +93,7 @@ class Executor:
         self._realtime = realtime
         self._state: RobotState | None = None
         self._error: str | None = None
+        self._world_is_sound = True
         self._failure: FailureValue | None = None
 
     def run(self, interrupts: Interrupts) -> Ending:
@@ -133,8 +134,14 @@ class Executor:
                 due = started + self.context.waited + self.context.now
                 time.sleep(max(0.0, due - time.perf_counter()))
 
-    def _tick(self) -> Status:
+    def _step(self) -> None:
+        """Step the world; it is known to be sound when it comes back."""
+        self._world_is_sound = False
         self._stepper.step()
+        self._world_is_sound = True
+
+    def _tick(self) -> Status:
+        self._step()
         self.context.begin_tick()
         body = self.context.body
         if body is not None:
@@ -176,6 +183,7 @@ class Executor:
         try:
             self._halt_and_stop()
             if status == outcome.ERROR:
+                self._settle_unseen()
                 return None
             self.settling = True
             self._settle()
@@ -200,10 +208,18 @@ class Executor:
         until = self._stepper.now() + SETTLE
         while self._stepper.now() < until - CLOCK_SLACK:
             self._note()
-            self._stepper.step()
+            self._step()
             self.context.begin_tick()
             self._state = self.world.robot.state()
         self._note()
+
+    def _settle_unseen(self) -> None:
+        """Let the world come to rest after an error, without observers: they may have broken."""
+        if self.world is None or not self._world_is_sound:
+            return
+        until = self._stepper.now() + SETTLE
+        while self._stepper.now() < until - CLOCK_SLACK:
+            self._step()
 
     def halt_all(self) -> None:
         """Halt the tree; nodes that an exception left running are halted one by one.

@@ -45,7 +45,13 @@ class Precondition(Decorator):
 
 
 class Disabled(TreeNode):
-    """Always SKIPPED; what is below it in the file is not built."""
+    """Always SKIPPED, and never started; what is below it in the file is not built."""
+
+    def execute(self) -> Status:
+        """SKIPPED, which is no run."""
+        status = super().execute()
+        self.runs = 0
+        return status
 
     def step(self) -> Status:
         """SKIPPED."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from momantu_bt.engine.blackboard import Cell
+from momantu_bt.engine.blackboard import Board, Cell
 from momantu_bt.engine.label import label
 from momantu_bt.engine.node import Decorator
 from momantu_bt.engine.ports import Reader
@@ -17,7 +17,8 @@ class SubTree(Decorator):
     """The status of the tree inside; its failures carry this node's name and place.
 
     A key that is wired to a key outside is that key. Everything else that is given (a value, a
-    part of a value, a text, a default) is written to the inner key at each start.
+    part of a value, a text, a default) is written to the inner key at each start. board: the keys
+    inside.
     """
 
     def __init__(
@@ -25,11 +26,13 @@ class SubTree(Decorator):
         *arguments: Any,
         given: Mapping[str, tuple[Cell, Reader]],
         wires: Mapping[str, Cell],
+        board: Board,
         **named: Any,
     ) -> None:
         super().__init__(*arguments, **named)
         self.given = dict(given)
         self.wires = dict(wires)
+        self.board = board
 
     def step(self) -> Status:
         """Tick the tree inside."""

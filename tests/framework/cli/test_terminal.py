@@ -6,11 +6,14 @@ import json
 import os
 import pty
 import select
+import signal
 import subprocess
 import sys
 import time
 
 import pytest
+
+from momantu_bt.cli import main
 
 QUESTIONS = """
 momantu_bt: 1
@@ -36,13 +39,14 @@ class Typist:
         )
         os.close(other)
         self.seen = ""
+        self._told = 0
 
     def wait_for(self, text):
         until = time.monotonic() + DEADLINE
-        start = len(self.seen)
-        while text not in self.seen[start:]:
+        while text not in self.seen[self._told :]:
             assert time.monotonic() < until, f"{text!r} did not come:\n{self.seen}"
             assert self._read(), f"{text!r} did not come before the end:\n{self.seen}"
+        self._told = self.seen.index(text, self._told) + len(text)
         return self
 
     def type(self, line):
@@ -124,3 +128,79 @@ def test_unattended_nobody_is_asked(typist):
     assert there.end() == 1
     assert "? Which" not in there.seen
     assert "NO_ANSWER" in there.seen
+
+
+STOPS = """
+momantu_bt: 1
+main: Main
+values: {n: 3}
+trees:
+  Main:
+    - wait: 0.1
+    - Sub: {k: $n}
+    - set: {key: $m, value: $n}
+    - succeed
+  Sub:
+    inputs: {k: int}
+    retry:
+      attempts: 2
+      child:
+        - script: $l := $k + 1
+        - wait: 50 ms
+          name: pause
+"""
+
+
+def test_a_breakpoint_shows_where_the_run_is_and_goes_on(typist):
+    there = typist(STOPS, "--break", "pause", "-q")
+    there.wait_for("before pause (").wait_for("break> ")
+    assert "in sequence > Sub > retry > sequence" in there.seen
+    assert "duration: 50 ms = 0.05" in there.seen
+    there.type("keys").wait_for("k = 3").wait_for("l = 4").wait_for("break> ")
+    there.type("print $l").wait_for("l = 4").wait_for("break> ")
+    there.type("p @nn").wait_for("no key '@nn'; did you mean @n?").wait_for("break> ")
+    there.type("tree").wait_for("IDLE").wait_for("break> ")
+    there.type("what").wait_for("print KEY").wait_for("break> ")
+    there.type("continue")
+    assert there.end() == 0
+
+
+def test_step_stops_before_each_node_that_starts(typist):
+    there = typist(STOPS, "--break", "Sub", "-q").wait_for("before Sub (")
+    assert "k: $n = 3" in there.wait_for("break> ").seen
+    for node in ("retry", "sequence", "script", "pause", "set", "succeed"):
+        there.type("step").wait_for(f"before {node} (").wait_for("break> ")
+    there.type("")
+    assert there.end() == 0
+
+
+@pytest.mark.parametrize("leave", ["quit", "\x04", signal.SIGINT, signal.SIGTERM])
+def test_leaving_at_a_breakpoint_interrupts_the_run(typist, tmp_path, leave):
+    report = tmp_path / "report.json"
+    there = typist(STOPS, "--break", "9", "--report", report).wait_for("before set (")
+    there.wait_for("break> ")
+    if isinstance(leave, str):
+        there.type(leave)
+    else:
+        there.press(leave)
+    assert there.end() == 130
+    ended = json.loads(report.read_text())
+    assert (ended["status"], ended["blackboard"]) == ("INTERRUPTED", {"n": 3})
+    assert [node["runs"] for node in ended["nodes"] if node["type"] == "SetBlackboard"] == [0]
+
+
+@pytest.mark.parametrize(
+    ("place", "hint"),
+    [("puase", "did you mean pause?"), ("3", "one does in line 7"), ("z*z", "nodes: Sequence")],
+)
+def test_a_breakpoint_that_names_nothing_is_an_error(typist, place, hint):
+    there = typist(STOPS, "--break", place)
+    assert there.end() == 2
+    assert hint in there.seen.replace("\r\n", " ")
+
+
+def test_a_breakpoint_needs_a_terminal(tmp_path, capsys):
+    file = tmp_path / "tree.yaml"
+    file.write_text(STOPS)
+    assert main(["run", str(file), "--break", "pause"]) == 2
+    assert "--break needs a person at a terminal" in capsys.readouterr().err

@@ -15,7 +15,7 @@ import shlex
 from dataclasses import dataclass
 from typing import Any
 
-from momantu_bt.engine.blackboard import Cell
+from momantu_bt.engine.blackboard import Board, Cell
 from momantu_bt.engine.makers import MAKERS, Parts
 from momantu_bt.engine.node import TreeNode
 from momantu_bt.engine.nodes.recovery import Catch, Handle, Recover
@@ -129,7 +129,7 @@ def made(bench: Bench, row: Row, kids: list[Telling]) -> TreeNode:
         model.ports[port] = _value(port, text, spec)
     arguments: Any = (model, bench.context, kids, None)
     if row.type == "SubTree":
-        return SubTree(*arguments, given={}, wires={})
+        return SubTree(*arguments, given={}, wires={}, board=Board([]))
     if spec is not None and spec.handlers:
         caught = Cell("failure", bench.context.writes)
         catches = [Catch(("any",), kid) for kid in kids[1:2]]

@@ -177,6 +177,28 @@ def test_a_script_that_breaks_after_a_halt_is_remarked_on_and_the_halt_goes_on(b
     assert "leaf (test.yaml:1)" in said[0]
 
 
+WHERE = {
+    "root": "trees: {Main: {%s}}",
+    "child": "trees: {Main: [succeed, {%s}]}",
+    "branch": "trees: {Main: {if: succeed, then: {%s}}}",
+    "handler": "trees: {Main: {handle: {try: always_failure, catch: {any: {%s}}}}}",
+    "decorated": "trees: {Main: {retry: {attempts: 2, child: {%s}}}}",
+    "parallel": "trees: {Main: {parallel: [succeed, {%s}]}}",
+    "subtree": "trees: {Main: [Sub], Sub: {%s}}",
+}
+
+
+@pytest.mark.parametrize("where", WHERE)
+@pytest.mark.parametrize(
+    "node", ["script: $n := 9", "sequence: [{script: $n := 9}]", "wait: 1 s, retry: 2"]
+)
+def test_a_disabled_node_never_starts_wherever_it_stands(run_yaml, where, node):
+    report = run_yaml(f"values: {{n: 1}}\n{WHERE[where] % f'{node}, disabled: true'}")
+    assert report.blackboard == {"n": 1}
+    assert report.sim_time_s <= 0.05
+    assert [n.runs for n in report.nodes if n.type in ("Script", "Sleep")] in ([0], [])
+
+
 def test_a_disabled_node_is_skipped_and_what_is_below_it_is_not_built(run_yaml):
     text = """
 trees:
@@ -190,7 +212,7 @@ trees:
     assert "n" not in report.blackboard
     assert [(node.type, node.runs) for node in report.nodes] == [
         ("Sequence", 1),
-        ("Sequence", 1),
+        ("Sequence", 0),
         ("Sleep", 1),
     ]
 
