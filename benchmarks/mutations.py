@@ -25,10 +25,12 @@ import argparse
 import random
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal, TypeAlias
+
+from xml_slips import XML_SLIPS, Slip, each, lost, swapped
 
 from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue import MODIFIERS, SUBTREE, CodeText
@@ -37,14 +39,15 @@ from momantu_bt.tree.model import Document, Node, Place
 from momantu_bt.tree.problems import Problem, Problems, TreeError, errors
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.signatures import Context
-from momantu_bt.tree.yaml_format import read
+from momantu_bt.tree.xml_format import read as read_xml
+from momantu_bt.tree.xml_writer import write as write_xml
+from momantu_bt.tree.yaml_format import read as read_yaml
 
 ROOT = Path(__file__).resolve().parent.parent
 GOOD_TREES = (
     *sorted((ROOT / "trees").rglob("*.yaml")),
     *sorted((ROOT / "tests" / "framework" / "tree" / "good_trees").glob("*.yaml")),
 )
-Slip: TypeAlias = Callable[[str], Iterator[str]]
 Verdict: TypeAlias = Literal["right", "elsewhere", "missed", "same", "free", "allowed"]
 KEYBOARD = ("qwertyuiop", "asdfghjkl", "zxcvbnm")
 
@@ -63,11 +66,13 @@ class Mutant:
 class GoodTree:
     """A tree without problems, and what is known of its places.
 
-    free: where free text stands. optional: places of the names of ports that may be left out.
+    as_xml: written in the other spelling. free: where free text stands. optional: places of the
+    names of ports that may be left out.
     """
 
     path: Path
     registry: Registry
+    as_xml: bool = False
     text: str = ""
     document: Document = field(init=False)
     free: list[Place] = field(default_factory=list)
@@ -75,7 +80,11 @@ class GoodTree:
 
     def __post_init__(self) -> None:
         self.text = self.text or self.path.read_text(encoding="utf-8")
-        self.document, reading = read(self.text, "t.yaml")
+        if self.as_xml:
+            plain = read_yaml(self.text, "t.yaml")[0]
+            check(plain, self.registry)
+            self.text = write_xml(plain, self.registry)
+        self.document, reading = self.read(self.text)
         wrong = check(self.document, self.registry, reading=reading)
         assert not wrong, f"{self.path}: {wrong[0].place}: {wrong[0].message}"
         context = Context(self.document, self.registry, Problems())
@@ -86,6 +95,23 @@ class GoodTree:
                 if port.direction == "in" and port.default is None:
                     continue
                 self.optional.add((port.place.line, 0))
+
+    @property
+    def slips(self) -> dict[str, Slip]:
+        """What can go wrong in a line of its spelling."""
+        return XML_SLIPS if self.as_xml else SLIPS
+
+    def read(self, text: str) -> tuple[Document, Problems]:
+        """Read a text in its spelling; TreeError where that cannot be done."""
+        return read_xml(text, "t.xml", self.registry) if self.as_xml else read_yaml(text, "t.yaml")
+
+    def problems(self, text: str) -> tuple[Document | None, list[Problem]]:
+        """What is read from a text, and every problem that it has."""
+        try:
+            document, found = self.read(text)
+        except TreeError as error:
+            return None, error.problems
+        return document, check(document, self.registry, reading=found)
 
     def _note(self, context: Context, node: Node) -> None:
         signature = context.signature(node)
@@ -106,29 +132,6 @@ def _is_free_text(port: Port) -> bool:
 
 
 # slips of one line
-
-
-def each(pattern: str, *changes: Callable[[re.Match[str]], str], group: int = 1) -> Slip:
-    """Change what a group of the pattern matches, at each of its places, in each of the ways."""
-
-    def slips(line: str) -> Iterator[str]:
-        for found in re.finditer(pattern, line):
-            for change in changes:
-                changed = line[: found.start(group)] + change(found) + line[found.end(group) :]
-                if changed != line:
-                    yield changed
-
-    return slips
-
-
-def lost(found: re.Match[str]) -> str:
-    word = found[1]
-    return word[: len(word) // 2] + word[len(word) // 2 + 1 :]
-
-
-def swapped(found: re.Match[str]) -> str:
-    word = found[1]
-    return word[:-2] + word[-1] + word[-2]
 
 
 def doubled(found: re.Match[str]) -> str:
@@ -208,16 +211,18 @@ def mutants(tree: GoodTree, kind: str) -> Iterator[Mutant]:
     """One kind of slip at every place of a tree; comments are left alone."""
     lines = tree.text.splitlines()
     for index, line in enumerate(lines):
-        code, mark, comment = line.partition(" #")
-        if code.lstrip().startswith("#"):
+        code, mark, comment = line.partition(" <!--" if tree.as_xml else " #")
+        if code.lstrip().startswith(("#", "<!--", "<?")):
             continue
-        for changed in SLIPS[kind](code):
+        for changed in tree.slips[kind](code):
             after = [*lines[:index], changed + mark + comment, *lines[index + 1 :]]
             yield Mutant(kind, index + 1, changed, "\n".join(after) + "\n")
 
 
 def structural(tree: GoodTree) -> Iterator[Mutant]:
     """Slips of more than a line: trees that run themselves, nodes without their companion."""
+    if tree.as_xml:
+        return
     lines = tree.text.splitlines()
     for name, each_tree in tree.document.trees.items():
         for node in each_tree.root.walk():
@@ -256,15 +261,6 @@ def _block_end(lines: Sequence[str], start: int) -> int:
 # judging
 
 
-def problems_of(text: str, registry: Registry) -> tuple[Document | None, list[Problem]]:
-    """What is read from a text, and every problem that it has."""
-    try:
-        document, found = read(text, "t.yaml")
-    except TreeError as error:
-        return None, error.problems
-    return document, check(document, registry, reading=found)
-
-
 def meaning(document: Document) -> list[object]:
     """What a document says, without frames around one node; two that mean the same are equal."""
     said: list[object] = [document.main, document.world, document.values, document.includes]
@@ -281,10 +277,10 @@ def meaning(document: Document) -> list[object]:
 
 def judge(tree: GoodTree, mutant: Mutant) -> Verdict:
     """Whether the slip is a mistake, and if so whether and where it was found."""
-    document, problems = problems_of(mutant.text, tree.registry)
+    document, problems = tree.problems(mutant.text)
     wrong = errors(problems)
     if wrong:
-        old = tree.text.splitlines()[mutant.line - 1] if mutant.line else ""
+        old = (*tree.text.splitlines(), "")[mutant.line - 1]
         right = any(leads_to(problem, mutant, old) for problem in wrong)
         return "right" if right else "elsewhere"
     if document is not None and meaning(document) == meaning(tree.document):
@@ -336,12 +332,13 @@ def is_free(tree: GoodTree, mutant: Mutant) -> bool:
 
 def is_allowed(tree: GoodTree, mutant: Mutant) -> bool:
     """Whether what was left out may be left out."""
-    if mutant.kind in ("input left out", "then left out"):
+    if mutant.kind.endswith("left out"):
         old = tree.text.splitlines()[mutant.line - 1].partition(" #")[0]
         if re.match(r"\s*cases:", old):
             return True
         start, end = _span(old, mutant.changed)
-        names = [m.start() for m in re.finditer(r"\w+(?=:)", old) if start - 1 <= m.start() <= end]
+        found = (match.start() for match in re.finditer(r"[\w:]+(?==)|\w+(?=:)", old))
+        names = [at for at in found if start - 1 <= at <= end]
         places = tree.optional
         return all((mutant.line, at + 1) in places or (mutant.line, 0) in places for at in names)
     return False
@@ -365,14 +362,19 @@ class Tally:
         return self.verdicts["right"] + self.verdicts["elsewhere"]
 
 
+def good_trees(registry: Registry, paths: Sequence[Path] = GOOD_TREES) -> list[GoodTree]:
+    """Every good tree, in both spellings."""
+    return [GoodTree(path, registry, as_xml) for as_xml in (False, True) for path in paths]
+
+
 def kinds() -> list[str]:
     """Every kind of slip."""
-    return [*SLIPS, *_BLOCKS, "tree that runs itself"]
+    return [*SLIPS, *_BLOCKS, "tree that runs itself", *XML_SLIPS]
 
 
 def made(tree: GoodTree, most: int | None) -> Iterator[Mutant]:
     """The mutants of a tree: at most so many of each kind, spread over the file."""
-    of_kind: dict[str, list[Mutant]] = {kind: list(mutants(tree, kind)) for kind in SLIPS}
+    of_kind: dict[str, list[Mutant]] = {kind: list(mutants(tree, kind)) for kind in tree.slips}
     for mutant in structural(tree):
         of_kind.setdefault(mutant.kind, []).append(mutant)
     for found in of_kind.values():
@@ -403,7 +405,7 @@ def several(tree: GoodTree, count: int, seed: int) -> tuple[int, int]:
     alone = [
         mutant
         for mutant in made(tree, 6)
-        if "\n" not in mutant.changed and mutant.kind in SLIPS and _is_told(tree, mutant)
+        if "\n" not in mutant.changed and mutant.kind in tree.slips and _is_told(tree, mutant)
     ]
     whole, files = 0, 0
     lines = tree.text.splitlines()
@@ -413,7 +415,7 @@ def several(tree: GoodTree, count: int, seed: int) -> tuple[int, int]:
             chosen[number].changed if number in chosen else line
             for number, line in enumerate(lines, 1)
         ]
-        document, problems = problems_of("\n".join(changed) + "\n", tree.registry)
+        document, problems = tree.problems("\n".join(changed) + "\n")
         if document is None:
             continue
         files += 1
@@ -426,7 +428,7 @@ def several(tree: GoodTree, count: int, seed: int) -> tuple[int, int]:
 
 
 def _is_told(tree: GoodTree, mutant: Mutant) -> bool:
-    document, problems = problems_of(mutant.text, tree.registry)
+    document, problems = tree.problems(mutant.text)
     return document is not None and any(p.place.line == mutant.line for p in errors(problems))
 
 
@@ -437,7 +439,7 @@ def main() -> None:
     parser.add_argument("--trees", type=Path, nargs="+", default=list(GOOD_TREES))
     asked = parser.parse_args()
     registry = Registry.installed()
-    trees = [GoodTree(path, registry) for path in asked.trees]
+    trees = good_trees(registry, asked.trees)
     tallies = corpus(trees, asked.most)
     print(f"{'slip':32} mistakes  found  right line   same  free  allowed")
     total = Tally()

@@ -26,6 +26,7 @@ FLOOR = 0.7
 
 def benchmark() -> ModuleType:
     spec = importlib.util.spec_from_file_location("mutations", ROOT / "benchmarks/mutations.py")
+    sys.path.insert(0, str(ROOT / "benchmarks"))
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
@@ -40,14 +41,14 @@ MUTATIONS = benchmark()
 @pytest.fixture(scope="module")
 def trees() -> list[Any]:
     """Every good tree, checked."""
-    registry = Registry.installed()
-    return [MUTATIONS.GoodTree(path, registry) for path in MUTATIONS.GOOD_TREES]
+    found: list[Any] = MUTATIONS.good_trees(Registry.installed())
+    return found
 
 
 @pytest.fixture(scope="module")
 def tallies(trees: list[Any]) -> dict[str, Any]:
     """The verdicts on two slips of each kind in each tree."""
-    found: dict[str, Any] = MUTATIONS.corpus(trees, most=2)
+    found: dict[str, Any] = MUTATIONS.corpus(trees, most=1)
     return found
 
 
@@ -78,7 +79,7 @@ def test_several_slips_are_told_at_once(trees: list[Any]) -> None:
 
 def tree(text: str) -> Any:
     header = "momantu_bt: 1\nworld: four_rooms\ntrees:\n  Main:\n"
-    return MUTATIONS.GoodTree(Path("t.yaml"), Registry.installed(), header + text)
+    return MUTATIONS.GoodTree(Path("t.yaml"), Registry.installed(), text=header + text)
 
 
 def verdict(good: Any, line: int, changed: str, kind: str = "typo in a key") -> str:
@@ -113,7 +114,7 @@ def test_the_judgement_of_free_text_and_of_what_may_be_left_out() -> None:
 def test_good_trees_use_every_node_and_modifier(trees: list[Any]) -> None:
     used = {node.type for good in trees for node in nodes_of(good)}
     assert set(BUILT_IN) <= used
-    written = set(re.findall(r"\b(\w+):", "".join(good.text for good in trees)))
+    written = set(re.findall(r"\b(\w+):", "".join(good.text for good in trees if not good.as_xml)))
     assert set(MODIFIERS) <= written
 
 
