@@ -157,14 +157,14 @@ def _check_default_answer(context: Context, node: Node) -> None:
 
 
 def _check_switch(context: Context, node: Node, signature: Signature) -> None:
-    """A switch on a text that is written out always goes one way; XML's authors may mean that."""
+    """A switch on a text that is written out always goes one way."""
     value = node.ports.get("variable")
     if signature.spec is None or not signature.spec.switch or not isinstance(value, Literal):
         return
     place = node.port_places.get("variable", node.place)
-    if not context.is_xml(place):
-        message = f"`{signature.said}` chooses by a key"
-        context.problems.error("not-a-key", place, message, f"write ${value.value}")
+    message = f"`{signature.said}` chooses by a key"
+    hint = f"write {context.wire(str(value.value), place)}"
+    context.problems.error("not-a-key", place, message, hint)
 
 
 def _report_missing(context: Context, node: Node, port: Port, signature: Signature) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from lxml import etree
@@ -50,6 +51,7 @@ def _tags(error: LibraryError, place: Place, lines: tuple[str, ...]) -> Problem 
         where = _before(place, lines, f"</{closed}", 2 + len(closed))
         message = f"`</{closed}>` stands where `</{opened}>` should be"
         hint = f"line {at} opens <{opened}>: end it with </{opened}>, or write <{opened} …/>"
+        hint = _lost_bracket(lines[: place.line]) or hint
         return Problem("syntax", message, where, hint)
     unfinished = re.search(r"in tag (\S+)(?: line (\d+))?", error.message)
     if error.kind == "ERR_TAG_NOT_FINISHED" and unfinished is not None:
@@ -58,6 +60,14 @@ def _tags(error: LibraryError, place: Place, lines: tuple[str, ...]) -> Problem 
         where = Place(place.file, at, start + 1, len(name) + 1) if start >= 0 else place
         return Problem("syntax", f"<{name}> is never closed", where, f"end it with </{name}>")
     return None
+
+
+def _lost_bracket(lines: Sequence[str]) -> str:
+    """The hint where a line above ends a tag that it does not begin."""
+    for number, line in enumerate(lines, 1):
+        if re.fullmatch(r"\s*/?[\w:]+(\s+[\w:]+=\"[^\"<>]*\")*\s*/?>\s*", line):
+            return f"line {number} ends a tag that it does not begin: a `<` is missing"
+    return ""
 
 
 def _attributes(error: LibraryError, place: Place, lines: tuple[str, ...]) -> Problem | None:

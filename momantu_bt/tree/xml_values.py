@@ -19,6 +19,7 @@ from momantu_bt.tree.yaml_values import KEY, port_value
 SAME_NAME = "{=}"
 """Wires a port to the key of its own name."""
 
+_HALF_A_WIRE = re.compile(r"\{(@?[^\W\d]\w*)|(@?[^\W\d]\w*)\}|\$(@?[^\W\d]\w*)")
 _POINTER = re.compile(r" *\{(.+)\} *", re.DOTALL)
 _BOOLS = {"True": True, "TRUE": True, "1": True, "False": False, "FALSE": False, "0": False}
 """What BehaviorTree.CPP takes for a bool beside `true` and `false`."""
@@ -34,13 +35,14 @@ def attribute_value(text: str, port: str, type_: ValueType) -> PortValue:
     port: its name, for `{=}`. type_: the port's; `object` where nobody knows it.
 
     Raises:
-        WireError: braces around something that cannot be a key.
+        WireError: braces around something that cannot be a key, or half a wire.
     """
     if text == SAME_NAME:
         return Reference(port)
     pointer = _POINTER.fullmatch(text)
     if pointer is not None:
         return _wire(pointer[1])
+    _refuse_half_a_wire(text)
     if takes_text(type_):
         return Literal(text)
     if without_none(type_) == (bool,) and text in _BOOLS:
@@ -54,6 +56,14 @@ def _wire(key: str) -> Reference:
     if not KEY.fullmatch(name):
         raise WireError(f"{{{key}}} names no key: letters, digits and underscores, no digit first")
     return Reference(name, scope=Scope.ROOT if root else Scope.LOCAL)
+
+
+def _refuse_half_a_wire(text: str) -> None:
+    """`{key`, `key}` and YAML's `$key` are slips; as a text they stand in `momantu:port="…"`."""
+    slipped = _HALF_A_WIRE.fullmatch(text)
+    if slipped is not None:
+        key = next(filter(None, slipped.groups()))
+        raise WireError(f"{text!r} is no wire: did you mean {{{key}}}?")
 
 
 def takes_text(type_: ValueType) -> bool:

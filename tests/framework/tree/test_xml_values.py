@@ -48,7 +48,8 @@ def flow(text: str) -> tuple[Any, list[Any]]:
         ("null", object, Written("null")),
         ("", object, Written("")),
         ("at {n}", str, Written("at {n}")),
-        ("$n", str, Written("$n")),
+        ("$5", str, Written("$5")),
+        ("{a b", str, Written("{a b")),
     ],
 )
 def test_plain_attributes(text: str, type_: Any, expected: Any) -> None:
@@ -61,6 +62,12 @@ def test_plain_attributes(text: str, type_: Any, expected: Any) -> None:
 @pytest.mark.parametrize("text", ["{a b}", "{a.b}", "{1a}", "{@}", "{{a}}", "{a};{b}"])
 def test_braces_around_no_key(text: str) -> None:
     with pytest.raises(WireError, match="names no key"):
+        attribute_value(text, "port", str)
+
+
+@pytest.mark.parametrize("text", ["{key", "key}", "$key", "{@key", "$@key"])
+def test_half_a_wire(text: str) -> None:
+    with pytest.raises(WireError, match=r"did you mean \{@?key\}\?"):
         attribute_value(text, "port", str)
 
 
