@@ -17,10 +17,10 @@ from momantu_bt.failure import (
     WRONG_TYPE,
 )
 from momantu_bt.tree.catalogue import SUBTREE
+from momantu_bt.tree.language import ANY
 from momantu_bt.tree.model import Handler, Literal, Node, Place, Reference, Tree
 from momantu_bt.tree.problems import nearest, within
 from momantu_bt.tree.signatures import Context
-from momantu_bt.tree.yaml_nodes import ANY
 
 _ANY_SKILL = frozenset(ENGINE_CODES) - {TIMEOUT, FAILED, HALTED, SCRIPT_ERROR}
 """What the engine makes of a skill's end beside the codes that it declares."""

@@ -19,8 +19,9 @@ from momantu_bt.tree.catalogue import (
     Kind,
     NodeSpec,
 )
+from momantu_bt.tree.language import AGAIN, ANY
 from momantu_bt.tree.schema_values import SCRIPT, Names, value_schema
-from momantu_bt.tree.yaml_nodes import AGAIN, ANY, COMPANIONS
+from momantu_bt.tree.yaml_words import COMPANIONS
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 

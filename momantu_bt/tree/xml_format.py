@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from momantu_bt.tree.language import TREE_NAME, TREE_NAME_HINT, VERSION
 from momantu_bt.tree.model import (
     Document,
     Include,
@@ -15,13 +16,13 @@ from momantu_bt.tree.model import (
     Tree,
 )
 from momantu_bt.tree.problems import Problems, TooManyProblems, TreeError, errors, valid_names
+from momantu_bt.tree.puts import into_tree
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.resolve import resolve
 from momantu_bt.tree.xml_models import Models, read_models
 from momantu_bt.tree.xml_nodes import NodeReader
 from momantu_bt.tree.xml_source import OURS, Attribute, Element, Parsed, XmlSyntaxError, parse
 from momantu_bt.tree.xml_values import flow_value
-from momantu_bt.tree.yaml_format import TREE_NAME, TREE_NAME_HINT, VERSION
 from momantu_bt.tree.yaml_values import KEY
 
 FORMAT = "4"
@@ -309,7 +310,7 @@ class XmlSource:
         for extra in element.children[1:]:
             message = f"the tree {name!r} has {len(element.children)} nodes at its root; it has one"
             self.problems.error("children", extra.place, message, "put them into a <Sequence>")
-        reader.read(element.children[0], _root_setter(tree))
+        reader.read(element.children[0], into_tree(tree))
         tree.root.end_comments += element.end_comments
         return tree
 
@@ -336,10 +337,3 @@ def _report_twice(problems: Problems, name: str, first: Place, second: Place) ->
 def _tree_place(element: Element) -> Place:
     identity = element.get("ID")
     return element.place if identity is None else identity.place
-
-
-def _root_setter(tree: Tree) -> Callable[[Node], None]:
-    def put(node: Node) -> None:
-        tree.root = node
-
-    return put

@@ -6,7 +6,7 @@ Which attributes a node has comes from its NodeSpec, from its skill, or from the
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from momantu_bt.plugins import PluginError
@@ -17,19 +17,18 @@ from momantu_bt.tree.catalogue import (
     SUBTREE,
     NodeSpec,
 )
+from momantu_bt.tree.language import ANY, handler_codes
 from momantu_bt.tree.model import BROKEN, Handler, Node, PortDeclaration
 from momantu_bt.tree.problems import Problems, nearest, valid_names
+from momantu_bt.tree.puts import Put, into_handler
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.xml_ports import CATCH, EXPLICIT, PREFIX, PortReader
 from momantu_bt.tree.xml_source import OURS, Element
-from momantu_bt.tree.yaml_nodes import ANY, handler_codes
 
 PORT = "Port"
 """Our element inside a node that is none itself: a port that no attribute can be named after."""
 ONCE = {"SubTreePlus": SUBTREE, "Subtree": SUBTREE, "SequenceStar": "SequenceWithMemory"}
 """Tags of BehaviorTree.CPP 3, and what they became."""
-
-Put = Callable[[Node], None]
 
 
 @dataclass(slots=True)
@@ -209,7 +208,7 @@ class NodeReader:
             message = f"<momantu:{CATCH}> has {len(element.children)} children; at most 1"
             self.problems.error("children", element.children[1].place, message, "use <Sequence>")
         elif element.children:
-            self._waiting.append((element.children[0], _handler_setter(handler)))
+            self._waiting.append((element.children[0], into_handler(handler)))
         elif node.type != "Recover":
             message = f"<momantu:{CATCH}> without a child is `again`"
             hint = "it has a meaning in <momantu:Recover> alone"
@@ -222,10 +221,3 @@ def _is_handler(element: Element) -> bool:
     identity = element.get("ID")
     explicit = not element.space and element.name in EXPLICIT
     return explicit and identity is not None and identity.value == PREFIX + CATCH
-
-
-def _handler_setter(handler: Handler) -> Put:
-    def put(node: Node) -> None:
-        handler.node = node
-
-    return put

@@ -8,6 +8,7 @@ from itertools import zip_longest
 from typing import TypeAlias
 
 from momantu_bt.tree.catalogue import BUILT_IN, OWN_NODES, SUBTREE
+from momantu_bt.tree.language import VERSION
 from momantu_bt.tree.model import Document, Handler, Literal, Node, NodeModel, PortDeclaration, Tree
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.types import parse_type
@@ -18,7 +19,6 @@ from momantu_bt.tree.xml_nodes import ONCE, PORT
 from momantu_bt.tree.xml_ports import CATCH, EXPLICIT, PREFIX
 from momantu_bt.tree.xml_source import OURS
 from momantu_bt.tree.xml_text import above, attribute, beside, escaped
-from momantu_bt.tree.yaml_format import VERSION
 from momantu_bt.tree.yaml_scalars import CannotWrite, literal, port_text
 
 __all__ = ["CannotWrite", "write"]

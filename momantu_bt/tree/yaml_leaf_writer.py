@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 from momantu_bt.plugins import PluginError
 from momantu_bt.tree.catalogue import BUILT_IN, MODIFIERS, SPELLED, SUBTREE, ScriptText
+from momantu_bt.tree.language import AGAIN
 from momantu_bt.tree.model import FIRST_INPUT, Literal, Node, PortValue
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.yaml_lines import STEP, WIDTH, above, beside, is_nested, signed, spread
-from momantu_bt.tree.yaml_nodes import AGAIN
 from momantu_bt.tree.yaml_scalars import (
     CannotWrite,
     port_text,

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from momantu_bt.tree.catalogue import BUILT_IN, FORCED, Kind
+from momantu_bt.tree.language import AGAIN
 from momantu_bt.tree.model import Beside, Handler, Literal, Node, PortValue
 from momantu_bt.tree.yaml_leaf_writer import LeafWriter
 from momantu_bt.tree.yaml_lines import STEP, WIDTH, above, beside, is_nested
-from momantu_bt.tree.yaml_nodes import AGAIN, COMPANIONS, SWITCH
 from momantu_bt.tree.yaml_scalars import (
     CannotWrite,
     port_text,
@@ -21,6 +21,7 @@ from momantu_bt.tree.yaml_scalars import (
     script_spelling,
     script_text,
 )
+from momantu_bt.tree.yaml_words import COMPANIONS, SWITCH
 
 _FORCE = {type_: f"force: {word}" for word, type_ in FORCED.items()}
 

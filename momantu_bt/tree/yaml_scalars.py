@@ -8,9 +8,9 @@ from typing import Any
 
 from momantu_bt.tree.model import Literal, Place, PortValue, Reference, Scope, Template
 from momantu_bt.tree.script import ScriptSyntaxError, canonical, yaml_spelling
-from momantu_bt.tree.yaml_nodes import BTCPP
 from momantu_bt.tree.yaml_source import resolve
 from momantu_bt.tree.yaml_values import KEY
+from momantu_bt.tree.yaml_words import BTCPP
 
 _NEVER_FIRST = "-?:,[]{}#&*!|>'\"%@`"
 _NEVER_INSIDE = re.compile(r": |:$| #")

@@ -145,3 +145,25 @@ def drop_duplicates(raw: Entries, problems: Problems) -> None:
         else:
             first[key.text] = (key, value)
     raw.entries = list(first.values())
+
+
+def mapping(raw: Raw, name: str, example: str, problems: Problems) -> list[tuple[Scalar, Raw]]:
+    """The entries of what stands under a key that takes a mapping; none where nothing does."""
+    if isinstance(raw, Entries):
+        drop_duplicates(raw, problems)
+        return raw.entries
+    if not (isinstance(raw, Scalar) and raw.value is None):
+        message, hint = f"`{name}` is a mapping", f"write {{{example}}}"
+        problems.error("wrong-value", raw.place, message, hint)
+    return []
+
+
+def is_key(key: Scalar, problems: Problems) -> bool:
+    """Whether it can be the name of a blackboard key; a problem where it cannot."""
+    if isinstance(key.value, str) and KEY.fullmatch(key.text):
+        return True
+    hint = "letters, digits and underscores, no digit first"
+    if key.text.startswith("$"):
+        hint = f"did you mean {key.text[1:]}?"
+    problems.error("bad-name", key.place, f"{key.text!r} cannot be the name of a key", hint)
+    return False

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from momantu_bt.tree.language import VERSION
 from momantu_bt.tree.model import Document, PortDeclaration, Tree
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.yaml_format import HEADER, PORTS, VERSION
 from momantu_bt.tree.yaml_leaf_writer import LeafWriter
 from momantu_bt.tree.yaml_lines import WIDTH, above, beside, spread
 from momantu_bt.tree.yaml_models import write_models
 from momantu_bt.tree.yaml_node_writer import NodeWriter
 from momantu_bt.tree.yaml_scalars import CannotWrite, literal, port_text, scalar
+from momantu_bt.tree.yaml_words import HEADER, PORTS
 
 __all__ = ["CannotWrite", "write"]
 

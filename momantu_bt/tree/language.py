@@ -1,0 +1,32 @@
+"""What YAML and XML share: the language's version, names of trees, and what handlers are for."""
+
+from __future__ import annotations
+
+import re
+
+from momantu_bt.failure import CODE
+from momantu_bt.tree.model import Place
+from momantu_bt.tree.problems import Problems
+
+VERSION = 1
+"""What `momantu_bt:` says; a later one may read differently."""
+
+TREE_NAME = re.compile(r"[^\W\d][\w.-]*(?: [\w.-]+)*")
+"""Names that a tree can have; BehaviorTree.CPP's may hold more than letters."""
+TREE_NAME_HINT = "letters, digits, `_`, `-`, `.` and single spaces, a letter first"
+
+AGAIN = "again"
+"""The handler that tries once more and runs no node."""
+ANY = "any"
+"""What a handler of all other codes is for."""
+_HANDLER_CODE = re.compile(rf"(?:\w+\.)?{CODE.pattern}|{ANY}")
+
+
+def handler_codes(text: str, place: Place, problems: Problems) -> tuple[str, ...]:
+    """What a handler is for (`A | B`), without what cannot be a code, which is reported."""
+    codes = tuple(part.strip() for part in text.split("|"))
+    wrong = dict.fromkeys(code for code in codes if not _HANDLER_CODE.fullmatch(code))
+    for code in wrong:
+        hint = "codes are upper-case words, `A | B` several, `any` the rest"
+        problems.error("bad-code", place, f"{code!r} is no failure code", hint)
+    return tuple(code for code in codes if code not in wrong)

@@ -1,0 +1,28 @@
+"""Where a node goes once it is read: nodes wait in a queue, and know their place in the tree."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TypeAlias
+
+from momantu_bt.tree.model import Handler, Node, Tree
+
+Put: TypeAlias = Callable[[Node], None]
+
+
+def into_tree(tree: Tree) -> Put:
+    """The node becomes the tree's root."""
+
+    def put(node: Node) -> None:
+        tree.root = node
+
+    return put
+
+
+def into_handler(handler: Handler) -> Put:
+    """The node becomes what the handler runs."""
+
+    def put(node: Node) -> None:
+        handler.node = node
+
+    return put
