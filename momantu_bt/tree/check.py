@@ -55,6 +55,10 @@ def check(
 
 def _check(context: Context, world: str | None, robot: str | None) -> None:
     document = context.document
+    if document.main not in document.trees:
+        message = "no tree is left to run: those that there are cannot be read"
+        context.problems.error("no-trees", _start(document), message, "see the other problems")
+        return
     _look_up(context, world, robot)
     for tree in document.trees.values():
         check_tree_ports(context, tree)

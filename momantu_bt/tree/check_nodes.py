@@ -137,7 +137,8 @@ def _check_one_of(context: Context, node: Node, signature: Signature) -> None:
             message = f"{signature.said} needs exactly one of the inputs {', '.join(group)}"
             context.problems.error("missing-input", node.place, message)
         elif not given:
-            _report_missing(context, node, signature.ports[group[0]], signature)
+            first = group[-1] if context.is_xml(node.place) else group[0]
+            _report_missing(context, node, signature.ports[first], signature)
         for name in given[1:]:
             message = f"{signature.said} takes {given[0]!r} or {name!r}, not both"
             place = node.port_name_places.get(name, node.place)
@@ -169,8 +170,11 @@ def _check_switch(context: Context, node: Node, signature: Signature) -> None:
 
 def _report_missing(context: Context, node: Node, port: Port, signature: Signature) -> None:
     kind = "input" if port.direction == "in" else "key"
-    message = f"{signature.said} needs the {kind} {port.name!r}"
-    hint = f"{port.name}: {label(port.type)}{f' in {port.unit}' if port.unit else ''}"
+    name = port.name
+    if signature.spec is not None and context.is_xml(node.place):
+        name = signature.spec.xml.get(name, name)
+    message = f"{signature.said} needs the {kind} {name!r}"
+    hint = f"{name}: {label(port.type)}{f' in {port.unit}' if port.unit else ''}"
     if port.doc:
         hint += f", {port.doc}"
     context.problems.error("missing-input", node.place, message, hint)

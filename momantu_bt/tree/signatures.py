@@ -55,12 +55,14 @@ class Context:
     description: RobotDescription | None = None
     _skills: dict[str, type[Skill] | None] = field(default_factory=dict)
     _trees: dict[str, Signature] = field(default_factory=dict)
+    _xml_files: dict[str, bool] = field(default_factory=dict)
 
     def signature(self, node: Node) -> Signature | None:
         """What this node takes and gives; None where it is unknown or broken."""
         spec = BUILT_IN.get(node.type)
         if spec is not None:
-            return Signature(spec.yaml[0], spec.ports, spec.first, spec=spec)
+            said = node.type if self.is_xml(node.place) else spec.yaml[0]
+            return Signature(said, spec.ports, spec.first, spec=spec)
         if node.type == SUBTREE:
             return self._call_signature(node, self.document.trees[node.target or ""])
         skill = None if node.type == BROKEN else self.skill(node.type)
@@ -81,7 +83,12 @@ class Context:
 
     def is_xml(self, place: Place) -> bool:
         """Whether the file of this place is XML, so that its words are used."""
-        return self.document.source.get(place.file, "").lstrip("\ufeff \t\r\n").startswith("<")
+        known = self._xml_files.get(place.file)
+        if known is None:
+            text = self.document.source.get(place.file, "")
+            known = text.lstrip("\ufeff \t\r\n").startswith("<")
+            self._xml_files[place.file] = known
+        return known
 
     def wire(self, key: str, place: Place) -> str:
         """A wire as the file of this place spells it."""

@@ -266,3 +266,10 @@ def test_the_documents_own_includes_keep_their_places(write: Write) -> None:
     include = read(path)[0].includes[0]
     assert include == Include("b.xml", include.place)
     assert (include.place.line, include.place.column, include.place.length) == (2, 16, 5)
+
+
+def test_a_file_whose_only_tree_has_no_name(write: Write) -> None:
+    path = write(main_xml=xml("", include="parts.xml"), parts_xml=xml(include="more.xml"))
+    with pytest.raises(TreeError) as refused:
+        load(str(path), Registry())
+    assert "no-trees" in {problem.code for problem in refused.value.problems}
