@@ -231,6 +231,9 @@ class _Builder:
             raise self.error("syntax", event, message, hint)
 
     def scalar(self, event: Any) -> Scalar:
+        if _SURROGATE.search(event.value):
+            message = "an escape that is half a character"
+            raise self.error("syntax", event, message, "write the character itself")
         quoted = event.style is not None
         self.spans += _span(event)
         value = event.value if quoted else resolve(event.value)
@@ -295,6 +298,7 @@ class _Builder:
 _NULL = re.compile(r"|~|null|Null|NULL")
 _INT = re.compile(r"[-+]?[0-9]+|0o[0-7]+|0x[0-9a-fA-F]+")
 _FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
+_SURROGATE = re.compile("[\ud800-\udfff]")
 _LARGEST_NUMBER = 40
 """Digits; longer ones stay text, as no port takes them."""
 

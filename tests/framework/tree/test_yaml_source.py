@@ -137,3 +137,11 @@ def test_a_damaged_file_is_read_or_refused_with_places_inside_it(data: st.DataOb
     for problem in problems:
         assert 1 <= problem.place.line <= len(lines) + 1
         assert problem.message in show(problem, {"t.yaml": text})
+
+
+def test_half_a_character_is_refused() -> None:
+    with pytest.raises(YamlSyntaxError) as refused:
+        compose('name: "a\\ud800b"\n', "t.yaml")
+    problem = refused.value.problem
+    assert (problem.place.line, problem.place.column) == (1, 7)
+    assert "half a character" in problem.message
