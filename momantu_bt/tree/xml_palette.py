@@ -11,7 +11,7 @@ from lxml import etree
 from momantu_bt.skill import MISSING, Port, Skill
 from momantu_bt.tree.catalogue import BUILT_IN, NAV2_NODES, OWN_NODES, Kind
 from momantu_bt.tree.types import label, origin, without_none
-from momantu_bt.tree.xml_format import FORMAT
+from momantu_bt.tree.xml_header import FORMAT
 from momantu_bt.tree.xml_ports import CATCH, PREFIX
 
 _KINDS = {Kind.CONTROL: "Control", Kind.DECORATOR: "Decorator", Kind.LEAF: "Action"}

@@ -9,21 +9,26 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from momantu_bt.tree.catalogue import BUILT_IN, FORCED, Kind
+from momantu_bt.tree.catalogue import BUILT_IN, Kind
 from momantu_bt.tree.language import AGAIN
-from momantu_bt.tree.model import Beside, Handler, Literal, Node, PortValue
+from momantu_bt.tree.model import Beside, Handler, Node
 from momantu_bt.tree.yaml_leaf_writer import LeafWriter
-from momantu_bt.tree.yaml_lines import STEP, WIDTH, above, beside, is_nested
+from momantu_bt.tree.yaml_lines import STEP, WIDTH, above, beside
 from momantu_bt.tree.yaml_scalars import (
     CannotWrite,
     port_text,
     scalar,
-    script_spelling,
     script_text,
 )
+from momantu_bt.tree.yaml_spellings import (
+    FORCE,
+    bare_condition,
+    can_be_modifier,
+    has_modifiers,
+    is_short,
+    switch_cases,
+)
 from momantu_bt.tree.yaml_words import COMPANIONS, SWITCH
-
-_FORCE = {type_: f"force: {word}" for word, type_ in FORCED.items()}
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,11 +93,11 @@ class NodeWriter:
     def _value(self, piece: _Value) -> list[_Piece]:
         node, lead, pad = piece.node, piece.lead, piece.pad
         heading = lead + beside(piece.comments)
-        if node.type == "Sequence" and node.children and not _has_modifiers(node):
+        if node.type == "Sequence" and node.children and not has_modifiers(node):
             items = [_Body(child, f"{pad}- ") for child in node.children]
             comments = above(node.comments, pad, every=True)
             return [heading, *comments, *items, *above(node.end_comments, pad, every=True)]
-        if _is_short(node):
+        if is_short(node):
             inside = self._inside(node)
             key = self.leaves.key(node)
             line = f"{lead} {{{key}: {inside}}}" if inside else f"{lead} {key}"
@@ -133,7 +138,7 @@ class NodeWriter:
     def _unwrapped(self, node: Node) -> tuple[Node, list[Node]]:
         """The node without what can be written as modifiers, and that, innermost first."""
         chain = [node]
-        while _can_be_modifier(chain[-1]):
+        while can_be_modifier(chain[-1]):
             chain.append(chain[-1].children[0])
         inner = chain.pop()
         modifiers: list[Node] = []
@@ -148,8 +153,8 @@ class NodeWriter:
         return inner, modifiers
 
     def _modifier(self, node: Node) -> str:
-        if node.type in _FORCE:
-            return _FORCE[node.type]
+        if node.type in FORCE:
+            return FORCE[node.type]
         key = BUILT_IN[node.type].yaml[0]
         values = [f" {port_text(value)}" for value in node.ports.values()]
         return f"{key}:{''.join(values)}"
@@ -170,14 +175,14 @@ class NodeWriter:
         spec = BUILT_IN.get(node.type)
         key, end = self.leaves.key(node), above(node.end_comments, pad + STEP, every=True)
         heading = f"{lead}{key}:{beside(node.comments)}"
-        if spec is not None and spec.switch and (cases := _cases(node)) is not None:
+        if spec is not None and spec.switch and (cases := switch_cases(node)) is not None:
             return [*self._switch(node, cases, lead, pad), *end]
         if spec is not None and spec.yaml[0] in COMPANIONS and not spec.switch:
             return [*self._branches(node, lead, pad), *end]
         if spec is not None and spec.handlers:
             return [heading, *self.leaves.ports(node, pad + STEP), *self._recovery(node, pad), *end]
         if spec is not None and spec.kind is Kind.DECORATOR:
-            line = f"{lead}{key}: {self._inside(node)}" if _is_short(node) else ""
+            line = f"{lead}{key}: {self._inside(node)}" if is_short(node) else ""
             if line and len(line) <= WIDTH:
                 return [line + beside((*node.comments, *node.children[0].comments))]
             return [heading, *self.leaves.ports(node, pad + STEP), *self._child(node, pad), *end]
@@ -205,7 +210,7 @@ class NodeWriter:
             raise CannotWrite(f"{key} has {len(node.children)} children, not 2 or 3")
         first, *others = node.children
         pieces: list[_Piece] = [_Value(first, f"{lead}{key}:", pad + STEP, node.comments)]
-        if (script := _condition(first)) is not None:
+        if (script := bare_condition(first)) is not None:
             comments = (*node.comments, *first.comments)
             pieces = [*above(first.comments, pad), f"{lead}{key}: {script}{beside(comments)}"]
         for name, child in zip(names[1:], others, strict=False):
@@ -245,65 +250,3 @@ class NodeWriter:
         if handler.node is None:
             return f"{lead} {AGAIN}{beside(handler.comments)}"
         return _Value(handler.node, lead, pad + STEP, handler.comments)
-
-    # leaves and ports
-
-
-def _is_short(node: Node) -> bool:
-    """Whether it may stand in braces: a leaf with nothing but ports, or a decorator around one."""
-    spec = BUILT_IN.get(node.type)
-    if spec is not None and spec.kind is Kind.DECORATOR:
-        below = node.children[0] if len(node.children) == 1 else node
-        return not _says_more(node) and not below.children and _is_short(below)
-    leaf = not node.children and (spec is None or spec.kind is Kind.LEAF)
-    return leaf and not _says_more(node) and not node.handlers
-
-
-def _says_more(node: Node) -> bool:
-    """Whether something besides key and ports needs a line."""
-    remarks = node.port_comments or node.end_comments or above(node.comments, "")
-    return bool(remarks) or _has_modifiers(node)
-
-
-def _has_modifiers(node: Node) -> bool:
-    """Whether keys stand beside the node's own, or around it."""
-    named = node.name is not None or node.note is not None or node.disabled
-    return bool(named or node.conditions or _can_be_modifier(node))
-
-
-def _can_be_modifier(node: Node) -> bool:
-    spec = BUILT_IN.get(node.type)
-    if spec is None or not (spec.modifier or node.type in _FORCE) or len(node.children) != 1:
-        return False
-    if node.name is not None or node.note is not None or node.disabled or node.conditions:
-        return False
-    values = list(node.ports.values())
-    fits = not values or (list(node.ports) == [spec.first] and not _is_nothing(values[0]))
-    return fits and not any(is_nested(value) for value in values)
-
-
-def _is_nothing(value: PortValue) -> bool:
-    return isinstance(value, Literal) and value.value is None
-
-
-def _cases(node: Node) -> list[str] | None:
-    """The keys of `cases:`; None where the ports cannot be written so."""
-    values = [node.ports.get(name) for name in BUILT_IN[node.type].ports]
-    if len(node.ports) != len(values) or len(node.children) != len(values):
-        return None
-    if any(value is None or is_nested(value) for value in values):
-        return None
-    variable, *cases = (port_text(value) for value in values if value is not None)
-    bare = {case.strip("\"'") for case in cases}
-    return cases if len(bare) == len(cases) and variable else None
-
-
-def _condition(node: Node) -> str | None:
-    """The script that `if:` can ask instead of a node; None where the node says more."""
-    code = node.ports.get("code")
-    if node.type != "ScriptCondition" or not isinstance(code, Literal) or len(node.ports) != 1:
-        return None
-    if _has_modifiers(node) or node.children or node.end_comments or node.port_comments:
-        return None
-    spelled = script_spelling(str(code.value))
-    return scalar(spelled, typed=False) if spelled is not None and "$" in spelled else None
