@@ -20,7 +20,8 @@ from momantu_bt.skill import Port, Skill
 from momantu_bt.tree.catalogue import AUTOREMAP, BUILT_IN, SUBTREE
 from momantu_bt.tree.model import Document, Literal, Node, PortValue, Reference, Tree
 from momantu_bt.tree.substitution import Substitution, reached
-from momantu_bt.tree.values import ConversionError, port_of
+from momantu_bt.tree.value_words import ConversionError
+from momantu_bt.tree.values import port_of
 
 MAX_DEPTH = 250
 """Nodes within nodes, subtrees counted; each costs two of Python's 1000 frames when ticked."""

@@ -285,26 +285,3 @@ def _name(model: Node) -> str:
     """Its own name, else the subtree's, else its spelling in YAML, else the skill's."""
     spec = BUILT_IN.get(model.type)
     return model.name or model.target or (model.type if spec is None else spec.yaml[0])
-
-
-class Decorator(TreeNode):
-    """A node around one child. An end that the child is left with is cleared after each tick."""
-
-    @property
-    def child(self) -> TreeNode:
-        """The one child."""
-        return self.kids[0]
-
-    def execute(self) -> Status:
-        """Tick, then clear the child's end, so that its conditions are asked anew."""
-        new = super().execute()
-        child = self.kids[0]
-        if child.state is SUCCESS or child.state is FAILURE:
-            child.state = IDLE
-        return new
-
-    def pass_on(self, status: Status) -> Status:
-        """The child's status as this node's own, its failure included."""
-        if status is FAILURE:
-            return self.fail_with(self.failure_of(self.child))
-        return status

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-import traceback
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -12,15 +11,9 @@ import numpy as np
 
 from momantu_bt.engine.actuators import Lease
 from momantu_bt.engine.admit import admit, freeze
+from momantu_bt.engine.skill_errors import declared, skill_error
 from momantu_bt.engine.status import FAILURE, RUNNING, SUCCESS, Status
-from momantu_bt.failure import (
-    ENGINE_CODES,
-    INPUT_MISSING,
-    SERVICE_MISSING,
-    SKILL_ERROR,
-    Failure,
-    FailureValue,
-)
+from momantu_bt.failure import INPUT_MISSING, SERVICE_MISSING, Failure, FailureValue
 from momantu_bt.frames import FrameBuffer
 from momantu_bt.skill import MISSING, Clock, Compute, Run, Skill
 from momantu_bt.world import Site
@@ -92,9 +85,9 @@ class Session:
             if self.status is RUNNING:
                 self._admit_live_outputs()
         except Failure as failure:
-            self._fail(self._declared(failure))
+            self._fail(declared(self.kind, failure))
         except Exception as error:
-            self._fail(_skill_error(self.kind, error))
+            self._fail(skill_error(self.kind, error))
         return self.status
 
     def halt(self) -> None:
@@ -105,7 +98,7 @@ class Session:
             try:
                 generator.close()
             except Exception as error:
-                self.failure = _skill_error(self.kind, error)
+                self.failure = skill_error(self.kind, error)
         self.lease.end()
         if self.status is RUNNING:
             self.status = Status.IDLE
@@ -206,7 +199,7 @@ class Session:
             self._fail(failure.value)
             return
         except TypeError as error:
-            self._fail(_skill_error(self.kind, error))
+            self._fail(skill_error(self.kind, error))
             return
         self.lease.end()
         self.status = SUCCESS
@@ -230,20 +223,9 @@ class Session:
             try:
                 generator.close()
             except Exception as error:
-                self.failure = _skill_error(self.kind, error, cause=failure)
+                self.failure = skill_error(self.kind, error, cause=failure)
         self.lease.end()
         self.status = FAILURE
-
-    def _declared(self, failure: Failure) -> FailureValue:
-        cause = _cause(failure)
-        if failure.code in self.kind.failures or failure.code in ENGINE_CODES:
-            return _with_cause(failure.value, cause)
-        declared = ", ".join(self.kind.failures) or "none"
-        return _skill_error(
-            self.kind,
-            failure,
-            f"raised {failure.code}, which it does not declare ({declared})",
-        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -266,24 +248,3 @@ def _resume(generator: Run, pending: _Pending | None) -> str | Compute:
     if pending.error is not None:
         return generator.throw(pending.error)
     return generator.send(pending.result)
-
-
-def _cause(failure: Failure) -> FailureValue | None:
-    before = failure.__cause__
-    return before.value if isinstance(before, Failure) else None
-
-
-def _with_cause(value: FailureValue, cause: FailureValue | None) -> FailureValue:
-    if cause is None or value.cause is not None:
-        return value
-    return FailureValue(value.code, value.message, value.data, cause=cause)
-
-
-def _skill_error(
-    kind: type[Skill], error: Exception, sentence: str = "", cause: FailureValue | None = None
-) -> FailureValue:
-    text = "".join(traceback.format_exception(error))
-    said = sentence or f"raised {type(error).__name__}: {error}"
-    cause = error.value if isinstance(error, Failure) else cause
-    data = {"traceback": text, "exception": type(error).__name__}
-    return FailureValue(SKILL_ERROR, f"{kind.__name__} {said}", data, cause=cause)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from momantu_bt.engine.node import Decorator, TreeNode
+from momantu_bt.engine.decorator import Decorator
+from momantu_bt.engine.node import TreeNode
 from momantu_bt.engine.nodes.subtree import SubTree
 from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, SUCCESS
 from momantu_bt.world import TreeLine

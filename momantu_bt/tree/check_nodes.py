@@ -20,7 +20,8 @@ from momantu_bt.tree.model import (
 from momantu_bt.tree.problems import valid_names
 from momantu_bt.tree.signatures import Context, Signature, known_type, report_unknown_node
 from momantu_bt.tree.types import assignable, label
-from momantu_bt.tree.values import ConversionError, convert, port_of
+from momantu_bt.tree.value_words import ConversionError
+from momantu_bt.tree.values import convert, port_of
 
 
 def check_tree_ports(context: Context, tree: Tree) -> None:

@@ -26,7 +26,8 @@ from momantu_bt.tree.shared_keys import Call, TreeKeys
 from momantu_bt.tree.signatures import Context, Signature
 from momantu_bt.tree.types import ValueType, label
 from momantu_bt.tree.units import UnitError, in_unit
-from momantu_bt.tree.values import ConversionError, convert
+from momantu_bt.tree.value_words import ConversionError
+from momantu_bt.tree.values import convert
 
 Demand: TypeAlias = tuple[str, str]
 """What a text must be: ("names", "place"), or a quantity in a unit: ("unit", "m")."""

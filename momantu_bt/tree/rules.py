@@ -20,8 +20,9 @@ from momantu_bt.tree.catalogue import CodeText
 from momantu_bt.tree.catalogue.spec import by_name, input_port
 from momantu_bt.tree.model import Place
 from momantu_bt.tree.problems import Problems, valid_names
-from momantu_bt.tree.values import ConversionError, convert
-from momantu_bt.tree.yaml_source import Entries, Items, Raw, Scalar, plain_value
+from momantu_bt.tree.value_words import ConversionError
+from momantu_bt.tree.values import convert
+from momantu_bt.tree.yaml_raw import Entries, Items, Raw, Scalar, plain_value
 from momantu_bt.tree.yaml_values import drop_duplicates
 
 VERSION = 1

@@ -7,7 +7,8 @@ from typing import Any
 
 from momantu_bt.tree.model import Place
 from momantu_bt.tree.problems import Problem, TreeError, lines_of
-from momantu_bt.tree.yaml_source import Entries, YamlSyntaxError, compose, plain_value
+from momantu_bt.tree.yaml_raw import Entries, plain_value
+from momantu_bt.tree.yaml_source import YamlSyntaxError, compose
 from momantu_bt.tree.yaml_values import KEY
 
 SET = "--set"

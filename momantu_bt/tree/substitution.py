@@ -19,7 +19,8 @@ from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.rules import Rule, RuleFile, Status, read_rules
 from momantu_bt.tree.script import ScriptSyntaxError, parse
 from momantu_bt.tree.signatures import Context
-from momantu_bt.tree.values import ConversionError, convert
+from momantu_bt.tree.value_words import ConversionError
+from momantu_bt.tree.values import convert
 from momantu_bt.tree.yaml_source import YamlSyntaxError, compose
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from momantu_bt.tree.model import Document, Literal, Place
 from momantu_bt.tree.problems import Problems
-from momantu_bt.tree.xml_source import OURS, Element
+from momantu_bt.tree.xml_elements import OURS, Element
 from momantu_bt.tree.xml_values import flow_value
 from momantu_bt.tree.yaml_values import KEY
 

@@ -10,9 +10,10 @@ from momantu_bt.tree.problems import Problems, TooManyProblems, TreeError, error
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.resolve import resolve
 from momantu_bt.tree.xml_board import read_values
+from momantu_bt.tree.xml_elements import OURS, Attribute, Element, Parsed
 from momantu_bt.tree.xml_header import check_header, is_root, main_tree, report_unknown_attribute
 from momantu_bt.tree.xml_models import read_models
-from momantu_bt.tree.xml_source import OURS, Attribute, Element, Parsed, XmlSyntaxError, parse
+from momantu_bt.tree.xml_source import XmlSyntaxError, parse
 from momantu_bt.tree.xml_trees import TreesReader
 
 

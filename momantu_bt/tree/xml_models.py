@@ -16,8 +16,8 @@ from momantu_bt.tree.model import (
 )
 from momantu_bt.tree.problems import Problems, valid_names
 from momantu_bt.tree.types import parse_type
+from momantu_bt.tree.xml_elements import OURS, Attribute, Element
 from momantu_bt.tree.xml_ports import EXPLICIT
-from momantu_bt.tree.xml_source import OURS, Attribute, Element
 from momantu_bt.tree.xml_values import WireError, attribute_value, flow_value
 from momantu_bt.tree.yaml_values import KEY
 

@@ -22,8 +22,8 @@ from momantu_bt.tree.model import BROKEN, Handler, Node, PortDeclaration
 from momantu_bt.tree.problems import Problems, nearest, valid_names
 from momantu_bt.tree.puts import Put, into_handler
 from momantu_bt.tree.registry import Registry
+from momantu_bt.tree.xml_elements import OURS, Element
 from momantu_bt.tree.xml_ports import CATCH, EXPLICIT, PREFIX, PortReader
-from momantu_bt.tree.xml_source import OURS, Element
 
 PORT = "Port"
 """Our element inside a node that is none itself: a port that no attribute can be named after."""

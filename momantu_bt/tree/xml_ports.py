@@ -28,7 +28,7 @@ from momantu_bt.tree.problems import Problems, nearest, valid_names
 from momantu_bt.tree.script import ScriptSyntaxError, parse
 from momantu_bt.tree.types import ValueType, parse_type
 from momantu_bt.tree.units import UnitError, in_unit
-from momantu_bt.tree.xml_source import OURS, Attribute, Element
+from momantu_bt.tree.xml_elements import OURS, Attribute, Element
 from momantu_bt.tree.xml_values import WireError, attribute_value, flow_value
 from momantu_bt.tree.yaml_values import KEY
 

@@ -16,6 +16,7 @@ from lxml import etree
 from momantu_bt.tree.model import Beside, Place
 from momantu_bt.tree.problems import Problem
 from momantu_bt.tree.xml_comments import show_dashes
+from momantu_bt.tree.xml_elements import Attribute, Element, Parsed
 from momantu_bt.tree.xml_syntax import first_error, in_our_words
 from momantu_bt.tree.yaml_source import MAX_BYTES
 
@@ -25,9 +26,6 @@ MAX_NODES = 10_000
 MAX_ATTRIBUTES = 500
 """Of one element."""
 
-OURS = "urn:momantu-bt:1"
-"""Namespace of what only this language has."""
-
 
 class XmlSyntaxError(Exception):
     """A file that is not XML, or out of bounds."""
@@ -35,57 +33,6 @@ class XmlSyntaxError(Exception):
     def __init__(self, problem: Problem) -> None:
         super().__init__(f"{problem.place}: {problem.message}")
         self.problem = problem
-
-
-@dataclass(frozen=True, slots=True)
-class Attribute:
-    """One attribute. name: without prefix; space: its namespace, "" without a prefix.
-
-    place: of the value, quotes aside; as long as the value where it is written without entities.
-    """
-
-    name: str
-    space: str
-    value: str
-    name_place: Place
-    place: Place
-
-
-@dataclass(slots=True)
-class Element:
-    """One element. name: without prefix; space: its namespace. place: of the tag's name.
-
-    text: what stands inside it before its first child; text_place: where the first letter
-    directly inside it stands. comments: those before it and beside it; end_comments: those after
-    everything that is inside it.
-    """
-
-    name: str
-    space: str
-    place: Place
-    attributes: list[Attribute]
-    children: list[Element] = field(default_factory=list)
-    text: str = ""
-    text_place: Place | None = None
-    comments: tuple[str, ...] = ()
-    end_comments: tuple[str, ...] = ()
-
-    def get(self, name: str, space: str = "") -> Attribute | None:
-        """The attribute of that name."""
-        return next((a for a in self.attributes if a.name == name and a.space == space), None)
-
-    @property
-    def said(self) -> str:
-        """The tag as the file says it, with our usual prefix."""
-        return f"momantu:{self.name}" if self.space == OURS else self.name
-
-
-@dataclass(frozen=True, slots=True)
-class Parsed:
-    """A file's root, and the comments after it."""
-
-    root: Element
-    comments: tuple[str, ...]
 
 
 def parse(text: str, file: str) -> Parsed:

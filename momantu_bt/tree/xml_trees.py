@@ -10,10 +10,10 @@ from momantu_bt.tree.model import Node, Place, PortDeclaration, Tree
 from momantu_bt.tree.problems import Problems, valid_names
 from momantu_bt.tree.puts import into_tree
 from momantu_bt.tree.registry import Registry
+from momantu_bt.tree.xml_elements import OURS, Element
 from momantu_bt.tree.xml_header import report_unknown_attribute
 from momantu_bt.tree.xml_models import Models
 from momantu_bt.tree.xml_nodes import NodeReader
-from momantu_bt.tree.xml_source import OURS, Element
 
 _EDITORS = ("_fullpath", "_uid", "_description")
 

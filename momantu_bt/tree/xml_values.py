@@ -13,7 +13,9 @@ from enum import Enum
 from momantu_bt.tree.model import Literal, Place, PortValue, Reference, Scope
 from momantu_bt.tree.problems import Problems
 from momantu_bt.tree.types import ValueType, origin, without_none
-from momantu_bt.tree.yaml_source import Entries, Items, Raw, YamlSyntaxError, compose, resolve
+from momantu_bt.tree.yaml_core import resolve
+from momantu_bt.tree.yaml_raw import Entries, Items, Raw
+from momantu_bt.tree.yaml_source import YamlSyntaxError, compose
 from momantu_bt.tree.yaml_values import KEY, port_value
 
 SAME_NAME = "{=}"

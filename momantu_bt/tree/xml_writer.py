@@ -13,11 +13,11 @@ from momantu_bt.tree.model import Document, Handler, Literal, Node, NodeModel, P
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.types import parse_type
 from momantu_bt.tree.xml_attributes import AttributeWriter, is_name, plain
+from momantu_bt.tree.xml_elements import OURS
 from momantu_bt.tree.xml_header import FORMAT
 from momantu_bt.tree.xml_models import PORTS, our_type
 from momantu_bt.tree.xml_nodes import ONCE, PORT
 from momantu_bt.tree.xml_ports import CATCH, EXPLICIT, PREFIX
-from momantu_bt.tree.xml_source import OURS
 from momantu_bt.tree.xml_text import above, attribute, beside, escaped
 from momantu_bt.tree.yaml_scalars import CannotWrite, literal, port_text
 

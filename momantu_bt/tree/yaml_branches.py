@@ -6,9 +6,9 @@ from momantu_bt.tree.catalogue import BUILT_IN, SWITCHES
 from momantu_bt.tree.model import BROKEN, Node
 from momantu_bt.tree.yaml_children import read_control
 from momantu_bt.tree.yaml_ports import read_port
+from momantu_bt.tree.yaml_raw import Entries, Items, Raw, Scalar
 from momantu_bt.tree.yaml_reading import Reading, said
 from momantu_bt.tree.yaml_scripts import as_condition
-from momantu_bt.tree.yaml_source import Entries, Items, Raw, Scalar
 from momantu_bt.tree.yaml_values import drop_duplicates
 from momantu_bt.tree.yaml_words import COMPANIONS, SWITCH
 

@@ -7,8 +7,8 @@ from momantu_bt.tree.language import AGAIN, handler_codes
 from momantu_bt.tree.model import Handler, Node
 from momantu_bt.tree.puts import into_handler
 from momantu_bt.tree.yaml_ports import read_port
+from momantu_bt.tree.yaml_raw import Entries, Items, Raw, Scalar
 from momantu_bt.tree.yaml_reading import Reading, said
-from momantu_bt.tree.yaml_source import Entries, Items, Raw, Scalar
 from momantu_bt.tree.yaml_values import drop_duplicates
 
 

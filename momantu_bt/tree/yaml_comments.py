@@ -12,7 +12,8 @@ from dataclasses import dataclass, field, replace
 
 from momantu_bt.tree.model import Beside, Document, Node, Place, PortDeclaration, Tree
 from momantu_bt.tree.problems import lines_of
-from momantu_bt.tree.yaml_source import Entries, Raw, Remark
+from momantu_bt.tree.yaml_raw import Entries, Raw
+from momantu_bt.tree.yaml_remarks import Remark
 
 _FIRST_KEYS = ("momantu_bt", "world", "main", "include")
 _PORT_KEYS = ("inputs:", "outputs:", "inouts:", "doc:", "open:")

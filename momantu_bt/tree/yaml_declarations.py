@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from momantu_bt.tree.model import Literal, PortDeclaration, Reference, Template, Tree
 from momantu_bt.tree.problems import Problems, nearest
-from momantu_bt.tree.yaml_source import Entries, Items, Raw, Scalar
+from momantu_bt.tree.yaml_raw import Entries, Items, Raw, Scalar
 from momantu_bt.tree.yaml_values import drop_duplicates, is_key, mapping, port_value, words
 from momantu_bt.tree.yaml_words import PORTS
 

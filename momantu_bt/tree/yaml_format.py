@@ -10,15 +10,9 @@ from momantu_bt.tree.model import Document, Include, Literal, Place, Tree
 from momantu_bt.tree.problems import Problems, TooManyProblems, TreeError, errors, valid_names
 from momantu_bt.tree.yaml_comments import attach
 from momantu_bt.tree.yaml_models import read_models
-from momantu_bt.tree.yaml_source import (
-    Entries,
-    Items,
-    Raw,
-    Remark,
-    Scalar,
-    YamlSyntaxError,
-    compose_with_remarks,
-)
+from momantu_bt.tree.yaml_raw import Entries, Items, Raw, Scalar
+from momantu_bt.tree.yaml_remarks import Remark
+from momantu_bt.tree.yaml_source import YamlSyntaxError, compose_with_remarks
 from momantu_bt.tree.yaml_trees import read_trees
 from momantu_bt.tree.yaml_values import drop_duplicates, is_key, mapping, port_value
 

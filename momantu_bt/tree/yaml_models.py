@@ -8,8 +8,8 @@ from typing import Any
 from momantu_bt.tree.model import Literal, NodeModel, PortDeclaration
 from momantu_bt.tree.problems import Problems, valid_names
 from momantu_bt.tree.yaml_lines import above
+from momantu_bt.tree.yaml_raw import Entries, Items, Raw, Scalar, plain_value
 from momantu_bt.tree.yaml_scalars import scalar
-from momantu_bt.tree.yaml_source import Entries, Items, Raw, Scalar, plain_value
 
 KINDS = ("Action", "Condition", "Control", "Decorator")
 """Kinds of nodes that a palette has; the key that names a model's node."""

@@ -6,9 +6,9 @@ from momantu_bt.tree.catalogue import BUILT_IN, FORCED, MODIFIERS, SPELLED, Node
 from momantu_bt.tree.model import BROKEN, Node
 from momantu_bt.tree.problems import Problems, nearest
 from momantu_bt.tree.yaml_ports import is_empty, read_port, read_ports
+from momantu_bt.tree.yaml_raw import Entries, Raw, Scalar
 from momantu_bt.tree.yaml_reading import Reading, said
 from momantu_bt.tree.yaml_scripts import read_script
-from momantu_bt.tree.yaml_source import Entries, Raw, Scalar
 from momantu_bt.tree.yaml_values import words
 
 

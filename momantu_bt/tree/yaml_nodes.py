@@ -12,8 +12,8 @@ from momantu_bt.tree.yaml_branches import read_branches, read_switch
 from momantu_bt.tree.yaml_children import read_control, read_decorator, read_handlers, split
 from momantu_bt.tree.yaml_modifiers import modified, near_modifier
 from momantu_bt.tree.yaml_ports import read_leaf
+from momantu_bt.tree.yaml_raw import Entries, Items, Raw, Scalar
 from momantu_bt.tree.yaml_reading import Reading
-from momantu_bt.tree.yaml_source import Entries, Items, Raw, Scalar
 from momantu_bt.tree.yaml_values import drop_duplicates
 from momantu_bt.tree.yaml_words import COMPANIONS, SWITCH
 

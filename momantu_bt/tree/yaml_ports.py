@@ -5,9 +5,9 @@ from __future__ import annotations
 from momantu_bt.tree.catalogue import BUILT_IN, SPELLED, SUBTREE, Kind, NodeSpec, ScriptText
 from momantu_bt.tree.model import BROKEN, FIRST_INPUT, Literal, Node, Place, Reference
 from momantu_bt.tree.problems import Problems, nearest
+from momantu_bt.tree.yaml_raw import Entries, Items, Raw, Scalar
 from momantu_bt.tree.yaml_reading import Reading, said
 from momantu_bt.tree.yaml_scripts import read_script
-from momantu_bt.tree.yaml_source import Entries, Items, Raw, Scalar
 from momantu_bt.tree.yaml_values import drop_duplicates, port_value, reported_braces
 
 

@@ -10,7 +10,7 @@ from momantu_bt.tree.catalogue import BUILT_IN, SPELLED
 from momantu_bt.tree.model import BROKEN, Node, Place
 from momantu_bt.tree.problems import Problems
 from momantu_bt.tree.puts import Put
-from momantu_bt.tree.yaml_source import Items, Raw
+from momantu_bt.tree.yaml_raw import Items, Raw
 
 
 @dataclass(slots=True)

@@ -8,7 +8,7 @@ from typing import Any
 
 from momantu_bt.tree.model import Literal, Place, PortValue, Reference, Scope, Template
 from momantu_bt.tree.script import ScriptSyntaxError, canonical, yaml_spelling
-from momantu_bt.tree.yaml_source import resolve
+from momantu_bt.tree.yaml_core import resolve
 from momantu_bt.tree.yaml_values import KEY
 from momantu_bt.tree.yaml_words import BTCPP
 

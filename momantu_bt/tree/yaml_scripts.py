@@ -5,7 +5,7 @@ from __future__ import annotations
 from momantu_bt.tree.model import Place
 from momantu_bt.tree.problems import Problems
 from momantu_bt.tree.script import ScriptSyntaxError, canonical, parse
-from momantu_bt.tree.yaml_source import Entries, Raw, Scalar
+from momantu_bt.tree.yaml_raw import Entries, Raw, Scalar
 from momantu_bt.tree.yaml_words import BTCPP
 
 

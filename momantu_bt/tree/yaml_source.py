@@ -6,11 +6,9 @@ Every key of a mapping is kept, so that all duplicates can be reported; booleans
 
 from __future__ import annotations
 
-import math
 import re
-from bisect import bisect_right
 from dataclasses import dataclass, field
-from typing import Any, TypeAlias
+from typing import Any
 
 from ruamel.yaml import YAML
 from ruamel.yaml import events as yaml_events
@@ -19,13 +17,18 @@ from ruamel.yaml.reader import ReaderError
 
 from momantu_bt.tree.model import Place
 from momantu_bt.tree.problems import Problem, lines_of
+from momantu_bt.tree.yaml_core import resolve
 from momantu_bt.tree.yaml_errors import in_our_words
+from momantu_bt.tree.yaml_raw import Entries, Items, Raw, Scalar
+from momantu_bt.tree.yaml_remarks import Remark, remarks, span
 
 MAX_BYTES = 500_000
 MAX_DEPTH = 100
 MAX_NODES = 10_000
 """Values in a file, those behind aliases counted each time they are used; and comments."""
 MAX_ALIASES = 500
+
+_SURROGATE = re.compile("[\ud800-\udfff]")
 
 
 class YamlSyntaxError(Exception):
@@ -34,65 +37,6 @@ class YamlSyntaxError(Exception):
     def __init__(self, problem: Problem) -> None:
         super().__init__(f"{problem.place}: {problem.message}")
         self.problem = problem
-
-
-@dataclass(slots=True)
-class Scalar:
-    """A text, number, true, false or nothing (None). text: as written; quoted: in quotes.
-
-    size, depth: how many values it holds and how deep they are nested, aliases counted.
-    """
-
-    value: Any
-    text: str
-    quoted: bool
-    place: Place
-    size: int = 1
-    depth: int = 1
-
-
-@dataclass(slots=True)
-class Items:
-    """A list."""
-
-    items: list[Raw]
-    place: Place
-    size: int = 1
-    depth: int = 1
-
-
-@dataclass(slots=True)
-class Entries:
-    """A mapping: its keys and values in the order of the file. flow: written with braces."""
-
-    entries: list[tuple[Scalar, Raw]]
-    place: Place
-    flow: bool = False
-    size: int = 1
-    depth: int = 1
-
-
-Raw: TypeAlias = Scalar | Items | Entries
-
-
-def plain_value(raw: Raw) -> Any:
-    """The value alone; mappings keep the last of several equal keys."""
-    # as deep as the file, which MAX_DEPTH bounds
-    if isinstance(raw, Scalar):
-        return raw.value
-    if isinstance(raw, Items):
-        return [plain_value(item) for item in raw.items]
-    return {key.text: plain_value(value) for key, value in raw.entries}
-
-
-@dataclass(frozen=True, slots=True)
-class Remark:
-    """A comment in the file, without its `#`. beside: something stands before it on its line."""
-
-    line: int
-    column: int
-    text: str
-    beside: bool
 
 
 def compose(text: str, file: str) -> Raw:
@@ -132,38 +76,11 @@ def compose_with_remarks(text: str, file: str) -> tuple[Raw, list[Remark]]:
         raise YamlSyntaxError(
             Problem("syntax", "the file is empty", place, "begin with `momantu_bt: 1`")
         )
-    remarks = _remarks(text, builder.spans) if "#" in text else []
-    if len(remarks) > MAX_NODES:
-        place = Place(file, remarks[MAX_NODES].line, remarks[MAX_NODES].column)
+    found = remarks(text, builder.spans) if "#" in text else []
+    if len(found) > MAX_NODES:
+        place = Place(file, found[MAX_NODES].line, found[MAX_NODES].column)
         raise _bound(place, f"more than {MAX_NODES} comments")
-    return builder.root, remarks
-
-
-def _span(event: Any) -> list[tuple[int, int]]:
-    """Where a scalar's text stands; that of `|` and `>` begins on the next line."""
-    start, end = event.start_mark.index, event.end_mark.index
-    if event.style not in ("|", ">"):
-        return [(start, end)]
-    below = re.compile(r"[\r\n]").search(event.start_mark.buffer, start)
-    return [] if below is None else [(below.start(), end)]
-
-
-_REMARK = re.compile(r"(?<!\S)#([^\r\n]*)")
-
-
-def _remarks(text: str, spans: list[tuple[int, int]]) -> list[Remark]:
-    """The comments of a text. spans: of its scalars, within which `#` begins none."""
-    found: list[Remark] = []
-    starts = [0, *(match.end() for match in re.finditer(r"\r\n|\r|\n", text))]
-    position = 0
-    for start, end in [*spans, (len(text), len(text))]:
-        for match in _REMARK.finditer(text, position, start):
-            line = bisect_right(starts, match.start())
-            before = text[starts[line - 1] : match.start()]
-            words = match[1].removeprefix(" ").rstrip()
-            found.append(Remark(line, len(before) + 1, words, bool(before.strip())))
-        position = end
-    return found
+    return builder.root, found
 
 
 @dataclass(slots=True)
@@ -235,7 +152,7 @@ class _Builder:
             message = "an escape that is half a character"
             raise self.error("syntax", event, message, "write the character itself")
         quoted = event.style is not None
-        self.spans += _span(event)
+        self.spans += span(event)
         value = event.value if quoted else resolve(event.value)
         return Scalar(value, str(event.value), quoted, self.scalar_place(event))
 
@@ -293,30 +210,6 @@ class _Builder:
         raise YamlSyntaxError(
             Problem("syntax", "a list or mapping cannot be a key", raw.place, hint)
         )
-
-
-_NULL = re.compile(r"|~|null|Null|NULL")
-_INT = re.compile(r"[-+]?[0-9]+|0o[0-7]+|0x[0-9a-fA-F]+")
-_FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
-_SURROGATE = re.compile("[\ud800-\udfff]")
-_LARGEST_NUMBER = 40
-"""Digits; longer ones stay text, as no port takes them."""
-
-
-def resolve(text: str) -> Any:
-    """A plain scalar's value by YAML 1.2's core schema, without .inf and .nan."""
-    if _NULL.fullmatch(text):
-        return None
-    if text in ("true", "false"):
-        return text == "true"
-    if len(text) > _LARGEST_NUMBER:
-        return text
-    if _INT.fullmatch(text):
-        return int(text, 0) if text[:2] in ("0x", "0o") else int(text)
-    if not _FLOAT.fullmatch(text):
-        return text
-    number = float(text)
-    return number if math.isfinite(number) else text
 
 
 def _bound(place: Place, message: str) -> YamlSyntaxError:

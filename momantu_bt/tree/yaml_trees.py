@@ -11,8 +11,8 @@ from momantu_bt.tree.problems import Problems
 from momantu_bt.tree.puts import into_tree
 from momantu_bt.tree.yaml_declarations import read_declarations
 from momantu_bt.tree.yaml_nodes import NodeReader
+from momantu_bt.tree.yaml_raw import Entries, Raw, Scalar
 from momantu_bt.tree.yaml_reading import Reading
-from momantu_bt.tree.yaml_source import Entries, Raw, Scalar
 from momantu_bt.tree.yaml_values import drop_duplicates, mapping, words
 from momantu_bt.tree.yaml_words import HEADER, PORTS
 

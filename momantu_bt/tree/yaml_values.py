@@ -7,7 +7,7 @@ from typing import Any
 
 from momantu_bt.tree.model import Literal, Place, PortValue, Reference, Scope, Template
 from momantu_bt.tree.problems import NOT_TEXT, Problems
-from momantu_bt.tree.yaml_source import Entries, Items, Raw, Scalar
+from momantu_bt.tree.yaml_raw import Entries, Items, Raw, Scalar
 
 _NAME = r"[^\W\d]\w*"
 KEY = re.compile(_NAME)

@@ -7,7 +7,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from momantu_bt.engine.node import Decorator
+from momantu_bt.engine.decorator import Decorator
 from momantu_bt.engine.ports import Inputs
 from momantu_bt.engine.status import RUNNING, SUCCESS, Status
 from momantu_bt.failure import WRONG_TYPE, Failure

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from momantu_bt.engine.node import Decorator
+from momantu_bt.engine.decorator import Decorator
 from momantu_bt.engine.ports import Inputs
 from momantu_bt.engine.status import FAILURE, RUNNING, SUCCESS, Status
 from momantu_bt.failure import FAILED

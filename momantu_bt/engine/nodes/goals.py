@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from momantu_bt.engine.blackboard import Cell
-from momantu_bt.engine.node import Decorator, TreeNode
+from momantu_bt.engine.decorator import Decorator
+from momantu_bt.engine.node import TreeNode
 from momantu_bt.engine.ports import Inputs
 from momantu_bt.engine.status import IDLE, RUNNING, SUCCESS, Status
 from momantu_bt.failure import FAILED, INPUT_MISSING, Failure

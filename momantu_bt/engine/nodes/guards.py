@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from momantu_bt.engine.node import Decorator, TreeNode
+from momantu_bt.engine.decorator import Decorator
+from momantu_bt.engine.node import TreeNode
 from momantu_bt.engine.nodes.scripts import Code
 from momantu_bt.engine.ports import Inputs
 from momantu_bt.engine.status import FAILURE, SKIPPED, Status

@@ -16,7 +16,7 @@ from collections import deque
 from typing import Any
 
 from momantu_bt.engine.blackboard import Cell
-from momantu_bt.engine.node import Decorator
+from momantu_bt.engine.decorator import Decorator
 from momantu_bt.engine.ports import Inputs
 from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, Status
 from momantu_bt.failure import FAILED

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from momantu_bt.engine.node import Decorator
+from momantu_bt.engine.decorator import Decorator
 from momantu_bt.engine.nodes.goals import Goals
 from momantu_bt.engine.ports import Inputs
 from momantu_bt.engine.session import CLOCK_SLACK

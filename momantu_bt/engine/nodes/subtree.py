@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from momantu_bt.engine.blackboard import Board, Cell
+from momantu_bt.engine.decorator import Decorator
 from momantu_bt.engine.label import label
-from momantu_bt.engine.node import Decorator
 from momantu_bt.engine.ports import Reader
 from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, Status
 from momantu_bt.engine.tries import through

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from momantu_bt.engine.decorator import Decorator
 from momantu_bt.engine.label import label
-from momantu_bt.engine.node import Decorator, TreeNode
+from momantu_bt.engine.node import TreeNode
 from momantu_bt.engine.ports import Inputs
 from momantu_bt.engine.session import CLOCK_SLACK
 from momantu_bt.engine.status import RUNNING, SKIPPED, SUCCESS, Status

@@ -9,7 +9,8 @@ from __future__ import annotations
 from typing import Any, ClassVar
 
 from momantu_bt.engine.blackboard import Cell
-from momantu_bt.engine.node import Decorator, TreeNode
+from momantu_bt.engine.decorator import Decorator
+from momantu_bt.engine.node import TreeNode
 from momantu_bt.engine.status import RUNNING, SKIPPED, SUCCESS, Status
 from momantu_bt.failure import FAILED
 from momantu_bt.skill import MISSING

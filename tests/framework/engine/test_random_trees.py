@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 
 from momantu_bt.engine.blackboard import Cell
 from momantu_bt.engine.build import Built
+from momantu_bt.engine.decorator import Decorator
 from momantu_bt.engine.executor import Executor
 from momantu_bt.engine.interrupts import Interrupts
 from momantu_bt.engine.no_world import NoWorld
-from momantu_bt.engine.node import Decorator
 from momantu_bt.engine.nodes.branches import IfThenElse, WhileDoElse
 from momantu_bt.engine.nodes.fallbacks import AsyncFallback, Fallback, RoundRobin
 from momantu_bt.engine.nodes.forcing import ElseFail, ForceFailure, ForceSuccess, Inverter

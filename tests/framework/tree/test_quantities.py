@@ -13,7 +13,8 @@ from momantu_bt.skill import Port
 from momantu_bt.tree.model import Place, PortDeclaration
 from momantu_bt.tree.types import assignable, label, parse_type
 from momantu_bt.tree.units import UnitError, in_unit, quantity, units_of
-from momantu_bt.tree.values import ConversionError, convert, natural, port_of
+from momantu_bt.tree.value_words import ConversionError
+from momantu_bt.tree.values import convert, natural, port_of
 
 KINDS = ["s", "m", "rad", "Hz", "N", "kg", "m/s", "rad/s"]
 NUMBERS = st.floats(-1e6, 1e6).map(lambda x: round(x, 6))

@@ -13,7 +13,8 @@ from momantu_bt.tree.catalogue import BUILT_IN
 from momantu_bt.tree.check import check as check_document
 from momantu_bt.tree.problems import Problem
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.values import ConversionError, convert
+from momantu_bt.tree.value_words import ConversionError
+from momantu_bt.tree.values import convert
 from momantu_bt.tree.yaml_format import read
 
 Expect = Callable[..., None]

@@ -8,7 +8,6 @@ from hypothesis import strategies as st
 
 from momantu_bt.geometry import Pose2D
 from momantu_bt.tree.script import (
-    MAX_DEPTH,
     ScriptError,
     ScriptSyntaxError,
     canonical,
@@ -16,6 +15,7 @@ from momantu_bt.tree.script import (
     truth,
     yaml_spelling,
 )
+from momantu_bt.tree.script_parser import MAX_DEPTH
 from momantu_bt.tree.script_tokens import MAX_LENGTH
 
 

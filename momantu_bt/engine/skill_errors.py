@@ -1,0 +1,38 @@
+"""Why a skill failed, as the tree sees it: what it declares, or an error of its own."""
+
+from __future__ import annotations
+
+import traceback
+
+from momantu_bt.failure import ENGINE_CODES, SKILL_ERROR, Failure, FailureValue
+from momantu_bt.skill import Skill
+
+
+def declared(kind: type[Skill], failure: Failure) -> FailureValue:
+    """What a skill raised, with its cause; SKILL_ERROR where it does not declare the code."""
+    if failure.code in kind.failures or failure.code in ENGINE_CODES:
+        return _with_cause(failure.value, _cause(failure))
+    codes = ", ".join(kind.failures) or "none"
+    return skill_error(kind, failure, f"raised {failure.code}, which it does not declare ({codes})")
+
+
+def skill_error(
+    kind: type[Skill], error: Exception, sentence: str = "", cause: FailureValue | None = None
+) -> FailureValue:
+    """An exception of a skill. sentence: what it did, where the exception does not say it."""
+    text = "".join(traceback.format_exception(error))
+    said = sentence or f"raised {type(error).__name__}: {error}"
+    cause = error.value if isinstance(error, Failure) else cause
+    data = {"traceback": text, "exception": type(error).__name__}
+    return FailureValue(SKILL_ERROR, f"{kind.__name__} {said}", data, cause=cause)
+
+
+def _cause(failure: Failure) -> FailureValue | None:
+    before = failure.__cause__
+    return before.value if isinstance(before, Failure) else None
+
+
+def _with_cause(value: FailureValue, cause: FailureValue | None) -> FailureValue:
+    if cause is None or value.cause is not None:
+        return value
+    return FailureValue(value.code, value.message, value.data, cause=cause)

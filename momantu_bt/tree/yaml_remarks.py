@@ -1,0 +1,44 @@
+"""Comments of a YAML text, which its parser passes over."""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+from dataclasses import dataclass
+from typing import Any
+
+_REMARK = re.compile(r"(?<!\S)#([^\r\n]*)")
+
+
+@dataclass(frozen=True, slots=True)
+class Remark:
+    """A comment in the file, without its `#`. beside: something stands before it on its line."""
+
+    line: int
+    column: int
+    text: str
+    beside: bool
+
+
+def span(event: Any) -> list[tuple[int, int]]:
+    """Where a scalar's text stands; that of `|` and `>` begins on the next line."""
+    start, end = event.start_mark.index, event.end_mark.index
+    if event.style not in ("|", ">"):
+        return [(start, end)]
+    below = re.compile(r"[\r\n]").search(event.start_mark.buffer, start)
+    return [] if below is None else [(below.start(), end)]
+
+
+def remarks(text: str, spans: list[tuple[int, int]]) -> list[Remark]:
+    """The comments of a text. spans: of its scalars, within which `#` begins none."""
+    found: list[Remark] = []
+    starts = [0, *(match.end() for match in re.finditer(r"\r\n|\r|\n", text))]
+    position = 0
+    for start, end in [*spans, (len(text), len(text))]:
+        for match in _REMARK.finditer(text, position, start):
+            line = bisect_right(starts, match.start())
+            before = text[starts[line - 1] : match.start()]
+            words = match[1].removeprefix(" ").rstrip()
+            found.append(Remark(line, len(before) + 1, words, bool(before.strip())))
+        position = end
+    return found
