@@ -24,9 +24,11 @@ from momantu_bt.frames import FrameBuffer
 from momantu_bt.record.report import ERROR, NodeReport, Report
 from momantu_bt.record.versions import versions
 from momantu_bt.robot import RobotDescription
+from momantu_bt.service import Service
 from momantu_bt.skill import Skill
 from momantu_bt.tree.check import NO_WORLD, ROBOT_KEY
 from momantu_bt.tree.model import Document
+from momantu_bt.tree.problems import valid_names
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.substitution import Substitution
 from momantu_bt.tree.values import natural
@@ -70,7 +72,8 @@ def launch(
     watch: makes the observers once the world is open; they are closed at the end.
 
     Raises:
-        LaunchError: no world for a tree with skills, or a robot that lacks what a skill uses.
+        LaunchError: no world for a tree with skills, a service that is not installed, or a robot
+            that lacks what a skill uses.
         WorldError: the world could not start.
         KeyboardInterrupt: Ctrl-C before the first tick.
     """
@@ -78,10 +81,11 @@ def launch(
     kinds = {name: registry.skills[name] for name in skills_in(document, options.substitution)}
     with ExitStack() as stack:
         interrupts = stack.enter_context(Interrupts())
+        needed = _services(kinds, registry)
         world = _open(document, options, registry, kinds)
         if world is not None and not options.keep_world:
             stack.callback(world.close)
-        executor = _assemble(document, options, registry, kinds, world)
+        executor = _assemble(document, options, kinds, needed, world)
         if watch is not None:
             executor.observers = list(watch(executor))
         started = time.perf_counter() - begun
@@ -134,11 +138,25 @@ def _check_uses(kinds: Mapping[str, type[Skill]], description: RobotDescription)
                 raise LaunchError(f"{name} cannot run on {description.name}: {error}") from None
 
 
+def _services(kinds: Mapping[str, type[Skill]], registry: Registry) -> dict[str, type[Service]]:
+    """The services that skills need, and those that these need, each after what it needs."""
+    for name, kind in kinds.items():
+        try:
+            in_order(kind.needs, registry.services.__getitem__)
+        except KeyError as error:
+            service = error.args[0]
+            hint = valid_names(service, sorted(registry.services), "installed services")
+            message = f"{name} needs the service {service!r}, which is not installed; {hint}"
+            raise LaunchError(message) from None
+    needs = [need for kind in kinds.values() for need in kind.needs]
+    return in_order(needs, registry.services.__getitem__)
+
+
 def _assemble(
     document: Document,
     options: Options,
-    registry: Registry,
     kinds: Mapping[str, type[Skill]],
+    needed: Mapping[str, type[Service]],
     world: World | None,
 ) -> Executor:
     stepper = world if world is not None else NoWorld()
@@ -146,9 +164,7 @@ def _assemble(
     services = Services({}, None)
     if world is not None:
         actuators = Actuators(world.robot)
-        needs = [need for kind in kinds.values() for need in kind.needs]
-        ordered = in_order(needs, registry.services.__getitem__)
-        services = Services({name: kind() for name, kind in ordered.items()}, actuators)
+        services = Services({name: kind() for name, kind in needed.items()}, actuators)
         frames = FrameBuffer(world.robot.description.kinematics())
         context.body = Body(actuators, frames, world.site, services.running)
     board = _board(context, document, services, world)

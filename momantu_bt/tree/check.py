@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
+from dataclasses import replace
 
 from momantu_bt.messages import RobotState
 from momantu_bt.tree.catalogue import ScriptText
@@ -17,6 +18,7 @@ from momantu_bt.tree.check_trees import (
     check_nesting,
     check_parallel,
     check_unused,
+    reached,
 )
 from momantu_bt.tree.keys import Key, literal_type
 from momantu_bt.tree.model import Document, Literal, Node, Place, Reference, Scope, Tree
@@ -49,8 +51,19 @@ def check(
     """
     problems = reading if reading is not None else Problems()
     with suppress(TooManyProblems):  # the last of them says that there are more
-        _check(Context(document, registry, problems), world, robot)
+        _check(Context(_concerned(document), registry, problems), world, robot)
     return problems.sorted()
+
+
+def _concerned(document: Document) -> Document:
+    """The document without included trees that neither its main tree nor an own one runs.
+
+    They are checked where they are run, and with the file that they stand in.
+    """
+    trees, file = document.trees, document.file
+    starts = [n for n, tree in trees.items() if n == document.main or tree.place.file == file]
+    kept = reached(document, starts)
+    return replace(document, trees={name: tree for name, tree in trees.items() if name in kept})
 
 
 def _check(context: Context, world: str | None, robot: str | None) -> None:

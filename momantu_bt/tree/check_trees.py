@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TypeAlias
 
 from momantu_bt.tree.catalogue import BUILT_IN, SUBTREE
-from momantu_bt.tree.model import Node, Place, Tree
+from momantu_bt.tree.model import Document, Node, Place, Tree
 from momantu_bt.tree.signatures import Context
 
 MAX_NESTING = 150
@@ -22,6 +23,18 @@ def calls(tree: Tree) -> dict[str, Place]:
     for node in tree.root.walk():
         if node.type == SUBTREE and node.target is not None:
             found.setdefault(node.target, node.place)
+    return found
+
+
+def reached(document: Document, starts: Iterable[str]) -> set[str]:
+    """Names of the trees that the given ones run, and those that these run; they are in it too."""
+    waiting = list(starts)
+    found = set(waiting)
+    while waiting:
+        for name in calls(document.trees[waiting.pop()]):
+            if name not in found:
+                found.add(name)
+                waiting.append(name)
     return found
 
 
@@ -76,15 +89,9 @@ def check_nesting(context: Context, tree: Tree) -> bool:
 def check_unused(context: Context) -> None:
     """Warn of trees that nothing runs."""
     document = context.document
-    reached = {document.main}
-    waiting = [document.main]
-    while waiting:
-        for name in calls(document.trees[waiting.pop()]):
-            if name not in reached:
-                reached.add(name)
-                waiting.append(name)
+    run = reached(document, [document.main])
     for name, tree in document.trees.items():
-        if name not in reached and tree.place.file == document.file:
+        if name not in run and tree.place.file == document.file:
             message = f"nothing runs the tree {name!r}"
             context.problems.warning("unused-tree", tree.place, message)
 

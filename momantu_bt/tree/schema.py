@@ -19,7 +19,7 @@ from momantu_bt.tree.catalogue import (
     Kind,
     NodeSpec,
 )
-from momantu_bt.tree.language import AGAIN, ANY
+from momantu_bt.tree.language import AGAIN, ANY, TREE_NAME
 from momantu_bt.tree.schema_values import SCRIPT, Names, value_schema
 from momantu_bt.tree.yaml_words import COMPANIONS
 
@@ -32,6 +32,7 @@ _NODES: Schema = {"type": "array", "items": _NODE}
 _BARE: Schema = {"$ref": "#/$defs/bare"}
 _MAPPING: Schema = {"$ref": "#/$defs/mapping"}
 _WORD = r"^[^\W\d]\w*$"
+_TREE_NAME = f"^{TREE_NAME.pattern}$"
 _SCRIPT: Schema = {**SCRIPT, "description": "a condition or script"}
 
 
@@ -70,7 +71,7 @@ def _header() -> Schema:
         "models": {"type": "array", "description": "what an XML file says of nodes for a palette"},
         "trees": {
             "type": "object",
-            "propertyNames": {"pattern": _WORD},
+            "propertyNames": {"pattern": _TREE_NAME},
             "additionalProperties": {"$ref": "#/$defs/tree"},
             "minProperties": 1,
         },
@@ -114,7 +115,7 @@ def _bare(skills: Mapping[str, type[Skill]]) -> Schema:
     bare |= {name: _may_stand_bare(skill.ports.values()) for name, skill in skills.items()}
     names = [name for name, may in bare.items() if may]
     others = [name for name, may in bare.items() if not may]
-    tree = {"type": "string", "pattern": _WORD, "not": {"enum": others}}
+    tree = {"type": "string", "pattern": _TREE_NAME, "not": {"enum": others}}
     return {
         "anyOf": [
             {"enum": names, "description": "a node without ports"},
@@ -133,7 +134,7 @@ def _mapping(skills: Mapping[str, type[Skill]], names: Names) -> Schema:
     return {
         "type": "object",
         "properties": keys,
-        "propertyNames": {"pattern": _WORD},
+        "propertyNames": {"pattern": _TREE_NAME},
         "minProperties": 1,
     }
 

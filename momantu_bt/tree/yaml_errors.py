@@ -7,9 +7,16 @@ from collections.abc import Sequence
 
 from ruamel.yaml.error import MarkedYAMLError, StringMark
 
+from momantu_bt.tree.catalogue import XML_CONDITIONS
 from momantu_bt.tree.model import Place
 from momantu_bt.tree.problems import Problem, lines_of
 
+_FLOW_MAPPING = "a flow mapping"
+_SCRIPTS = ("script", "condition", "if", *XML_CONDITIONS)
+_SCRIPT_WITHIN = re.compile(
+    rf"[{{,]\s*({'|'.join(_SCRIPTS)}):\s+" + r"""([^\s"'{}\[][^"{}]*?)\s*(?:,\s+\w+:|}|$)"""
+)
+"""A script without quotes within braces, up to the next key or the brace that ends the mapping."""
 _OPENED_QUOTE = re.compile(r"""[^"'#]*(?:[:-]\s+|[\[{,]\s*)(?:"(?:[^"\\]|\\.)*|'[^']*)""")
 """A line in which a value begins with a quote that the line does not close."""
 
@@ -23,6 +30,8 @@ def in_our_words(error: MarkedYAMLError, text: str, file: str) -> Problem:
         if known in problem or known in context:
             mark = error.context_mark if where == "start" and error.context_mark else at
             hint = _cause_above(text, at) or hint
+            if known == _FLOW_MAPPING:
+                hint = hint or _script_within(text, error.context_mark, at)
             if known.startswith("a block") and error.context_mark is not None:
                 hint += _indented_above(text, error.context_mark, at)
             return Problem("syntax", message, _mark(mark, file), hint)
@@ -69,6 +78,17 @@ def _cause_above(text: str, mark: StringMark | None) -> str:
     return f"line {start + 1}: {hint}"
 
 
+def _script_within(text: str, begin: StringMark | None, at: StringMark | None) -> str:
+    """The hint where an unquoted script within braces has a `?`, `:` or `,` that YAML reads."""
+    if begin is None or at is None or begin.line >= len(lines_of(text)):
+        return ""
+    line = lines_of(text)[begin.line]
+    found = _SCRIPT_WITHIN.search(line, begin.column)
+    if found is not None and re.search(r"[?:]\s", found[2]):
+        return f'put the script in quotes: {found[1]}: "{found[2]}"'
+    return ""
+
+
 def _start_of_text(lines: Sequence[str]) -> int | None:
     """Index of the line without `:` that YAML reads on from into the last line."""
     start, least = None, _indent(lines[-1]) if lines else 0
@@ -103,7 +123,7 @@ _WORDS = (
     ),
     ("a quoted scalar", "start", "a quote that is never closed", "close it on the same line"),
     ("a flow sequence", "start", "a `[` that is never closed, or a `,` that is missing", ""),
-    ("a flow mapping", "start", "a `{` that is never closed, or a `,` that is missing", ""),
+    (_FLOW_MAPPING, "start", "a `{` that is never closed, or a `,` that is missing", ""),
     (
         "a block collection",
         "here",

@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from momantu_bt.engine.actuators import Actuators
+from momantu_bt.engine.launch import LaunchError
 from momantu_bt.engine.services import ServiceCycleError, Services, in_order
 from momantu_bt.frames import FrameBuffer
 from momantu_bt.messages import BaseVelocity
@@ -104,6 +105,24 @@ def test_a_service_cannot_command_the_robot(run_yaml):
     assert report.status == "ERROR"
     assert "PermissionError: meddling commands 'base'" in report.error
     assert not any(isinstance(goal, BaseVelocity) for _, _, goal in world.robot.commands)
+
+
+@pytest.mark.parametrize("installed", [{}, {"eyes": kind("radio")}])
+def test_a_service_that_is_not_installed(run_yaml, installed):
+    class Asking(Skill):
+        """Needs one, which needs another."""
+
+        needs = ("eyes",)
+
+        def run(self, robot) -> Run:
+            yield "asking"
+
+    missing = "radio" if installed else "eyes"
+    listed = "installed services: eyes" if installed else "there are no installed services"
+    with pytest.raises(LaunchError) as error:
+        run_yaml("trees: {Main: asking}", Asking, services=installed, world=ScriptedWorld())
+    said = f"asking needs the service {missing!r}, which is not installed; {listed}"
+    assert str(error.value) == said
 
 
 def test_a_service_gets_the_sites_parameters_and_a_random_of_its_own():

@@ -82,6 +82,47 @@ def test_a_tree_below_runs_one_of_the_file_above(write: Write) -> None:
     assert document.trees["B"].root.children[0].target == "A"
 
 
+RUN_BY_ITSELF = """
+main: Look
+values: {rounds: 2}
+trees:
+  Look: [{wait: $rounds}, Shared, {set: {key: $never_read, value: 1}}]
+  Shared: {wait: 1 s}
+  Wrong: {wait: $nowhere}
+"""
+
+
+def test_what_nothing_here_runs_is_checked_with_its_own_file(write: Write) -> None:
+    path = write(
+        a_yaml=yaml("trees: {Main: [Shared]}", "b.yaml"),
+        b_yaml=yaml(RUN_BY_ITSELF),
+        c_yaml=yaml("trees: {Main: [Look]}", "b.yaml"),
+    )
+    assert load(str(path), Registry()).notes == []
+    with pytest.raises(TreeError) as caught:
+        load(str(path.with_name("b.yaml")), Registry())
+    found = codes(caught.value.problems)
+    assert ("read-before-write", "b.yaml", 9) in found
+    assert ("unread-output", "b.yaml", 7) in found
+    with pytest.raises(TreeError) as caught:
+        load(str(path.with_name("c.yaml")), Registry())
+    assert ("read-before-write", "b.yaml", 7) in codes(caught.value.problems)
+    assert ("read-before-write", "b.yaml", 9) not in codes(caught.value.problems)
+
+
+def test_an_own_tree_that_is_not_run_is_checked_with_all_it_runs(write: Write) -> None:
+    path = write(
+        a_yaml=yaml("main: A\ntrees: {A: succeed, Own: Below}", "b.yaml"),
+        b_yaml=yaml("trees: {Below: {wait: $nowhere}}"),
+    )
+    with pytest.raises(TreeError) as caught:
+        load(str(path), Registry())
+    assert codes(caught.value.problems) == [
+        ("unused-tree", "a.yaml", 4),
+        ("read-before-write", "b.yaml", 3),
+    ]
+
+
 def test_ports_of_an_included_tree_type_the_attributes(write: Write) -> None:
     main = xml("A", include="b.yaml", main="A").replace(NODE, '<SubTree ID="B" at="5" n="5"/>')
     path = write(main_xml=main, b_yaml=yaml("trees: {B: {inputs: {at: text, n: int}, wait: 1 s}}"))

@@ -104,6 +104,15 @@ def test_what_it_refuses_the_checker_refuses(installed: Draft202012Validator, bl
     assert errors(check_document(document, Registry.installed(), reading=reading))
 
 
+@pytest.mark.parametrize("name", ["Look around", "v1.2", "to-do list", "Straße"])
+def test_every_name_that_a_tree_may_have(validator: Draft202012Validator, name: str) -> None:
+    called = (
+        f"{{Main: [{name}, {{{name}: {{at: 1}}}}], {name}: {{inputs: {{at: int}}, wait: 1 s}}}}"
+    )
+    validator.validate(data(f"momantu_bt: 1\ntrees: {called}\n"))
+    assert not validator.is_valid(data(f"momantu_bt: 1\ntrees: {{'{name} ': succeed}}\n"))
+
+
 @pytest.mark.parametrize("mistake", MISTAKES)
 def test_typical_mistakes_are_refused_by_both(
     validator: Draft202012Validator, check: Callable[[str], list[Problem]], mistake: str

@@ -62,6 +62,23 @@ def test_a_syntax_error_in_our_words(text: str, line: int, column: int, message:
     assert (problem.place.line, problem.place.column) == (line, column)
 
 
+@pytest.mark.parametrize(
+    ("text", "hint"),
+    [
+        ("- {script: $a := b ? 1 : 2}", 'put the script in quotes: script: "$a := b ? 1 : 2"'),
+        ("- {if: a ? b : 'c', then: x}", "put the script in quotes: if: \"a ? b : 'c'\""),
+        ("- {wait: 1 s, skip_if: a ? b : c}", 'put the script in quotes: skip_if: "a ? b : c"'),
+        ("- {message: who ? me : you}", ""),
+        ("- {script: $a := 1", ""),
+    ],
+)
+def test_a_script_within_braces_that_yaml_reads_otherwise(text: str, hint: str) -> None:
+    with pytest.raises(YamlSyntaxError) as caught:
+        compose(text, "t.yaml")
+    assert "a `{` that is never closed" in caught.value.problem.message
+    assert caught.value.problem.hint == hint
+
+
 def test_modifiers_under_a_bare_node_say_what_is_missing() -> None:
     with pytest.raises(YamlSyntaxError) as caught:
         compose("- relocalize\n  retry: 3\n", "t.yaml")
