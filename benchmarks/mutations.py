@@ -39,9 +39,9 @@ from momantu_bt.tree.model import Document, Node, Place
 from momantu_bt.tree.problems import Problem, Problems, TreeError, errors
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.signatures import Context
-from momantu_bt.tree.xml_format import read as read_xml
-from momantu_bt.tree.xml_writer import write as write_xml
-from momantu_bt.tree.yaml_format import read as read_yaml
+from momantu_bt.tree.xml.format import read as read_xml
+from momantu_bt.tree.xml.writer import write as write_xml
+from momantu_bt.tree.yaml.format import read as read_yaml
 
 ROOT = Path(__file__).resolve().parent.parent
 GOOD_TREES = (

@@ -29,7 +29,7 @@ from momantu_bt.skill import MISSING
 from momantu_bt.tree.model import Document, Node
 from momantu_bt.tree.printing import value_text
 from momantu_bt.tree.problems import nearest, valid_names
-from momantu_bt.tree.script_nodes import part
+from momantu_bt.tree.script.nodes import part
 from momantu_bt.tree.substitution import Substitution, names, reached
 
 PROMPT = "break> "

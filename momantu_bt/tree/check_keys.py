@@ -16,8 +16,8 @@ from momantu_bt.tree.keys import NEVER, Key, Known, both, literal_type, meet
 from momantu_bt.tree.model import Literal, Node, Place, Reference, Scope, Tree
 from momantu_bt.tree.problems import valid_names, within
 from momantu_bt.tree.script import Script, ScriptSyntaxError, parse
-from momantu_bt.tree.script_nodes import Variable
-from momantu_bt.tree.script_types import Mismatch, check_types
+from momantu_bt.tree.script.nodes import Variable
+from momantu_bt.tree.script.types import Mismatch, check_types
 from momantu_bt.tree.shared_keys import Call, call_of, shared_keys
 from momantu_bt.tree.signatures import Context, Signature
 from momantu_bt.tree.types import ValueType, label, origin

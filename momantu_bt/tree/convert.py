@@ -7,7 +7,6 @@ from dataclasses import fields, is_dataclass
 from enum import StrEnum
 from pathlib import Path
 
-from momantu_bt.tree import xml_writer, yaml_writer
 from momantu_bt.tree.check_nodes import name_first_inputs
 from momantu_bt.tree.files import is_xml
 from momantu_bt.tree.load import read_file
@@ -16,9 +15,11 @@ from momantu_bt.tree.problems import Problems, TreeError, errors
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.resolve import resolve
 from momantu_bt.tree.signatures import Context
-from momantu_bt.tree.xml_format import XmlSource
-from momantu_bt.tree.yaml_format import YamlSource
-from momantu_bt.tree.yaml_scalars import CannotWrite
+from momantu_bt.tree.xml import writer as xml_writer
+from momantu_bt.tree.xml.format import XmlSource
+from momantu_bt.tree.yaml import writer as yaml_writer
+from momantu_bt.tree.yaml.format import YamlSource
+from momantu_bt.tree.yaml.scalars import CannotWrite
 
 __all__ = [
     "CannotWrite",

@@ -7,7 +7,7 @@ from pathlib import Path
 from momantu_bt.tree.lookup import TreeNotFound
 from momantu_bt.tree.model import Place
 from momantu_bt.tree.problems import Problem, TreeError
-from momantu_bt.tree.yaml_source import MAX_BYTES
+from momantu_bt.tree.yaml.source import MAX_BYTES
 
 
 def read_text(path: Path, shown: str) -> str:

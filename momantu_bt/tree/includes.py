@@ -14,8 +14,8 @@ from momantu_bt.tree.model import Document, Include, Tree
 from momantu_bt.tree.problems import Problem, Problems, TooManyProblems, TreeError, errors, nearest
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.resolve import resolve
-from momantu_bt.tree.xml_format import XmlSource
-from momantu_bt.tree.yaml_format import YamlSource
+from momantu_bt.tree.xml.format import XmlSource
+from momantu_bt.tree.yaml.format import YamlSource
 
 MAX_FILES = 64
 MAX_TOTAL = 3_000_000

@@ -22,8 +22,8 @@ from momantu_bt.tree.model import Place
 from momantu_bt.tree.problems import Problems, valid_names
 from momantu_bt.tree.value_words import ConversionError
 from momantu_bt.tree.values import convert
-from momantu_bt.tree.yaml_raw import Entries, Items, Raw, Scalar, plain_value
-from momantu_bt.tree.yaml_values import drop_duplicates
+from momantu_bt.tree.yaml.raw import Entries, Items, Raw, Scalar, plain_value
+from momantu_bt.tree.yaml.values import drop_duplicates
 
 VERSION = 1
 _TOP = ("momantu_bt", "substitute", "values")

@@ -21,7 +21,7 @@ from momantu_bt.tree.catalogue import (
 )
 from momantu_bt.tree.language import AGAIN, ANY, TREE_NAME
 from momantu_bt.tree.schema_values import SCRIPT, Names, value_schema
-from momantu_bt.tree.yaml_words import COMPANIONS
+from momantu_bt.tree.yaml.words import COMPANIONS
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 

@@ -12,7 +12,7 @@ from momantu_bt.skill import MISSING, Port
 from momantu_bt.tree.catalogue import CodeText, ScriptText
 from momantu_bt.tree.types import ValueType, is_union, label, origin, without_none
 from momantu_bt.tree.units import units_of
-from momantu_bt.tree.yaml_words import BTCPP
+from momantu_bt.tree.yaml.words import BTCPP
 
 _KEPT = {"type": "object", "properties": {BTCPP: {"type": "string"}}, "required": [BTCPP]}
 SCRIPT: dict[str, Any] = {

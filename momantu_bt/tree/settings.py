@@ -7,9 +7,9 @@ from typing import Any
 
 from momantu_bt.tree.model import Place
 from momantu_bt.tree.problems import Problem, TreeError, lines_of
-from momantu_bt.tree.yaml_raw import Entries, plain_value
-from momantu_bt.tree.yaml_source import YamlSyntaxError, compose
-from momantu_bt.tree.yaml_values import KEY
+from momantu_bt.tree.yaml.raw import Entries, plain_value
+from momantu_bt.tree.yaml.source import YamlSyntaxError, compose
+from momantu_bt.tree.yaml.values import KEY
 
 SET = "--set"
 """As a file's name: what was given so, one setting a line."""

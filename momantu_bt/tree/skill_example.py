@@ -10,7 +10,7 @@ from xml.sax.saxutils import quoteattr
 from momantu_bt.messages import ObjectClass
 from momantu_bt.skill import Port, Skill
 from momantu_bt.tree.types import is_union, origin, without_none
-from momantu_bt.tree.yaml_scalars import literal
+from momantu_bt.tree.yaml.scalars import literal
 
 WIDEST = 76
 """Characters of one line of an example."""

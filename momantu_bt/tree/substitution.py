@@ -21,7 +21,7 @@ from momantu_bt.tree.script import ScriptSyntaxError, parse
 from momantu_bt.tree.signatures import Context
 from momantu_bt.tree.value_words import ConversionError
 from momantu_bt.tree.values import convert
-from momantu_bt.tree.yaml_source import YamlSyntaxError, compose
+from momantu_bt.tree.yaml.source import YamlSyntaxError, compose
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,7 +20,7 @@ import numpy as np
 from momantu_bt.skill import MISSING, Port
 from momantu_bt.tree import model
 from momantu_bt.tree.catalogue import Queue
-from momantu_bt.tree.script_nodes import part
+from momantu_bt.tree.script.nodes import part
 from momantu_bt.tree.types import ValueType, is_union, label, members, origin, parse_type
 from momantu_bt.tree.units import UnitError, quantity
 from momantu_bt.tree.value_scalars import to_bool, to_choice, to_enum, to_number, to_text

@@ -14,7 +14,7 @@ from momantu_bt.engine.node import TreeNode
 from momantu_bt.engine.ports import Inputs
 from momantu_bt.engine.status import FAILURE, RUNNING, Status
 from momantu_bt.failure import INPUT_MISSING, Failure
-from momantu_bt.tree.script_nodes import EPSILON
+from momantu_bt.tree.script.nodes import EPSILON
 
 _NUMBER = re.compile(r"-?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 

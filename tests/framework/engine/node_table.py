@@ -25,7 +25,7 @@ from momantu_bt.geometry import Pose2D
 from momantu_bt.skill import MISSING
 from momantu_bt.tree.catalogue import BUILT_IN
 from momantu_bt.tree.model import Literal, Node, Place, PortValue, Reference
-from momantu_bt.tree.xml_values import attribute_value
+from momantu_bt.tree.xml.values import attribute_value
 from tests.framework.engine.conftest import Bench, Leaf
 
 _ROW = re.compile(r"(?P<head>[^\[]+)\[(?P<kids>[^\]]*)\] (?P<trace>.+)")

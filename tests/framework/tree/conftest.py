@@ -12,8 +12,8 @@ from momantu_bt.skill import In, Out, Skill
 from momantu_bt.tree.check import check as check_document
 from momantu_bt.tree.problems import Problem, TreeError
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.xml_format import read as read_xml
-from momantu_bt.tree.yaml_format import read
+from momantu_bt.tree.xml.format import read as read_xml
+from momantu_bt.tree.yaml.format import read
 from momantu_bt.world import Site, Surface
 
 

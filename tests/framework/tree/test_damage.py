@@ -14,8 +14,8 @@ from momantu_bt.tree.model import Literal
 from momantu_bt.tree.problems import Problem, lines_of, show
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.settings import Given, setting
-from momantu_bt.tree.yaml_format import read
-from momantu_bt.tree.yaml_source import YamlSyntaxError, compose
+from momantu_bt.tree.yaml.format import read
+from momantu_bt.tree.yaml.source import YamlSyntaxError, compose
 
 Expect = Callable[..., None]
 Check = Callable[[str], list[Problem]]

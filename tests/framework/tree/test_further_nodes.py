@@ -9,9 +9,9 @@ import pytest
 from momantu_bt.tree.catalogue import BUILT_IN, SWITCHES
 from momantu_bt.tree.model import Literal, Reference
 from momantu_bt.tree.problems import Problem, Severity
-from momantu_bt.tree.xml_format import read as read_xml
-from momantu_bt.tree.xml_writer import write as write_xml
-from momantu_bt.tree.yaml_format import read
+from momantu_bt.tree.xml.format import read as read_xml
+from momantu_bt.tree.xml.writer import write as write_xml
+from momantu_bt.tree.yaml.format import read
 
 Check = Callable[[str], list[Problem]]
 

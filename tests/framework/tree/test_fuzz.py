@@ -15,8 +15,8 @@ from momantu_bt.tree.check import check as check_document
 from momantu_bt.tree.load import TreeError
 from momantu_bt.tree.problems import MOST_PROBLEMS, Problem, Problems, TooManyProblems
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.xml_format import read as read_xml
-from momantu_bt.tree.yaml_format import read as read_yaml
+from momantu_bt.tree.xml.format import read as read_xml
+from momantu_bt.tree.yaml.format import read as read_yaml
 
 BENCHMARKS = Path(__file__).resolve().parents[3] / "benchmarks"
 INPUTS = 2_000

@@ -5,7 +5,7 @@ import pytest
 from momantu_bt.tree.model import Place
 from momantu_bt.tree.printing import lines, text, tree_lines, unwrap
 from momantu_bt.tree.problems import Problem, Severity, show
-from momantu_bt.tree.yaml_format import read
+from momantu_bt.tree.yaml.format import read
 
 
 def printed(node: str) -> list[str]:

@@ -15,7 +15,7 @@ from momantu_bt.tree.problems import Problem
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.value_words import ConversionError
 from momantu_bt.tree.values import convert
-from momantu_bt.tree.yaml_format import read
+from momantu_bt.tree.yaml.format import read
 
 Expect = Callable[..., None]
 NUMBERS = st.integers(-50, 50)

@@ -16,9 +16,9 @@ from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.schema import tree_schema
 from momantu_bt.tree.schema_values import value_schema
 from momantu_bt.tree.types import ValueType
-from momantu_bt.tree.yaml_format import read
-from momantu_bt.tree.yaml_raw import plain_value
-from momantu_bt.tree.yaml_source import YamlSyntaxError, compose
+from momantu_bt.tree.yaml.format import read
+from momantu_bt.tree.yaml.raw import plain_value
+from momantu_bt.tree.yaml.source import YamlSyntaxError, compose
 
 TREES = sorted((Path(__file__).parents[3] / "trees").rglob("*.yaml"))
 HEADER = "momantu_bt: 1\nworld: rooms\ntrees:\n  Main:\n"

@@ -15,8 +15,8 @@ from momantu_bt.tree.script import (
     truth,
     yaml_spelling,
 )
-from momantu_bt.tree.script_parser import MAX_DEPTH
-from momantu_bt.tree.script_tokens import MAX_LENGTH
+from momantu_bt.tree.script.parser import MAX_DEPTH
+from momantu_bt.tree.script.tokens import MAX_LENGTH
 
 
 class Keys(dict[str, Any]):

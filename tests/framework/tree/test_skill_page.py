@@ -16,8 +16,8 @@ from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.skill_example import Wire, example_ports, xml_example, yaml_example
 from momantu_bt.tree.skill_page import as_data, as_markdown, as_text, pages
 from momantu_bt.tree.types import label
-from momantu_bt.tree.xml_format import read as read_xml
-from momantu_bt.tree.yaml_format import read
+from momantu_bt.tree.xml.format import read as read_xml
+from momantu_bt.tree.yaml.format import read
 
 DOCS = Path(__file__).parents[3] / "docs" / "skills"
 BUNDLED = {

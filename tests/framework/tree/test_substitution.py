@@ -8,7 +8,7 @@ import pytest
 from momantu_bt.tree.problems import TreeError
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.substitution import Substitution, load_substitution
-from momantu_bt.tree.yaml_format import read
+from momantu_bt.tree.yaml.format import read
 
 TREE = """momantu_bt: 1
 world: rooms

@@ -20,8 +20,8 @@ from momantu_bt.tree.model import (
 from momantu_bt.tree.problems import Problem
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.script import parse
-from momantu_bt.tree.xml_format import read
-from momantu_bt.tree.yaml_format import read as read_yaml
+from momantu_bt.tree.xml.format import read
+from momantu_bt.tree.yaml.format import read as read_yaml
 
 Expect = Callable[..., None]
 OPENING = '<root BTCPP_format="4" xmlns:momantu="urn:momantu-bt:1">\n'

@@ -10,9 +10,9 @@ from momantu_bt.tree.model import Literal, NodeModel
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.types import label, parse_type
 from momantu_bt.tree.values import convert
-from momantu_bt.tree.xml_format import read
-from momantu_bt.tree.xml_models import our_type
-from momantu_bt.tree.xml_palette import palette
+from momantu_bt.tree.xml.format import read
+from momantu_bt.tree.xml.models import our_type
+from momantu_bt.tree.xml.palette import palette
 
 TREE = '<BehaviorTree ID="Main"><AlwaysSuccess/></BehaviorTree></root>'
 

@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 
 from momantu_bt.tree.model import Beside
 from momantu_bt.tree.problems import Problem, lines_of
-from momantu_bt.tree.xml_elements import OURS, Element
-from momantu_bt.tree.xml_source import MAX_BYTES, MAX_DEPTH, MAX_NODES, XmlSyntaxError, parse
+from momantu_bt.tree.xml.elements import OURS, Element
+from momantu_bt.tree.xml.source import MAX_BYTES, MAX_DEPTH, MAX_NODES, XmlSyntaxError, parse
 
 
 def refused(text: str) -> Problem:

@@ -8,9 +8,9 @@ import pytest
 
 from momantu_bt.tree.lookup import bundled_folder
 from momantu_bt.tree.model import Beside, Document
-from momantu_bt.tree.yaml_format import read
-from momantu_bt.tree.yaml_source import compose_with_remarks
-from momantu_bt.tree.yaml_writer import write
+from momantu_bt.tree.yaml.format import read
+from momantu_bt.tree.yaml.source import compose_with_remarks
+from momantu_bt.tree.yaml.writer import write
 
 BUNDLED = sorted((bundled_folder() or Path()).rglob("*.yaml"))
 

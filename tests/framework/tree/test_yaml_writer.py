@@ -10,11 +10,11 @@ from momantu_bt.tree.convert import meaning
 from momantu_bt.tree.lookup import bundled_folder
 from momantu_bt.tree.model import Document, Literal, Node, Place
 from momantu_bt.tree.script import canonical
-from momantu_bt.tree.yaml_format import read
-from momantu_bt.tree.yaml_raw import plain_value
-from momantu_bt.tree.yaml_scalars import CannotWrite, literal, script_spelling
-from momantu_bt.tree.yaml_source import YamlSyntaxError, compose
-from momantu_bt.tree.yaml_writer import write
+from momantu_bt.tree.yaml.format import read
+from momantu_bt.tree.yaml.raw import plain_value
+from momantu_bt.tree.yaml.scalars import CannotWrite, literal, script_spelling
+from momantu_bt.tree.yaml.source import YamlSyntaxError, compose
+from momantu_bt.tree.yaml.writer import write
 
 BUNDLED = sorted((bundled_folder() or Path()).rglob("*.yaml"))
 NASTY = ("yes", "010", "5", "-1", "1e3", "0x1F", "true", "null", "~", "", " a ", "a: b", "a:", "#")

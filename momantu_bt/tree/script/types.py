@@ -1,0 +1,138 @@
+"""What a script makes of its operands' types: numbers and texts are never mixed silently.
+
+Only what is sure to fail when it is evaluated is told; a variable whose type is not known fits
+everywhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from enum import Enum, auto
+from typing import TypeAlias, get_args
+
+from momantu_bt.tree.script.nodes import (
+    Assignment,
+    Chain,
+    Choice,
+    Comparison,
+    Constant,
+    Expression,
+    Unary,
+    Variable,
+)
+from momantu_bt.tree.types import ValueType, origin
+
+
+class Kind(Enum):
+    """What an operand is, as far as operators care."""
+
+    NUMBER = auto()
+    TEXT = auto()
+    OTHER = auto()
+    UNKNOWN = auto()
+
+
+TypeOf: TypeAlias = Callable[[Variable], ValueType]
+"""The type of a variable's value; `object` where it is not known."""
+
+_WORDS = {Kind.NUMBER: "a number", Kind.TEXT: "a text", Kind.OTHER: "neither number nor text"}
+
+
+class Mismatch(Exception):
+    """Operands that cannot go together. variable: one that has the wrong type, if one has."""
+
+    def __init__(self, message: str, variable: Variable | None) -> None:
+        super().__init__(message)
+        self.variable = variable
+
+
+def check_types(statement: Expression, type_of: TypeOf) -> Kind:
+    """The kind of a statement's value.
+
+    Raises:
+        Mismatch: evaluating it would fail, whatever the values are.
+    """
+    if isinstance(statement, Constant):
+        return kind_of(type(statement.value))
+    if isinstance(statement, Variable):
+        return kind_of(type_of(statement))
+    if isinstance(statement, Unary):
+        _must_be_number(statement.operator, statement.operand, type_of)
+        return Kind.NUMBER
+    if isinstance(statement, Assignment):
+        return check_types(statement.value, type_of)
+    if isinstance(statement, Choice):
+        check_types(statement.condition, type_of)
+        sides = {check_types(side, type_of) for side in (statement.yes, statement.no)}
+        return sides.pop() if len(sides) == 1 else Kind.UNKNOWN
+    if isinstance(statement, Comparison):
+        return _comparison(statement, type_of)
+    return _chain(statement, type_of)
+
+
+def kind_of(type_: ValueType) -> Kind:
+    """The kind of a type's values."""
+    if origin(type_) is not None:
+        kinds = {kind_of(type(value)) for value in get_args(type_)}
+        literal = str(origin(type_)).endswith("Literal")
+        return kinds.pop() if literal and len(kinds) == 1 else Kind.UNKNOWN
+    if type_ in (bool, int, float):
+        return Kind.NUMBER
+    if isinstance(type_, type) and issubclass(type_, str):
+        return Kind.TEXT
+    return Kind.UNKNOWN if type_ is object or not isinstance(type_, type) else Kind.OTHER
+
+
+def _must_be_number(operator: str, operand: Expression, type_of: TypeOf) -> None:
+    kind = check_types(operand, type_of)
+    if kind in (Kind.TEXT, Kind.OTHER):
+        raise Mismatch(f"`{operator}` needs a number, not {_WORDS[kind]}", _variable(operand))
+
+
+def _comparison(comparison: Comparison, type_of: TypeOf) -> Kind:
+    kinds = [check_types(operand, type_of) for operand in comparison.operands]
+    neighbours = zip(kinds, kinds[1:], comparison.operators, comparison.operands[1:], strict=False)
+    for left, right, operator, operand in neighbours:
+        known = Kind.UNKNOWN not in (left, right)
+        ordered = operator not in ("==", "!=")
+        if known and Kind.TEXT in (left, right) and left is not right:
+            message = f"`{operator}` compares {_WORDS[left]} with {_WORDS[right]}"
+            raise Mismatch(message, _variable(operand) or _variable(comparison.operands[0]))
+        if ordered and Kind.OTHER in (left, right):
+            message = (
+                f"`{operator}` compares {_WORDS[left]} with {_WORDS[right]}"
+                if known
+                else (f"`{operator}` needs numbers or texts")
+            )
+            raise Mismatch(message, _variable(operand))
+    return Kind.NUMBER
+
+
+def _chain(chain: Chain, type_of: TypeOf) -> Kind:
+    left = check_types(chain.first, type_of)
+    wrong = _variable(chain.first)
+    for operator, operand in chain.rest:
+        right = check_types(operand, type_of)
+        left = _joined(operator, left, right, _variable(operand) or wrong)
+    return left
+
+
+def _joined(operator: str, left: Kind, right: Kind, variable: Variable | None) -> Kind:
+    both = (left, right)
+    if Kind.OTHER in both:
+        raise Mismatch(f"`{operator}` needs numbers or texts", variable)
+    if Kind.TEXT in both and Kind.NUMBER in both:
+        raise Mismatch(f"`{operator}` joins {_WORDS[left]} and {_WORDS[right]}", variable)
+    if both == (Kind.TEXT, Kind.TEXT) and operator not in ("+", ".."):
+        raise Mismatch(f"`{operator}` does not work on texts", variable)
+    if operator == "..":
+        if Kind.NUMBER in both:
+            raise Mismatch("`..` joins texts, not numbers", variable)
+        return Kind.TEXT
+    if Kind.UNKNOWN in both and operator == "+":
+        return left if right is Kind.UNKNOWN else right
+    return Kind.TEXT if Kind.TEXT in both else Kind.NUMBER
+
+
+def _variable(expression: Expression) -> Variable | None:
+    return expression if isinstance(expression, Variable) else None

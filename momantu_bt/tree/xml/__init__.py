@@ -1,0 +1,1 @@
+"""Tree files in XML, BehaviorTree.CPP's dialect: read into the model, and written from it."""

@@ -1,0 +1,1 @@
+"""Tree files in YAML: read into the model, and written from it."""
