@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from enum import Enum
 from typing import Any, Literal, get_args
-from xml.sax.saxutils import quoteattr
 
 from momantu_bt.messages import ObjectClass
 from momantu_bt.skill import Port, Skill
+from momantu_bt.tree import model
+from momantu_bt.tree.model import PortValue
 from momantu_bt.tree.types import is_union, origin, without_none
+from momantu_bt.tree.xml.attributes import port_attribute
 from momantu_bt.tree.yaml.scalars import literal
 
 WIDEST = 76
@@ -59,19 +60,19 @@ def yaml_example(name: str, skill: type[Skill]) -> str:
 
 def xml_example(name: str, skill: type[Skill]) -> str:
     """The same for BehaviorTree.CPP: `{key}` is a key; what is no plain text is YAML, prefixed."""
-    attributes = []
-    for port, value in example_ports(skill).items():
-        if isinstance(value, Wire):
-            attributes.append(f'{port}="{{{value}}}"')
-        elif isinstance(value, Mapping):
-            attributes.append(f"momantu:{port}={quoteattr(literal(value, flow=True))}")
-        else:
-            attributes.append(f"{port}={quoteattr(literal(value))}")
+    attributes = [
+        port_attribute(port, _in_model(value), skill.ports[port].type).lstrip()
+        for port, value in example_ports(skill).items()
+    ]
     line = " ".join([f"<{name}", *attributes]) + "/>"
     if len(line) <= WIDEST:
         return line
     indent = " " * (len(name) + 2)
     return f"<{name} " + f"\n{indent}".join(attributes) + "/>"
+
+
+def _in_model(value: Any) -> PortValue:
+    return model.Reference(str(value)) if isinstance(value, Wire) else model.Literal(value)
 
 
 def _in_yaml(value: Any) -> str:

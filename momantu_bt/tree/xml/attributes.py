@@ -59,6 +59,23 @@ def plain(value: PortValue, port: str, type_: ValueType) -> str | None:
     return text if same and is_xml(text) else None
 
 
+def port_attribute(name: str, value: PortValue, type_: ValueType) -> str:
+    """The attribute of a skill's input or output: without prefix where it can be.
+
+    Raises:
+        CannotWrite: XML has no such character.
+    """
+    text = None if _is_reserved(name) else plain(value, name, type_)
+    if text is not None:
+        return attribute(name, text)
+    return attribute(PREFIX + name, port_text(value))
+
+
+def _is_reserved(name: str) -> bool:
+    """Whether an attribute without prefix of this name says something else than a port."""
+    return name.startswith("_") or name in RESERVED
+
+
 def _shown(value: str | float) -> str:
     return value if isinstance(value, str) else repr(value)
 
@@ -108,12 +125,12 @@ class AttributeWriter:
         type_ = self._type(node, name)
         if type_ is ScriptText:
             return attribute(shown, _script(node, value))
-        reserved = shown.startswith("_") or shown in RESERVED
+        reserved = not shown or _is_reserved(shown)
         if name == AUTOREMAP and node.type == SUBTREE:
             reserved = False
         if spec is not None and name in spec.keys and isinstance(value, Literal):
             reserved = True  # a bare word there names a key
-        text = plain(value, name, type_) if shown and not reserved else None
+        text = None if reserved else plain(value, name, type_)
         if node.type == "UnsetBlackboard":
             text = _unset_key(value, text)
         if text is not None:
@@ -151,8 +168,8 @@ def _has_attribute(node: Node, name: str) -> bool:
 
 def _unset_key(value: PortValue, text: str | None) -> str | None:
     """The bare name of the key: `{k}` is in BehaviorTree.CPP the key that $k names."""
-    if isinstance(value, Reference) and not value.fields and value.scope is Scope.LOCAL:
-        return value.key
+    if isinstance(value, Reference) and not value.fields:
+        return f"@{value.key}" if value.scope is Scope.ROOT else value.key
     return text
 
 

@@ -23,6 +23,7 @@ from momantu_bt.tree.model import (
     PortDeclaration,
     PortValue,
     Reference,
+    Scope,
 )
 from momantu_bt.tree.problems import Problems, nearest, valid_names
 from momantu_bt.tree.script import ScriptSyntaxError, parse
@@ -181,8 +182,10 @@ class PortReader:
                 self._unknown_port(attribute, list(self._plain))
                 return
             name = self._plain[name]
-        if self.spec is not None and name in self.spec.keys and KEY.fullmatch(attribute.value):
-            self._put(name, attribute, Reference(attribute.value))
+        bare = attribute.value.removeprefix("@")
+        if self.spec is not None and name in self.spec.keys and KEY.fullmatch(bare):
+            scope = Scope.LOCAL if bare == attribute.value else Scope.ROOT
+            self._put(name, attribute, Reference(bare, scope=scope))
             return
         type_ = type_of(name)
         if type_ is ScriptText:

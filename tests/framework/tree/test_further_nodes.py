@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pytest
 
 from momantu_bt.tree.catalogue import BUILT_IN, SWITCHES
-from momantu_bt.tree.model import Literal, Reference
+from momantu_bt.tree.model import Literal, Reference, Scope
 from momantu_bt.tree.problems import Problem, Severity
 from momantu_bt.tree.xml.format import read as read_xml
 from momantu_bt.tree.xml.writer import write as write_xml
@@ -170,6 +170,9 @@ def test_in_xml_a_key_is_also_named_without_braces(node: str) -> None:
     found = document.trees["Main"].root.ports
     assert problems.sorted() == []
     assert Reference("k") in found.values()
+    document, problems = read_xml(text.replace('"k"', '"@k"'), "t.xml")
+    assert problems.sorted() == []
+    assert Reference("k", scope=Scope.ROOT) in document.trees["Main"].root.ports.values()
 
 
 def test_nodes_with_a_queue_or_a_watched_key_say_so_in_the_catalogue() -> None:
@@ -189,6 +192,9 @@ def _tree(node: str) -> str:
 def test_xml_names_the_key_that_is_unset_without_braces() -> None:
     document, _ = read(_tree("{unset: $n}"), "t.yaml")
     assert '<UnsetBlackboard key="n"/>' in write_xml(document)
+    on_root, _ = read(_tree("{unset: $@n}"), "t.yaml")
+    assert '<UnsetBlackboard key="@n"/>' in write_xml(on_root)
+    assert read_xml(write_xml(on_root), "t.xml")[0] == on_root
     wrong, _ = read(_tree("{unset: n}"), "t.yaml")
     again, _ = read_xml(write_xml(wrong), "t.xml")
     assert again == wrong

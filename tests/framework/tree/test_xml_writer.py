@@ -131,6 +131,7 @@ GROOT = """\
       <input_port name="to" type="Pose" default="{p}">where: to</input_port>
       <MetadataFields>
         <Metadata a="b"/>
+        <Metadata c="d"/>
       </MetadataFields>
     </Action>
     <SubTree ID="Main">
