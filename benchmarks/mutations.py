@@ -26,12 +26,13 @@ import random
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import MISSING, dataclass, field, fields, is_dataclass
 from pathlib import Path
 from typing import Literal, TypeAlias
 
 from xml_slips import XML_SLIPS, Slip, each, lost, swapped
 
+from momantu_bt.messages import VALUE_TYPES
 from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue import MODIFIERS, SUBTREE, CodeText
 from momantu_bt.tree.check import check
@@ -125,9 +126,24 @@ class GoodTree:
                 self.optional.add((at.line, at.column))
 
 
+OPTIONAL_FIELDS = {
+    "type",
+    "editable",
+    *(
+        item.name
+        for type_ in VALUE_TYPES.values()
+        if is_dataclass(type_)
+        for item in fields(type_)
+        if item.default is not MISSING or item.default_factory is not MISSING
+    ),
+}
+"""Parts of values that have a default; in a model of XML a port's type, which is any then."""
+
+
 def _is_free_text(port: Port) -> bool:
     """A text that names nothing, or a code that the tree gives its own failure."""
-    free = port.type is CodeText or (port.type is str and port.names is None)
+    texts = port.type in (str, tuple[str, ...]) and port.names is None
+    free = port.type is CodeText or texts
     return port.direction == "in" and free
 
 
@@ -297,12 +313,18 @@ def leads_to(problem: Problem, mutant: Mutant, old: str) -> bool:
         return True
     if mutant.kind in _BLOCKS or mutant.kind in ("line written twice", "tree that runs itself"):
         return abs(problem.place.line - line) <= 1 or mutant.kind in _BLOCKS
-    if problem.code in ("syntax", "duplicate-key") and problem.place.line == line + 1:
+    if problem.code in ("syntax", "duplicate-key") and problem.place.line == _next(mutant):
         return True
     slipped = set(re.findall(r"\w+", old)) ^ set(re.findall(r"\w+", mutant.changed))
     there = mutant.text.splitlines()[problem.place.line - 1 : problem.place.line]
     said = set(re.findall(r"\w+", "".join(there) + " " + problem.message + " " + problem.hint))
     return bool(slipped & said)
+
+
+def _next(mutant: Mutant) -> int:
+    """The next line after the slip on which something stands."""
+    below = enumerate(mutant.text.splitlines()[mutant.line :], mutant.line + 1)
+    return next((number for number, text in below if text.strip()), mutant.line + 1)
 
 
 def _span(old: str, new: str) -> tuple[int, int]:
@@ -338,7 +360,9 @@ def is_allowed(tree: GoodTree, mutant: Mutant) -> bool:
             return True
         start, end = _span(old, mutant.changed)
         found = (match.start() for match in re.finditer(r"[\w:]+(?==)|\w+(?=:)", old))
-        names = [at for at in found if start - 1 <= at <= end]
+        names = [at for at in found if start - 1 <= at < end]
+        if all(re.match(r"[\w:]+", old[at:])[0] in OPTIONAL_FIELDS for at in names):
+            return True
         places = tree.optional
         return all((mutant.line, at + 1) in places or (mutant.line, 0) in places for at in names)
     return False

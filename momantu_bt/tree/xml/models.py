@@ -14,7 +14,7 @@ from momantu_bt.tree.model import (
     Reference,
     Template,
 )
-from momantu_bt.tree.problems import Problems, valid_names
+from momantu_bt.tree.problems import Problems, nearest, valid_names
 from momantu_bt.tree.types import parse_type
 from momantu_bt.tree.xml.elements import OURS, Attribute, Element
 from momantu_bt.tree.xml.ports import EXPLICIT
@@ -23,6 +23,7 @@ from momantu_bt.tree.yaml.values import KEY
 
 PORTS = {"input_port": "in", "output_port": "out", "inout_port": "inout"}
 """Elements of a model, and the direction they mean."""
+_PORT_WORDS = ("name", "type", "default", "description")
 _METADATA = "MetadataFields"
 _CPP = {
     "std::string": "text",
@@ -65,6 +66,7 @@ def _read_model(element: Element, models: Models, problems: Problems) -> None:
         problems.error("bad-name", element.place, message, f'write <{element.name} ID="name">')
         return
     if element.name == SUBTREE:
+        _check_model_of_tree(element, problems)
         models.trees.setdefault(identity.value, _tree_ports(element, problems))
         return
     ports = tuple(p for each in element.children if (p := _port(each, problems)) is not None)
@@ -78,6 +80,19 @@ def _read_model(element: Element, models: Models, problems: Problems) -> None:
     editable = element.get("editable")
     shown = None if editable is None else editable.value == "true"
     models.leaves.append(NodeModel(identity.value, element.name, ports, shown, metadata))
+
+
+def _check_model_of_tree(element: Element, problems: Problems) -> None:
+    """Slips among the ports of a tree."""
+    if ">" in element.text:
+        place = element.text_place or element.place
+        problems.error("unknown-key", place, "a text and no port", "a `<` may be missing")
+    for port in element.children:
+        for attribute in port.attributes:
+            meant = None if attribute.space else nearest(attribute.name, _PORT_WORDS)
+            if meant is not None and attribute.name not in _PORT_WORDS:
+                message, hint = f"a port has no {attribute.name!r}", f"did you mean {meant}?"
+                problems.error("unknown-key", attribute.name_place, message, hint)
 
 
 def _tree_ports(element: Element, problems: Problems) -> dict[str, PortDeclaration]:

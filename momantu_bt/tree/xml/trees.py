@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from momantu_bt.tree.language import TREE_NAME, TREE_NAME_HINT
 from momantu_bt.tree.model import Node, Place, PortDeclaration, Tree
-from momantu_bt.tree.problems import Problems, valid_names
+from momantu_bt.tree.problems import Problems, nearest, valid_names
 from momantu_bt.tree.puts import into_tree
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.xml.elements import OURS, Element
@@ -93,14 +93,16 @@ class TreesReader:
                 tree.ports, tree.open = ports, False
 
     def _report_models_of_nothing(self, root: Element, known: Mapping[str, Tree]) -> None:
-        """A model of a tree that nobody has is a mistyped name, unless an editor lists it."""
+        """A model of a tree that nobody has: a slip, or of another file where no name is near."""
         for section in root.children:
             for model in section.children if section.name == "TreeNodesModel" else ():
                 identity = model.get("ID")
                 if model.name == "SubTree" and identity and identity.value not in known:
                     message = f"no tree is called {identity.value!r}, of which this is a model"
                     hint = valid_names(identity.value, known, "trees")
-                    self.problems.warning("unknown-tree", identity.place, message, hint)
+                    slipped = nearest(identity.value, known) is not None
+                    tell = self.problems.error if slipped else self.problems.warning
+                    tell("unknown-tree", identity.place, message, hint)
 
 
 def _report_twice(problems: Problems, name: str, first: Place, second: Place) -> None:

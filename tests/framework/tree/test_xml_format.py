@@ -17,7 +17,7 @@ from momantu_bt.tree.model import (
     Scope,
     Template,
 )
-from momantu_bt.tree.problems import Problem
+from momantu_bt.tree.problems import Problem, Severity
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.script import parse
 from momantu_bt.tree.xml.format import read
@@ -438,3 +438,36 @@ def test_parts_of_a_file_that_are_refused(
 ) -> None:
     tree = "" if "BehaviorTree" in parts else '<BehaviorTree ID="A"><AlwaysSuccess/></BehaviorTree>'
     assert code in {p.code for p in check(f"{OPENING}{parts}{tree}</root>")}
+
+
+MODEL = """<root BTCPP_format="4" main_tree_to_execute="Main">
+<BehaviorTree ID="Main"><SubTree ID="Take" at="here"/></BehaviorTree>
+<BehaviorTree ID="Take"><ScriptCondition code="at == 'here'"/></BehaviorTree>
+<TreeNodesModel>
+<SubTree ID="Take">
+<input_port name="at" type="text"/>
+</SubTree>
+</TreeNodesModel>
+</root>
+"""
+
+
+@pytest.mark.parametrize(
+    ("right", "slip", "code", "hint"),
+    [
+        ('<SubTree ID="Take">', '<SubTree ID="Taek">', "unknown-tree", "did you mean Take?"),
+        ('type="text"', 'tyep="text"', "unknown-key", "did you mean type?"),
+        ("<input_port", "input_port", "unknown-key", "a `<` may be missing"),
+    ],
+)
+def test_slips_in_the_model_of_a_tree(right: str, slip: str, code: str, hint: str) -> None:
+    assert read(MODEL, "t.xml")[1].sorted() == []
+    found = read(MODEL.replace(right, slip), "t.xml")[1].sorted()
+    line = MODEL[: MODEL.index(right)].count("\n") + 1
+    assert (code, line, hint) in {(p.code, p.place.line, p.hint) for p in found}
+
+
+def test_a_model_of_another_files_tree_is_a_warning() -> None:
+    other = '<SubTree ID="SomethingElse"/></TreeNodesModel>'
+    (found,) = read(MODEL.replace("</TreeNodesModel>", other), "t.xml")[1].sorted()
+    assert (found.code, found.severity) == ("unknown-tree", Severity.WARNING)
