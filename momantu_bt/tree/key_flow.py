@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple, TypeAlias
 
@@ -32,11 +32,13 @@ class Walk:
     """What a flow asks of the nodes below it.
 
     into: what is known after each end that a node can have. removed: keys of the tree's board that
-    nodes, or something below them, may take away.
+    nodes, or something below them, may take away. rewritten: keys that they write, as far as it is
+    known what.
     """
 
     into: Callable[[Node, Known], After]
     removed: Callable[..., set[str]]
+    rewritten: Callable[[Node], Iterable[tuple[str, Key]]]
 
     def __call__(self, node: Node, before: Known) -> After:
         """What is known after each end that the node can have."""
@@ -70,10 +72,11 @@ def _until_success(walk: Walk, node: Node, before: Known) -> After:
 
 
 def _again(flow: Flow) -> Flow:
-    """Children may be asked again after a later one has run: what that takes away is not known."""
+    """Children may be asked again after a later one has run, which took keys away or wrote them."""
 
     def known_each_time(walk: Walk, node: Node, before: Known) -> After:
-        return flow(walk, node, before.lacking(walk.removed(node)))
+        known = before.lacking(walk.removed(node)).rewritten(walk.rewritten(node))
+        return flow(walk, node, known)
 
     return known_each_time
 

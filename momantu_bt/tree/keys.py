@@ -57,6 +57,22 @@ class Known:
         """The same with further keys."""
         return self if self.keys is None or not keys else Known({**self.keys, **keys})
 
+    def rewritten(self, keys: Iterable[tuple[str, Key]]) -> Known:
+        """The same where some keys that have a value may have been written again.
+
+        What was known of a value stays: it is right the first time.
+        """
+        if self.keys is None:
+            return self
+        having = dict(self.keys)
+        for name, key in keys:
+            old = having.get(name)
+            if old is not None and any(
+                not assignable(key.type, k.type) for k in old.either or (old,)
+            ):
+                having[name] = _one_or_other(old, key)
+        return Known(having)
+
     def lacking(self, names: Iterable[str]) -> Known:
         """The same without some keys."""
         if self.keys is None:
@@ -92,11 +108,22 @@ def both(*points: Known) -> Known:
 def _either(left: Key, right: Key) -> Key:
     if left is right or left == right:
         return left
+    if left.either or right.either:
+        return _one_or_other(left, right)
     if assignable(left.type, right.type):
         return Key(right.type, right.place)
     if assignable(right.type, left.type):
         return Key(left.type, left.place)
-    return Key(object, left.place, either=(*(left.either or (left,)), *(right.either or (right,))))
+    return _one_or_other(left, right)
+
+
+def _one_or_other(left: Key, right: Key) -> Key:
+    """Each type once, with the place where it was written first."""
+    by_type: list[Key] = []
+    for key in (*(left.either or (left,)), *(right.either or (right,))):
+        if all(key.type != known.type for known in by_type):
+            by_type.append(key)
+    return Key(object, left.place, either=tuple(by_type))
 
 
 def literal_type(value: Literal) -> ValueType:
