@@ -6,11 +6,11 @@ known after its success and after its failure.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import get_args
 
-from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue import BUILT_IN, PRE_CONDITIONS, SUBTREE, ScriptText
+from momantu_bt.tree.key_changes import KeyChanges
 from momantu_bt.tree.key_flow import FLOWS, After, Walk
 from momantu_bt.tree.key_reads import Demand, KeyReads, Written, references
 from momantu_bt.tree.keys import NEVER, Key, Known, both, literal_type, meet
@@ -22,9 +22,6 @@ from momantu_bt.tree.script.types import Mismatch, check_types
 from momantu_bt.tree.shared_keys import Call, call_of, shared_keys
 from momantu_bt.tree.signatures import Context, Signature
 from momantu_bt.tree.types import ValueType, label, origin
-
-Rewrites = dict[tuple[str, ValueType], Key]
-"""What nodes write: each key with each type it gets, and the place where it gets it first."""
 
 
 def check_keys(context: Context, order: list[Tree], root_keys: Mapping[str, Key | None]) -> None:
@@ -50,9 +47,8 @@ class _KeyCheck:
     def __init__(self, reads: KeyReads) -> None:
         self.reads, self.context, self.tree = reads, reads.context, reads.tree
         self.ports = self.context.tree_signature(self.tree).ports
-        self.removals = self.all_removals()
-        self.rewrites = self.all_rewrites()
-        self.walk = Walk(self.node, self.removed, self.rewritten)
+        self.changes = KeyChanges(self.context, self.tree, reads.keys)
+        self.walk = Walk(self.node, self.changes.removed, self.changes.rewritten)
 
     def run(self) -> None:
         after = self.node(self.tree.root, self.start())
@@ -118,79 +114,9 @@ class _KeyCheck:
         wired = any(isinstance(value, Reference) for value in node.ports.values())
         if not wired or not node.children:
             return before
-        known = before.lacking(self.removed(*node.children))
-        return known.rewritten(each for child in node.children for each in self.rewritten(child))
-
-    def rewritten(self, node: Node) -> Iterable[tuple[str, Key]]:
-        """Keys of the tree's board that the node, or something below it, writes: what is known."""
-        return ((name, key) for (name, _), key in self.rewrites[id(node)].items())
-
-    def all_rewrites(self) -> dict[int, Rewrites]:
-        """For each node of the tree what it, or something below it, writes."""
-        found: dict[int, Rewrites] = {}
-        for node in reversed(list(self.tree.root.walk())):
-            handlers = (handler.node for handler in node.handlers if handler.node is not None)
-            parts = [self.own_rewrites(node)]
-            parts += [found[id(each)] for each in (*node.children, *handlers)]
-            writing = [part for part in parts if part]
-            if len(writing) == 1:
-                # long chains of nodes with one child share what is written at their end
-                found[id(node)] = writing[0]
-                continue
-            each_once = found[id(node)] = {}
-            for part in writing:
-                for written, key in part.items():
-                    each_once.setdefault(written, key)
-        return found
-
-    def own_rewrites(self, node: Node) -> Rewrites:
-        found: Rewrites = {}
-        signature = self.context.signature(node)
-        if signature is None or node.disabled:
-            return found
-        for name, value in node.ports.items():
-            port = signature.ports.get(name)
-            if port is None or port.direction != "out" or not isinstance(value, Reference):
-                continue
-            if value.scope is Scope.LOCAL and not value.fields:
-                place = node.port_places.get(name, node.place)
-                for written in self.types(node, port, signature):
-                    if written is not object:
-                        found.setdefault((value.key, written), Key(written, place))
-        return found
-
-    def types(self, node: Node, port: Port, signature: Signature) -> list[ValueType]:
-        """What an output of a node may be."""
-        given = node.ports.get("value") if node.type == "SetBlackboard" else None
-        if isinstance(given, Literal):
-            return [literal_type(given)]
-        item = signature.spec.item if signature.spec is not None else None
-        items = node.ports.get(item[1]) if item is not None else None
-        if port.type is object and isinstance(items, Literal) and isinstance(items.value, list):
-            return [literal_type(Literal(each)) for each in items.value]
-        return [port.type]
-
-    def removed(self, *nodes: Node) -> set[str]:
-        """Keys of the tree's board that the nodes, or something below them, may take away."""
-        return set().union(*(self.removals[id(node)] for node in nodes))
-
-    def all_removals(self) -> dict[int, frozenset[str]]:
-        """For each node of the tree the keys that it, or something below it, may take away."""
-        found: dict[int, frozenset[str]] = {}
-        for node in reversed(list(self.tree.root.walk())):
-            handlers = (handler.node for handler in node.handlers if handler.node is not None)
-            below = {found[id(each)] for each in (*node.children, *handlers)}
-            found[id(node)] = frozenset(self.own_removals(node)).union(*below)
-        return found
-
-    def own_removals(self, node: Node) -> Iterable[str]:
-        key = node.ports.get("key") if node.type == "UnsetBlackboard" else None
-        if isinstance(key, Reference) and key.scope is Scope.LOCAL:
-            return [key.key]
-        if node.type != SUBTREE:
-            return []
-        call = call_of(self.context, node)
-        return call.local(self.reads.keys[call.tree.name].removed)
+        known = before.lacking(self.changes.removed(*node.children))
+        written = (self.changes.rewritten(child) for child in node.children)
+        return known.rewritten(each for changes in written for each in changes)
 
     def node(self, node: Node, before: Known) -> After:
         if node.disabled:
@@ -198,7 +124,7 @@ class _KeyCheck:
         if not node.conditions:
             return self.inside(node, before)
         # `while` and `on_halt` come at any tick, also after something below has taken a key away
-        anytime = before.lacking(self.removed(node))
+        anytime = before.lacking(self.changes.removed(node))
         for name in PRE_CONDITIONS:
             if name in node.conditions:
                 self.condition(node, name, anytime if name == "while" else before)
@@ -352,7 +278,7 @@ class _KeyCheck:
                 self.reads.given.add(value.key)
             return self.node(child, before)
 
-        return Walk(walk, self.removed, self.rewritten)
+        return Walk(walk, self.changes.removed, self.changes.rewritten)
 
     def written_items(self, loop: Node, source: str, before: Known) -> Key | None:
         """The item of a loop over a list that is written in the file."""
