@@ -1,0 +1,1 @@
+"""Slips that people make in tree files, and whether the checker finds them."""
