@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Annotated, Any
 
 import typer
@@ -50,37 +51,47 @@ def check(
         return _refuse("name at least one tree file; see momantu-bt check --help")
     if as_json and as_sarif:
         return _refuse("choose one of --json and --sarif")
-    quiet = as_json or as_sarif
-    reports: list[dict[str, Any]] = []
-    found: list[Problem] = []
-    unread: list[str] = []
-    fine = True
-    for tree in trees:
-        try:
-            checked = load(tree, world=world, robot=robot)
-        except TreeNotFound as error:
-            fine = False
-            unread.append(str(error))
-            reports.append({"tree": tree, "ok": False, "message": str(error), "problems": []})
-            if not quiet:
-                typer.echo(f"momantu-bt: {error}", err=True)
-        except TreeError as error:
-            fine = False
-            found += error.problems
-            reports.append(_as_json(tree, False, error.problems))
-            if not quiet:
-                report(error.problems, error.source)
-        else:
-            found += checked.notes
-            reports.append(_as_json(tree, True, checked.notes))
-            if not quiet:
-                report(checked.notes, checked.document.source)
-                typer.echo(_fine(tree, checked))
+    findings = [_checked(tree, world, robot, quiet=as_json or as_sarif) for tree in trees]
+    fine = all(finding.ok for finding in findings)
     if as_json:
-        _print_json({"ok": fine, "trees": reports})
+        _print_json({"ok": fine, "trees": [finding.as_dict() for finding in findings]})
     if as_sarif:
-        _print_json(sarif(found, unread))
+        unread = [finding.unread for finding in findings if finding.unread is not None]
+        _print_json(sarif([p for finding in findings for p in finding.problems], unread))
     return 0 if fine else EXIT_WRONG_INPUT
+
+
+@dataclass(frozen=True, slots=True)
+class _Finding:
+    """What is known of one file. unread: why it could not be opened."""
+
+    tree: str
+    ok: bool
+    problems: Sequence[Problem] = ()
+    unread: str | None = None
+
+    def as_dict(self) -> dict[str, Any]:
+        message = {} if self.unread is None else {"message": self.unread}
+        problems = [problem.as_dict() for problem in self.problems]
+        return {"tree": self.tree, "ok": self.ok, **message, "problems": problems}
+
+
+def _checked(tree: str, world: str | None, robot: str | None, *, quiet: bool) -> _Finding:
+    """Check one file, and unless quiet say what is found."""
+    try:
+        checked = load(tree, world=world, robot=robot)
+    except TreeNotFound as error:
+        if not quiet:
+            typer.echo(f"momantu-bt: {error}", err=True)
+        return _Finding(tree, False, unread=str(error))
+    except TreeError as error:
+        if not quiet:
+            report(error.problems, error.source)
+        return _Finding(tree, False, error.problems)
+    if not quiet:
+        report(checked.notes, checked.document.source)
+        typer.echo(_fine(tree, checked))
+    return _Finding(tree, True, checked.notes)
 
 
 def report(problems: Sequence[Problem], source: Mapping[str, str]) -> None:
@@ -117,10 +128,6 @@ def _refuse(message: str) -> int:
 
 def _print_json(value: Any) -> None:
     typer.echo(json.dumps(value, indent=2, ensure_ascii=False))
-
-
-def _as_json(tree: str, ok: bool, problems: Sequence[Problem]) -> dict[str, Any]:
-    return {"tree": tree, "ok": ok, "problems": [problem.as_dict() for problem in problems]}
 
 
 def _fine(tree: str, checked: Checked) -> str:
