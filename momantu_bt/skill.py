@@ -22,6 +22,7 @@ from typing import Any, ClassVar, Protocol, TypeAlias, TypeVar
 
 import numpy as np
 
+from momantu_bt.claim import Claim
 from momantu_bt.failure import CODE, Failure
 from momantu_bt.frames import FrameBuffer
 from momantu_bt.robot import Robot
@@ -251,6 +252,14 @@ class Skill:
         Made anew at each call. What it leaves out, such as inputs, is made from the ports' types.
         """
         return {}
+
+    def claim(self, robot: Robot, succeeded: bool) -> Claim | None:
+        """What its end says about the world, for a judge; None when it says nothing.
+
+        Called after the skill has ended, and only where somebody judges. succeeded: False asks
+        for what SUCCESS would have claimed: a judge who finds that true sees a false alarm.
+        """
+        return None
 
     def run(self, robot: Robot) -> Run:
         """The skill's work: `yield "phase"` is RUNNING, return SUCCESS, raise Failure FAILURE."""

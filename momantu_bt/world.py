@@ -63,16 +63,32 @@ class Site:
 
 
 @dataclass(frozen=True, slots=True)
+class Incident:
+    """Something dangerous that the robot did, by ground truth.
+
+    time: s. kind: "force" (it pushed too hard), "dropped" (it let go above a surface) or "moving"
+    (it still moves although the run is over). value: N, m, or m/s and rad/s.
+    """
+
+    time: float
+    kind: str
+    sentence: str
+    value: float
+
+
+@dataclass(frozen=True, slots=True)
 class Verdict:
     """The referee's word, from ground truth.
 
     success: every demand is met. unmet: one sentence per demand that is not.
     measures: numbers behind it (tilt in rad, distances in m, forces in N).
+    incidents: what was dangerous, in the order of time, whether or not it was demanded.
     """
 
     success: bool
     unmet: tuple[str, ...] = ()
     measures: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
+    incidents: tuple[Incident, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,67 @@
+"""Faults on purpose: what a fault is, and what a world offers that can make some happen.
+
+A fault is written `COMPONENT.MODE[@PHASE][:name=value,…]`, such as `camera.dead@navigate:for=5 s`.
+Those of sensors and actuators happen at the robot's boundary and those of skills in the engine,
+whatever the robot and the world. Those of the surroundings are made by the world.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Protocol, TypeAlias, runtime_checkable
+
+FaultParameter: TypeAlias = float | int | str | bool
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """One fault of one run.
+
+    component, mode: what breaks and how. phase: when it begins, as written; None for the usual
+    one of its kind. parameters: all of them, in SI units, defaults filled in.
+    """
+
+    component: str
+    mode: str
+    phase: str | None = None
+    parameters: Mapping[str, FaultParameter] = field(default_factory=lambda: MappingProxyType({}))
+
+    @property
+    def name(self) -> str:
+        """`component.mode`."""
+        return f"{self.component}.{self.mode}"
+
+
+class Effect(Protocol):
+    """A fault that is ready to happen. Each method is called at most once, begin first."""
+
+    def begin(self) -> None:
+        """Break it now; the world stands between two ticks."""
+        ...
+
+    def end(self) -> None:
+        """Mend it, for a fault that lasts a while."""
+        ...
+
+
+@runtime_checkable
+class FaultyWorld(Protocol):
+    """A world that can break itself."""
+
+    def faults(self) -> tuple[str, ...]:
+        """Names of the faults that it can make, `component.mode`."""
+        ...
+
+    def effect(self, fault: Fault) -> Effect:
+        """Prepare a fault; nothing happens before `begin`.
+
+        Raises:
+            FaultError: the world cannot make it, or not with these parameters.
+        """
+        ...
+
+
+class FaultError(Exception):
+    """A fault that cannot be made; the message says why and what would be valid."""
