@@ -35,10 +35,15 @@ class Fault:
 
 
 class Effect(Protocol):
-    """A fault that is ready to happen. Each method is called at most once, begin first."""
+    """A fault that is ready to happen. `begin` comes first; what has begun is not begun again."""
 
     def begin(self) -> None:
-        """Break it now; the world stands between two ticks."""
+        """Break it now; the world stands between two ticks.
+
+        Raises:
+            FaultError: it cannot happen at this instant, such as moving an object that is held;
+                nothing was changed, and it may be tried again a tick later.
+        """
         ...
 
     def end(self) -> None:
