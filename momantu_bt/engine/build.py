@@ -130,7 +130,7 @@ class _Builder:
         self, model: Node, board: Board, path: str, conditions: Conditions | None
     ) -> SkillLeaf:
         kind = self.skill_of(model.type)
-        if self.context.body is None:
+        if not self.context.outside.runs_skills(self.context.body):
             raise BuildError(f"{model.place}: {model.type} is a skill and needs a world")
         return SkillLeaf(
             model,
@@ -138,7 +138,6 @@ class _Builder:
             (),
             conditions,
             kind=kind,
-            body=self.context.body,
             inputs=inputs_of(kind.ports, model.ports, board),
             outputs=outputs_of(kind.ports, model.ports, board),
             path=f"{path}:{model.type}",

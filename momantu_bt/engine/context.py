@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from momantu_bt.engine.actuators import Actuators
 from momantu_bt.engine.blackboard import Journal
+from momantu_bt.engine.outside import Outside
 from momantu_bt.engine.person import Person, Scripted
 from momantu_bt.engine.status import Status
 from momantu_bt.failure import FailureValue
@@ -49,6 +50,7 @@ class RunContext:
     writes: cells written in this tick, with what they held before. changes: of statuses.
     remark: tells a person something that never influences the run. person: answers questions.
     waited: seconds of wall time that the run has spent waiting for a person.
+    outside: whatever comes from beyond the tree comes through it.
     """
 
     clock: Clock
@@ -61,6 +63,7 @@ class RunContext:
     remark: Callable[[str], None] = print
     person: Person = field(default_factory=Scripted)
     waited: float = 0.0
+    outside: Outside = field(default_factory=Outside)
 
     def begin_tick(self) -> None:
         """Take the clock's reading and start empty journals."""

@@ -7,7 +7,7 @@ import traceback
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 from momantu_bt.engine.actuators import Actuators
 from momantu_bt.engine.blackboard import Board, ReadOnlyCell
@@ -188,12 +188,16 @@ def _board(
     """The root's board as the first tick finds it."""
     board = Board(context.writes)
     for name, service in services.running.items():
-        board.publish(ReadOnlyCell(name, service.published))
+        board.publish(ReadOnlyCell(name, _asking(context, name, service.published)))
     if world is not None:
-        board.publish(ReadOnlyCell(ROBOT_KEY, world.robot.state))
+        board.publish(ReadOnlyCell(ROBOT_KEY, _asking(context, ROBOT_KEY, world.robot.state)))
     for key, literal in document.values.items():
         board.set(key, natural(literal.value))
     return board
+
+
+def _asking(context: RunContext, key: str, ask: Callable[[], Any]) -> Callable[[], Any]:
+    return lambda: context.outside.ask(key, ask)
 
 
 def _report(

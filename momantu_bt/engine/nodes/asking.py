@@ -6,8 +6,10 @@ import time
 from typing import Any
 
 from momantu_bt.engine.blackboard import Cell
+from momantu_bt.engine.context import RunContext
 from momantu_bt.engine.label import label
 from momantu_bt.engine.node import TreeNode
+from momantu_bt.engine.outside import PERSON
 from momantu_bt.engine.person import Interrupted, Question, answer
 from momantu_bt.engine.ports import Inputs
 from momantu_bt.engine.status import RUNNING, SUCCESS, Status
@@ -34,7 +36,7 @@ class _Asking(TreeNode):
             return self.fail(WRONG_TYPE, f"the default: {question.complaint(question.default)}")
         begun = time.perf_counter()
         try:
-            said = answer(self.context.person, question)
+            said = answer(_Heard(self.context), question)
         except Interrupted:
             return RUNNING
         finally:
@@ -50,6 +52,18 @@ class _Asking(TreeNode):
     def judge(self, said: str, question: Question) -> Status:
         """What the answer makes of the node."""
         raise NotImplementedError
+
+
+class _Heard:
+    """The run's person, whose words come from outside."""
+
+    def __init__(self, context: RunContext) -> None:
+        self._context = context
+
+    def ask(self, question: Question, complaint: str) -> str | None:
+        """What the person says."""
+        context = self._context
+        return context.outside.ask(PERSON, lambda: context.person.ask(question, complaint))
 
 
 class Ask(_Asking):

@@ -95,6 +95,9 @@ class DistanceController(_Paced):
         self.origin = self._position()
 
     def _position(self) -> Array | None:
+        return self.context.outside.ask("position", self._position_now)
+
+    def _position_now(self) -> Array | None:
         body = self.context.body
         if body is None:
             return None
@@ -145,6 +148,9 @@ class SpeedController(_Paced):
         return float(min(max(slow + share * (fast - slow), slow), fast))
 
     def _speed(self) -> float:
+        return self.context.outside.ask("speed", self._speed_now)
+
+    def _speed_now(self) -> float:
         body = self.context.body
         return 0.0 if body is None else abs(body.actuators.robot.state().linear)
 

@@ -6,15 +6,14 @@ from collections.abc import Mapping
 from typing import Any
 
 from momantu_bt.engine.blackboard import Cell
-from momantu_bt.engine.context import Body
 from momantu_bt.engine.label import label
 from momantu_bt.engine.node import TreeNode
+from momantu_bt.engine.outside import SkillSession
 from momantu_bt.engine.ports import Inputs
-from momantu_bt.engine.session import SLOW_STEP, Session, SkillContext
+from momantu_bt.engine.session import SLOW_STEP
 from momantu_bt.engine.status import FAILURE, RUNNING, SUCCESS, Status
 from momantu_bt.failure import FAILED, FailureValue
 from momantu_bt.skill import Skill
-from momantu_bt.world import seeded
 
 
 class SkillLeaf(TreeNode):
@@ -30,7 +29,6 @@ class SkillLeaf(TreeNode):
         self,
         *arguments: Any,
         kind: type[Skill],
-        body: Body,
         inputs: Inputs,
         outputs: Mapping[str, Cell],
         path: str,
@@ -38,11 +36,10 @@ class SkillLeaf(TreeNode):
     ) -> None:
         super().__init__(*arguments, **named)
         self.kind = kind
-        self.body = body
         self.inputs = inputs
         self.outputs = dict(outputs)
         self.path = path
-        self.session: Session | None = None
+        self.session: SkillSession | None = None
         self.slow_steps = 0
         self.slowest = 0.0
         self._live_in = [p.name for p in kind.ports.values() if p.direction == "in" and p.live]
@@ -63,6 +60,7 @@ class SkillLeaf(TreeNode):
             live = {name: self.inputs[name] for name in self._live_in if name in self.inputs}
         session = self.session
         status = session.step(live)
+        self.context.outside.stepped(self, session, status)
         self._note_time(session)
         if status is RUNNING:
             self._write(session, self._live_out)
@@ -83,22 +81,13 @@ class SkillLeaf(TreeNode):
             if session.failure is not None:
                 self.context.remark(f"{self.where}: while it was halted: {session.failure}")
 
-    def _begin(self) -> Session:
-        body = self.body
+    def _begin(self) -> SkillSession:
         self._written = {}
-        context = SkillContext(
-            clock=self.context.clock,
-            random=seeded(self.context.seed, self.path, self.runs),
-            frames=body.frames,
-            site=body.site,
-            services=body.services,
-        )
-        lease = body.actuators.lease(self.name, self.kind.uses)
         inputs = self.inputs.all()
         self.label = label(self.model, inputs)
-        return Session(self.kind, inputs, lease, context)
+        return self.context.outside.begin(self, inputs)
 
-    def _write(self, session: Session, names: list[str]) -> None:
+    def _write(self, session: SkillSession, names: list[str]) -> None:
         if not names:
             return
         values = session.outputs
@@ -110,7 +99,7 @@ class SkillLeaf(TreeNode):
                 self._written[name] = values[name]
                 cell.write(values[name])
 
-    def _note_time(self, session: Session) -> None:
+    def _note_time(self, session: SkillSession) -> None:
         if session.took > SLOW_STEP:
             self.slow_steps += 1
             self.slowest = max(self.slowest, session.took)

@@ -1,0 +1,132 @@
+"""What reaches a tree from outside: steps of skills, published values, odometry, people's answers.
+
+All else that a tree does follows from its file, its clock and its own blackboard. So who keeps
+what came from outside can have the same tree do the same again, without a world.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeVar
+
+from momantu_bt.engine.session import Session, SkillContext
+from momantu_bt.engine.status import Status
+from momantu_bt.failure import Failure, FailureValue
+from momantu_bt.world import seeded
+
+if TYPE_CHECKING:
+    from momantu_bt.engine.context import Body
+    from momantu_bt.engine.nodes.skill import SkillLeaf
+
+T = TypeVar("T")
+
+PERSON = "person"
+"""The key of what a person says. Keys of published values are the blackboard's."""
+
+
+class SkillSession(Protocol):
+    """One start of one skill; see `Session`, which is the real one."""
+
+    phase: str
+    failure: FailureValue | None
+    took: float
+
+    @property
+    def outputs(self) -> dict[str, Any]:
+        """Values of the output ports that hold one."""
+        ...
+
+    def step(self, live_inputs: Mapping[str, Any] | None = None) -> Status:
+        """Run to the skill's next `yield`, or to its end."""
+        ...
+
+    def halt(self) -> None:
+        """End it wherever it is."""
+        ...
+
+
+class Outside:
+    """The outside as it is: skills run on the robot, questions are asked."""
+
+    def runs_skills(self, body: Body | None) -> bool:
+        """Whether a tree may have skills."""
+        return body is not None
+
+    def begin(self, leaf: SkillLeaf, inputs: Mapping[str, Any]) -> SkillSession:
+        """Start a leaf's skill."""
+        context = leaf.context
+        body = context.body
+        assert body is not None
+        surroundings = SkillContext(
+            clock=context.clock,
+            random=seeded(context.seed, leaf.path, leaf.runs),
+            frames=body.frames,
+            site=body.site,
+            services=body.services,
+        )
+        lease = body.actuators.lease(leaf.name, leaf.kind.uses)
+        return Session(leaf.kind, inputs, lease, surroundings)
+
+    def stepped(self, leaf: SkillLeaf, session: SkillSession, status: Status) -> None:
+        """A leaf's skill has made a step; what it gave is not on the blackboard yet."""
+
+    def ask(self, key: str, ask: Callable[[], T]) -> T:
+        """What `ask` answers. key: names what is asked, such as `localization`."""
+        return ask()
+
+
+class Step(NamedTuple):
+    """One step of one skill. outputs: the values, by port, that are new since its last step."""
+
+    leaf: SkillLeaf
+    status: Status
+    phase: str
+    failure: FailureValue | None
+    outputs: Mapping[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Refused:
+    """A question was answered with a failure."""
+
+    failure: FailureValue
+
+
+class Heard(Outside):
+    """The outside as it is, and what it said since `clear`, in its order.
+
+    steps: of skills. reads: each answer with its key; `Refused` where it was a failure.
+    """
+
+    def __init__(self) -> None:
+        self.steps: list[Step] = []
+        self.reads: list[tuple[str, Any]] = []
+        self._given: dict[SkillLeaf, dict[str, Any]] = {}
+
+    def clear(self) -> None:
+        """A new tick begins."""
+        self.steps.clear()
+        self.reads.clear()
+
+    def begin(self, leaf: SkillLeaf, inputs: Mapping[str, Any]) -> SkillSession:
+        """Start a leaf's skill; all that it writes is new."""
+        self._given[leaf] = {}
+        return super().begin(leaf, inputs)
+
+    def stepped(self, leaf: SkillLeaf, session: SkillSession, status: Status) -> None:
+        """Keep the step."""
+        given, outputs = self._given[leaf], session.outputs
+        new = {n: v for n, v in outputs.items() if n not in given or given[n] is not v}
+        given.update(new)
+        self.steps.append(Step(leaf, status, session.phase, session.failure, new))
+
+    def ask(self, key: str, ask: Callable[[], T]) -> T:
+        """Keep the answer."""
+        try:
+            answer = ask()
+        except Failure as failure:
+            self.reads.append((key, Refused(failure.value)))
+            raise
+        self.reads.append((key, answer))
+        return answer
