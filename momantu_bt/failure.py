@@ -29,7 +29,7 @@ FAILED = "FAILED"
 HALTED = "HALTED"
 """Never fails a node: what was running when a time limit ended it, as the TIMEOUT's cause."""
 SENSOR_DEAD = "SENSOR_DEAD"
-"""A sensor does not answer; `data["sensor"]` names it."""
+"""A sensor does not answer, or repeats itself; `data["sensor"]` names it."""
 SCRIPT_ERROR = "SCRIPT_ERROR"
 """A script or a condition could not be evaluated."""
 
@@ -48,7 +48,7 @@ ENGINE_CODES: Mapping[str, str] = MappingProxyType(
         INPUT_MISSING: "an input reads a key that holds no value",
         WRONG_TYPE: "a value at a port is not of the port's type",
         FAILED: "the node failed without saying more",
-        SENSOR_DEAD: "a sensor does not answer",
+        SENSOR_DEAD: "a sensor does not answer, or repeats itself",
         SCRIPT_ERROR: "a script or a condition could not be evaluated",
     }
 )

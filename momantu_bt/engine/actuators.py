@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from momantu_bt.engine.repeats import Repeats
 from momantu_bt.failure import ACTUATOR_BUSY, Failure
 from momantu_bt.messages import ActuatorGoal, RobotState
 from momantu_bt.robot import Robot, RobotDescription, SensorReading
@@ -30,6 +31,7 @@ class Actuators:
         self.issued: list[Issued] = []
         """What was told to the robot since the list was last emptied."""
         self._owners: dict[str, Lease] = {}
+        self._repeats = Repeats(robot.description)
 
     def lease(self, owner: str, uses: Iterable[str]) -> Lease:
         """The robot for a skill called `owner` that declares `uses`.
@@ -59,6 +61,11 @@ class Actuators:
                 troubles.append(trouble)
         if troubles:
             raise troubles[0]
+
+    def _read(self, sensor: str) -> SensorReading:
+        reading = self.robot.read(sensor)
+        self._repeats.check(sensor, reading, self.robot.state())
+        return reading
 
     def _claim(self, actuator: str, lease: Lease) -> None:
         holder = self._owners.setdefault(actuator, lease)
@@ -100,8 +107,12 @@ class Lease:
         return self._robot.state()
 
     def read(self, sensor: str) -> SensorReading:
-        """The newest reading of a sensor."""
-        return self._robot.read(sensor)
+        """The newest reading of a sensor.
+
+        Raises:
+            Failure: SENSOR_DEAD, also for a sensor that repeats itself while the robot moves.
+        """
+        return self._book._read(sensor)
 
     def command(self, actuator: str, goal: ActuatorGoal) -> None:
         """Give an actuator its goal and own it from now on.

@@ -1,0 +1,89 @@
+"""Noticing a sensor that repeats itself while the robot moves.
+
+A real reading is never the same twice: it has noise, and a robot that moves sees something else.
+A driver that goes on giving its last reading under new stamps looks healthy to everyone else.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from momantu_bt.failure import SENSOR_DEAD, Failure
+from momantu_bt.geometry import Array, Transform
+from momantu_bt.messages import CameraImage, LaserScan, RobotState
+from momantu_bt.robot import CameraSensor, RobotDescription, SensorReading
+
+SHIFT = 0.04
+"""m the base must have moved since the reading was new."""
+TURN = 0.04
+"""rad that the base, or a joint that carries the camera, must have turned since."""
+
+
+@dataclass(slots=True)
+class _Seen:
+    reading: SensorReading
+    odom_from_base: Transform
+    carrier: Array
+
+
+class Repeats:
+    """Remembers of each sensor the last reading that was new, and where the robot was then."""
+
+    def __init__(self, description: RobotDescription) -> None:
+        self._description = description
+        self._seen: dict[str, _Seen] = {}
+
+    def check(self, sensor: str, reading: SensorReading, state: RobotState) -> None:
+        """Take a reading that has just come in.
+
+        Raises:
+            Failure: SENSOR_DEAD, when it repeats an older one though the robot has moved since.
+        """
+        last = self._seen.get(sensor)
+        if last is not None and reading is last.reading:
+            return
+        here, carrier = state.odom_from_base, self._carrier(sensor, state)
+        if last is None or reading.stamp <= last.reading.stamp or not same(reading, last.reading):
+            self._seen[sensor] = _Seen(reading, here, carrier)
+            return
+        shift = float(np.linalg.norm(here.position - last.odom_from_base.position))
+        turn = max(here.angle_to(last.odom_from_base), _largest(carrier - last.carrier))
+        if shift > SHIFT or turn > TURN:
+            age = reading.stamp - last.reading.stamp
+            raise Failure(
+                SENSOR_DEAD,
+                f"{sensor} has repeated the same reading for {age:.2f} s while the robot moved",
+                sensor=sensor,
+                age=age,
+                shift=shift,
+                turn=turn,
+            )
+
+    def _carrier(self, sensor: str, state: RobotState) -> Array:
+        """Positions of the joints that carry a camera; of other sensors the base alone counts."""
+        spec = self._description.sensors.get(sensor)
+        if not isinstance(spec, CameraSensor):
+            return np.zeros(0)
+        joints = self._description.actuators[spec.carrier].joints
+        return np.array([state.position(name) for name in joints if name in state.names])
+
+
+def same(one: SensorReading, other: SensorReading) -> bool:
+    """Whether two readings say the same, and say anything at all."""
+    if isinstance(one, LaserScan) and isinstance(other, LaserScan):
+        return np.array_equal(one.ranges, other.ranges) and bool(
+            (one.ranges < one.range_max).any()
+        )
+    if isinstance(one, CameraImage) and isinstance(other, CameraImage):
+        return (
+            np.array_equal(one.depth, other.depth)
+            and np.array_equal(one.color, other.color)
+            and (bool(one.depth.any()) or bool(one.color.any()))
+        )
+    return False
+
+
+def _largest(change: Array) -> float:
+    return float(np.abs(change).max()) if len(change) else 0.0

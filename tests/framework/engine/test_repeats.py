@@ -1,0 +1,131 @@
+"""A sensor that repeats itself while the robot moves is as good as dead."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from momantu_bt.engine.actuators import Actuators
+from momantu_bt.failure import Failure
+from momantu_bt.geometry import Pose2D
+from momantu_bt.messages import CameraImage, LaserScan
+from momantu_bt.testing import ScriptedRobot
+
+
+def scan(stamp: float, first: float = 1.0, rest: float = 2.0) -> LaserScan:
+    ranges = np.full(10, rest)
+    ranges[0] = first
+    return LaserScan(stamp, "laser", -1.0, 0.2, 0.05, 10.0, ranges)
+
+
+def picture(stamp: float, depth: float = 1.0, color: int = 9) -> CameraImage:
+    shape = (4, 6)
+    return CameraImage(
+        stamp,
+        "camera",
+        np.full((*shape, 3), color, np.uint8),
+        np.full(shape, depth, np.float32),
+        np.eye(3),
+    )
+
+
+@pytest.fixture
+def robot():
+    return ScriptedRobot(
+        readings={
+            "laser": lambda robot: scan(robot.now()),
+            "camera": lambda robot: picture(robot.now()),
+        }
+    )
+
+
+@pytest.fixture
+def lease(robot):
+    return Actuators(robot).lease("service", ())
+
+
+def moved(robot: ScriptedRobot, x: float = 0.0, yaw: float = 0.0) -> None:
+    robot.base = robot.base @ Pose2D(x, 0.0, yaw)
+    robot.time += 0.1
+
+
+@pytest.mark.parametrize("sensor", ["laser", "camera"])
+@pytest.mark.parametrize("motion", [{"x": 0.05}, {"yaw": 0.05}, {"x": -0.2, "yaw": 1.0}])
+def test_the_same_reading_after_a_motion_is_a_dead_sensor(robot, lease, sensor, motion):
+    lease.read(sensor)
+    moved(robot, **motion)
+    with pytest.raises(Failure, match=f"{sensor} has repeated the same reading") as caught:
+        lease.read(sensor)
+    assert caught.value.code == "SENSOR_DEAD"
+    assert caught.value.value.data["sensor"] == sensor
+
+
+def test_a_camera_that_turned_must_see_something_else(robot, lease):
+    lease.read("camera")
+    carrier = robot.description.actuators[robot.description.camera()[1].carrier].joints[0]
+    robot.joints[carrier] += 0.1
+    robot.time += 0.1
+    lease.read("laser")
+    with pytest.raises(Failure, match="SENSOR_DEAD"):
+        lease.read("camera")
+
+
+def test_small_motions_add_up_while_it_repeats_itself(robot, lease):
+    lease.read("laser")
+    moved(robot, x=0.03)
+    lease.read("laser")
+    moved(robot, x=0.03)
+    with pytest.raises(Failure, match="SENSOR_DEAD"):
+        lease.read("laser")
+
+
+def test_at_rest_it_may_repeat_itself(robot, lease):
+    for _ in range(5):
+        lease.read("laser")
+        lease.read("camera")
+        robot.time += 0.1
+
+
+def test_another_skill_does_not_begin_from_nothing(robot):
+    book = Actuators(robot)
+    book.lease("first", ()).read("laser")
+    moved(robot, x=0.1)
+    with pytest.raises(Failure, match="SENSOR_DEAD"):
+        book.lease("second", ()).read("laser")
+
+
+def test_it_is_alive_again_with_the_first_new_reading(robot, lease):
+    lease.read("laser")
+    moved(robot, x=0.1)
+    with pytest.raises(Failure, match="SENSOR_DEAD"):
+        lease.read("laser")
+    robot.readings["laser"] = lambda robot: scan(robot.now(), first=1.5)
+    assert lease.read("laser").ranges[0] == 1.5
+
+
+@pytest.mark.parametrize(
+    ("sensor", "nothing"),
+    [
+        ("laser", lambda robot: scan(robot.now(), 10.0, 10.0)),
+        ("camera", lambda robot: picture(robot.now(), 0.0, 0)),
+    ],
+)
+def test_seeing_nothing_twice_is_no_repetition(robot, lease, sensor, nothing):
+    robot.readings[sensor] = nothing
+    lease.read(sensor)
+    moved(robot, x=1.0)
+    lease.read(sensor)
+
+
+def test_an_old_stamp_is_an_old_reading_not_a_new_one(robot, lease):
+    robot.readings["laser"] = scan(0.0)
+    lease.read("laser")
+    moved(robot, x=1.0)
+    assert lease.read("laser").stamp == 0.0
+
+
+def test_new_pictures_are_no_repetition(robot, lease):
+    for depth in (1.0, 1.1, 1.2):
+        robot.readings["camera"] = picture(robot.now(), depth)
+        lease.read("camera")
+        moved(robot, x=0.3)
