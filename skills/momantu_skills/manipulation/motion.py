@@ -15,9 +15,13 @@ from momantu_bt.skill import Clock
 LAG = 0.35
 """rad or m behind the trajectory that is normal at full speed: two ticks of delay."""
 PATIENCE = 0.3
-"""s for which the lag must last to mean that the arm is stuck."""
+"""s for which an arm that lags must not get on to count as stuck."""
 SETTLE = 1.5
-"""s after the trajectory's end in which the joints must arrive."""
+"""s after the trajectory's end in which the joints must arrive, or still get on."""
+SLOWEST = 4.0
+"""Times its duration that a trajectory may take, for an arm slower than it says."""
+ASIDE = 0.15
+"""rad or m beside its path at which an arm is not merely late."""
 ARRIVED = 0.02
 """rad or m from the end at which the joints have arrived."""
 STILL = 2e-3
@@ -39,12 +43,13 @@ def follow(
     """Command a trajectory each tick until it has arrived and stands still: True.
 
     until: asked each tick; when it says yes the actuator brakes along the path, and the answer
-    is False. Yields the phase.
+    is False. Yields the phase. An arm that is late but gets on along its path is waited for.
 
     Raises:
         Failure: ARM_STUCK, when the joints stay behind or never arrive; the actuator is stopped.
     """
-    began = behind_since = clock.now()
+    began = clock.now()
+    delay = _Delay(trajectory)
     last = _positions(robot, trajectory.names)
     while True:
         now = clock.now()
@@ -56,14 +61,38 @@ def follow(
             return False
         if now - began >= trajectory.duration and still and _arrived(positions, trajectory):
             return True
-        lag = np.abs(positions - expected(trajectory, now - began))
-        if float(lag.max()) < LAG:
-            behind_since = now
-        if now - behind_since > PATIENCE or now - began > trajectory.duration + SETTLE:
+        if delay.hopeless(positions, now - began):
             robot.stop(actuator)
             raise _stuck(trajectory, positions, now - began)
         robot.command(actuator, trajectory)
         yield phase
+
+
+class _Delay:
+    """Tells an arm that is late from one that is stuck: how far it got along its trajectory."""
+
+    def __init__(self, trajectory: JointTrajectory) -> None:
+        self._trajectory = trajectory
+        self._at = 0
+        """Index of the farthest point it has come near to."""
+        self._advanced = 0.0
+        """When it last got on, s after the start."""
+
+    def hopeless(self, positions: Array, after: float) -> bool:
+        """Whether joints (n,) that are there `after` seconds will not arrive any more."""
+        trajectory = self._trajectory
+        times = trajectory.times
+        due = min(int(np.searchsorted(times, after, side="right")), len(times) - 1)
+        off = np.abs(trajectory.positions[self._at : due + 1] - positions).max(axis=1)
+        nearest = int(np.argmin(off))
+        if nearest > 0 and float(off[nearest]) < ASIDE:
+            self._at += nearest
+            self._advanced = after
+        lag = float(np.abs(positions - expected(trajectory, after)).max())
+        if lag < LAG and after <= trajectory.duration:
+            self._advanced = after
+        patience = PATIENCE if lag >= LAG else SETTLE
+        return after - self._advanced > patience or after > SLOWEST * trajectory.duration + SETTLE
 
 
 def brake(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from momantu_bt.failure import SENSOR_DEAD, Failure
 from momantu_bt.geometry import Array, Pose2D, Transform
 from momantu_bt.robot import Robot, read_laser
 from momantu_bt.service import Service, ServiceContext
@@ -22,7 +23,8 @@ class LocalizationService(Service):
     """Adaptive Monte Carlo localization; see `LocalizationConfig` for the site's parameters.
 
     Reads the laser when odometry has moved, and for a while at rest after a reset or a stop. The
-    laser is taken to be fixed to the base.
+    laser is taken to be fixed to the base. While the laser is dead it follows odometry alone:
+    who drives meets the dead laser himself. The first scan that comes again is weighed.
     """
 
     rate: ClassVar[float] = 10.0
@@ -80,11 +82,17 @@ class LocalizationService(Service):
         return far or (not moving and self._rest_scans > 0)
 
     def _weigh(self, robot: Robot, moving: bool) -> None:
+        try:
+            rays = self._rays(robot)
+        except Failure as failure:
+            if failure.code != SENSOR_DEAD:
+                raise
+            return
         if not moving:
             self._rest_scans -= 1
             self._localizer.jitter(self._config.rest_jitter)
         self._since_scan = [0.0, 0.0]
-        self._localizer.observe(self._rays(robot))
+        self._localizer.observe(rays)
 
     def _rays(self, robot: Robot) -> Rays:
         from momantu_skills.navigation.scans import Rays

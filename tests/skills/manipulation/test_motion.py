@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from itertools import product
 from typing import Any
 
@@ -74,6 +75,50 @@ def test_an_arm_that_stays_behind_is_stuck_and_stopped(swing: Any) -> None:
     assert caught.value.code == "ARM_STUCK"
     assert caught.value.value.data["joint"] == "shoulder_pan_joint"
     assert robot.commands[-1] == (pytest.approx(robot.now()), "arm", None)
+
+
+@pytest.mark.parametrize("pace", [0.3, 0.5, 0.8])
+def test_an_arm_slower_than_its_trajectory_is_waited_for(swing: Any, pace: float) -> None:
+    robot, trajectory = swing
+    command = robot.command
+    times, speeds = trajectory.times / pace, trajectory.velocities * pace
+    late = replace(trajectory, times=times, velocities=speeds)
+
+    def slow(actuator: str, goal: Any) -> None:
+        command(actuator, late if goal is trajectory else goal)
+
+    robot.command = slow
+    assert run(follow(robot, robot, "arm", trajectory), robot) is True
+    names = trajectory.names
+    assert [robot.joints[n] for n in names] == pytest.approx(trajectory.positions[-1], abs=0.02)
+    assert robot.now() > 0.9 * trajectory.duration / pace
+
+
+@pytest.mark.parametrize("share", [0.2, 0.5, 0.7])
+def test_an_arm_that_stops_on_its_way_is_stuck_soon(swing: Any, share: float) -> None:
+    robot, trajectory = swing
+    stops = share * trajectory.duration
+
+    def hold() -> None:
+        if robot.now() >= stops:
+            robot.frozen.add("arm")
+
+    with pytest.raises(Failure, match="ARM_STUCK"):
+        run(follow(robot, robot, "arm", trajectory), robot, hold)
+    assert robot.now() < trajectory.duration + 2.0
+
+
+def test_an_arm_that_trembles_in_place_does_not_get_on(swing: Any) -> None:
+    robot, trajectory = swing
+    robot.frozen.add("arm")
+    random = np.random.default_rng(3)
+
+    def tremble() -> None:
+        robot.joints["shoulder_pan_joint"] += float(random.normal(0.0, 0.002))
+
+    with pytest.raises(Failure, match="ARM_STUCK"):
+        run(follow(robot, robot, "arm", trajectory), robot, tremble)
+    assert robot.now() < trajectory.duration + 2.0
 
 
 def test_a_watch_ends_it_early(swing: Any) -> None:
