@@ -109,6 +109,10 @@ class PlanningScene(Protocol):
         """Say what the gripper closed on; it counts as held while width and effort agree."""
         ...
 
+    def observe(self, robot: Robot) -> None:
+        """Take over what the robot's camera shows now: what an arm may meet."""
+        ...
+
     def footprint(self, state: RobotState) -> Array:
         """Convex outline (k, 2) of base, arm and held object on the floor, base frame, m."""
         ...

@@ -73,9 +73,7 @@ class Repeats:
 def same(one: SensorReading, other: SensorReading) -> bool:
     """Whether two readings say the same, and say anything at all."""
     if isinstance(one, LaserScan) and isinstance(other, LaserScan):
-        return np.array_equal(one.ranges, other.ranges) and bool(
-            (one.ranges < one.range_max).any()
-        )
+        return np.array_equal(one.ranges, other.ranges) and bool((one.ranges < one.range_max).any())
     if isinstance(one, CameraImage) and isinstance(other, CameraImage):
         return (
             np.array_equal(one.depth, other.depth)

@@ -61,7 +61,7 @@ class DetectObject(Skill):
         result: Detections | None = None
         best: DetectedObject | None = None
         while pending:
-            snapshot = yield from glance(self, robot, pending.pop(0))
+            snapshot = yield from glance(self, robot, self.planning_scene, pending.pop(0))
             if snapshot is None:
                 continue
             snapshots.append(snapshot)

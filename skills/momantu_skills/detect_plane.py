@@ -54,7 +54,7 @@ class DetectPlane(Skill):
         corners, region = place_region(near)
         snapshots: list[Snapshot] = []
         for point in looks_over(self, robot, corners, LOOKS):
-            snapshot = yield from glance(self, robot, point)
+            snapshot = yield from glance(self, robot, self.planning_scene, point)
             if snapshot is not None:
                 snapshots.append(snapshot)
         radius = self._radius()

@@ -45,7 +45,7 @@ class FindAprilTag(Skill):
 
         others: set[int] = set()
         for point in self._points(robot):
-            snapshot = yield from glance(self, robot, point)
+            snapshot = yield from glance(self, robot, self.planning_scene, point)
             first = None
             if snapshot is not None:
                 first = yield from self._search(snapshot, others)
@@ -66,7 +66,7 @@ class FindAprilTag(Skill):
         from momantu_skills.perception.views import take
 
         seen: list[TagSighting] = []
-        snapshot = yield from glance(self, robot, first.odom_from_tag.position)
+        snapshot = yield from glance(self, robot, self.planning_scene, first.odom_from_tag.position)
         for _ in range(PICTURES):
             sighting = yield from self._search(snapshot or take(self, robot), others)
             snapshot = None

@@ -41,13 +41,17 @@ OUTPUTS: dict[str, Any] = {
 }
 
 
-def declared(name: str) -> Iterator[str]:
-    for code in INSTALLED.skills[name].failures:
+ANY_SKILL = ("SENSOR_DEAD", "SKILL_ERROR", "WRONG_TYPE")
+"""Codes of the engine that befall any skill."""
+
+
+def possible(name: str) -> Iterator[str]:
+    for code in (*INSTALLED.skills[name].failures, *ANY_SKILL):
         if (name, code) not in NEVER_HERE:
             yield code
 
 
-ONCE = [(name, code) for name in USED if name not in HANDLERS_OWN for code in declared(name)]
+ONCE = [(name, code) for name in USED if name not in HANDLERS_OWN for code in possible(name)]
 
 
 class Script:

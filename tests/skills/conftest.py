@@ -23,6 +23,7 @@ from momantu_bt.messages import (
     WrenchReading,
     frozen,
 )
+from momantu_bt.robot import Robot
 from momantu_bt.service import HeldObject, ServiceContext
 from momantu_bt.testing import ScriptedRobot, ScriptedWorld, scripted_site, small_robot
 from momantu_bt.testing.painting import Block, Painter, Round, Solid
@@ -217,12 +218,19 @@ def flat_scene() -> Callable[[ScriptedWorld], FlatScene]:
 
 
 class SeenScene:
-    """A planning scene to which points in a box (low, high corners in the base) are the robot."""
+    """A planning scene to which points in a box (low, high corners in the base) are the robot.
+
+    observed: how many pictures it was shown.
+    """
 
     last_contact = -math.inf
 
     def __init__(self, held: HeldObject | None = None, robot: Sequence[Box3] = ()) -> None:
         self.held, self.robot = held, robot
+        self.observed = 0
+
+    def observe(self, robot: Robot) -> None:
+        self.observed += 1
 
     def is_robot(self, points: np.ndarray, state: RobotState) -> np.ndarray:
         inside = np.zeros(len(points), dtype=bool)

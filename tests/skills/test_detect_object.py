@@ -90,6 +90,13 @@ def test_the_asked_can_among_similar_cans(detect: Detect) -> None:
     assert found.score > 0.8
 
 
+def test_the_planning_scene_sees_every_look(detect: Detect, seen_scene: Any) -> None:
+    for things in ([can(0.95, 0.15)], []):
+        scene = seen_scene()
+        detect(things, scene=scene)
+        assert scene.observed >= 2
+
+
 def test_what_is_not_there_is_not_found_and_what_is_there_is_told(detect: Detect) -> None:
     result = detect([can(0.95, 0.1, 0.028), *bottle(0.9, -0.1), BOX, MUG, BOWL])
     assert result.code == "OBJECT_NOT_FOUND"

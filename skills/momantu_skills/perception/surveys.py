@@ -13,6 +13,7 @@ from momantu_bt.failure import Failure
 from momantu_bt.frames import ODOM
 from momantu_bt.geometry import Array
 from momantu_bt.robot import Robot
+from momantu_bt.service import PlanningScene
 from momantu_bt.skill import Compute, Skill
 from momantu_skills.perception.looking import look_at
 from momantu_skills.perception.regions import Region, disc, grown
@@ -58,15 +59,20 @@ def surface_region(corners: Array) -> SurfaceRegion:
 
 
 def glance(
-    skill: Skill, robot: Robot, point_odom: Array
+    skill: Skill, robot: Robot, scene: PlanningScene, point_odom: Array
 ) -> Generator[str | Compute, Any, Snapshot | None]:
-    """Look at a point (3,) in odom and take a picture; None when it cannot be looked at."""
+    """Look at a point (3,) in odom and take a picture; None when it cannot be looked at.
+
+    The planning scene sees the picture too: from here things may be in view that the hand hides
+    later.
+    """
     try:
         yield from look_at(skill, robot, point_odom, within=OFF_AXIS)
     except Failure as failure:
         if failure.code != "OUT_OF_VIEW":
             raise
         return None
+    scene.observe(robot)
     return take(skill, robot)
 
 
