@@ -30,6 +30,8 @@ HALTED = "HALTED"
 """Never fails a node: what was running when a time limit ended it, as the TIMEOUT's cause."""
 SENSOR_DEAD = "SENSOR_DEAD"
 """A sensor does not answer, or repeats itself; `data["sensor"]` names it."""
+HUNG = "HUNG"
+"""A skill gave no step back within the run's patience; `data["traceback"]` says where it was."""
 SCRIPT_ERROR = "SCRIPT_ERROR"
 """A script or a condition could not be evaluated."""
 
@@ -49,6 +51,7 @@ ENGINE_CODES: Mapping[str, str] = MappingProxyType(
         WRONG_TYPE: "a value at a port is not of the port's type",
         FAILED: "the node failed without saying more",
         SENSOR_DEAD: "a sensor does not answer, or repeats itself",
+        HUNG: "the skill took longer over one step than the run has patience for",
         SCRIPT_ERROR: "a script or a condition could not be evaluated",
     }
 )

@@ -1,0 +1,82 @@
+"""The rows that a bench of all faults has, and what is demanded of each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+
+from momantu_bt.fault import Fault, FaultError
+from momantu_bt.faults.catalogue import KINDS
+from momantu_bt.faults.kind import FaultKind
+from momantu_bt.faults.spec import format_fault, parse_fault
+from momantu_bt.tree.problems import valid_names
+
+RECOVERED, ENDED = "recovered", "process ended"
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """What is demanded of a run with one fault.
+
+    fault: as it is written. recoverable: a robot can do its work all the same.
+    """
+
+    fault: str
+    kind: FaultKind
+    recoverable: bool
+
+    @property
+    def notice(self) -> float:
+        """Seconds after its begin within which it must be noticed."""
+        return self.kind.notice
+
+    @property
+    def reasons(self) -> frozenset[str]:
+        """Failure codes that are a true reason to give up."""
+        return self.kind.reasons
+
+    @property
+    def must_end(self) -> str | frozenset[str]:
+        """RECOVERED, ENDED (nothing is left to give a reason), or one of the true reasons."""
+        if self.recoverable:
+            return RECOVERED
+        return ENDED if self.kind.ends_process else self.reasons
+
+
+def rows() -> tuple[Row, ...]:
+    """All rows: each kind as it usually is, and its variants."""
+    return tuple(row for kind in KINDS.values() for row in _rows_of(kind))
+
+
+def rows_like(patterns: str) -> tuple[Row, ...]:
+    """The rows that `all`, or patterns such as `camera.*,skill.hang` parted by commas, mean.
+
+    Raises:
+        FaultError: a pattern that no kind of fault fits.
+    """
+    wanted = [text.strip() for text in patterns.split(",")]
+    for pattern in wanted:
+        if pattern != "all" and not any(fnmatchcase(name, pattern) for name in KINDS):
+            hint = valid_names(pattern, KINDS, "faults")
+            raise FaultError(f"no fault is called {pattern!r}; {hint}")
+    return tuple(
+        row for row in rows() if any(p == "all" or fnmatchcase(row.kind.name, p) for p in wanted)
+    )
+
+
+def row_of(fault: Fault) -> Row:
+    """The row that a fault belongs to: its variant's where the parameters are the variant's."""
+    kind = KINDS[fault.name]
+    for variant in kind.variants:
+        given = parse_fault(f"{kind.name}:{variant.parameters}").parameters
+        differing = {k: v for k, v in given.items() if v != kind.defaults[k]}
+        if all(fault.parameters.get(k) == v for k, v in differing.items()):
+            return Row(format_fault(fault), kind, variant.recoverable)
+    return Row(format_fault(fault), kind, kind.recoverable)
+
+
+def _rows_of(kind: FaultKind) -> Iterator[Row]:
+    yield Row(kind.name, kind, kind.recoverable)
+    for variant in kind.variants:
+        yield Row(f"{kind.name}:{variant.parameters}", kind, variant.recoverable)

@@ -1,0 +1,116 @@
+"""Phases and tree files: whether a phase's names occur, and which is a kind's usual one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from fnmatch import fnmatchcase
+from typing import TypeAlias
+
+from momantu_bt.fault import FaultError
+from momantu_bt.faults.kind import FIRST_ANSWER, FIRST_SKILL, FaultKind
+from momantu_bt.faults.phase import START, Phase, parse_phase
+from momantu_bt.skill import Skill
+from momantu_bt.tree.catalogue import BUILT_IN, SUBTREE
+from momantu_bt.tree.model import Document, Node
+from momantu_bt.tree.problems import valid_names
+from momantu_bt.tree.substitution import Substitution, names, reached
+
+Skills: TypeAlias = Mapping[str, type[Skill]]
+
+
+def usual_phase(
+    kind: FaultKind, document: Document, skills: Skills, substitution: Substitution
+) -> str:
+    """The first of a kind's phases that the tree has; else the start.
+
+    skills: those that the run can reach, in the order of the file.
+    """
+    answering = (
+        n for n, s in skills.items() if any(p.direction == "out" for p in s.ports.values())
+    )
+    stand_ins = {FIRST_SKILL: next(iter(skills), None), FIRST_ANSWER: next(answering, None)}
+    for text in kind.phases:
+        phase = stand_ins.get(text, text)
+        if phase is not None and _fits(parse_phase(phase), document, substitution):
+            return phase
+    return START
+
+
+def _has_outputs(skill: type[Skill]) -> bool:
+    return any(port.direction == "out" for port in skill.ports.values())
+
+
+def check_phase(text: str, document: Document, substitution: Substitution) -> Phase:
+    """A phase of a fault of this tree.
+
+    Raises:
+        FaultError: its names occur nowhere; the message says which, and what would be valid.
+    """
+    phase = parse_phase(text)
+    if _fits(phase, document, substitution):
+        return phase
+    found = [name for name in phase.names if _named(name, document, substitution)]
+    missing = next((name for name in phase.names if name not in found), None)
+    if missing is None:
+        way = " inside of ".join(reversed(phase.names))
+        raise FaultError(f"phase {text!r}: the tree has no {way}; the outermost is written first")
+    known = [name for node in reached(document, substitution.results) for name in names(node)]
+    hint = valid_names(missing, known, "nodes")
+    if phase.names[-1] == missing and len(phase.names) > 1:
+        hint += "; what a skill notes while it runs stands behind the skill's name"
+    raise FaultError(f"phase {text!r}: no node that runs is called {missing!r}; {hint}")
+
+
+def wears(node: Node, name: str, document: Document) -> bool:
+    """Whether a name, or a pattern, means the node; the main tree's name means its root."""
+    own = names(node)
+    if node is document.trees[document.main].root:
+        own = [*own, document.main]
+    return any(fnmatchcase(word, name) for word in own)
+
+
+def _fits(phase: Phase, document: Document, substitution: Substitution) -> bool:
+    if not phase.names:
+        return True
+    *outer, last = phase.names
+    if any(wears(node, last, document) for node in _inside(outer, document, substitution)):
+        return True
+    if not outer or phase.after:
+        return False
+    # the last name may be what a skill notes while it runs, which no file tells
+    *outer, skill = outer
+    return any(
+        wears(node, skill, document)
+        for node in _inside(outer, document, substitution)
+        if _is_skill(node)
+    )
+
+
+def _named(name: str, document: Document, substitution: Substitution) -> bool:
+    return any(wears(n, name, document) for n in reached(document, substitution.results))
+
+
+def _is_skill(node: Node) -> bool:
+    return node.type not in BUILT_IN and node.type != SUBTREE
+
+
+def _inside(outer: list[str], document: Document, substitution: Substitution) -> Iterator[Node]:
+    """Nodes that can run inside of nodes of these names, the outermost first."""
+    entered: set[tuple[str, int]] = {(document.main, 0)}
+    stack: list[tuple[Node, int]] = [(document.trees[document.main].root, 0)]
+    while stack:
+        node, matched = stack.pop()
+        if node.disabled:
+            continue
+        if matched == len(outer):
+            yield node
+        elif wears(node, outer[matched], document):
+            matched += 1
+        if substitution.replaces(node):
+            continue
+        target = node.target if node.type == SUBTREE else None
+        if target is not None and (target, matched) not in entered:
+            entered.add((target, matched))
+            stack.append((document.trees[target].root, matched))
+        below = [*node.children, *(h.node for h in node.handlers if h.node is not None)]
+        stack.extend((child, matched) for child in reversed(below))

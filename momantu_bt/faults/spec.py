@@ -1,0 +1,129 @@
+"""`COMPONENT.MODE[@PHASE][:name=value,name=value]` as a Fault, and back."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from momantu_bt.fault import Fault, FaultError, FaultParameter
+from momantu_bt.faults.catalogue import KINDS
+from momantu_bt.faults.kind import FOR, FaultKind
+from momantu_bt.faults.phase import parse_phase
+from momantu_bt.skill import Port
+from momantu_bt.tree.problems import cells, valid_names
+from momantu_bt.tree.types import label
+from momantu_bt.tree.value_words import ConversionError
+from momantu_bt.tree.values import convert
+
+FORM = "COMPONENT.MODE[@PHASE][:name=value,name=value]"
+_FOREVER = ("inf", "for good")
+_SIGN = re.compile(r"[@:]")
+
+
+def parse_fault(text: str) -> Fault:
+    """A fault as it is written, its defaults filled in.
+
+    Raises:
+        FaultError: it is none; the message shows the text, where it is wrong and what is valid.
+    """
+    sign = _SIGN.search(text)
+    end = len(text) if sign is None else sign.start()
+    kind = _kind(text, end)
+    phase, rest = None, end
+    if text[end : end + 1] == "@":
+        rest = text.find(":", end)
+        rest = len(text) if rest < 0 else rest
+        phase = text[end + 1 : rest].strip()
+        try:
+            parse_phase(phase)
+        except ValueError as error:
+            raise _wrong(text, end + 1, rest, str(error)) from None
+    given = _parameters(text, rest + 1, kind) if rest < len(text) else {}
+    parameters = MappingProxyType({**kind.defaults, **given})
+    return Fault(kind.component, kind.mode, phase, parameters)
+
+
+def format_fault(fault: Fault) -> str:
+    """The shortest text that means the fault; its numbers are in SI units."""
+    kind = KINDS[fault.name]
+    changed = [
+        f"{name}={_written(value)}"
+        for name, value in fault.parameters.items()
+        if value != kind.defaults.get(name)
+    ]
+    phase = "" if fault.phase is None else f"@{fault.phase}"
+    return fault.name + phase + (":" + ",".join(changed) if changed else "")
+
+
+def _written(value: FaultParameter) -> str:
+    return repr(value) if isinstance(value, float) else str(value)
+
+
+def _kind(text: str, end: int) -> FaultKind:
+    name = text[:end].strip()
+    found = KINDS.get(name)
+    if found is not None:
+        return found
+    component, dot, mode = name.partition(".")
+    modes = [kind.mode for kind in KINDS.values() if kind.component == component]
+    if not modes:
+        known = list(dict.fromkeys(kind.component for kind in KINDS.values()))
+        hint = valid_names(component, known, "components")
+        if component in (kind.mode for kind in KINDS.values()) and not dot:
+            whole = [name for name in KINDS if name.endswith(f".{component}")]
+            hint = f"did you mean {' or '.join(whole)}?"
+        raise _wrong(text, 0, len(component), f"no component is called {component!r}; {hint}")
+    if not dot:
+        message = f"expected {FORM}; modes of {component}: {', '.join(modes)}"
+        raise _wrong(text, end, end + 1, message)
+    hint = valid_names(mode, modes, f"modes of {component}")
+    raise _wrong(text, len(component) + 1, end, f"{component} has no mode {mode!r}; {hint}")
+
+
+def _parameters(text: str, begin: int, kind: FaultKind) -> Mapping[str, FaultParameter]:
+    ports = {port.name: port for port in kind.parameters}
+    found: dict[str, FaultParameter] = {}
+    for piece in text[begin:].split(","):
+        end = begin + len(piece)
+        written, equals, value = piece.partition("=")
+        name = written.strip()
+        if name not in ports:
+            hint = valid_names(name, ports, "parameters") if ports else "it takes none"
+            message = f"{kind.name} has no parameter {name!r}; {hint}"
+            raise _wrong(text, begin, begin + len(written), message)
+        if not equals:
+            raise _wrong(text, begin, end, f"expected {name}=VALUE, {_expected(ports[name])}")
+        if name in found:
+            raise _wrong(text, begin, end, f"{name} is given twice")
+        try:
+            found[name] = _value(value.strip(), ports[name])
+        except ConversionError as error:
+            raise _wrong(text, begin + len(written) + 1, end, f"{name}: {error}") from None
+        begin = end + 1
+    return found
+
+
+def _value(text: str, port: Port) -> FaultParameter:
+    if port.name == FOR and text in _FOREVER:
+        return math.inf
+    value: FaultParameter = convert(text, port)
+    return value
+
+
+def _expected(port: Port) -> str:
+    unit = "" if port.unit is None else f" in {port.unit}"
+    return (
+        f"a {label(port.type)}{unit}"
+        + (f", {port.bounds}" if port.bounded else "")
+        + f": {port.doc}"
+    )
+
+
+def _wrong(text: str, begin: int, end: int, message: str) -> FaultError:
+    """The text, a caret under what is wrong, and why."""
+    stretch = text[begin:end]
+    begin += len(stretch) - len(stretch.lstrip())
+    marks = "^" * max(1, sum(map(cells, stretch.strip())))
+    return FaultError(f"{text}\n{' ' * sum(map(cells, text[:begin]))}{marks} {message}")
