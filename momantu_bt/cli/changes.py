@@ -4,22 +4,48 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from itertools import groupby
+from typing import Protocol, TypeAlias
 
-from momantu_bt.engine.context import Change
 from momantu_bt.engine.executor import Executor
-from momantu_bt.engine.node import TreeNode
-from momantu_bt.engine.nodes.asking import Ask, Confirm
-from momantu_bt.engine.nodes.recovery import Recover
-from momantu_bt.engine.nodes.skill import SkillLeaf
-from momantu_bt.engine.nodes.substituted import Substituted
-from momantu_bt.engine.nodes.subtree import SubTree
-from momantu_bt.engine.nodes.timing import Sleep
+from momantu_bt.engine.role import Role
 from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, Status
 from momantu_bt.failure import FailureValue
 from momantu_bt.record.chain import chain_text
 
 _WORDS = {"RUNNING": "starts", "SUCCESS": "done", "IDLE": "halted", "SKIPPED": "skipped"}
-_TOLD = (SkillLeaf, SubTree, Sleep, Ask, Confirm, Substituted)
+
+
+class Told(Protocol):
+    """A node of a run, or of its record."""
+
+    @property
+    def index(self) -> int:
+        """Its number in the order of the file."""
+        ...
+
+    @property
+    def name(self) -> str:
+        """What it is called."""
+        ...
+
+    @property
+    def label(self) -> str:
+        """The node in one line."""
+        ...
+
+    @property
+    def role(self) -> Role:
+        """What it is to a person."""
+        ...
+
+    @property
+    def above(self) -> Told | None:
+        """The node around it."""
+        ...
+
+
+News: TypeAlias = tuple[Told, Status, str, FailureValue | None]
+"""A node, its new status, its note and why it failed; a `Change` is one."""
 
 
 class ChangeLines:
@@ -35,18 +61,20 @@ class ChangeLines:
 
     def ticked(self, run: Executor) -> None:
         """Tell this tick's changes."""
-        for node, status, note, failure in _parents_first(run.context.changes):
-            if isinstance(node, Recover):
-                self._tell_note(run.context.now, node, note)
-            elif isinstance(node, _TOLD):
-                self._tell(run.context.now, node, status, failure)
+        self.tell(run.context.now, run.context.changes)
+
+    def tell(self, now: float, changes: Iterable[News]) -> None:
+        """Tell the changes of one tick of a run or of a record."""
+        for node, status, note, failure in _parents_first(changes):
+            if node.role is Role.RECOVERY:
+                self._tell_note(now, node, note)
+            elif node.role is Role.ACT or node.role is Role.TREE:
+                self._tell(now, node, status, failure)
 
     def close(self) -> None:
         """Nothing is left to say."""
 
-    def _tell(
-        self, now: float, node: TreeNode, status: Status, failure: FailureValue | None
-    ) -> None:
+    def _tell(self, now: float, node: Told, status: Status, failure: FailureValue | None) -> None:
         running = node.index in self._was_running
         self._was_running.discard(node.index)
         if status is RUNNING:
@@ -56,33 +84,34 @@ class ChangeLines:
         words = f"fails: {_reason(node, failure)}" if status is FAILURE else _WORDS[status.value]
         self._line(now, node, f"{node.label} {words}")
 
-    def _tell_note(self, now: float, node: Recover, note: str) -> None:
+    def _tell_note(self, now: float, node: Told, note: str) -> None:
         before = self._notes.get(node.index, "try 1")
         self._notes[node.index] = note
         if note not in (before, "try 1", ""):
             self._line(now, node, f"{node.name}: {note}")
 
-    def _line(self, now: float, node: TreeNode, words: str) -> None:
+    def _line(self, now: float, node: Told, words: str) -> None:
         self._say(f"{now:8.2f} s {'  ' * _level(node)}{words}")
 
 
-def _parents_first(changes: Iterable[Change]) -> Iterator[Change]:
+def _parents_first(changes: Iterable[News]) -> Iterator[News]:
     """Nodes that start in one tick in the order of the file, though the innermost is first."""
-    for starting, group in groupby(changes, key=lambda change: change.status is RUNNING):
+    for starting, group in groupby(changes, key=lambda change: change[1] is RUNNING):
         together = list(group)
-        yield from sorted(together, key=lambda c: c.node.index) if starting else together
+        yield from sorted(together, key=lambda change: change[0].index) if starting else together
 
 
-def _level(node: TreeNode) -> int:
+def _level(node: Told) -> int:
     """How many subtrees it is in."""
-    parent = node.parent
-    above = _level(parent) if isinstance(parent, TreeNode) else 0
-    return above + isinstance(parent, SubTree)
+    level, above = 0, node.above
+    while above is not None:
+        level, above = level + (above.role is Role.TREE), above.above
+    return level
 
 
-def _reason(node: TreeNode, failure: FailureValue | None) -> str:
+def _reason(node: Told, failure: FailureValue | None) -> str:
     if failure is None:
         return "FAILED"
-    if isinstance(node, SubTree):
+    if node.role is Role.TREE:
         return failure.code
     return chain_text(failure).partition(" <- ")[0]

@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 from momantu_bt.engine.node import TreeNode
+from momantu_bt.engine.role import Role
 from momantu_bt.engine.status import FAILURE, IDLE, SUCCESS, Status
 
 
 class Decorator(TreeNode):
     """A node around one child. An end that the child is left with is cleared after each tick."""
+
+    @property
+    def role(self) -> Role:
+        """It is drawn with its child."""
+        return Role.AROUND
 
     @property
     def child(self) -> TreeNode:

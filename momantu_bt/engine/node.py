@@ -17,6 +17,7 @@ from py_trees.behaviour import Behaviour
 
 from momantu_bt.engine.conditions import Conditions
 from momantu_bt.engine.context import Change, RunContext
+from momantu_bt.engine.role import Role
 from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Status
 from momantu_bt.failure import FAILED, SCRIPT_ERROR, Failure, FailureValue
 from momantu_bt.tree.catalogue import BUILT_IN
@@ -102,6 +103,18 @@ class TreeNode(Behaviour):
     def note(self) -> str:
         """What a person should see beside the name while it runs: a phase, a count of tries."""
         return ""
+
+    @property
+    def role(self) -> Role:
+        """What it is to a person."""
+        if self.model.type == "Sequence":
+            return Role.STEPS if self.model.name is None else Role.NAMED_STEPS
+        return Role.PLAIN
+
+    @property
+    def above(self) -> TreeNode | None:
+        """The node that ticks it; None of the root."""
+        return self._above if isinstance(self._above, TreeNode) else None
 
     # what parents call
 

@@ -1,29 +1,76 @@
-"""The tree as lines of text, for the terminal and for pictures."""
+"""The tree as lines of text, for the terminal and for pictures, of a run or of its record."""
 
 from __future__ import annotations
 
-from momantu_bt.engine.decorator import Decorator
-from momantu_bt.engine.node import TreeNode
-from momantu_bt.engine.nodes.subtree import SubTree
-from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, SUCCESS
+from collections.abc import Iterator, Sequence
+from typing import Protocol
+
+from momantu_bt.engine.role import Role
+from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, SUCCESS, Status
+from momantu_bt.failure import FailureValue
 from momantu_bt.world import TreeLine
 
 
-def tree_lines(root: TreeNode) -> list[TreeLine]:
+class Shown(Protocol):
+    """A node as a person sees it: a `TreeNode`, or one of a record at some instant."""
+
+    @property
+    def label(self) -> str:
+        """The node in one line."""
+        ...
+
+    @property
+    def role(self) -> Role:
+        """What it is to a person."""
+        ...
+
+    @property
+    def note(self) -> str:
+        """What to say beside it while it runs."""
+        ...
+
+    @property
+    def shown(self) -> Status:
+        """Its newest result."""
+        ...
+
+    @property
+    def failure(self) -> FailureValue | None:
+        """Why it failed last."""
+        ...
+
+    @property
+    def depth(self) -> int:
+        """How many nodes are around it."""
+        ...
+
+    @property
+    def kids(self) -> Sequence[Shown]:
+        """Its children."""
+        ...
+
+
+def tree_lines(root: Shown) -> list[TreeLine]:
     """The root and, of each node that is running or has failed, what is below it.
 
     What has succeeded or has not begun is one line, so that the picture stays small. A tree
     shares the line of the node that runs it, a decorator the line of its child.
     """
-    lines: list[TreeLine] = []
+    return [line for line, _ in lines_with_nodes(root)]
 
-    def visit(node: TreeNode, depth: int) -> None:
+
+def lines_with_nodes(root: Shown) -> list[tuple[TreeLine, Shown]]:
+    """The same lines, each with the node whose status it shows."""
+    lines: list[tuple[TreeLine, Shown]] = []
+
+    def visit(node: Shown, depth: int) -> None:
         inner = node
         notes = [node.note]
-        while _shares_line(inner):
+        while inner.role is Role.AROUND and inner.kids:
             inner = inner.kids[0]
             notes.append(inner.note)
-        lines.append(TreeLine(depth, _with_notes(node, inner, notes), node.shown.value))
+        words = _with_notes(node, inner, notes)
+        lines.append((TreeLine(depth, words, node.shown.value), node))
         if node.shown is RUNNING or node.shown is FAILURE or depth == 0:
             for child in _below(inner):
                 if child.shown is not IDLE or inner.shown is RUNNING:
@@ -33,23 +80,19 @@ def tree_lines(root: TreeNode) -> list[TreeLine]:
     return lines
 
 
-def _shares_line(node: TreeNode) -> bool:
-    return isinstance(node, Decorator) and not isinstance(node, SubTree) and bool(node.kids)
-
-
-def _below(node: TreeNode) -> tuple[TreeNode, ...]:
+def _below(node: Shown) -> tuple[Shown, ...]:
     """Children, without the nameless frames that lists of steps and subtrees are written in."""
-    found: list[TreeNode] = []
+    found: list[Shown] = []
     for child in node.kids:
-        frame = child.model.name is None and child.model.type == "Sequence"
-        if frame or (isinstance(node, SubTree) and child.model.type == "Sequence"):
+        named_frame = node.role is Role.TREE and child.role is Role.NAMED_STEPS
+        if child.role is Role.STEPS or named_frame:
             found.extend(_below(child))
         else:
             found.append(child)
     return tuple(found)
 
 
-def _with_notes(outer: TreeNode, inner: TreeNode, notes: list[str]) -> str:
+def _with_notes(outer: Shown, inner: Shown, notes: list[str]) -> str:
     words = inner.label
     if outer.shown is RUNNING:
         words = ", ".join([words, *filter(None, notes)])
@@ -58,10 +101,23 @@ def _with_notes(outer: TreeNode, inner: TreeNode, notes: list[str]) -> str:
     return words
 
 
-def running_text(root: TreeNode) -> str:
+def running_text(root: Shown) -> str:
     """What runs deepest: `navigate table_a, follow`; or how the tree ended."""
     if root.shown is SUCCESS or root.shown is FAILURE:
         return root.shown.value
-    running = [n for n in (root, *root.below) if n.shown is RUNNING]
-    deepest = max(running, key=lambda n: n.depth, default=root)
+    deepest = deepest_running(root) or root
     return ", ".join(filter(None, (deepest.label, deepest.note)))
+
+
+def deepest_running(root: Shown) -> Shown | None:
+    """The node that runs deepest, the first of several; None where none runs."""
+    running = (node for node in _all(root) if node.shown is RUNNING)
+    return max(running, key=lambda node: node.depth, default=None)
+
+
+def _all(root: Shown) -> Iterator[Shown]:
+    stack = [root]
+    while stack:
+        node = stack.pop()
+        yield node
+        stack.extend(reversed(node.kids))

@@ -12,6 +12,7 @@ from momantu_bt.engine.node import TreeNode
 from momantu_bt.engine.outside import PERSON
 from momantu_bt.engine.person import Interrupted, Question, answer
 from momantu_bt.engine.ports import Inputs
+from momantu_bt.engine.role import Role
 from momantu_bt.engine.status import RUNNING, SUCCESS, Status
 from momantu_bt.failure import DECLINED, NO_ANSWER, WRONG_TYPE
 
@@ -24,6 +25,11 @@ class _Asking(TreeNode):
     def __init__(self, *arguments: Any, inputs: Inputs, **named: Any) -> None:
         super().__init__(*arguments, **named)
         self.inputs = inputs
+
+    @property
+    def role(self) -> Role:
+        """Somebody has to do something."""
+        return Role.ACT
 
     def step(self) -> Status:
         """Ask, and judge the answer."""

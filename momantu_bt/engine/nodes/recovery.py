@@ -23,6 +23,7 @@ from momantu_bt.engine.blackboard import Cell, rollback
 from momantu_bt.engine.node import TreeNode
 from momantu_bt.engine.nodes.fallbacks import RoundRobin
 from momantu_bt.engine.ports import Inputs
+from momantu_bt.engine.role import Role
 from momantu_bt.engine.status import FAILURE, RUNNING, SUCCESS, Status
 from momantu_bt.engine.tries import with_root_cause, with_tries
 from momantu_bt.failure import FailureValue
@@ -113,6 +114,11 @@ class Recover(_Catching):
         self.inputs = inputs
         self.count = 0
         self.before: dict[Cell, Any] = {}
+
+    @property
+    def role(self) -> Role:
+        """Its tries are told."""
+        return Role.RECOVERY
 
     def step(self) -> Status:
         """Go on with the handler, or with `try`."""

@@ -10,6 +10,7 @@ from momantu_bt.engine.label import label
 from momantu_bt.engine.node import TreeNode
 from momantu_bt.engine.outside import SkillSession
 from momantu_bt.engine.ports import Inputs
+from momantu_bt.engine.role import Role
 from momantu_bt.engine.session import SLOW_STEP
 from momantu_bt.engine.status import FAILURE, RUNNING, SUCCESS, Status
 from momantu_bt.failure import FAILED, FailureValue
@@ -45,6 +46,11 @@ class SkillLeaf(TreeNode):
         self._live_in = [p.name for p in kind.ports.values() if p.direction == "in" and p.live]
         self._live_out = [p.name for p in kind.ports.values() if p.direction == "out" and p.live]
         self._written: dict[str, Any] = {}
+
+    @property
+    def role(self) -> Role:
+        """What the robot does."""
+        return Role.ACT
 
     @property
     def note(self) -> str:

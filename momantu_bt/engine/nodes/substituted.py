@@ -7,6 +7,7 @@ from typing import Any
 
 from momantu_bt.engine.blackboard import Cell
 from momantu_bt.engine.node import TreeNode
+from momantu_bt.engine.role import Role
 from momantu_bt.engine.session import CLOCK_SLACK
 from momantu_bt.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS, Status
 from momantu_bt.tree.substitution import Result
@@ -32,6 +33,11 @@ class Substituted(TreeNode):
     def is_itself(self) -> bool:
         """Whether the rules are used up and the node runs."""
         return self.at >= len(self.results)
+
+    @property
+    def role(self) -> Role:
+        """It acts, whatever it stands for."""
+        return Role.ACT
 
     @property
     def note(self) -> str:

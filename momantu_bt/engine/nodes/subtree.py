@@ -9,6 +9,7 @@ from momantu_bt.engine.blackboard import Board, Cell
 from momantu_bt.engine.decorator import Decorator
 from momantu_bt.engine.label import label
 from momantu_bt.engine.ports import Reader
+from momantu_bt.engine.role import Role
 from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, Status
 from momantu_bt.engine.tries import through
 
@@ -33,6 +34,11 @@ class SubTree(Decorator):
         self.given = dict(given)
         self.wires = dict(wires)
         self.board = board
+
+    @property
+    def role(self) -> Role:
+        """A tree of its own."""
+        return Role.TREE
 
     def step(self) -> Status:
         """Tick the tree inside."""

@@ -8,6 +8,7 @@ from momantu_bt.engine.decorator import Decorator
 from momantu_bt.engine.label import label
 from momantu_bt.engine.node import TreeNode
 from momantu_bt.engine.ports import Inputs
+from momantu_bt.engine.role import Role
 from momantu_bt.engine.session import CLOCK_SLACK
 from momantu_bt.engine.status import RUNNING, SKIPPED, SUCCESS, Status
 from momantu_bt.failure import HALTED, TIMEOUT, FailureValue
@@ -100,6 +101,11 @@ class Sleep(TreeNode):
         super().__init__(*arguments, **named)
         self.inputs = inputs
         self.until = 0.0
+
+    @property
+    def role(self) -> Role:
+        """Waiting is doing something."""
+        return Role.ACT
 
     def step(self) -> Status:
         """Wait; the duration is read at the start."""
