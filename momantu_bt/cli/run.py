@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from momantu_bt.engine.executor import Executor, Observer
     from momantu_bt.record.report import Report
     from momantu_bt.tree.model import Document
-    from momantu_bt.tree.settings import Given
     from momantu_bt.tree.substitution import Substitution
 
 EXIT_WRONG_ARGUMENTS, EXIT_INTERRUPTED = 2, 130
@@ -129,6 +128,7 @@ def _run(
     wanted: _Outputs,
 ) -> Callable[..., Report]:
     """Check what was asked for; the result starts the run and says how it ended."""
+    from momantu_bt.cli.given import given_values
     from momantu_bt.engine.launch import Options, launch
     from momantu_bt.record.log import REPORT
     from momantu_bt.tree.load import load
@@ -136,7 +136,7 @@ def _run(
     from momantu_bt.tree.substitution import Substitution, load_substitution
 
     registry = Registry.installed()
-    board = _values(settings, values)
+    board = given_values(settings, values)
     checked = load(tree, registry, world=world, robot=robot, values=board)
     replacing = Substitution()
     if substitute is not None:
@@ -179,20 +179,6 @@ def _breakpoints(
     if wanted.terminal is None:
         raise LaunchError("--break needs a person at a terminal, and no --unattended")
     return Breakpoints(wanted.breaks, document, wanted.terminal, replacing)
-
-
-def _values(settings: Sequence[str], file: Path | None) -> Given:
-    """What `--values` and `--set` give, the latter winning."""
-    from momantu_bt.engine.launch import LaunchError
-    from momantu_bt.tree.load import read_values
-    from momantu_bt.tree.settings import Given
-
-    board = Given() if file is None else read_values(file)
-    try:
-        board.set(settings)
-    except ValueError as error:
-        raise LaunchError(str(error)) from None
-    return board
 
 
 def _check_outputs(wanted: _Outputs) -> None:

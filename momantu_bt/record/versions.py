@@ -8,7 +8,7 @@ from importlib import metadata
 
 import momantu_bt
 
-_LIBRARIES = {
+LIBRARIES = {
     "numpy": "numpy",
     "py_trees": "py-trees",
     "sapien": "sapien",
@@ -28,7 +28,7 @@ _LIBRARIES = {
 def versions() -> dict[str, str]:
     """Versions by name; a library counts only when the run has loaded it."""
     found = {"momantu-bt": momantu_bt.__version__, "python": platform.python_version()}
-    for module, distribution in _LIBRARIES.items():
+    for module, distribution in LIBRARIES.items():
         if module in sys.modules:
             try:
                 found[distribution] = metadata.version(distribution)

@@ -1,0 +1,95 @@
+"""From wanted episodes to rows on disk: what is there already is not run again."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Sequence
+from contextlib import closing
+from dataclasses import dataclass, field
+from itertools import zip_longest
+from typing import Protocol
+
+from momantu_bt.bench.engine import Engine
+from momantu_bt.bench.outcome import succeeded
+from momantu_bt.bench.plan import RECORDS, Plan, record_name
+from momantu_bt.bench.process import REFUSED
+from momantu_bt.bench.spec import EpisodeSpec, Row
+from momantu_bt.bench.store import Store
+from momantu_bt.engine.interrupts import Interrupts
+
+MOST_REFUSED = 3
+"""Episodes in a row that cannot begin, after which no other is tried."""
+
+
+class Watcher(Protocol):
+    """Shows a bench while it runs."""
+
+    def begin(self, rows: Sequence[Row], waiting: int, engine: Engine) -> None:
+        """rows: those that were there already; waiting: how many episodes are to be run."""
+        ...
+
+    def row(self, row: Row) -> None:
+        """An episode ended."""
+        ...
+
+    def close(self) -> None:
+        """The bench is over; safe to call twice."""
+        ...
+
+
+@dataclass(slots=True)
+class Ended:
+    """How a bench ended. refused: rows of episodes that could not begin, the last ones again."""
+
+    interrupted: bool = False
+    refused: list[Row] = field(default_factory=list)
+    refused_in_a_row: list[Row] = field(default_factory=list)
+
+
+def carry_out(work: Sequence[tuple[Plan, Store]], engine: Engine, watcher: Watcher) -> Ended:
+    """Run what has no row yet, turn about, and add each row to its store as it comes.
+
+    Raises:
+        OutputError: a row cannot be written; those before it are.
+    """
+    asked = [plan.specs(store.rows, store.folder) for plan, store in work]
+    homes = {spec.key: pair for specs, pair in zip(asked, work, strict=True) for spec in specs}
+    waiting = _turn_about(asked)
+    there = [row for plan, store in work for row in plan.wanted.present(store.rows)]
+    watcher.begin(there, len(waiting), engine)
+    ended = Ended()
+    with Interrupts() as interrupts:
+        try:
+            with closing(engine.run(waiting)) as rows:
+                for row in rows:
+                    interrupts.patient = True  # a row that has come is kept before anything else
+                    _take(row, *homes[row["key"]], ended)
+                    watcher.row(row)
+                    interrupts.patient = False
+                    if interrupts.requested:
+                        raise KeyboardInterrupt
+                    if len(ended.refused_in_a_row) >= MOST_REFUSED:
+                        break
+        except KeyboardInterrupt:
+            ended.interrupted = True
+        finally:
+            watcher.close()
+    return ended
+
+
+def _turn_about(asked: Sequence[Sequence[EpisodeSpec]]) -> list[EpisodeSpec]:
+    """The first of each, the second of each, and so on."""
+    return [spec for turn in zip_longest(*asked) for spec in turn if spec is not None]
+
+
+def _take(row: Row, plan: Plan, store: Store, ended: Ended) -> None:
+    """Keep a row, and its record if that is wanted; one that was refused is not kept."""
+    if row["ended"] == REFUSED:
+        ended.refused_in_a_row.append(row)
+        ended.refused.append(row)
+        return
+    ended.refused_in_a_row.clear()
+    store.add(row)
+    if plan.record == "failures" and succeeded(row):
+        name = record_name(row["seed"], row["fault"], row["key"])
+        shutil.rmtree(store.folder / RECORDS / name, ignore_errors=True)

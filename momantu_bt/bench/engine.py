@@ -1,0 +1,29 @@
+"""What runs episodes: processes of this machine, or of many."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterable
+from typing import Protocol
+
+from momantu_bt.bench.spec import EpisodeSpec, Row
+
+
+class Engine(Protocol):
+    """Runs episodes, several at a time."""
+
+    @property
+    def workers(self) -> int:
+        """How many episodes it runs at a time."""
+        ...
+
+    def running(self) -> tuple[EpisodeSpec, ...]:
+        """Those that are under way, oldest first."""
+        ...
+
+    def run(self, specs: Iterable[EpisodeSpec]) -> Generator[Row, None, None]:
+        """Rows in the order in which episodes end; each episode that is asked for has one.
+
+        A row whose `ended` is "refused" is of an episode that could not begin; `output` says why.
+        Closing the generator, or an exception in it, ends everything that runs.
+        """
+        ...

@@ -1,0 +1,166 @@
+"""One episode, and its row: `python -m momantu_bt.bench.episode SPEC ROW PARENT`.
+
+SPEC and ROW are JSON files; PARENT is the number of the process that waits for it: without that
+one this one ends too.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import json
+import os
+import shutil
+import signal
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import momantu_bt.cli.threads  # noqa: F401 - before numpy, which the next imports load
+from momantu_bt.bench.process import EXIT_REFUSED
+from momantu_bt.bench.spec import EpisodeSpec, Row
+from momantu_bt.record.files import write_whole
+
+if TYPE_CHECKING:
+    from momantu_bt.engine.executor import Executor, Observer
+    from momantu_bt.engine.node import TreeNode
+    from momantu_bt.record.report import Report
+    from momantu_bt.tree.load import Checked
+    from momantu_bt.tree.registry import Registry
+
+_PR_SET_PDEATHSIG = 1
+"""`prctl(2)`: the signal that a process gets when its parent dies."""
+_RETRYING = ("Recover", "RetryUntilSuccessful", "RecoveryNode")
+"""Nodes that start their first child again after it failed."""
+
+
+_KEPT = (
+    *("world", "robot", "status", "success", "failure", "unmet", "measures", "sim_time_s"),
+    *("wall_time_s", "start_time_s", "fingerprint", "error"),
+)
+"""What a row takes over from a report as it is."""
+
+
+class Refused(Exception):
+    """The episode cannot be what was asked for; nothing was started."""
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Run the episode; exit code 0 when a row was written, EXIT_REFUSED when it cannot begin."""
+    told, row, parent = arguments
+    _end_with(int(parent))
+    spec = EpisodeSpec.from_dict(json.loads(Path(told).read_text(encoding="utf-8")))
+    try:
+        report, tries = run(spec)
+    except Exception as error:
+        if type(error) in _refusals():
+            print(error, file=sys.stderr)
+            return EXIT_REFUSED
+        raise
+    write_whole(Path(row), json.dumps(row_of(report, tries), default=str) + "\n")
+    return 0
+
+
+def run(spec: EpisodeSpec) -> tuple[Report, int]:
+    """Run it in this process; also how often its nodes tried again.
+
+    Raises:
+        Refused: the files or the code are not those that the spec names.
+        TreeError, LaunchError, WorldError and the like: it cannot begin.
+    """
+    from momantu_bt.engine.launch import Options, launch
+    from momantu_bt.tree.load import load
+    from momantu_bt.tree.registry import Registry
+
+    registry = Registry.installed()
+    checked = load(
+        spec.tree, registry, world=spec.world, robot=spec.robot, values=dict(spec.values)
+    )
+    _check(spec, checked, registry)
+    options = Options(world=spec.world, robot=spec.robot, seed=spec.seed, max_time=spec.max_time)
+    executors: list[Executor] = []
+
+    def watch(executor: Executor) -> list[Observer]:
+        executors.append(executor)
+        return _observers(spec)
+
+    report = launch(checked.document, options, registry, watch)
+    if spec.record is not None:
+        from momantu_bt.record.log import REPORT
+
+        report.write(Path(spec.record) / REPORT)
+    return report, sum(map(_tries, executors[0].built.nodes))
+
+
+def _check(spec: EpisodeSpec, checked: Checked, registry: Registry) -> None:
+    """Files that were edited since, and another machine's other versions, are no mixed results."""
+    from momantu_bt.bench.made_of import difference, made_of
+
+    made = made_of(
+        checked.document,
+        registry,
+        world=spec.world,
+        robot=spec.robot,
+        values=spec.values,
+        max_time=spec.max_time,
+    )
+    if changed := difference(spec.made_of, made):
+        raise Refused(
+            f"{', '.join(changed)}: not what it was when the bench began; begin it anew, "
+            "or undo the change and go on"
+        )
+
+
+def _observers(spec: EpisodeSpec) -> list[Observer]:
+    if spec.record is None:
+        return []
+    from momantu_bt.record.log import LogObserver, prepare_folder
+
+    shutil.rmtree(spec.record, ignore_errors=True)  # of an attempt that was interrupted
+    prepare_folder(Path(spec.record))
+    return [LogObserver(Path(spec.record))]
+
+
+def _tries(node: TreeNode) -> int:
+    """How often a node began its first child anew after a failure."""
+    if node.model.type not in _RETRYING or not node.kids:
+        return 0
+    return max(0, node.kids[0].runs - node.runs)
+
+
+def row_of(report: Report, tries: int) -> Row:
+    """What a row keeps of a report."""
+    told: dict[str, Any] = report.as_dict()
+    row = {name: told[name] for name in _KEPT}
+    row["tries"] = tries
+    row["nodes"] = [{k: v for k, v in node.items() if v} for node in told["nodes"]]
+    return row
+
+
+def _refusals() -> tuple[type[Exception], ...]:
+    """What is wrong with the machine or the files, and not with the robot."""
+    from momantu_bt.engine.launch import LaunchError
+    from momantu_bt.engine.makers import BuildError
+    from momantu_bt.engine.services import ServiceCycleError
+    from momantu_bt.plugins import PluginClash, PluginError
+    from momantu_bt.record.files import OutputError
+    from momantu_bt.tree.lookup import TreeNotFound
+    from momantu_bt.tree.problems import TreeError
+    from momantu_bt.world import WorldError
+
+    return (
+        *(Refused, LaunchError, BuildError, ServiceCycleError, OutputError),
+        *(PluginError, PluginClash, TreeNotFound, TreeError, WorldError),
+    )
+
+
+def _end_with(parent: int) -> None:
+    """Let the kernel end this process when its parent is gone, however that ended."""
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+    if os.getppid() != parent:
+        raise SystemExit("the process that waits for this episode is gone")
+
+
+if __name__ == "__main__":
+    raise SystemExit(main(sys.argv[1:]))

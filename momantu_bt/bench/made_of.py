@@ -1,0 +1,132 @@
+"""What an episode is made of: versions, tree files, code, values. Another one is another episode.
+
+A digest of the code is among it, since the version of a package that is being worked on stays the
+same from one edit to the next.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.util
+import json
+import os.path
+import platform
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from functools import cache
+from importlib import metadata
+from pathlib import Path
+from typing import Any
+
+import momantu_bt
+from momantu_bt import plugins
+from momantu_bt.engine.build import skills_in
+from momantu_bt.record.versions import LIBRARIES
+from momantu_bt.tree.check import NO_WORLD
+from momantu_bt.tree.model import Document
+from momantu_bt.tree.registry import Registry
+from momantu_bt.tree.settings import Given
+
+DIGITS = 16
+_BESIDE = {"momantu_bt": ("bench", "cli", "diagnosis", "drawing", "page", "replay", "scaffold")}
+"""Parts of a package that no episode depends on."""
+
+
+def made_of(
+    document: Document,
+    registry: Registry,
+    *,
+    world: str | None = None,
+    robot: str | None = None,
+    values: Mapping[str, Any] | None = None,
+    max_time: float = 600.0,
+) -> dict[str, str]:
+    """All that decides an episode but its seed and its fault, by names that people understand.
+
+    Files count by their names relative to the main one and by their texts, so that another
+    machine finds the same.
+    """
+    world = world or document.world or NO_WORLD
+    if robot is None and world != NO_WORLD:
+        robot = registry.worlds[world].default_robot
+    found = {"momantu-bt": momantu_bt.__version__, "python": platform.python_version()}
+    found |= _libraries()
+    for package in _packages(document, world, robot):
+        found[f"the code of {package}"] = _code(package)
+    given = values.source if isinstance(values, Given) else {}
+    folder = Path(document.file).parent
+    for file, text in document.source.items():
+        if file not in given:
+            found[f"the file {os.path.relpath(file, folder)}"] = _digest(text.encode())
+    found["the world"] = world
+    found["the robot"] = robot or "none"
+    found["the values"] = json.dumps(dict(values or {}), sort_keys=True, default=str)
+    found["the time limit"] = f"{max_time:g} s"
+    return found
+
+
+def key_of(made: Mapping[str, str], seed: int, fault: str | None) -> str:
+    """The name of one episode: equal when and only when all that decides it is."""
+    return _digest(json.dumps([dict(made), seed, fault], sort_keys=True).encode())
+
+
+def difference(made: Mapping[str, str], other: Mapping[str, str]) -> tuple[str, ...]:
+    """Names of what differs, such as `the file bring_object.yaml`."""
+    names = {**made, **other}
+    return tuple(name for name in names if made.get(name) != other.get(name))
+
+
+def _digest(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()[:DIGITS]
+
+
+def _libraries() -> dict[str, str]:
+    """Versions of the libraries that a run may load; whether it will is not known yet."""
+    found = {}
+    for distribution in LIBRARIES.values():
+        with suppress(metadata.PackageNotFoundError):
+            found[distribution] = metadata.version(distribution)
+    return found
+
+
+def _packages(document: Document, world: str, robot: str | None) -> Iterator[str]:
+    """Packages with code that takes part: this one, and those of the plug-ins."""
+    wanted = {
+        plugins.SKILLS: skills_in(document),
+        plugins.WORLDS: (world,),
+        plugins.ROBOTS: (robot,),
+        plugins.SERVICES: plugins.installed(plugins.SERVICES),
+    }
+    found = {"momantu_bt"}
+    for group, names in wanted.items():
+        having = plugins.installed(group)
+        found |= {having[name].module.partition(".")[0] for name in names if name in having}
+    yield from sorted(found)
+
+
+@cache
+def _code(package: str) -> str:
+    """Digest of all files of a top-level package, or of a module that is one file."""
+    spec = importlib.util.find_spec(package)
+    if spec is None:
+        return "not found"
+    hashed = hashlib.sha256()
+    folders = [Path(folder) for folder in spec.submodule_search_locations or ()]
+    for folder in folders:
+        for path in _files(folder, _BESIDE.get(package, ())):
+            name = path.relative_to(folder).as_posix()
+            hashed.update(f"{name} {path.stat().st_size}\n".encode() + path.read_bytes())
+    if not folders and spec.origin is not None:
+        hashed.update(Path(spec.origin).read_bytes())
+    return hashed.hexdigest()[:DIGITS]
+
+
+def _files(folder: Path, beside: tuple[str, ...]) -> list[Path]:
+    """What lies in a package, but for what Python and editors leave behind."""
+    found = []
+    for path in sorted(folder.rglob("*")):
+        parts = path.relative_to(folder).parts
+        hidden = any(part.startswith(".") or part == "__pycache__" for part in parts)
+        if path.is_file() and not hidden and parts[0] not in beside:
+            found.append(path)
+    return found

@@ -1,0 +1,129 @@
+"""One episode as a process of its own, with a watchdog outside of it.
+
+`python -m momantu_bt.bench.episode SPEC ROW PARENT` runs in a session of its own, so that a hang
+in native code and whatever it started are killed together.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from contextlib import suppress
+from pathlib import Path
+
+from momantu_bt.bench.spec import EpisodeSpec, Row
+
+REPORT, HUNG, KILLED, CRASHED, REFUSED = "report", "hung", "killed", "crashed", "refused"
+"""How a process ended: it left its row; the watchdog ended it; a signal did; it exited without a
+row; it could not begin."""
+EXIT_REFUSED = 75
+"""An episode that cannot begin exits with this (EX_TEMPFAIL of sysexits.h), and says why."""
+ONE_THREAD = {"OMP_NUM_THREADS": "1", "LP_NUM_THREADS": "1"}
+"""Numerical libraries and the software renderer, each with one thread: episodes share the cores."""
+MOST_OUTPUT = 4000
+"""Characters of what a process said that are kept when it left no row."""
+
+
+class EpisodeProcess:
+    """One running episode. Use it as a context: leaving it ends the process and its children."""
+
+    def __init__(self, spec: EpisodeSpec) -> None:
+        self.spec = spec
+        self._folder = tempfile.TemporaryDirectory(prefix="momantu_bt_episode_")
+        folder = Path(self._folder.name)
+        self._row_file, self._output = folder / "row.json", folder / "output.txt"
+        told = folder / "spec.json"
+        told.write_text(json.dumps(spec.as_dict()), encoding="utf-8")
+        words = [str(told), str(self._row_file), str(os.getpid())]
+        with self._output.open("wb") as output:
+            self._process = subprocess.Popen(
+                [sys.executable, "-m", "momantu_bt.bench.episode", *words],
+                stdin=subprocess.DEVNULL,
+                stdout=output,
+                stderr=subprocess.STDOUT,
+                env={**os.environ, **ONE_THREAD, "PYTHONFAULTHANDLER": "1"},
+                start_new_session=True,
+            )
+        self._started = time.monotonic()
+        self._overdue = False
+
+    def __enter__(self) -> EpisodeProcess:
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        self.kill()
+
+    def wait(self, pause: float = 0.05) -> Row:
+        """Its row, when it has ended or the watchdog has ended it."""
+        while (row := self.poll()) is None:
+            time.sleep(pause)
+        return row
+
+    def poll(self) -> Row | None:
+        """Its row once it has ended, else None; past its limit it is killed."""
+        pid, status, usage = os.wait4(self._process.pid, os.WNOHANG)
+        wall = time.monotonic() - self._started
+        if pid == 0:
+            if wall > self.spec.limit and not self._overdue:
+                self._overdue = True
+                self._signal()
+            return None
+        self._signal()  # what it started and left behind
+        code = self._process.returncode = os.waitstatus_to_exitcode(status)
+        row = self._row(code)
+        row["memory_mb"] = round(usage.ru_maxrss / 1024.0, 1)
+        row["process_time_s"] = round(wall, 3)
+        row["unix_time"] = round(time.time(), 3)
+        self._folder.cleanup()
+        return row
+
+    def kill(self) -> None:
+        """End it and all it started; safe to call twice."""
+        if self._process.returncode is None:
+            self._signal()
+            self._process.wait()
+        self._folder.cleanup()
+
+    def _signal(self) -> None:
+        with suppress(ProcessLookupError, PermissionError):
+            os.killpg(self._process.pid, signal.SIGKILL)
+
+    def _row(self, code: int) -> Row:
+        row = self.spec_row()
+        told = self._told()
+        if told is not None:
+            return {**row, **told, "exit_code": code, "ended": REPORT}
+        if self._overdue:
+            ended = HUNG
+        elif code < 0:
+            ended = KILLED
+        else:
+            ended = REFUSED if code == EXIT_REFUSED else CRASHED
+        said = self._output.read_text(encoding="utf-8", errors="replace")[-MOST_OUTPUT:]
+        return {**row, "exit_code": code, "ended": ended, "output": said.strip()}
+
+    def spec_row(self) -> Row:
+        """What a row says of its episode before anything has happened."""
+        spec = self.spec
+        return {
+            "key": spec.key,
+            "tree": Path(spec.tree).name,
+            "seed": spec.seed,
+            "fault": spec.fault,
+            "made_of": dict(spec.made_of),
+            "status": None,
+            "success": None,
+        }
+
+    def _told(self) -> Row | None:
+        """The row that the process wrote; it is whole or not there."""
+        try:
+            told: Row = json.loads(self._row_file.read_text(encoding="utf-8"))
+        except FileNotFoundError:
+            return None
+        return told

@@ -1,0 +1,50 @@
+"""Seeds as people write them: `0:500`, `3,5,7`, `0:10,20:30`; and as they are told again."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+MOST = 1_000_000
+"""Seeds of one bench."""
+_PART = re.compile(r"(\d+)(?::(\d+))?")
+_VALID = "write 0:500 (500 itself is not among them), 3,5,7 or 0:10,20:30"
+
+
+class SeedsError(ValueError):
+    """These are no seeds; the message says what would be."""
+
+
+def parse_seeds(text: str) -> tuple[int, ...]:
+    """The seeds that a text means, in its order, each once.
+
+    Raises:
+        SeedsError: it is none of the forms, a range is empty, or there are too many.
+    """
+    found: dict[int, None] = {}
+    for part in text.split(","):
+        match = _PART.fullmatch(part.strip())
+        if match is None:
+            raise SeedsError(
+                f"{part.strip()!r} in --seeds {text} is no seed and no range; {_VALID}"
+            )
+        first = int(match[1])
+        end = first + 1 if match[2] is None else int(match[2])
+        if end <= first:
+            raise SeedsError(f"the range {part.strip()} in --seeds {text} is empty; {_VALID}")
+        if end - first > MOST or len(found) > MOST:
+            raise SeedsError(f"--seeds {text} are more than {MOST} seeds")
+        found.update(dict.fromkeys(range(first, end)))
+    return tuple(found)
+
+
+def seeds_text(seeds: Iterable[int]) -> str:
+    """Seeds in order, runs of three and more as ranges: `12, 40-47`."""
+    runs: list[list[int]] = []
+    for seed in sorted(set(seeds)):
+        if runs and seed == runs[-1][-1] + 1:
+            runs[-1].append(seed)
+        else:
+            runs.append([seed])
+    parts = [f"{run[0]}-{run[-1]}" if len(run) > 2 else ", ".join(map(str, run)) for run in runs]
+    return ", ".join(parts)

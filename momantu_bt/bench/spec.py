@@ -1,0 +1,51 @@
+"""One episode as it is asked for, and one as it went: plain data that travels between machines."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, fields
+from typing import Any, TypeAlias
+
+Row: TypeAlias = dict[str, Any]
+"""One finished episode, a line of `results.jsonl`; see `docs/bench.md` for its fields."""
+
+
+@dataclass(frozen=True, slots=True)
+class EpisodeSpec:
+    """What one episode is a pure function of, and where its record goes.
+
+    key: names the episode wherever it runs. tree: path of its file. world, robot: as asked for.
+    values: keys of the root's board, raw as in a file. max_time: simulated seconds. fault: as
+    written, None without one. record: a folder to make, None for none. limit: seconds of wall
+    time after which the process is ended from outside. made_of: whatever else its outcome
+    depends on, by name (versions, digests of files and code).
+    """
+
+    key: str
+    tree: str
+    seed: int
+    world: str | None = None
+    robot: str | None = None
+    values: Mapping[str, Any] = field(default_factory=dict)
+    max_time: float = 600.0
+    fault: str | None = None
+    record: str | None = None
+    limit: float = 900.0
+    made_of: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def name(self) -> str:
+        """For people: `seed 12`, or `seed 12 camera.dead`."""
+        return f"seed {self.seed}" + (f" {self.fault}" if self.fault else "")
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data for JSON."""
+        return asdict(self)
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> EpisodeSpec:
+        """The spec that `as_dict` gave; TypeError for another version's."""
+        known = {each.name for each in fields(cls)}
+        if unknown := set(data) - known:
+            raise TypeError(f"an episode of another version: unknown {', '.join(sorted(unknown))}")
+        return cls(**data)

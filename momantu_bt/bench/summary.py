@@ -1,0 +1,121 @@
+"""What many rows of one tree come to, as figures."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from momantu_bt.bench.blame import Blame, blame_table
+from momantu_bt.bench.intervals import Interval, quantile, wilson
+from momantu_bt.bench.outcome import succeeded
+from momantu_bt.bench.process import REPORT
+from momantu_bt.bench.spec import Row
+
+
+@dataclass(frozen=True, slots=True)
+class Spread:
+    """Median, 95th percentile and largest of some figures; NaN of none."""
+
+    median: float
+    p95: float
+    largest: float
+
+    @classmethod
+    def of(cls, values: Sequence[float]) -> Spread:
+        """The spread of these values."""
+        return cls(quantile(values, 0.5), quantile(values, 0.95), max(values, default=math.nan))
+
+    def as_dict(self) -> dict[str, float | None]:
+        """Plain data for JSON, which has no NaN."""
+        named = {"median": self.median, "p95": self.p95, "largest": self.largest}
+        return {key: None if math.isnan(value) else value for key, value in named.items()}
+
+
+@dataclass(frozen=True, slots=True)
+class Summary:
+    """Figures of some rows.
+
+    interval: Wilson's of the success rate. sim_time_s: of successes. speed: simulated seconds per
+    second of wall time. tries: how often nodes tried again, over all episodes; retried: in how
+    many episodes any did. claims: per skill, the auditor's counts. ended: how the processes did.
+    """
+
+    episodes: int
+    successes: int
+    interval: Interval
+    sim_time_s: Spread
+    speed: Spread
+    memory_mb: Spread
+    tries: int
+    retried: int
+    blame: tuple[tuple[Blame, list[int]], ...]
+    claims: dict[str, dict[str, int]]
+    incidents: dict[str, list[int]]
+    ended: dict[str, int]
+
+    @classmethod
+    def of(cls, rows: Sequence[Row]) -> Summary:
+        """The figures of these rows."""
+        good = [row for row in rows if succeeded(row)]
+        told = [row for row in rows if row["ended"] == REPORT]
+        tries = [row["tries"] for row in told]
+        return cls(
+            episodes=len(rows),
+            successes=len(good),
+            interval=wilson(len(good), len(rows)),
+            sim_time_s=Spread.of([row["sim_time_s"] for row in good]),
+            speed=Spread.of([_speed(row) for row in told if row["wall_time_s"] > 0.0]),
+            memory_mb=Spread.of([row["memory_mb"] for row in rows]),
+            tries=sum(tries),
+            retried=sum(count > 0 for count in tries),
+            blame=tuple(blame_table(rows)),
+            claims=_claims(told),
+            incidents=_incidents(told),
+            ended=dict(Counter(row["ended"] for row in rows)),
+        )
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data for JSON."""
+        return {
+            "episodes": self.episodes,
+            "successes": self.successes,
+            "interval": list(self.interval),
+            "sim_time_s": self.sim_time_s.as_dict(),
+            "speed": self.speed.as_dict(),
+            "memory_mb": self.memory_mb.as_dict(),
+            "tries": self.tries,
+            "retried": self.retried,
+            "blame": [
+                {"node": b.node, "place": b.place, "code": b.code, "seeds": seeds}
+                for b, seeds in self.blame
+            ],
+            "claims": self.claims,
+            "incidents": self.incidents,
+            "ended": self.ended,
+        }
+
+
+def _speed(row: Row) -> float:
+    speed: float = row["sim_time_s"] / row["wall_time_s"]
+    return speed
+
+
+def _claims(rows: Iterable[Row]) -> dict[str, dict[str, int]]:
+    """The counts of each skill, added up over episodes."""
+    found: dict[str, Counter[str]] = {}
+    for row in rows:
+        for skill, counts in (row.get("claims") or {}).items():
+            found.setdefault(skill, Counter()).update(counts)
+    return {skill: dict(found[skill]) for skill in sorted(found)}
+
+
+def _incidents(rows: Iterable[Row]) -> dict[str, list[int]]:
+    """Seeds by kind of incident, a seed for each of its incidents."""
+    found: dict[str, list[int]] = {}
+    for row in rows:
+        for incident in row.get("incidents") or ():
+            found.setdefault(incident["kind"], []).append(row["seed"])
+    return {kind: found[kind] for kind in sorted(found)}

@@ -1,0 +1,128 @@
+"""The figures of a bench as text."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+from momantu_bt.bench.blame import blame
+from momantu_bt.bench.outcome import succeeded
+from momantu_bt.bench.process import REPORT
+from momantu_bt.bench.seeds import seeds_text
+from momantu_bt.bench.spec import Row
+from momantu_bt.bench.summary import Spread, Summary
+
+MOST_SEEDS = 8
+"""Seeds that a line names."""
+
+
+def row_text(row: Row) -> str:
+    """One line: seed, how it ended, times, and why it failed."""
+    name = f"seed {row['seed']}" + (f" {row['fault']}" if row["fault"] else "")
+    if row["ended"] != REPORT:
+        return f"{row['tree']} {name}: {row['ended']} after {row['process_time_s']:.0f} s"
+    good = succeeded(row)
+    line = (
+        f"{row['tree']} {name}: {'success' if good else 'FAILED '} {row['sim_time_s']:6.1f} s "
+        f"simulated in {row['process_time_s']:.1f} s, {row['memory_mb']:.0f} MB"
+    )
+    if good:
+        return line
+    why = blame(row)
+    return f"{line}  {why.code} in {why.node}" + (f" ({why.place})" if why.place else "")
+
+
+def rate_text(successes: int, episodes: int, interval: tuple[float, float]) -> str:
+    """`99 of 100, 99.0 % (95 % interval 94.6 % to 99.8 %)`."""
+    if episodes == 0:
+        return "no episode yet"
+    low, high = interval
+    return (
+        (
+            f"{successes} of {episodes}, {successes / episodes:.1%} "
+            f"(95 % interval {low:.1%} to {high:.1%})"
+        )
+        .replace("%", " %")
+        .replace("95  %", "95 %")
+    )
+
+
+def summary_text(name: str, summary: Summary) -> str:
+    """All figures of one tree; tables that would be empty are left out."""
+    lines = [f"{name}: {rate_text(summary.successes, summary.episodes, summary.interval)}"]
+    lines += _figures(summary)
+    lines += _blame(summary)
+    lines += _claims(summary)
+    if summary.incidents:
+        lines.append("incidents, by the referee:")
+        lines += [
+            f"  {kind}: {len(seeds)} in {_seeds(seeds)}"
+            for kind, seeds in summary.incidents.items()
+        ]
+    return "\n".join(lines)
+
+
+def columns(rows: Sequence[Sequence[str]], indent: str = "  ") -> list[str]:
+    """Rows as lines, columns under each other; numbers to the right."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = []
+    for row in rows:
+        cells = [
+            cell.rjust(width) if _is_number(cell) else cell.ljust(width)
+            for cell, width in zip(row, widths, strict=True)
+        ]
+        lines.append(indent + "  ".join(cells).rstrip())
+    return lines
+
+
+def _is_number(cell: str) -> bool:
+    return cell.replace(".", "").replace("%", "").replace("-", "").strip().isdigit()
+
+
+def _figures(summary: Summary) -> Iterator[str]:
+    times = summary.sim_time_s
+    if not math.isnan(times.median):
+        yield (
+            f"  simulated time of successes: median {times.median:.1f} s, "
+            f"95th percentile {times.p95:.1f} s, longest {times.largest:.1f} s"
+        )
+    if not math.isnan(summary.speed.median):
+        yield f"  simulated seconds per second of wall time: median {summary.speed.median:.1f}"
+    yield f"  retries: {summary.tries}, in {summary.retried} of {summary.episodes} episodes"
+    if summary.episodes:
+        yield f"  memory of a process: {_memory(summary.memory_mb)}"
+    odd = {how: count for how, count in summary.ended.items() if how != REPORT}
+    if odd:
+        yield "  processes without a report: " + ", ".join(f"{n} {how}" for how, n in odd.items())
+
+
+def _memory(spread: Spread) -> str:
+    return f"median {spread.median:.0f} MB, largest {spread.largest:.0f} MB"
+
+
+def _blame(summary: Summary) -> list[str]:
+    if not summary.blame:
+        return []
+    failures = summary.episodes - summary.successes
+    rows = [("share", "failures", "code", "node", "line", "seeds")]
+    for each, seeds in summary.blame:
+        share = f"{len(seeds) / failures:.0%}".replace("%", " %")
+        rows.append((share, str(len(seeds)), each.code, each.node, each.place, _seeds(seeds)))
+    return ["why it failed:", *columns(rows)]
+
+
+def _claims(summary: Summary) -> list[str]:
+    if not summary.claims:
+        return []
+    names = ("runs", "successes", "false_successes", "failures", "false_failures")
+    rows = [("skill", *(name.replace("_", " ") for name in names))]
+    for skill, counts in summary.claims.items():
+        rows.append((skill, *(str(counts.get(name, 0)) for name in names)))
+    return ["what skills claimed, judged by ground truth:", *columns(rows)]
+
+
+def _seeds(seeds: Sequence[int]) -> str:
+    """Seeds as ranges, not too many."""
+    few = sorted(set(seeds))
+    more = f" and {len(few) - MOST_SEEDS} more" if len(few) > MOST_SEEDS else ""
+    return f"seed{'s' if len(few) > 1 else ''} {seeds_text(few[:MOST_SEEDS])}{more}"

@@ -1,0 +1,158 @@
+"""`momantu-bt bench`: how often a tree works, and why not."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from momantu_bt.cli.bench_setup import (
+    EXIT_INCOMPLETE,
+    EXIT_INTERRUPTED,
+    EXIT_OK,
+    RECORD,
+    HowToRun,
+    choose,
+    engine_of,
+    guarded,
+    plan_of,
+    say_others,
+    say_refused,
+    shard_of,
+)
+
+if TYPE_CHECKING:
+    from momantu_bt.bench.plan import Plan
+    from momantu_bt.bench.spec import Row
+    from momantu_bt.tree.model import Document
+
+OUT = Path("runs/bench")
+
+
+def bench(
+    tree: Annotated[str, typer.Argument(help="A tree file, or the name of a bundled tree.")],
+    seeds: Annotated[str, typer.Option(help="0:500, 3,5,7 or 0:10,20:30.")] = "0:30",
+    jobs: Annotated[
+        int | None, typer.Option(min=1, help="Episodes at a time; else one per core.")
+    ] = None,
+    world: Annotated[str | None, typer.Option(help="A world's name; else the tree's own.")] = None,
+    robot: Annotated[str | None, typer.Option(help="A robot's name; else the world's own.")] = None,
+    set_: Annotated[
+        list[str] | None, typer.Option("--set", help="key=value: a value of the tree's board.")
+    ] = None,
+    values: Annotated[Path | None, typer.Option(help="A YAML file of values.")] = None,
+    max_time: Annotated[
+        float, typer.Option(min=0.05, help="Simulated seconds after which an episode fails.")
+    ] = 600.0,
+    episode_limit: Annotated[
+        float, typer.Option(min=1.0, help="Seconds of wall time after which one is killed.")
+    ] = 900.0,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder of the results; else runs/bench/<tree>.")
+    ] = None,
+    shard: Annotated[
+        str | None, typer.Option(metavar="I/N", help="Only every N-th episode, from the I-th.")
+    ] = None,
+    engine: Annotated[str, typer.Option(help="What runs the episodes: local.")] = "local",
+    record: Annotated[
+        str, typer.Option(help="Which episodes leave a record: failures, all or none.")
+    ] = "failures",
+    report: Annotated[
+        Path | None, typer.Option(help="Write figures and rows to this JSON.")
+    ] = None,
+    demand: Annotated[
+        float | None,
+        typer.Option(min=0.0, max=1.0, help="Exit 1 when the rate's lower limit is below it."),
+    ] = None,
+) -> int:
+    """Run a tree many times, each time with another seed and in a process of its own.
+
+    Rows are kept in a folder as they come. The same command goes on where it was stopped; rows
+    of other files, versions or options are not mixed in.
+
+    Exit code 0: every episode has a row, whatever it says; 1: some are missing, or --demand is
+    not met; 2: the tree or the arguments are wrong; 130: interrupted.
+
+    Examples:
+      momantu-bt bench bring_object --seeds 0:100
+      momantu-bt bench trees/bring_object.yaml --seeds 0:500 --jobs 8 --report bench.json
+      momantu-bt bench my_tree.yaml --seeds 0:50 --set "speed=0.5 m/s" --demand 0.9
+    """
+    options = _Options(out, shard, engine, jobs, report, demand)
+
+    def start() -> int:
+        from momantu_bt.bench.seeds import parse_seeds
+        from momantu_bt.cli.given import given_values
+
+        chosen = choose(record, RECORD, "--record")
+        board = given_values(set_ or [], values)
+        how = HowToRun(world, robot, board, max_time, episode_limit, chosen)
+        plan, document = plan_of(tree, parse_seeds(seeds), how)
+        return _bench(plan, document, options)
+
+    return guarded(start)
+
+
+@dataclass(frozen=True, slots=True)
+class _Options:
+    out: Path | None
+    shard: str | None
+    engine: str
+    jobs: int | None
+    report: Path | None
+    demand: float | None
+
+
+def _bench(plan: Plan, document: Document, options: _Options) -> int:
+    """Run what is missing, then say what all of it comes to."""
+    from momantu_bt.bench.carry_out import carry_out
+    from momantu_bt.bench.plan import Wanted
+    from momantu_bt.bench.store import Store
+    from momantu_bt.cli.bench_progress import progress
+    from momantu_bt.record.files import check_writable
+
+    part = plan.wanted.shard(*shard_of(options.shard))
+    engine = engine_of(options.engine, options.jobs)
+    if options.report is not None:
+        check_writable(options.report)
+    folder = options.out or OUT / Path(plan.tree).stem
+    with Store(folder) as store:
+        say_others(plan, store)
+        plan.wanted.united(Wanted.read(folder)).write(folder)
+        ended = carry_out([(plan.of(part), store)], engine, progress())
+        rows, missing = part.present(store.rows), part.missing(store.rows)
+    _say(plan, rows, options)
+    say_refused(ended)
+    if missing:
+        typer.echo(f"missing: {'; '.join(missing)}; the same command goes on there", err=True)
+    if ended.interrupted:
+        return EXIT_INTERRUPTED
+    return EXIT_INCOMPLETE if missing or _falls_short(rows, options.demand) else EXIT_OK
+
+
+def _say(plan: Plan, rows: Sequence[Row], options: _Options) -> None:
+    """Print the figures, and write them if that is wanted."""
+    from momantu_bt.bench.report import report, write_report
+    from momantu_bt.bench.summary import Summary
+    from momantu_bt.bench.tables import summary_text
+
+    typer.echo(summary_text(Path(plan.tree).name, Summary.of(rows)))
+    if options.report is not None:
+        write_report(options.report, report(rows, {}))
+        typer.echo(f"report: {options.report}")
+
+
+def _falls_short(rows: Sequence[Row], demand: float | None) -> bool:
+    """Whether the rate is not surely as high as demanded; said in a line."""
+    from momantu_bt.bench.summary import Summary
+
+    if demand is None:
+        return False
+    low, _ = Summary.of(rows).interval
+    if low >= demand:
+        return False
+    typer.echo(f"the lower limit {100 * low:.1f} % is below {100 * demand:g} %", err=True)
+    return True

@@ -1,0 +1,135 @@
+"""What `bench` and `compare` share: from arguments to a plan, an engine, an exit code."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from momantu_bt.bench.carry_out import Ended
+    from momantu_bt.bench.engine import Engine
+    from momantu_bt.bench.plan import Plan
+    from momantu_bt.bench.store import Store
+    from momantu_bt.tree.model import Document
+    from momantu_bt.tree.settings import Given
+
+EXIT_OK, EXIT_INCOMPLETE, EXIT_WRONG_ARGUMENTS, EXIT_INTERRUPTED = 0, 1, 2, 130
+RECORD = ("failures", "all", "none")
+
+
+class ArgumentError(Exception):
+    """An argument is wrong; the message says what would be right."""
+
+
+@dataclass(frozen=True, slots=True)
+class HowToRun:
+    """How episodes are run, whatever the tree. values: of the root's board."""
+
+    world: str | None
+    robot: str | None
+    values: Given
+    max_time: float
+    limit: float
+    record: str
+    faults: Sequence[str | None] = field(default=(None,))
+
+
+def plan_of(tree: str, seeds: Sequence[int], how: HowToRun) -> tuple[Plan, Document]:
+    """Check a tree and say which of its episodes are wanted, and how.
+
+    Raises:
+        TreeNotFound, TreeError, LaunchError, PluginError: it cannot run.
+    """
+    from momantu_bt.bench.made_of import made_of
+    from momantu_bt.bench.plan import Plan, Wanted
+    from momantu_bt.tree.load import load
+    from momantu_bt.tree.lookup import find
+    from momantu_bt.tree.registry import Registry
+
+    registry = Registry.installed()
+    place = str(find(tree))
+    told: dict[str, Any] = {"world": how.world, "robot": how.robot}
+    document = load(place, registry, values=how.values, **told).document
+    _check_world(document, how.world, registry)
+    told |= {"max_time": how.max_time}
+    made = made_of(document, registry, values=how.values, **told)
+    wanted = Wanted(tuple((seed, fault) for seed in seeds for fault in how.faults), made)
+    values: Mapping[str, Any] = dict(how.values)
+    return Plan(place, wanted, values=values, limit=how.limit, record=how.record, **told), document
+
+
+def _check_world(document: Document, world: str | None, registry: Any) -> None:
+    from momantu_bt.engine.build import skills_in
+    from momantu_bt.engine.launch import LaunchError
+    from momantu_bt.tree.check import NO_WORLD
+
+    skills = skills_in(document)
+    if skills and (world or document.world or NO_WORLD) == NO_WORLD:
+        raise LaunchError(
+            f"{document.main} needs a world for {', '.join(skills)}; worlds: "
+            f"{', '.join(registry.worlds) or 'none'}; give one with --world"
+        )
+
+
+def choose(value: str, valid: Sequence[str], option: str) -> str:
+    """A value that is one of a few; ArgumentError says which."""
+    from momantu_bt.tree.problems import valid_names
+
+    if value not in valid:
+        raise ArgumentError(f"{option} {value}: {valid_names(value, valid, 'valid values')}")
+    return value
+
+
+def shard_of(text: str | None) -> tuple[int, int]:
+    """`2/4` as (2, 4); the whole is (1, 1)."""
+    if text is None:
+        return 1, 1
+    number, _, of = text.partition("/")
+    valid = number.isdecimal() and of.isdecimal() and 1 <= int(number) <= int(of)
+    if not valid:
+        raise ArgumentError(f"--shard {text}: expected I/N with I from 1 to N, such as 2/4")
+    return int(number), int(of)
+
+
+def engine_of(name: str, jobs: int | None) -> Engine:
+    """The engine of that name."""
+    from momantu_bt.bench.local_engine import LocalEngine
+
+    choose(name, ("local",), "--engine")
+    return LocalEngine(jobs or os.cpu_count() or 1)
+
+
+def say_others(plan: Plan, store: Store) -> None:
+    """Tell how many rows of the folder are left out, and why."""
+    for names, count in plan.wanted.others(store.rows.values()).items():
+        rows = "1 row is" if count == 1 else f"{count} rows are"
+        typer.echo(f"{rows} left out: {' and '.join(names)} changed since", err=True)
+
+
+def say_refused(ended: Ended) -> None:
+    """Tell which episodes could not begin."""
+    for row in ended.refused[-1:]:
+        typer.echo(
+            f"momantu-bt: {len(ended.refused)} episodes could not begin; "
+            f"of seed {row['seed']}: {row['output']}",
+            err=True,
+        )
+
+
+def guarded(start: Callable[[], int]) -> int:
+    """Run; what is wrong with arguments, files or folders becomes a sentence and an exit code."""
+    from momantu_bt.bench.seeds import SeedsError
+    from momantu_bt.bench.store import StoreError
+    from momantu_bt.engine.launch import LaunchError
+    from momantu_bt.engine.makers import BuildError
+    from momantu_bt.record.files import OutputError
+
+    try:
+        return start()
+    except (ArgumentError, SeedsError, StoreError, LaunchError, BuildError, OutputError) as error:
+        typer.echo(f"momantu-bt: {error}", err=True)
+        return EXIT_WRONG_ARGUMENTS

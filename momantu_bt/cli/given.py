@@ -1,0 +1,29 @@
+"""What `--values` and `--set` give, the latter winning."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from momantu_bt.tree.settings import Given
+
+
+def given_values(settings: Sequence[str], file: Path | None) -> Given:
+    """Values of the root's board.
+
+    Raises:
+        LaunchError: a setting is none.
+        TreeNotFound, TreeError: the file cannot be read, or is no mapping.
+    """
+    from momantu_bt.engine.launch import LaunchError
+    from momantu_bt.tree.load import read_values
+    from momantu_bt.tree.settings import Given
+
+    board = Given() if file is None else read_values(file)
+    try:
+        board.set(settings)
+    except ValueError as error:
+        raise LaunchError(str(error)) from None
+    return board

@@ -1,0 +1,141 @@
+"""Benches of trees so small that an episode is little more than a start of Python.
+
+The plug-ins stand in a folder of their own, so that the processes of episodes find them too.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from momantu_bt import plugins
+
+SMALL = """
+momantu_bt: 1
+main: Main
+world: none
+values: {n: 1, pause: 100 ms}
+trees:
+  Main:
+    - wait: $pause
+    - recover:
+        attempts: 2
+        try:
+          - Check: {k: $n}
+        catch:
+          TOO_SMALL:
+            - script: $n += 1
+  Check:
+    inputs: {k: int}
+    if: $k > 1
+    then: succeed
+    else: {fail: {code: TOO_SMALL, message: "k is ${k}"}}
+"""
+STALLING = """
+momantu_bt: 1
+main: Main
+world: by_seed
+trees:
+  Main:
+    - stall:
+        seeds: {hang: [1], crash: [2], kill: [3], fail: [4]}
+"""
+PLUGINS = '''
+"""A skill that goes wrong on some seeds, in a world that tells it the seed."""
+
+import ctypes
+import os
+import signal
+from typing import Any
+
+from momantu_bt import Failure, In, Pose2D, Robot, Run, Skill
+from momantu_bt.testing import ScriptedRobot, ScriptedWorld, scripted_site, small_robot
+from momantu_bt.world import Verdict, WorldError
+
+
+class Stall(Skill):
+    """Do what is said for the seed, which is where the robot stands."""
+
+    seeds: Any = In(doc="numbers of seeds by what happens on them")
+    failures = {"STALLED": "it was told to"}
+
+    def run(self, robot: Robot) -> Run:
+        yield "begin"
+        seed = round(robot.state().odom_from_base.position[0])
+        for how, on in self.seeds.items():
+            if seed in on:
+                globals()[how]()
+
+
+def hang():
+    ctypes.PyDLL(None).sleep(1000)  # holds the interpreter's lock: no thread of Python runs
+
+
+def crash():
+    os._exit(9)
+
+
+def kill():
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def fail():
+    raise Failure("STALLED", "it was told to, 3 times")
+
+
+class BySeed:
+    """A world entry: seed 5 is denied by the referee, seed 6 cannot be opened."""
+
+    name, default_robot = "by_seed", "small"
+
+    def site(self):
+        return scripted_site()
+
+    def open(self, description, seed, *, referee=True):
+        if seed == 6:
+            raise WorldError("there is no world for seed 6")
+        denied = Verdict(False, (f"the can is {seed}.25 m away",))
+        robot = ScriptedRobot(description, base=Pose2D(float(seed), 0.0, 0.0))
+        return ScriptedWorld(robot, verdict_of=lambda _: denied if seed == 5 else Verdict(True))
+
+
+world = BySeed()
+'''
+ENTRIES = """
+[momantu_bt.skills]
+stall = stall_plugins:Stall
+[momantu_bt.worlds]
+by_seed = stall_plugins:world
+[momantu_bt.robots]
+small = stall_plugins:small_robot
+"""
+
+
+def _write(file: Path, text: str) -> str:
+    file.write_text(text, encoding="utf-8")
+    return str(file)
+
+
+@pytest.fixture
+def small(tmp_path: Path) -> str:
+    """A tree without skills, that tries once again and succeeds."""
+    return _write(tmp_path / "small.yaml", SMALL)
+
+
+@pytest.fixture
+def stalling(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+    """A tree that goes wrong in another way on each of seeds 1 to 6."""
+    folder = tmp_path / "site"
+    facts = folder / "stall_plugins-1.0.dist-info"
+    facts.mkdir(parents=True)
+    _write(folder / "stall_plugins.py", PLUGINS)
+    _write(facts / "METADATA", "Metadata-Version: 2.1\nName: stall-plugins\nVersion: 1.0\n")
+    _write(facts / "entry_points.txt", ENTRIES)
+    path = os.environ.get("PYTHONPATH", "")
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join(filter(None, [str(folder), path])))
+    monkeypatch.syspath_prepend(folder)
+    find = plugins.entry_points
+    monkeypatch.setattr(plugins, "entry_points", lambda group: find(group=group))
+    return _write(tmp_path / "stalling.yaml", STALLING)

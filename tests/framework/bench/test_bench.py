@@ -1,0 +1,228 @@
+"""`momantu-bt bench` from its arguments to its last line, with real processes."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from momantu_bt.bench.store import RESULTS, Store, read_rows
+from momantu_bt.cli import main
+
+Out = pytest.CaptureFixture[str]
+
+
+def bench(*words: object) -> int:
+    return main(["bench", *map(str, words)])
+
+
+def seeds_in(folder: Path) -> list[int]:
+    return sorted(row["seed"] for row in read_rows(folder))
+
+
+def test_it_counts_and_writes_and_goes_on(small: str, tmp_path: Path, capsys: Out) -> None:
+    out, report = tmp_path / "out", tmp_path / "report.json"
+    assert bench(small, "--seeds", "0:2", "--out", out, "--jobs", 2) == 0
+    said = capsys.readouterr().out
+    assert "2 of 2, 100.0 % (95 % interval 34.2 % to 100.0 %)" in said
+    assert bench(small, "--seeds", "1:4", "--out", out, "--report", report) == 0
+    said = capsys.readouterr().out
+    assert "1 episodes are there already; 2 to run" in said
+    assert "3 of 3" in said
+    assert seeds_in(out) == [0, 1, 2, 3]
+    told = json.loads(report.read_text())
+    assert (told["episodes"], told["successes"], told["tries"]) == (3, 3, 3)
+    assert told["interval"] == [pytest.approx(0.4385, abs=1e-4), 1.0]
+    assert [row["seed"] for row in told["rows"]] == [1, 2, 3]
+    assert {row["status"] for row in told["rows"]} == {"SUCCESS"}
+    assert len({row["fingerprint"] for row in told["rows"]}) == 1
+    assert all(row["memory_mb"] > 10 for row in told["rows"])
+
+
+def test_a_process_that_goes_wrong_is_a_row_and_harms_no_other(
+    stalling: str, tmp_path: Path, capsys: Out
+) -> None:
+    out = tmp_path / "out"
+    assert bench(stalling, "--seeds", "0,2:6", "--out", out, "--record", "failures") == 0
+    rows = {row["seed"]: row for row in read_rows(out)}
+    ended = {seed: (row["ended"], row["exit_code"]) for seed, row in rows.items()}
+    assert ended == {
+        0: ("report", 0),
+        2: ("crashed", 9),
+        3: ("killed", -9),
+        4: ("report", 0),
+        5: ("report", 0),
+    }
+    said = capsys.readouterr().out
+    assert "1 of 5" in said
+    assert "STALLED" in said
+    assert "stalling.yaml:7" in said
+    assert "the can is # m away" in said
+    assert "processes without a report: 1 crashed, 1 killed" in said
+    records = {int(path.name.split("-")[1]) for path in (out / "records").iterdir()}
+    assert records == {2, 3, 4, 5}
+
+
+def test_a_hang_in_native_code_is_ended_from_outside(
+    stalling: str, tmp_path: Path, capsys: Out
+) -> None:
+    words = (stalling, "--seeds", "1", "--out", tmp_path / "out", "--episode-limit", 3)
+    assert bench(*words) == 0
+    (row,) = read_rows(tmp_path / "out")
+    assert (row["ended"], row["exit_code"]) == ("hung", -signal.SIGKILL)
+    assert "hung, exit code -9" in capsys.readouterr().out
+    assert not _processes_of(tmp_path)
+
+
+def _processes_of(folder: Path) -> list[str]:
+    """Command lines of processes of this machine that came from benches of the folder."""
+    found = []
+    for each in Path("/proc").glob("[0-9]*/environ"):
+        try:
+            if str(folder) in each.read_bytes().decode(errors="replace"):
+                found.append((each.parent / "cmdline").read_text())
+        except OSError:
+            continue
+    return [line for line in found if "momantu_bt.bench.episode" in line]
+
+
+def test_an_episode_that_cannot_begin_is_missing_and_says_why(
+    stalling: str, tmp_path: Path, capsys: Out
+) -> None:
+    assert bench(stalling, "--seeds", "5:8", "--out", tmp_path / "out") == 1
+    said = capsys.readouterr()
+    assert "missing: seeds 6;" in said.err
+    assert "there is no world for seed 6" in said.err
+    assert seeds_in(tmp_path / "out") == [5, 7]
+
+
+def test_rows_of_another_tree_are_left_out_and_named(
+    small: str, tmp_path: Path, capsys: Out
+) -> None:
+    out, report = tmp_path / "out", tmp_path / "report.json"
+    assert bench(small, "--seeds", "0:2", "--out", out) == 0
+    assert bench(small, "--seeds", "0:1", "--out", out, "--set", "n=0") == 0
+    assert "2 rows are left out: the values changed since" in capsys.readouterr().err
+    Path(small).write_text(Path(small).read_text().replace("attempts: 2", "attempts: 3"))
+    assert bench(small, "--seeds", "0:1", "--out", out, "--report", report) == 0
+    said = capsys.readouterr().err
+    assert "2 rows are left out: the file small.yaml changed since" in said
+    assert "1 row is left out: the file small.yaml and the values changed since" in said
+    assert json.loads(report.read_text())["episodes"] == 1
+    assert len(read_rows(out)) == 4
+
+
+def test_shards_share_the_episodes_and_every_one_is_run_once(small: str, tmp_path: Path) -> None:
+    for number in (1, 2, 3):
+        words = ("--seeds", "0:7", "--shard", f"{number}/3", "--out", tmp_path / str(number))
+        assert bench(small, *words) == 0
+    found = [seeds_in(tmp_path / str(number)) for number in (1, 2, 3)]
+    assert found == [[0, 3, 6], [1, 4], [2, 5]]
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--seeds", "5:5"], "empty; write 0:500"),
+        (["--seeds", "all"], "is no seed and no range"),
+        (["--world", "moon"], "no world is called 'moon'"),
+        (["--shard", "3/2"], "expected I/N"),
+        (["--engine", "steam"], "valid values: local"),
+        (["--record", "fail"], "did you mean failures?"),
+        (["--out", "{tree}"], "cannot be written"),
+        (["--report", "/nowhere/r.json"], "there is no folder"),
+        (["--set", "m=3"], "the tree has no value 'm'"),
+        (["--jobs", "0"], "--jobs"),
+    ],
+)
+def test_wrong_arguments_are_a_sentence_and_nothing_starts(
+    small: str, tmp_path: Path, capsys: Out, words: list[str], said: str
+) -> None:
+    filled = [word.format(tree=small) for word in words]
+    out = [] if "--out" in words else ["--out", tmp_path / "out"]
+    assert bench(small, *out, *filled) == 2
+    told = capsys.readouterr()
+    assert said in told.err
+    assert "Traceback" not in told.err
+    assert told.out == ""
+    assert not (tmp_path / "out" / RESULTS).exists()
+
+
+def test_a_tree_with_errors_is_told_as_check_does(tmp_path: Path, capsys: Out) -> None:
+    file = tmp_path / "bad.yaml"
+    file.write_text("momantu_bt: 1\nmain: Main\ntrees: {Main: [{wiat: 1 s}]}\n")
+    assert bench(file, "--out", tmp_path / "out") == 2
+    assert f"{file}:3" in capsys.readouterr().err
+
+
+def test_a_folder_in_use_is_refused(small: str, tmp_path: Path, capsys: Out) -> None:
+    with Store(tmp_path / "out"):
+        assert bench(small, "--out", tmp_path / "out") == 2
+    assert "another bench is writing" in capsys.readouterr().err
+
+
+def test_a_demand_that_is_not_met_is_exit_code_1(small: str, tmp_path: Path, capsys: Out) -> None:
+    words = (small, "--seeds", "0:2", "--out", tmp_path / "out", "--demand")
+    assert bench(*words, 0.3) == 0
+    assert bench(*words, 0.5) == 1
+    assert "34.2 % is below 50 %" in capsys.readouterr().err
+
+
+def _started(small: str, out: Path, **more: Any) -> subprocess.Popen[str]:
+    words = [
+        "-m",
+        "momantu_bt",
+        "bench",
+        small,
+        "--seeds",
+        "0:40",
+        "--out",
+        str(out),
+        "--jobs",
+        "2",
+    ]
+    return subprocess.Popen(
+        [sys.executable, *words],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        env={**os.environ, "PYTHONUNBUFFERED": "1"},
+        **more,
+    )
+
+
+@pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGKILL])
+def test_a_bench_that_is_ended_goes_on_without_loss_or_double(
+    small: str, tmp_path: Path, capsys: Out, monkeypatch: pytest.MonkeyPatch, end: signal.Signals
+) -> None:
+    monkeypatch.setenv("OF_THIS_TEST", str(tmp_path))
+    out = tmp_path / "out"
+    running = _started(small, out)
+    assert running.stdout is not None
+    for line in running.stdout:
+        if line.startswith("[3/40]"):
+            break
+    running.send_signal(end)
+    said = running.communicate(timeout=60)[0]
+    had = seeds_in(out)
+    assert 3 <= len(had) < 40
+    if end is signal.SIGINT:
+        assert running.returncode == 130, said
+        assert "missing: seeds" in said
+        assert "the same command goes on there" in said
+    for _ in range(100):
+        if not _processes_of(tmp_path):
+            break
+        time.sleep(0.1)
+    assert not _processes_of(tmp_path)
+    last = max(had) + 2
+    assert bench(small, "--seeds", f"0:{last}", "--out", out, "--jobs", 2) == 0
+    assert f"{len(had)} episodes are there already" in capsys.readouterr().out
+    assert seeds_in(out) == list(range(last))
