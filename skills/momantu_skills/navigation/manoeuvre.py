@@ -22,7 +22,7 @@ BACKS = 0.15
 """m between the retreats that are tried."""
 FARTHEST_BACK = 1.2
 """m of retreat at most."""
-HOP = 1.2
+HOP = 1.3
 """m that are driven straight between two turns on the spot, at most."""
 TURN_TIME = 1.0
 """rad/s on average over a turn, for comparing manoeuvres."""

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from momantu_skills.navigation.arrive import arrive, within
 from momantu_skills.navigation.cruise import leave
 from momantu_skills.navigation.manoeuvre import (
+    HOP,
     approach_is_sure,
     hop_bearing,
     prepare,
@@ -104,7 +105,7 @@ def test_a_hop_points_at_the_goal(obedient: Any, offset: Pose2D) -> None:
     base = obedient(GOAL @ offset)
     bearing = hop_bearing(base, GOAL)
     way = math.hypot(offset.x, offset.y)
-    assert (bearing is None) == (not 0.02 < way < 1.2)
+    assert (bearing is None) == (not 0.02 < way < HOP)
     if bearing is not None:
         there = base.pose() @ Pose2D(0.0, 0.0, bearing - base.pose().yaw) @ Pose2D(way, 0.0)
         assert there.distance_to(GOAL) < 1e-9
