@@ -33,8 +33,9 @@ STEP = 0.1
 """s per step of the simulated approach."""
 LONGEST = 12.0
 """s that an approach may take."""
-EXPECTED = 8.0
-"""s within which a simulated approach must end: the real one may creep longer than it."""
+CRAWL = 0.5 * CREEP
+"""m/s: an approach so bent that it is slower than this does not count as one. How long it crawls
+hangs on millimetres, so that what is simulated says little about what happens."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,10 +115,12 @@ def _simulate(
     c = math.cos(goal[2])
     s = math.sin(goal[2])
     stopping = False
-    for i in range(int(EXPECTED / STEP)):
+    for i in range(int(LONGEST / STEP)):
         if not stopping:
             to_v, to_w = _law(x, y, yaw, goal[0], goal[1], goal[2], bounds[0])
             stopping = to_v == 0.0
+            if not stopping and to_v < CRAWL:
+                break
         if stopping:
             to_v, to_w = 0.0, 0.0
         v += min(max(to_v - v, -bounds[1] * STEP), bounds[1] * STEP)
@@ -132,4 +135,4 @@ def _simulate(
             dy = y - goal[1]
             turn = math.atan2(math.sin(yaw - goal[2]), math.cos(yaw - goal[2]))
             return c * dx + s * dy, -s * dx + c * dy, turn, least, i * STEP
-    return 1e9, 1e9, 1e9, least, EXPECTED
+    return 1e9, 1e9, 1e9, least, LONGEST
