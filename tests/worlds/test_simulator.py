@@ -6,6 +6,7 @@ import dataclasses
 import math
 import subprocess
 import sys
+import weakref
 
 import numpy as np
 import pytest
@@ -206,3 +207,14 @@ def test_another_seed_measures_differently_but_moves_alike() -> None:
         first.robot.read("laser").ranges,  # type: ignore[union-attr]
         second.robot.read("laser").ranges,  # type: ignore[union-attr]
     )
+
+
+def test_a_closed_simulator_is_gone_once_another_is_built() -> None:
+    """Also when something that lives on in a circle held it, as a run does."""
+    before = empty_room()
+    before.itself = before  # type: ignore[attr-defined]
+    lives = weakref.ref(before)
+    before.close()
+    del before
+    empty_room()
+    assert lives() is None

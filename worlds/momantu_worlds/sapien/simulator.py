@@ -14,6 +14,7 @@ from momantu_worlds.sapien.building import add_bodies, add_lights
 from momantu_worlds.sapien.camera import Camera
 from momantu_worlds.sapien.config import STEP, SUB_STEPS, Physics, SimulatorConfig
 from momantu_worlds.sapien.laser import Laser
+from momantu_worlds.sapien.memory import tidy
 from momantu_worlds.sapien.poses import transform_of
 from momantu_worlds.sapien.rendering import render_system
 from momantu_worlds.sapien.robot import Sensor, SimulatedRobot
@@ -51,6 +52,7 @@ class Simulator:
         Raises:
             WorldError: the robot cannot be simulated, or SAPIEN cannot render.
         """
+        tidy()
         self.config = config or SimulatorConfig()
         self._ticks = 0
         self.scene = _new_scene(self.config.physics, render)
