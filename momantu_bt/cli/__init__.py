@@ -33,6 +33,7 @@ TRACEBACK = "MOMANTU_BT_TRACEBACK"
 VERBS = {
     "run": "Run a tree.",
     "bench": "Run a tree many times and say how often it works, and why not.",
+    "compare": "Run two trees on the same seeds and say which works more often.",
     "check": "Say everything that is wrong with tree files.",
     "convert": "Write a tree in the other spelling, YAML or BehaviorTree.CPP's XML.",
     "show": "Print a tree in plain words or as a picture, or the difference of two.",

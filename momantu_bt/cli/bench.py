@@ -13,12 +13,15 @@ from momantu_bt.cli.bench_setup import (
     EXIT_INCOMPLETE,
     EXIT_INTERRUPTED,
     EXIT_OK,
+    OUT,
     RECORD,
     HowToRun,
     choose,
     engine_of,
     guarded,
+    keep_plan,
     plan_of,
+    say_missing,
     say_others,
     say_refused,
     shard_of,
@@ -28,8 +31,6 @@ if TYPE_CHECKING:
     from momantu_bt.bench.plan import Plan
     from momantu_bt.bench.spec import Row
     from momantu_bt.tree.model import Document
-
-OUT = Path("runs/bench")
 
 
 def bench(
@@ -109,7 +110,6 @@ class _Options:
 def _bench(plan: Plan, document: Document, options: _Options) -> int:
     """Run what is missing, then say what all of it comes to."""
     from momantu_bt.bench.carry_out import carry_out
-    from momantu_bt.bench.plan import Wanted
     from momantu_bt.bench.store import Store
     from momantu_bt.cli.bench_progress import progress
     from momantu_bt.record.files import check_writable
@@ -121,13 +121,12 @@ def _bench(plan: Plan, document: Document, options: _Options) -> int:
     folder = options.out or OUT / Path(plan.tree).stem
     with Store(folder) as store:
         say_others(plan, store)
-        plan.wanted.united(Wanted.read(folder)).write(folder)
+        keep_plan(plan, store)
         ended = carry_out([(plan.of(part), store)], engine, progress())
         rows, missing = part.present(store.rows), part.missing(store.rows)
     _say(plan, rows, options)
     say_refused(ended)
-    if missing:
-        typer.echo(f"missing: {'; '.join(missing)}; the same command goes on there", err=True)
+    say_missing(missing)
     if ended.interrupted:
         return EXIT_INTERRUPTED
     return EXIT_INCOMPLETE if missing or _falls_short(rows, options.demand) else EXIT_OK

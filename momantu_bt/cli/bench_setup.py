@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import typer
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
     from momantu_bt.tree.settings import Given
 
 EXIT_OK, EXIT_INCOMPLETE, EXIT_WRONG_ARGUMENTS, EXIT_INTERRUPTED = 0, 1, 2, 130
+OUT = Path("runs/bench")
+"""Where results are kept unless something else is said, in a folder for each tree."""
 RECORD = ("failures", "all", "none")
 
 
@@ -108,6 +111,19 @@ def say_others(plan: Plan, store: Store) -> None:
     for names, count in plan.wanted.others(store.rows.values()).items():
         rows = "1 row is" if count == 1 else f"{count} rows are"
         typer.echo(f"{rows} left out: {' and '.join(names)} changed since", err=True)
+
+
+def keep_plan(plan: Plan, store: Store) -> None:
+    """Note in the folder which episodes it is to hold, beside those that it already was."""
+    from momantu_bt.bench.plan import Wanted
+
+    plan.wanted.united(Wanted.read(store.folder)).write(store.folder)
+
+
+def say_missing(missing: Sequence[str]) -> None:
+    """Tell which episodes have no row."""
+    if missing:
+        typer.echo(f"missing: {'; '.join(missing)}; the same command goes on there", err=True)
 
 
 def say_refused(ended: Ended) -> None:

@@ -1,0 +1,106 @@
+"""Two trees on the same seeds: which of them works where, and whether that is chance."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from momantu_bt.bench.intervals import Interval, mcnemar, paired_difference, quantile
+from momantu_bt.bench.outcome import succeeded
+from momantu_bt.bench.seeds import seeds_text
+from momantu_bt.bench.spec import Row
+
+
+@dataclass(frozen=True, slots=True)
+class Paired:
+    """Seeds by who succeeded. slower: s, A's simulated time minus B's where both succeeded."""
+
+    both: tuple[int, ...]
+    only_a: tuple[int, ...]
+    only_b: tuple[int, ...]
+    neither: tuple[int, ...]
+    slower: tuple[float, ...]
+
+    @classmethod
+    def of(cls, rows_a: Sequence[Row], rows_b: Sequence[Row]) -> Paired:
+        """The seeds that both have a row of."""
+        others = {row["seed"]: row for row in rows_b}
+        sorted_out: dict[tuple[bool, bool], list[int]] = {}
+        slower = []
+        for row in rows_a:
+            other = others.get(row["seed"])
+            if other is None:
+                continue
+            how = succeeded(row), succeeded(other)
+            sorted_out.setdefault(how, []).append(row["seed"])
+            if all(how):
+                slower.append(row["sim_time_s"] - other["sim_time_s"])
+        cells = ((True, True), (True, False), (False, True), (False, False))
+        return cls(*(tuple(sorted_out.get(cell, ())) for cell in cells), tuple(slower))
+
+    @property
+    def counts(self) -> tuple[int, int, int, int]:
+        """How many seeds: both, only A, only B, neither."""
+        return len(self.both), len(self.only_a), len(self.only_b), len(self.neither)
+
+    @property
+    def pairs(self) -> int:
+        """How many seeds there are."""
+        return sum(self.counts)
+
+    @property
+    def p(self) -> float:
+        """McNemar's exact two-sided p."""
+        return mcnemar(len(self.only_a), len(self.only_b))
+
+    @property
+    def difference(self) -> float:
+        """Rate of A minus rate of B; 0 of no pairs."""
+        return (len(self.only_a) - len(self.only_b)) / max(1, self.pairs)
+
+    @property
+    def interval(self) -> Interval:
+        """95 % interval of the difference, Newcombe's for paired rates."""
+        return paired_difference(*self.counts)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data for JSON."""
+        return {
+            "pairs": self.pairs,
+            "both": list(self.both),
+            "only_a": list(self.only_a),
+            "only_b": list(self.only_b),
+            "neither": list(self.neither),
+            "p": self.p,
+            "difference": self.difference,
+            "interval": list(self.interval),
+            "slower_s": quantile(self.slower, 0.5) if self.slower else None,
+        }
+
+
+def paired_text(paired: Paired, name_a: str, name_b: str) -> str:
+    """The table of pairs and what follows from it."""
+    both, only_a, only_b, neither = paired.counts
+    width = max(len(name_a), len(name_b)) + len(" succeeded")
+    low, high = paired.interval
+    column = len(name_b) + len(" succeeded")
+    lines = [
+        f"on the same {paired.pairs} seeds:",
+        f"  {'':{width}}  {name_b} succeeded  {name_b} failed",
+        f"  {name_a + ' succeeded':{width}}  {both:{column}}  {only_a:{column - 3}}",
+        f"  {name_a + ' failed':{width}}  {only_b:{column}}  {neither:{column - 3}}",
+        f"chance that equally good trees differ so much: p = {paired.p:.3g} (McNemar's exact test, "
+        "two-sided)",
+        f"rate of {name_a} minus rate of {name_b}: {100 * paired.difference:+.1f} %, 95 % interval "
+        f"{100 * low:+.1f} % to {100 * high:+.1f} % (Newcombe's, paired)",
+    ]
+    if paired.slower:
+        lines.append(
+            "simulated time where both succeeded, the one minus the other: median "
+            f"{quantile(paired.slower, 0.5):+.1f} s"
+        )
+    for name, seeds in ((name_a, paired.only_a), (name_b, paired.only_b)):
+        if seeds:
+            lines.append(f"only {name} succeeded on seeds {seeds_text(seeds)}")
+    return "\n".join(lines)

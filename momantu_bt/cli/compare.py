@@ -1,0 +1,140 @@
+"""`momantu-bt compare`: which of two trees works more often, on the same seeds."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from momantu_bt.cli.bench_setup import (
+    EXIT_INCOMPLETE,
+    EXIT_INTERRUPTED,
+    EXIT_OK,
+    OUT,
+    RECORD,
+    ArgumentError,
+    HowToRun,
+    choose,
+    engine_of,
+    guarded,
+    keep_plan,
+    plan_of,
+    say_missing,
+    say_others,
+    say_refused,
+)
+
+if TYPE_CHECKING:
+    from momantu_bt.bench.engine import Engine
+    from momantu_bt.bench.plan import Plan
+    from momantu_bt.bench.spec import Row
+
+
+def compare(
+    tree_a: Annotated[str, typer.Argument(metavar="A", help="A tree file or bundled tree.")],
+    tree_b: Annotated[str, typer.Argument(metavar="B", help="Another one.")],
+    seeds: Annotated[str, typer.Option(help="0:500, 3,5,7 or 0:10,20:30.")] = "0:30",
+    jobs: Annotated[
+        int | None, typer.Option(min=1, help="Episodes at a time; else one per core.")
+    ] = None,
+    world: Annotated[str | None, typer.Option(help="A world's name; else the trees' own.")] = None,
+    robot: Annotated[str | None, typer.Option(help="A robot's name; else the world's own.")] = None,
+    set_: Annotated[
+        list[str] | None, typer.Option("--set", help="key=value: a value of both trees' boards.")
+    ] = None,
+    values: Annotated[Path | None, typer.Option(help="A YAML file of values.")] = None,
+    max_time: Annotated[
+        float, typer.Option(min=0.05, help="Simulated seconds after which an episode fails.")
+    ] = 600.0,
+    episode_limit: Annotated[
+        float, typer.Option(min=1.0, help="Seconds of wall time after which one is killed.")
+    ] = 900.0,
+    out: Annotated[
+        Path, typer.Option(help="Folder with a folder of results for each tree, as bench's.")
+    ] = OUT,
+    engine: Annotated[str, typer.Option(help="What runs the episodes: local.")] = "local",
+    record: Annotated[
+        str, typer.Option(help="Which episodes leave a record: failures, all or none.")
+    ] = "failures",
+    report: Annotated[Path | None, typer.Option(help="Write all figures to this JSON.")] = None,
+) -> int:
+    """Run two trees on the same seeds, and say whether one works more often or faster.
+
+    Rows are kept where `bench` keeps them, so that what either has run already is not run again.
+
+    Exit code 0: every episode has a row, whoever is better; 1: some are missing; 2: a tree or an
+    argument is wrong; 130: interrupted.
+
+    Examples:
+      momantu-bt compare bring_object bring_object_plain --seeds 0:100
+      momantu-bt compare old.yaml new.yaml --seeds 0:50 --report comparison.json
+    """
+
+    def start() -> int:
+        from momantu_bt.bench.seeds import parse_seeds
+        from momantu_bt.cli.given import given_values
+        from momantu_bt.record.files import check_writable
+
+        chosen = choose(record, RECORD, "--record")
+        board = given_values(set_ or [], values)
+        how = HowToRun(world, robot, board, max_time, episode_limit, chosen)
+        plans = [plan_of(tree, parse_seeds(seeds), how)[0] for tree in (tree_a, tree_b)]
+        if plans[0].wanted == plans[1].wanted:
+            raise ArgumentError(f"{tree_a} and {tree_b} are the same; name two different trees")
+        if report is not None:
+            check_writable(report)
+        return _compare(plans, engine_of(engine, jobs), out, report)
+
+    return guarded(start)
+
+
+def _compare(plans: list[Plan], engine: Engine, out: Path, report: Path | None) -> int:
+    """Run what is missing of both, turn about, then say how they differ."""
+    from momantu_bt.bench.carry_out import carry_out
+    from momantu_bt.bench.store import Store
+    from momantu_bt.cli.bench_progress import progress
+
+    names = [Path(plan.tree).stem for plan in plans]
+    if names[0] == names[1]:
+        names[1] += "-2"
+    with ExitStack() as stack:
+        stores = [stack.enter_context(Store(out / name)) for name in names]
+        work = list(zip(plans, stores, strict=True))
+        for plan, store in work:
+            say_others(plan, store)
+            keep_plan(plan, store)
+        ended = carry_out(work, engine, progress())
+        rows = [plan.wanted.present(store.rows) for plan, store in work]
+        missing = [
+            f"{words} of {name}"
+            for name, (plan, store) in zip(names, work, strict=True)
+            for words in plan.wanted.missing(store.rows)
+        ]
+    _say(names, rows, report)
+    say_refused(ended)
+    say_missing(missing)
+    if ended.interrupted:
+        return EXIT_INTERRUPTED
+    return EXIT_INCOMPLETE if missing else EXIT_OK
+
+
+def _say(names: list[str], rows: list[list[Row]], report: Path | None) -> None:
+    from momantu_bt.bench.paired import Paired, paired_text
+    from momantu_bt.bench.report import write_report
+    from momantu_bt.bench.summary import Summary
+    from momantu_bt.bench.tables import summary_text
+
+    summaries = [Summary.of(each) for each in rows]
+    for name, summary in zip(names, summaries, strict=True):
+        typer.echo(summary_text(name, summary) + "\n")
+    paired = Paired.of(*rows)
+    typer.echo(paired_text(paired, *names))
+    if report is not None:
+        trees = [
+            {"tree": name, **summary.as_dict()}
+            for name, summary in zip(names, summaries, strict=True)
+        ]
+        write_report(report, {"a": trees[0], "b": trees[1], "paired": paired.as_dict()})
+        typer.echo(f"report: {report}")
