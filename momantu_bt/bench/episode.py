@@ -36,7 +36,7 @@ _RETRYING = ("Recover", "RetryUntilSuccessful", "RecoveryNode")
 
 _KEPT = (
     *("world", "robot", "status", "success", "failure", "unmet", "measures", "sim_time_s"),
-    *("wall_time_s", "start_time_s", "fingerprint", "error"),
+    *("wall_time_s", "start_time_s", "fingerprint", "error", "incidents"),
 )
 """What a row takes over from a report as it is."""
 

@@ -36,8 +36,13 @@ class Paired:
             sorted_out.setdefault(how, []).append(row["seed"])
             if all(how):
                 slower.append(row["sim_time_s"] - other["sim_time_s"])
-        cells = ((True, True), (True, False), (False, True), (False, False))
-        return cls(*(tuple(sorted_out.get(cell, ())) for cell in cells), tuple(slower))
+        return cls(
+            both=tuple(sorted_out.get((True, True), ())),
+            only_a=tuple(sorted_out.get((True, False), ())),
+            only_b=tuple(sorted_out.get((False, True), ())),
+            neither=tuple(sorted_out.get((False, False), ())),
+            slower=tuple(slower),
+        )
 
     @property
     def counts(self) -> tuple[int, int, int, int]:

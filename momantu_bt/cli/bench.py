@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -61,6 +61,9 @@ def bench(
     record: Annotated[
         str, typer.Option(help="Which episodes leave a record: failures, all or none.")
     ] = "failures",
+    coverage: Annotated[
+        bool, typer.Option("--coverage", help="Print the tree with how often each line ran.")
+    ] = False,
     report: Annotated[
         Path | None, typer.Option(help="Write figures and rows to this JSON.")
     ] = None,
@@ -82,7 +85,7 @@ def bench(
       momantu-bt bench trees/bring_object.yaml --seeds 0:500 --jobs 8 --report bench.json
       momantu-bt bench my_tree.yaml --seeds 0:50 --set "speed=0.5 m/s" --demand 0.9
     """
-    options = _Options(out, shard, engine, jobs, report, demand)
+    options = _Options(out, shard, engine, jobs, coverage, report, demand)
 
     def start() -> int:
         from momantu_bt.bench.seeds import parse_seeds
@@ -103,6 +106,7 @@ class _Options:
     shard: str | None
     engine: str
     jobs: int | None
+    coverage: bool
     report: Path | None
     demand: float | None
 
@@ -124,7 +128,7 @@ def _bench(plan: Plan, document: Document, options: _Options) -> int:
         keep_plan(plan, store)
         ended = carry_out([(plan.of(part), store)], engine, progress())
         rows, missing = part.present(store.rows), part.missing(store.rows)
-    _say(plan, rows, options)
+    _say(plan, rows, document, options)
     say_refused(ended)
     say_missing(missing)
     if ended.interrupted:
@@ -132,15 +136,22 @@ def _bench(plan: Plan, document: Document, options: _Options) -> int:
     return EXIT_INCOMPLETE if missing or _falls_short(rows, options.demand) else EXIT_OK
 
 
-def _say(plan: Plan, rows: Sequence[Row], options: _Options) -> None:
+def _say(plan: Plan, rows: Sequence[Row], document: Document, options: _Options) -> None:
     """Print the figures, and write them if that is wanted."""
+    from momantu_bt.bench.coverage import coverage
+    from momantu_bt.bench.coverage_text import coverage_text
     from momantu_bt.bench.report import report, write_report
     from momantu_bt.bench.summary import Summary
     from momantu_bt.bench.tables import summary_text
 
     typer.echo(summary_text(Path(plan.tree).name, Summary.of(rows)))
+    more: dict[str, Any] = {}
+    if options.coverage:
+        points = coverage(document, rows)
+        typer.echo(f"\n{coverage_text(points, document.source)}")
+        more["coverage"] = [point.as_dict() for point in points]
     if options.report is not None:
-        write_report(options.report, report(rows, {}))
+        write_report(options.report, report(rows, more))
         typer.echo(f"report: {options.report}")
 
 

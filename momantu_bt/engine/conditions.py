@@ -13,15 +13,22 @@ from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, S
 from momantu_bt.tree.script import Script, parse, truth
 
 _BEFORE: Mapping[str, Status] = {"fail_if": FAILURE, "succeed_if": SUCCESS, "skip_if": SKIPPED}
+WHILE = "while"
+ASKED = (*_BEFORE, WHILE)
+"""Conditions; the other scripts only do something."""
 
 
 class Conditions:
-    """The scripts of one node on the board it sees; ScriptError passes through every method."""
+    """The scripts of one node on the board it sees; ScriptError passes through every method.
+
+    counts: of each condition, how often it was asked and how often it held.
+    """
 
     def __init__(self, scripts: Mapping[str, str], board: Board) -> None:
         self._texts = dict(scripts)
         self._parsed: dict[str, Script] = {name: parse(text) for name, text in scripts.items()}
         self._board = board
+        self.counts = {name: [0, 0] for name in scripts if name in ASKED}
 
     def text(self, name: str) -> str:
         """One of the scripts as written."""
@@ -29,17 +36,23 @@ class Conditions:
 
     def before(self, state: Status) -> Status | None:
         """The status that a condition decides, or None: then the node is ticked."""
-        holds = self._parsed.get("while")
         if state is IDLE:
             for name, decided in _BEFORE.items():
-                script = self._parsed.get(name)
-                if script is not None and truth(script.run(self._board)):
+                if name in self._parsed and self._holds(name):
                     return decided
         elif state is not RUNNING:
             return None
-        if holds is not None and not truth(holds.run(self._board)):
+        if WHILE in self._parsed and not self._holds(WHILE):
             return SKIPPED
         return None
+
+    def _holds(self, name: str) -> bool:
+        """Ask one, and count that."""
+        held = truth(self._parsed[name].run(self._board))
+        counted = self.counts[name]
+        counted[0] += 1
+        counted[1] += held
+        return held
 
     def after(self, status: Status) -> None:
         """Run what follows SUCCESS or FAILURE."""

@@ -17,6 +17,7 @@ from momantu_bt.engine.executor import Ending, Executor, Observer
 from momantu_bt.engine.interrupts import Interrupts
 from momantu_bt.engine.no_world import NoWorld
 from momantu_bt.engine.node import TreeNode
+from momantu_bt.engine.nodes.recovery import Catching
 from momantu_bt.engine.nodes.skill import SkillLeaf
 from momantu_bt.engine.person import Person, Scripted
 from momantu_bt.engine.services import Services, in_order
@@ -223,6 +224,7 @@ def _report(
         fingerprint=executor.fingerprint.hexdigest(),
         versions=versions(),
         error=ending.error,
+        incidents=() if verdict is None else verdict.incidents,
     )
 
 
@@ -238,4 +240,6 @@ def _node_report(node: TreeNode) -> NodeReport:
         seconds=round(node.seconds, 9),
         slow_ticks=0 if slow is None else slow.slow_steps,
         slowest_s=0.0 if slow is None else round(slow.slowest, 4),
+        conditions={} if node.conditions is None else node.conditions.counts,
+        answered=tuple(node.answered) if isinstance(node, Catching) else (),
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -12,6 +12,7 @@ from typing import Any
 from momantu_bt.failure import FailureValue
 from momantu_bt.messages import plain
 from momantu_bt.record.files import write_whole
+from momantu_bt.world import Incident
 
 SUCCESS, FAILURE, INTERRUPTED, ERROR = "SUCCESS", "FAILURE", "INTERRUPTED", "ERROR"
 
@@ -24,6 +25,8 @@ class NodeReport:
 
     slow_ticks: in how many ticks its skill worked longer than 20 ms of wall time without
     declaring it; slowest_s: the longest of them.
+    conditions: by name (`skip_if`), how often it was asked and how often it held.
+    answered: how often each handler under `catch` has answered a failure, in their order.
     """
 
     name: str
@@ -35,6 +38,8 @@ class NodeReport:
     seconds: float
     slow_ticks: int = 0
     slowest_s: float = 0.0
+    conditions: Mapping[str, Sequence[int]] = field(default_factory=dict)
+    answered: Sequence[int] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +50,8 @@ class Report:
     None without one. unmet, measures: what it found. failure: the tree's, with its causes.
     sim_time_s: world's clock when the tree ended. wall_time_s: from the first tick to the last;
     start_time_s: what building the world took before. ticks: of the tree. blackboard: the
-    root's values at the end. error: traceback of an internal error.
+    root's values at the end. error: traceback of an internal error. incidents: what was dangerous,
+    by the referee.
     """
 
     tree: str
@@ -66,6 +72,7 @@ class Report:
     fingerprint: str
     versions: Mapping[str, str] = field(default_factory=dict)
     error: str | None = None
+    incidents: tuple[Incident, ...] = ()
 
     @property
     def real_time_factor(self) -> float:
@@ -105,6 +112,7 @@ class Report:
             "fingerprint": self.fingerprint,
             "versions": dict(self.versions),
             "error": self.error,
+            "incidents": [_finite(plain(incident)) for incident in self.incidents],
         }
 
     def write(self, path: Path) -> None:

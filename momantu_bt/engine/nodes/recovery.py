@@ -67,8 +67,12 @@ def _words(handler: TreeNode) -> str:
     return text(handler.model)
 
 
-class _Catching(TreeNode):
-    """children: `try`, then the handlers' nodes. caught: the cell that handlers see as failure."""
+class Catching(TreeNode):
+    """What Recover and Handle share.
+
+    children: `try`, then the handlers' nodes. caught: the cell that handlers see as failure.
+    answered: how often each of `catches` has answered a failure.
+    """
 
     def __init__(
         self, *arguments: Any, catches: Sequence[Catch], caught: Cell, **named: Any
@@ -76,6 +80,7 @@ class _Catching(TreeNode):
         super().__init__(*arguments, **named)
         self.catches = tuple(catches)
         self.caught = caught
+        self.answered = [0] * len(self.catches)
         self.handling: Catch | None = None
         self.first: FailureValue | None = None
 
@@ -98,6 +103,7 @@ class _Catching(TreeNode):
 
     def _begin_handling(self, catch: Catch, failure: FailureValue) -> None:
         self.handling, self.first = catch, failure
+        self.answered[self.catches.index(catch)] += 1
         self.caught.write(failure)
         self.show(RUNNING)
 
@@ -106,7 +112,7 @@ class _Catching(TreeNode):
         return with_root_cause(self.failure_of(handler), self.first)
 
 
-class Recover(_Catching):
+class Recover(Catching):
     """Runs `try`; when it fails runs the handler of its code, then `try` again."""
 
     def __init__(self, *arguments: Any, inputs: Inputs, **named: Any) -> None:
@@ -198,7 +204,7 @@ class Recover(_Catching):
         return RUNNING
 
 
-class Handle(_Catching):
+class Handle(Catching):
     """Runs `try`; when it fails the result of its code's handler is the result."""
 
     def step(self) -> Status:

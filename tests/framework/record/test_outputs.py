@@ -38,6 +38,7 @@ FIELDS = {
     "fingerprint": str,
     "versions": dict,
     "error": str,
+    "incidents": list,
 }
 MAY_BE_NULL = ("world", "robot", "success", "failure", "error")
 
