@@ -1,8 +1,11 @@
 """What a skill's end claims about the world, in words that ground truth can judge.
 
 A skill that succeeds says "I hold it", "it stands there". `Skill.claim` gives that sentence as a
-value; a world that knows the truth judges it after the skill has ended. Neither the skill nor the
-tree ever learns the answer: it is counted for people.
+value; a world that knows the truth judges it at the instant at which the skill ended. Neither the
+skill nor the tree ever learns the answer: it is counted for people.
+
+Poses in odom are as the robot believes them; a judge brings them into the world through the base's
+true pose and through odometry of the same instant, so that drift of odometry is nobody's lie.
 """
 
 from __future__ import annotations
@@ -11,28 +14,32 @@ from dataclasses import dataclass
 from typing import Protocol, TypeAlias, runtime_checkable
 
 from momantu_bt.geometry import Pose2D, Transform
+from momantu_bt.messages import ObjectClass
 
 
 @dataclass(frozen=True, slots=True)
 class ObjectAt:
-    """An object of the category is at `odom_from_object`, within `tolerance` m, standing."""
+    """Such an object stands with the centre of its box within `tolerance` m of the pose's origin.
 
-    category: str
+    asked: its category, and those of its sizes that were asked for.
+    """
+
+    asked: ObjectClass
     odom_from_object: Transform
     tolerance: float
 
 
 @dataclass(frozen=True, slots=True)
 class ObjectOn:
-    """An object of the category stands on the site's surface of that name (None: on any)."""
+    """Such an object stands on the site's surface of that name (None: on any)."""
 
-    category: str
+    asked: ObjectClass
     surface: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class TagAt:
-    """The AprilTag of that id is at `odom_from_tag`, within m and rad."""
+    """The AprilTag of that id is at `odom_from_tag`, z out of it, within m and rad."""
 
     tag_id: int
     odom_from_tag: Transform
@@ -41,10 +48,11 @@ class TagAt:
 
 
 @dataclass(frozen=True, slots=True)
-class TagSeen:
-    """The AprilTag of that id lies whole and uncovered somewhere in the world."""
+class TagOn:
+    """The AprilTag of that id lies uncovered on the site's surface of that name (None: on any)."""
 
     tag_id: int
+    surface: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +61,20 @@ class PlaneAt:
 
     odom_from_plane: Transform
     tolerance: float
+
+
+@dataclass(frozen=True, slots=True)
+class RoomAt:
+    """A round base of `radius` m has room on a top at the point (x, y, z) in odom.
+
+    It would stand whole on the top and beside whatever stands there. within: how far from the
+    point, along the floor, the room may be, m. tolerance: of the top's height, m.
+    """
+
+    odom_point: tuple[float, float, float]
+    radius: float
+    tolerance: float
+    within: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +95,15 @@ class BaseNear:
 
 
 @dataclass(frozen=True, slots=True)
+class CameraOn:
+    """The camera of that optical frame looks at the point (x, y, z) in odom, within rad."""
+
+    frame: str
+    odom_point: tuple[float, float, float]
+    turn_tolerance: float
+
+
+@dataclass(frozen=True, slots=True)
 class Holding:
     """Something that can be brought is between the fingers, off every surface; or nothing is."""
 
@@ -80,37 +111,63 @@ class Holding:
 
 
 @dataclass(frozen=True, slots=True)
+class GripperOpen:
+    """The gripper's pads are at least `width` m apart."""
+
+    width: float
+
+
+@dataclass(frozen=True, slots=True)
 class SetDown:
-    """What was held stands upright on a surface, and the hand does not touch it."""
+    """Something that can be brought stands upright there, and not between the fingers.
+
+    odom_from_object: the centre of its box, within `tolerance` m.
+    """
+
+    odom_from_object: Transform
+    tolerance: float
 
 
 @dataclass(frozen=True, slots=True)
 class JointsAt:
-    """The named joints are at these positions (rad, m), within `tolerance`."""
+    """The named joints are at these positions (rad, m), within `tolerance`.
+
+    Joints that turn for ever are compared modulo whole turns.
+    """
 
     names: tuple[str, ...]
     positions: tuple[float, ...]
     tolerance: float
 
 
-Claim: TypeAlias = (
+Sentence: TypeAlias = (
     ObjectAt
     | ObjectOn
     | TagAt
-    | TagSeen
+    | TagOn
     | PlaneAt
+    | RoomAt
     | BaseAt
     | BaseNear
+    | CameraOn
     | Holding
+    | GripperOpen
     | SetDown
     | JointsAt
 )
+"""One thing that is true or not."""
+
+Claim: TypeAlias = Sentence | tuple[Sentence, ...]
+"""A sentence, or several that are all claimed."""
 
 
 @runtime_checkable
 class Judge(Protocol):
-    """A world that can tell whether a claim is true."""
+    """A world that can tell whether a sentence is true."""
 
-    def judge(self, claim: Claim) -> bool | None:
-        """Whether it is true of this instant; None when this world cannot tell."""
+    def judge(self, sentence: Sentence, odom_from_base: Transform) -> bool | None:
+        """Whether it is true of this instant; None when this world cannot tell.
+
+        odom_from_base: the robot's odometry of this instant, as skills see it.
+        """
         ...

@@ -23,7 +23,7 @@ from typing import Any, ClassVar, Protocol, TypeAlias, TypeVar
 import numpy as np
 
 from momantu_bt.claim import Claim
-from momantu_bt.failure import CODE, Failure
+from momantu_bt.failure import CODE, Failure, FailureValue
 from momantu_bt.frames import FrameBuffer
 from momantu_bt.robot import Robot
 from momantu_bt.world import Site
@@ -253,11 +253,13 @@ class Skill:
         """
         return {}
 
-    def claim(self, robot: Robot, succeeded: bool) -> Claim | None:
+    def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
         """What its end says about the world, for a judge; None when it says nothing.
 
-        Called after the skill has ended, and only where somebody judges. succeeded: False asks
-        for what SUCCESS would have claimed: a judge who finds that true sees a false alarm.
+        Called once after the skill has ended, and only where somebody judges; it reads no sensor
+        and commands nothing. failure: None asks what SUCCESS says. Otherwise it is how the skill
+        ended, and asked for is the sentence that would show it to be a false alarm: after
+        "nothing is held" that something is.
         """
         return None
 

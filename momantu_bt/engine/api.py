@@ -27,6 +27,7 @@ def run(
     max_time: float = 600.0,
     realtime: bool = False,
     referee: bool = True,
+    audit: bool = False,
     report: Path | None = None,
     registry: Registry | None = None,
     watch: Watch | None = None,
@@ -37,6 +38,7 @@ def run(
 
     world: a world's name, `"none"`, an open world (which stays open), or None for the tree's
     own. values: keys of the root's board, as `--set` gives them. max_time: simulated seconds.
+    audit: judge what skills claim by ground truth, and tell it in the report.
     report: where to write it as JSON. registry: what trees can name; everything installed
     unless given. watch: makes observers of the run. answers: what `ask` and `confirm` are told,
     in turn; afterwards nobody answers. substitute: a file of rules that say what nodes do
@@ -63,6 +65,7 @@ def run(
         max_time=max_time,
         realtime=realtime,
         referee=referee,
+        audit=audit,
         keep_world=named is not world,
         person=Scripted(answers),
         substitution=replacing,

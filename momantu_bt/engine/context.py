@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from momantu_bt.engine.actuators import Actuators
 from momantu_bt.engine.blackboard import Journal
-from momantu_bt.engine.outside import Outside
+from momantu_bt.engine.outside import Outside, SkillSession
 from momantu_bt.engine.person import Person, Scripted
 from momantu_bt.engine.status import Status
 from momantu_bt.failure import FailureValue
@@ -18,6 +18,7 @@ from momantu_bt.world import Site
 
 if TYPE_CHECKING:
     from momantu_bt.engine.node import TreeNode
+    from momantu_bt.engine.nodes.skill import SkillLeaf
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +52,7 @@ class RunContext:
     remark: tells a person something that never influences the run. person: answers questions.
     waited: seconds of wall time that the run has spent waiting for a person.
     outside: whatever comes from beyond the tree comes through it.
+    skill_ended: told of each skill that ended, at that instant; it changes nothing.
     """
 
     clock: Clock
@@ -64,6 +66,7 @@ class RunContext:
     person: Person = field(default_factory=Scripted)
     waited: float = 0.0
     outside: Outside = field(default_factory=Outside)
+    skill_ended: Callable[[SkillLeaf, SkillSession], None] | None = None
 
     def begin_tick(self) -> None:
         """Take the clock's reading and start empty journals."""

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, TypeAlias
 
 from momantu_bt.engine.actuators import Actuators
+from momantu_bt.engine.audit import Auditor
 from momantu_bt.engine.blackboard import Board, ReadOnlyCell
 from momantu_bt.engine.build import build, skills_in
 from momantu_bt.engine.context import Body, RunContext
@@ -49,7 +50,8 @@ class Options:
     world: a name, `"none"`, or None for the tree's own. robot: a name, or None for the world's
     default. keep_world: it was open before and stays so. max_time: simulated seconds after
     which the run fails with TIMEOUT.
-    referee: False takes it out, which changes nothing else. person: who answers `ask` and
+    referee: False takes it out, which changes nothing else. audit: judge by ground truth what
+    skills claim, which changes nothing else. person: who answers `ask` and
     `confirm`; nobody unless given. substitution: what nodes do instead of themselves.
     """
 
@@ -59,6 +61,7 @@ class Options:
     max_time: float = 600.0
     realtime: bool = False
     referee: bool = True
+    audit: bool = False
     keep_world: bool = False
     remark: Callable[[str], None] = field(default=lambda text: None)
     person: Person = field(default_factory=Scripted)
@@ -87,6 +90,7 @@ def launch(
         if world is not None and not options.keep_world:
             stack.callback(world.close)
         executor = _assemble(document, options, kinds, needed, world)
+        auditor = Auditor(executor.context, world) if options.audit else None
         if watch is not None:
             executor.observers = list(watch(executor))
         started = time.perf_counter() - begun
@@ -96,7 +100,8 @@ def launch(
             trouble = _close(executor.observers)
         if trouble is not None:
             ending = replace(ending, status=ERROR, error=ending.error or trouble)
-        return _report(document, options, executor, ending, started)
+        report = _report(document, options, executor, ending, started)
+        return report if auditor is None else replace(report, claims=auditor.claims())
 
 
 def _close(observers: Sequence[Observer]) -> str | None:

@@ -43,6 +43,38 @@ class NodeReport:
 
 
 @dataclass(frozen=True, slots=True)
+class Lie:
+    """An end that ground truth contradicts: at time (s), of the node at place.
+
+    code: the failure's, None where success was claimed. claim: the sentences that were judged.
+    """
+
+    time: float
+    place: str
+    code: str | None
+    claim: str
+
+
+@dataclass(frozen=True, slots=True)
+class SkillClaims:
+    """What one skill's ends claimed, against ground truth.
+
+    runs: how often it ended. judged_successes, judged_failures: of how many ends something was
+    claimed that the world could judge. false_successes: SUCCESS that is denied; false_failures:
+    false alarms. lies: both, in the order of time.
+    """
+
+    runs: int = 0
+    successes: int = 0
+    judged_successes: int = 0
+    false_successes: int = 0
+    failures: int = 0
+    judged_failures: int = 0
+    false_failures: int = 0
+    lies: tuple[Lie, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class Report:
     """How a run ended.
 
@@ -51,7 +83,8 @@ class Report:
     sim_time_s: world's clock when the tree ended. wall_time_s: from the first tick to the last;
     start_time_s: what building the world took before. ticks: of the tree. blackboard: the
     root's values at the end. error: traceback of an internal error. incidents: what was dangerous,
-    by the referee.
+    by the referee. claims: what skills claimed, by their names in the tree; None in a run without
+    an audit.
     """
 
     tree: str
@@ -73,6 +106,7 @@ class Report:
     versions: Mapping[str, str] = field(default_factory=dict)
     error: str | None = None
     incidents: tuple[Incident, ...] = ()
+    claims: Mapping[str, SkillClaims] | None = None
 
     @property
     def real_time_factor(self) -> float:
@@ -113,6 +147,7 @@ class Report:
             "versions": dict(self.versions),
             "error": self.error,
             "incidents": [_finite(plain(incident)) for incident in self.incidents],
+            "claims": None if self.claims is None else plain(self.claims),
         }
 
     def write(self, path: Path) -> None:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from momantu_bt.claim import Claim
 from momantu_bt.engine.actuators import Actuators
 from momantu_bt.engine.services import Services
 from momantu_bt.engine.session import Session, SkillContext
@@ -43,6 +44,12 @@ class SkillResult:
     def code(self) -> str | None:
         """The failure's code, if it failed."""
         return None if self.failure is None else self.failure.code
+
+    def claim(self) -> Claim | None:
+        """What its end says about the world; None when it says nothing, or was halted."""
+        if self.skill is None or self.status == "HALTED":
+            return None
+        return self.skill.claim(self.robot, self.failure)
 
     def explain(self) -> str:
         """Everything about a failure, the traceback included, for an assertion's message."""

@@ -6,7 +6,8 @@ import math
 from collections.abc import Mapping
 from typing import Any, Literal, TypeAlias
 
-from momantu_bt.failure import Failure
+from momantu_bt.claim import BaseAt, Claim, GripperOpen, Holding
+from momantu_bt.failure import Failure, FailureValue
 from momantu_bt.geometry import Pose2D
 from momantu_bt.robot import Robot
 from momantu_bt.skill import In, Needs, Run, Skill
@@ -15,6 +16,12 @@ NEAR = 1.5
 """m from a place, or from the edge of a surface, that counts as near."""
 OPEN = 0.9
 """Share of the widest opening at which the gripper counts as open."""
+GAUGE = 0.003
+"""m by which the gripper's measured opening may be off."""
+ASTRAY = 0.10
+"""m by which the robot's own place may be off when it says how far it is from another."""
+NO = ("NOT_HOLDING", "HOLDING", "NOT_LOCALIZED", "NOT_NEAR", "NOT_OPEN")
+"""Codes that answer the question with no."""
 Question: TypeAlias = Literal["holding", "not_holding", "localized", "near", "gripper_open"]
 
 
@@ -48,6 +55,23 @@ class Check(Skill):
         return
         yield ""
 
+    def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
+        """The answer yes, as the world would put it; the same after each no that can be judged."""
+        said = failure is None
+        if failure is not None and failure.code not in NO:
+            return None
+        if self.what in ("holding", "not_holding"):
+            return Holding(self.what == "holding")
+        if self.what == "localized":
+            from momantu_skills.navigation.confidence import estimate
+
+            return estimate(self.localization)
+        if self.what == "near":
+            nearest = self._nearest(self.localization.map_from_base)
+            return BaseAt(nearest, NEAR + (ASTRAY if said else -ASTRAY), math.pi)
+        slack = -GAUGE if said else GAUGE
+        return GripperOpen(OPEN * robot.description.end_effector.max_width + slack)
+
     def _holding(self) -> None:
         if self.planning_scene.held is None:
             raise Failure("NOT_HOLDING", "gripper opening and effort say that nothing is held")
@@ -75,7 +99,7 @@ class Check(Skill):
 
     def _near(self) -> None:
         here = self.localization.map_from_base
-        distance = self._distance(here)
+        distance = here.distance_to(self._nearest(here))
         if distance > NEAR:
             raise Failure(
                 "NOT_NEAR",
@@ -83,19 +107,19 @@ class Check(Skill):
                 distance=distance,
             )
 
-    def _distance(self, here: Pose2D) -> float:
-        """Metres from `here` to a place, or to the nearest edge of a surface (0 above it)."""
+    def _nearest(self, here: Pose2D) -> Pose2D:
+        """The place itself, or the point of the surface that is nearest to `here`, in the map."""
         place = self.place or ""
         if place in self.site.places:
-            return here.distance_to(self.site.places[place])
+            return self.site.places[place]
         if place in self.site.surfaces:
             surface = self.site.surfaces[place]
             local = surface.map_from_surface.inverse() @ here
-            outside = [
-                max(0.0, abs(v) - edge / 2)
+            x, y = (
+                min(max(v, -edge / 2), edge / 2)
                 for v, edge in zip((local.x, local.y), surface.size, strict=True)
-            ]
-            return math.hypot(*outside)
+            )
+            return surface.map_from_surface @ Pose2D(x, y)
         known = ", ".join(self.site.known_places()) or "none"
         raise Failure("BAD_QUESTION", f"the site has no place {self.place!r}; it has: {known}")
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
+from momantu_bt.claim import Claim, ObjectAt, ObjectOn
+from momantu_bt.failure import FailureValue
 from momantu_bt.geometry import Array
 from momantu_bt.messages import DetectedObject, ObjectClass
 from momantu_bt.robot import CAMERA_CARRIER, Robot
@@ -20,6 +22,8 @@ LOOKS = 3
 """Fewest looks over a surface before a thing is said not to be there."""
 BUDGET = 0.1
 """s granted to making sense of one look together with those before it."""
+EXACT = 0.02
+"""m that a found thing may be off and still be got hold of, with fingers 0.1 m apart."""
 
 
 class DetectObject(Skill):
@@ -78,6 +82,12 @@ class DetectObject(Skill):
         if best is None:
             raise self._not_found(result.things)
         self.found = best
+
+    def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
+        """It stands where it was found; or it stands on the surface where it was not found."""
+        if failure is None:
+            return ObjectAt(self.object, self.found.pose.transform, EXACT)
+        return ObjectOn(self.object, self.on) if failure.code == "OBJECT_NOT_FOUND" else None
 
     def _measure(self, snapshots: list[Snapshot], region: SurfaceRegion) -> Detections | None:
         from momantu_skills.perception.views import see

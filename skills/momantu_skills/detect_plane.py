@@ -6,8 +6,10 @@ import math
 from functools import partial
 from typing import TYPE_CHECKING
 
+from momantu_bt.claim import Claim, PlaneAt, RoomAt
+from momantu_bt.failure import FailureValue
 from momantu_bt.frames import ODOM
-from momantu_bt.geometry import Array, Pose
+from momantu_bt.geometry import Array, Pose, Transform
 from momantu_bt.messages import SupportPlane
 from momantu_bt.robot import CAMERA_CARRIER, Robot
 from momantu_bt.service import PlanningScene
@@ -24,6 +26,8 @@ LOOKS = 2
 """Looks to the left and right of the place: each sees behind what hides from the other."""
 HAND = 0.10
 """m; breadth of what is to be set down where nothing is held and no size is given."""
+LEVEL = 0.01
+"""m that the surface may be higher or lower than measured; `place` feels for it over 0.025."""
 
 
 class DetectPlane(Skill):
@@ -46,6 +50,11 @@ class DetectPlane(Skill):
     uses = {CAMERA_CARRIER}
     planning_scene: PlanningScene = Needs()
 
+    def __init__(self) -> None:
+        """Start with nothing needing room yet."""
+        super().__init__()
+        self._needed = 0.0
+
     def run(self, robot: Robot) -> Run:
         """Look, measure, choose."""
         from momantu_skills.perception.surveys import glance, looks_over, place_region
@@ -57,7 +66,7 @@ class DetectPlane(Skill):
             snapshot = yield from glance(self, robot, self.planning_scene, point)
             if snapshot is not None:
                 snapshots.append(snapshot)
-        radius = self._radius()
+        radius = self._needed = self._radius()
         found = yield from compute(
             partial(self._measure, snapshots, region, near, radius), budget=BUDGET
         )
@@ -71,6 +80,23 @@ class DetectPlane(Skill):
         if not found.spots:
             raise self._full(found, radius, near)
         self.plane, self.spots = found.plane, found.spots
+
+    def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
+        """A level top there, and room at the best spot; or that there is what it did not find."""
+        if failure is None:
+            spot = _point(self.spots[0].position)
+            return PlaneAt(self.plane.pose.transform, LEVEL), RoomAt(spot, self._needed, LEVEL)
+        if failure.code not in ("PLANE_NOT_FOUND", "NO_FREE_SPOT"):
+            return None
+        near = self.frames.lookup(ODOM, self.near.frame).apply(self.near.position)
+        if failure.code == "PLANE_NOT_FOUND":
+            return PlaneAt(Transform(near), LEVEL)
+        from momantu_skills.perception.spots import SpotConfig
+        from momantu_skills.perception.surveys import PLACE_ERROR
+
+        config = SpotConfig()
+        room = self._needed + config.fingers
+        return RoomAt(_point(near), room, LEVEL + PLACE_ERROR, config.reach)
 
     def _measure(
         self, snapshots: list[Snapshot], region: SurfaceRegion, near: Array, radius: float
@@ -105,3 +131,8 @@ class DetectPlane(Skill):
             radius=radius,
             obstacles=[list(obstacle) for obstacle in found.plane.obstacles],
         )
+
+
+def _point(position: Array) -> tuple[float, float, float]:
+    x, y, z = (float(v) for v in position)
+    return x, y, z

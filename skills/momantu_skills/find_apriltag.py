@@ -6,6 +6,8 @@ from collections.abc import Generator
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from momantu_bt.claim import Claim, TagAt, TagOn
+from momantu_bt.failure import FailureValue
 from momantu_bt.frames import ODOM
 from momantu_bt.geometry import Array, Pose
 from momantu_bt.robot import CAMERA_CARRIER, Robot
@@ -23,6 +25,8 @@ PICTURES = 4
 LOOKS = 4
 """Fewest looks over a surface after the one at its middle: a camera that turns also moves a
 little, and sees past what hid the tag."""
+EXACT, SQUARE = 0.02, 0.05
+"""m and rad that a measured tag may be off: twice what the camera's mounting costs at most."""
 
 
 class FindAprilTag(Skill):
@@ -57,6 +61,13 @@ class FindAprilTag(Skill):
             self.tag_sigma = result.sigma
             return
         raise self._not_seen(others)
+
+    def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
+        """It lies where it was measured; or it lies on the surface where it was not seen."""
+        if failure is None:
+            return TagAt(self.tag_id, self.tag_pose.transform, EXACT, SQUARE)
+        unseen = failure.code == "TAG_NOT_SEEN" and self.on in self.site.surfaces
+        return TagOn(self.tag_id, self.on) if unseen else None
 
     def _watch(
         self, robot: Robot, first: TagSighting, others: set[int]

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Literal
 
+from momantu_bt.claim import CameraOn, Claim
+from momantu_bt.failure import FailureValue
 from momantu_bt.frames import ODOM
 from momantu_bt.geometry import Array, Pose
 from momantu_bt.robot import CAMERA_CARRIER, Robot
@@ -14,6 +16,8 @@ AHEAD = 3.0
 """m before the base, at the camera's own height."""
 DOWN = 1.0
 """m before the base, on the floor: near enough to see what the base is about to meet."""
+SLACK = 0.03
+"""rad by which encoders and the camera's mounting turn the view beside what is asked of it."""
 
 
 class Look(Skill):
@@ -36,11 +40,26 @@ class Look(Skill):
         """One target of the three."""
         return {"inputs": {"surface": "table_a"}}
 
+    def __init__(self) -> None:
+        """Start without a point."""
+        super().__init__()
+        self._target: tuple[float, float, float] | None = None
+
     def run(self, robot: Robot) -> Run:
         """Work out the point, then look."""
         from momantu_skills.perception.looking import look_at
 
-        yield from look_at(self, robot, self._point(robot))
+        x, y, z = (float(v) for v in self._point(robot))
+        self._target = x, y, z
+        yield from look_at(self, robot, self._target)
+
+    def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
+        """The camera looks there, whether it is said or denied."""
+        from momantu_skills.perception.looking import WITHIN
+
+        if self._target is None or (failure is not None and failure.code != "OUT_OF_VIEW"):
+            return None
+        return CameraOn(robot.description.camera()[1].frame, self._target, WITHIN + SLACK)
 
     def _point(self, robot: Robot) -> Array:
         given = [name for name in ("at", "surface", "direction") if getattr(self, name) is not None]

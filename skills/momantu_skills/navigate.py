@@ -6,6 +6,9 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from momantu_bt.claim import BaseAt, BaseNear, Claim
+from momantu_bt.failure import FailureValue
+from momantu_bt.frames import ODOM
 from momantu_bt.geometry import Pose, Pose2D
 from momantu_bt.robot import CAMERA_CARRIER, Robot
 from momantu_bt.service import Localization, PlanningScene
@@ -15,6 +18,10 @@ if TYPE_CHECKING:
     from momantu_skills.navigation.config import NavigationConfig
     from momantu_skills.navigation.trip import Destination
     from momantu_skills.navigation.vehicle import Vehicle
+
+
+SURVEY = (0.05, 0.03)
+"""m and rad that the map itself is good for: one of its cells, and what scans tell of heading."""
 
 
 class Navigate(Skill):
@@ -49,20 +56,46 @@ class Navigate(Skill):
         """One destination of the three."""
         return {"inputs": {"in_front_of": "table_a"}}
 
+    def __init__(self) -> None:
+        """Start without a destination."""
+        super().__init__()
+        self._going: Destination | None = None
+
     def run(self, robot: Robot) -> Run:
         """Check the goal, then travel."""
-        from momantu_skills.navigation.config import NavigationConfig, configured
         from momantu_skills.navigation.mppi import Mppi
         from momantu_skills.navigation.trip import travel
         from momantu_skills.navigation.vehicle import Vehicle
 
         self._check()
-        parameters = self.site.services.get("navigate", {})
-        config = configured(NavigationConfig, parameters, "navigate")
+        config = self._config()
         vehicle = Vehicle(self, robot, self.localization, self.planning_scene, config)
-        destination = self._destination(vehicle, config)
+        destination = self._going = self._destination(vehicle, config)
         mppi = Mppi(robot.description.base, config, self.random)
         yield from travel(vehicle, mppi, destination, recovery=self.recovery)
+
+    def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
+        """The base is on its stand, or where the hand reaches; or is where it doubts to be."""
+        from momantu_skills.navigation.confidence import estimate
+
+        if failure is not None and failure.code == "NOT_LOCALIZED":
+            return estimate(self.localization)
+        if self._going is None or self._going.chosen is None:
+            return None
+        if failure is None and self.within_reach_of is not None:
+            target = self.within_reach_of
+            x, y, _ = self.frames.lookup(ODOM, target.frame).apply(target.position)
+            return BaseNear((float(x), float(y)), self._config().reach[2] + self.tolerance)
+        if failure is None or (failure.code in self.failures and self.within_reach_of is None):
+            distance, turn = SURVEY
+            stand, angle = self._going.chosen, self.angle_tolerance
+            return BaseAt(stand, self.tolerance + distance, angle + turn)
+        return None
+
+    def _config(self) -> NavigationConfig:
+        from momantu_skills.navigation.config import NavigationConfig, configured
+
+        return configured(NavigationConfig, self.site.services.get("navigate", {}), "navigate")
 
     def _check(self) -> None:
         given = [

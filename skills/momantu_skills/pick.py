@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Generator
 from typing import TYPE_CHECKING, Any
 
-from momantu_bt.failure import Failure
+from momantu_bt.claim import Claim, Holding, ObjectAt
+from momantu_bt.failure import Failure, FailureValue
 from momantu_bt.geometry import Array, Transform
-from momantu_bt.messages import DetectedObject
+from momantu_bt.messages import DetectedObject, ObjectClass
 from momantu_bt.robot import CAMERA_CARRIER, Robot
 from momantu_bt.skill import Compute, In, Needs, Run, Skill, compute
 
@@ -24,6 +25,8 @@ SQUEEZE = 0.03
 and for missing it to show; closing all the way would make opening slower."""
 BUMP = 25.0
 """N on the wrist that stop the approach: enough to push a can aside, far from doing damage."""
+THERE = 0.03
+"""m from the pose within which a thing should have been seen to stand there."""
 
 
 class Pick(Skill):
@@ -61,6 +64,20 @@ class Pick(Skill):
         rest = yield from self._close(arm, plan)
         yield from self._lift(arm, plan, rest)
         yield from self._look_again(arm)
+
+    def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
+        """It is in the hand; after a failure, the opposite of what the code says of hand or table.
+
+        What says nothing of either (no plan, a stale pose) cannot be contradicted.
+        """
+        if failure is None or failure.code in ("GRASP_MISSED", "SLIPPED"):
+            return Holding(True)
+        if failure.code == "HAND_FULL":
+            return Holding(False)
+        if failure.code == "NOTHING_THERE":
+            thing = ObjectClass(self.object.category)
+            return ObjectAt(thing, self.object.pose.transform, THERE)
+        return None
 
     def _check_start(self, arm: Arm) -> None:
         from momantu_skills.manipulation.freshness import check_fresh

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from momantu_bt.failure import Failure
-from momantu_bt.geometry import Array, Pose
+from momantu_bt.claim import Claim, Holding, SetDown
+from momantu_bt.failure import Failure, FailureValue
+from momantu_bt.geometry import Array, Pose, Transform
 from momantu_bt.messages import SupportPlane
 from momantu_bt.robot import CAMERA_CARRIER, Robot
 from momantu_bt.service import HeldObject
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
 
 THINKING = 0.4
 """s that choosing a spot and planning are given: twice the median."""
+BESIDE = 0.02
+"""m from its spot within which a thing counts as set down there."""
 
 
 class Place(Skill):
@@ -39,6 +42,11 @@ class Place(Skill):
     uses = {"arm", "gripper", CAMERA_CARRIER}
     planning_scene: Any = Needs()
 
+    def __init__(self) -> None:
+        """Start without a spot."""
+        super().__init__()
+        self._spot: Transform | None = None
+
     def run(self, robot: Robot) -> Run:
         """The whole skill; each step is a method below."""
         from momantu_skills.manipulation.arm import Arm
@@ -49,6 +57,7 @@ class Place(Skill):
         self.planning_scene.support(self.plane)
         yield from self._look(arm, self.spots[0].position)
         plan = yield from compute(lambda: self._plan(arm, held), THINKING)
+        self._spot = plan.odom_from_object
         for trajectory in plan.transit:
             yield from arm.follow(trajectory, "carrying")
         self._still_held(held)
@@ -56,6 +65,15 @@ class Place(Skill):
         yield from self._let_go(arm, held)
         yield from self._draw_back(arm, plan)
         yield from self._look_again(arm, plan, held)
+
+    def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
+        """It stands on its spot, whether that is said or denied; or that something is held."""
+        if failure is not None and failure.code == "NOTHING_HELD":
+            return Holding(True)
+        denied = failure is not None and failure.code in ("LOST", "TOPPLED")
+        if self._spot is None or not (failure is None or denied):
+            return None
+        return SetDown(self._spot, BESIDE)
 
     def _check_start(self, arm: Arm) -> HeldObject:
         from momantu_skills.manipulation.freshness import check_fresh

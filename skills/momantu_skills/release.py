@@ -4,8 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
+from momantu_bt.claim import Claim, GripperOpen, Holding
+from momantu_bt.failure import FailureValue
 from momantu_bt.robot import Robot
 from momantu_bt.skill import Needs, Run, Skill
+
+OPEN = 0.01
+"""m short of its widest at which the gripper still counts as open: gauge and control."""
 
 
 class Release(Skill):
@@ -26,3 +31,9 @@ class Release(Skill):
         yield from open_hand(robot, self.clock, width, config.force, config.close_time)
         if holding:
             self.planning_scene.released()
+
+    def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
+        """The hand is open and empty, whether that is said or denied."""
+        if failure is not None and failure.code != "GRIPPER_STUCK":
+            return None
+        return GripperOpen(robot.description.end_effector.max_width - OPEN), Holding(False)

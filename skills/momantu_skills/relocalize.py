@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, ClassVar
 
+from momantu_bt.claim import Claim
+from momantu_bt.failure import FailureValue
 from momantu_bt.messages import BaseVelocity
 from momantu_bt.robot import Robot
 from momantu_bt.service import Localization
@@ -70,6 +72,14 @@ class Relocalize(Skill):
             sigma_position=position,
             sigma_yaw=yaw,
         )
+
+    def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
+        """The base is where it is now believed to be, or was no longer believed to be."""
+        from momantu_skills.navigation.confidence import estimate
+
+        if failure is not None and failure.code != "NOT_LOCALIZED":
+            return None
+        return estimate(self.localization)
 
     def _rest(self, robot: Robot, seconds: float) -> Run:
         end = self.clock.now() + seconds - 1e-6

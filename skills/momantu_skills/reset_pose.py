@@ -5,7 +5,8 @@ from __future__ import annotations
 import difflib
 from typing import Any
 
-from momantu_bt.failure import Failure
+from momantu_bt.claim import Claim, JointsAt
+from momantu_bt.failure import Failure, FailureValue
 from momantu_bt.messages import JointPositions
 from momantu_bt.robot import CAMERA_CARRIER, Robot
 from momantu_bt.skill import In, Needs, Run, Skill, compute
@@ -14,6 +15,8 @@ THINKING = 0.2
 """s that planning is given: several times its median."""
 CLOSE = 0.01
 """rad or m from the pose at which the arm need not move."""
+REACHED = 0.03
+"""rad or m from the pose at which it is reached: trajectories end within 0.02, encoders err."""
 
 
 class ResetPose(Skill):
@@ -54,6 +57,16 @@ class ResetPose(Skill):
                     self._turn_camera(robot, wanted)
                     yield phase
         yield from self._finish_camera(robot, wanted)
+
+    def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
+        """The joints of arm and camera are where the pose has them, said or denied."""
+        wanted = robot.description.named_poses.get(self.pose)
+        if wanted is None or (failure is not None and failure.code not in self.failures):
+            return None
+        carrier = robot.description.resolve_use(CAMERA_CARRIER)
+        actuators = [robot.description.actuators[name] for name in dict.fromkeys(("arm", carrier))]
+        names = tuple(j for actuator in actuators for j in actuator.joints if j in wanted)
+        return JointsAt(names, tuple(wanted[name] for name in names), REACHED)
 
     def _wanted(self, robot: Robot) -> dict[str, float]:
         poses = robot.description.named_poses

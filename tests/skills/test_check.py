@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from momantu_skills.check import Check
 
+from momantu_bt.claim import BaseAt, GripperOpen, Holding
 from momantu_bt.geometry import Pose2D
 from momantu_bt.testing import ScriptedRobot, run_skill
 from momantu_bt.tree.load import TreeError, load
@@ -75,3 +76,55 @@ def test_a_misspelt_question_is_found_before_the_run(tmp_path: Path) -> None:
     (problem,) = caught.value.problems
     assert problem.place.line == 5
     assert "holding" in f"{problem.message} {problem.hint}"
+
+
+@pytest.mark.parametrize("beliefs", [{}, {"holding": True}])
+def test_what_is_held_is_claimed_as_asked_whatever_is_believed(beliefs: Any) -> None:
+    """After "no" it is the sentence that would show the answer to be wrong."""
+    assert check("holding", **beliefs).claim() == Holding(True)
+    assert check("not_holding", **beliefs).claim() == Holding(False)
+
+
+def test_where_it_is_is_claimed_of_the_estimate_whether_it_is_trusted_or_not() -> None:
+    here = Pose2D(1.0, 2.0, 0.3)
+    for sigma in (0.01, 0.5):
+        claim = check("localized", at=here, sigma=sigma).claim()
+        assert isinstance(claim, BaseAt)
+        assert claim.map_from_base == here
+        assert 0.05 < claim.tolerance < 0.2
+
+
+@pytest.mark.parametrize(
+    ("place", "at", "nearest"),
+    [
+        ("start", Pose2D(0.5, 0.5), (0.0, 0.0)),
+        ("table_a", Pose2D(0.6, 0.3), (1.6, 0.3)),
+        ("table_a", Pose2D(2.1, 5.0), (2.1, 0.6)),
+        ("table_a", Pose2D(2.1, 0.3), (2.1, 0.3)),
+    ],
+)
+def test_near_is_claimed_of_the_nearest_point(
+    place: str, at: Pose2D, nearest: tuple[float, float]
+) -> None:
+    result = check("near", place=place, at=at)
+    claim = result.claim()
+    assert isinstance(claim, BaseAt)
+    assert (claim.map_from_base.x, claim.map_from_base.y) == pytest.approx(nearest)
+    said = at.distance_to(Pose2D(*nearest)) <= 1.5
+    assert (result.status == "SUCCESS") is said
+    assert (claim.tolerance > 1.5) is said
+
+
+@pytest.mark.parametrize("share", [0.85, 0.95])
+def test_an_open_gripper_is_claimed_with_room_for_its_gauge(share: float) -> None:
+    widest = ScriptedRobot().description.end_effector.max_width
+    result = check("gripper_open", robot=ScriptedRobot(gripper_width=share * widest))
+    claim = result.claim()
+    assert isinstance(claim, GripperOpen)
+    assert claim.width == pytest.approx(0.9 * widest, abs=0.004)
+    assert (claim.width < 0.9 * widest) is (result.status == "SUCCESS")
+
+
+@pytest.mark.parametrize("what", ["near", "hoding"])
+def test_what_is_no_answer_claims_nothing(what: str) -> None:
+    assert check(what, place="shelf").claim() is None

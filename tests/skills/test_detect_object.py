@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from momantu_skills.detect_object import DetectObject
 
+from momantu_bt.claim import ObjectAt, ObjectOn
 from momantu_bt.geometry import Pose2D, Transform, quaternion_from_rpy
 from momantu_bt.messages import DetectedObject, ObjectClass
 from momantu_bt.testing import ScriptedRobot, SkillResult, run_skill, scripted_site
@@ -157,3 +158,18 @@ def test_more_views_are_taken_when_asked_and_runs_repeat_to_the_bit(detect: Dete
     many = detect([can(0.95, 0.2)], views=4)
     assert_found(many, 0.95, 0.2)
     assert many.duration > once.duration
+
+
+def test_what_is_found_is_claimed_to_stand_there_as_asked(detect: Detect) -> None:
+    result = detect([can(0.95, 0.15), BOX])
+    claim = result.claim()
+    assert isinstance(claim, ObjectAt)
+    assert claim.asked == CAN
+    assert claim.odom_from_object == result.outputs["found"].pose.transform
+    true = (0.95, 0.15, TOP + 0.065)
+    assert np.linalg.norm(claim.odom_from_object.position - true) < claim.tolerance < 0.035
+
+
+def test_what_is_not_found_would_be_a_false_alarm_if_it_stood_there(detect: Detect) -> None:
+    assert detect([BOX]).claim() == ObjectOn(CAN, "table")
+    assert detect([], table=()).claim() is None

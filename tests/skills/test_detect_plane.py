@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from momantu_skills.detect_plane import DetectPlane
 
+from momantu_bt.claim import PlaneAt, RoomAt
 from momantu_bt.geometry import Pose, Pose2D, Transform, quaternion_from_rpy
 from momantu_bt.messages import DetectedObject, SupportPlane
 from momantu_bt.service import HeldObject
@@ -127,3 +128,26 @@ def test_what_no_look_showed_is_not_free(measure: Measure) -> None:
     spots = spots_of(measure([Block((0.02, 0.3, 0.6), (0.78, 0.1, TOP + 0.3))], size=(0.07, 0.07)))
     hidden = (np.abs(spots[:, 1] - 0.1) < 0.15) & (spots[:, 0] > 0.8)
     assert not hidden.any()
+
+
+def test_a_top_and_room_at_the_best_spot_are_claimed(measure: Measure) -> None:
+    result = measure([], size=(0.06, 0.08, 0.13))
+    claim = result.claim()
+    assert isinstance(claim, tuple)
+    plane, room = claim
+    assert isinstance(plane, PlaneAt)
+    assert isinstance(room, RoomAt)
+    assert plane.odom_from_plane == result.outputs["plane"].pose.transform
+    assert room.odom_point == tuple(result.outputs["spots"][0].position)
+    assert (room.radius, room.within) == (pytest.approx(0.05), 0.0)
+
+
+def test_room_or_a_top_after_all_would_be_a_false_alarm(measure: Measure) -> None:
+    claim = measure([], size=(0.7, 0.7)).claim()
+    assert isinstance(claim, RoomAt)
+    assert claim.odom_point == pytest.approx((*NEAR, TOP))
+    assert claim.radius > 0.7 / math.sqrt(2)
+    assert claim.within == pytest.approx(0.35)
+    claim = measure([], height=0.8).claim()
+    assert isinstance(claim, PlaneAt)
+    assert claim.odom_from_plane.position == pytest.approx((*NEAR, 0.8))

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from momantu_skills.find_apriltag import FindAprilTag
 
+from momantu_bt.claim import TagAt, TagOn
 from momantu_bt.geometry import Pose2D, Transform, quaternion_from_rpy
 from momantu_bt.testing import ScriptedRobot, SkillResult, run_skill, scripted_site
 from momantu_bt.testing.painting import Block, Card, Round, Solid
@@ -104,3 +105,19 @@ def test_without_a_surface_it_looks_around(find: Find) -> None:
     result = find([card(1, 0.95, 0.5)], on=None)
     assert result.status == "SUCCESS", result.explain()
     assert result.outputs["tag_pose"].position == pytest.approx((0.95, 0.5, TOP), abs=0.005)
+
+
+def test_the_tag_is_claimed_to_lie_where_it_was_measured(find: Find) -> None:
+    result = find([card(1, 0.9, 0.0, 0.7)])
+    claim = result.claim()
+    assert isinstance(claim, TagAt)
+    assert (claim.tag_id, claim.odom_from_tag) == (1, result.outputs["tag_pose"].transform)
+    true = Transform((0.9, 0.0, TOP + 0.001), quaternion_from_rpy(0.0, 0.0, 0.7))
+    assert np.linalg.norm(claim.odom_from_tag.position - true.position) < claim.tolerance
+    assert claim.odom_from_tag.angle_to(true) < claim.turn_tolerance
+
+
+def test_a_tag_that_is_not_seen_would_be_a_false_alarm_on_that_surface(find: Find) -> None:
+    assert find([card(7, 0.9, 0.0)]).claim() == TagOn(1, "table")
+    assert find([card(7, 0.9, 0.0)], on=None).claim() is None
+    assert find([], on="shelf").claim() is None

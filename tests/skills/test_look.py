@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from momantu_skills.look import Look
 
+from momantu_bt.claim import CameraOn
 from momantu_bt.geometry import Pose, Pose2D, Transform
 from momantu_bt.testing import ScriptedRobot, run_skill, small_robot
 
@@ -114,3 +115,18 @@ def test_a_camera_on_an_arm_is_not_swung_blindly() -> None:
     assert result.code == "OUT_OF_VIEW"
     assert "named pose" in result.explain()
     assert np.all([goal is None for _, _, goal in scripted.commands])
+
+
+def test_looking_is_claimed_of_the_point_whether_said_or_denied() -> None:
+    robot, stuck = ScriptedRobot(), ScriptedRobot()
+    stuck.frozen.add("head")
+    point = (1.0, 1.0, 0.5)
+    for looking, code in ((robot, None), (stuck, "OUT_OF_VIEW")):
+        result = run_skill(Look, robot=looking, inputs={"at": pose(point)})
+        assert result.code == code
+        claim = result.claim()
+        assert isinstance(claim, CameraOn)
+        assert claim.odom_point == pytest.approx(point)
+        assert claim.frame == looking.description.camera()[1].frame
+        assert (off_axis(looking, claim.odom_point) <= claim.turn_tolerance) is (code is None)
+    assert run_skill(Look, inputs={"surface": "shelf"}).claim() is None

@@ -9,6 +9,7 @@ import pytest
 from momantu_skills.navigate import Navigate
 from momantu_skills.navigation.service import LocalizationService
 
+from momantu_bt.claim import BaseAt, BaseNear
 from momantu_bt.geometry import Pose, Pose2D, Transform, wrap_angle
 from momantu_bt.messages import BaseVelocity
 from momantu_bt.testing import ScriptedWorld
@@ -217,3 +218,47 @@ def test_a_pose_in_the_open_is_faced_at_best_reach(flat: Any, drive: Drive) -> N
     here = world.robot.truth.inverse() @ Pose2D(-0.5, 0.0, 0.0)
     assert math.hypot(here.x, here.y) == pytest.approx(0.7, abs=0.1)
     assert abs(wrap_angle(math.atan2(here.y, here.x))) < 0.15
+
+
+# what it claims
+
+
+def _is_at(claim: Any, world: Any) -> bool:
+    assert isinstance(claim, BaseAt)
+    off = claim.map_from_base.inverse() @ world.robot.truth
+    return math.hypot(off.x, off.y) <= claim.tolerance and abs(off.yaw) <= claim.turn_tolerance
+
+
+def test_arrival_is_claimed_of_the_stand_within_the_tolerances(flat: Any, drive: Drive) -> None:
+    world = flat(FRONT @ Pose2D(-0.4, 0.0, 0.0))
+    claim = drive(world, in_front_of="desk").claim()
+    assert _is_at(claim, world)
+    assert isinstance(claim, BaseAt)
+    assert claim.map_from_base.distance_to(FRONT) < 0.01
+    assert 0.05 < claim.tolerance < 0.15
+
+
+def test_a_stand_within_reach_is_claimed_of_what_is_reached_for(flat: Any, drive: Drive) -> None:
+    world = flat(FRONT)
+    can = Pose2D(3.75, 0.5, 0.0)
+    odom_from_map = world.robot.base @ world.robot.truth.inverse()
+    seen = (odom_from_map @ can).transform(0.7)
+    claim = drive(world, within_reach_of=Pose(seen, "odom", 0.0)).claim()
+    assert isinstance(claim, BaseNear)
+    assert claim.odom_point == pytest.approx(tuple(seen.position[:2]))
+    assert world.robot.truth.distance_to(can) < claim.distance
+
+
+def test_no_progress_would_be_a_false_alarm_on_the_stand(flat: Any, drive: Drive) -> None:
+    world = flat()
+    world.robot.frozen.add("base")
+    result = drive(world, in_front_of="desk", recovery=False)
+    assert result.code == "NO_PROGRESS"
+    assert not _is_at(result.claim(), world)
+    world.robot.truth = FRONT
+    assert _is_at(result.claim(), world)
+
+
+def test_without_a_stand_nothing_is_claimed(flat: Any, drive: Drive) -> None:
+    assert drive(flat(), in_front_of="dusk").claim() is None
+    assert drive(flat(), goal=Pose2D(3.9, 0.2, 0.0), recovery=False).claim() is None

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from momantu_skills.pick import Pick
 
-from momantu_bt.messages import DetectedObject, JointTrajectory
+from momantu_bt.claim import Holding, ObjectAt
+from momantu_bt.messages import DetectedObject, JointTrajectory, ObjectClass
 from momantu_bt.testing import run_skill
 from momantu_bt.testing.painting import Block
 
@@ -185,3 +186,38 @@ def test_it_is_held_upright_in_the_pose_for_carrying(tabletop: Any, scene_of: An
     robot.joints |= robot.description.named_poses["carry"]
     robot.advance(0.05)
     assert math.acos(robot.can.rotation[2, 2]) < math.radians(20)
+
+
+def test_success_and_a_missed_grasp_are_about_holding(tabletop: Any, scene_of: Any) -> None:
+    robot = tabletop()
+    assert pick(robot, scene_of(robot), robot.detected()).claim() == Holding(True)
+    robot = tabletop()
+    robot.slips = True
+    result = pick(robot, scene_of(robot), robot.detected())
+    assert (result.code, result.claim()) == ("SLIPPED", Holding(True))
+
+
+def test_a_full_hand_is_contradicted_by_an_empty_one(tabletop: Any, scene_of: Any) -> None:
+    robot = tabletop()
+    thing, scene = robot.detected(), scene_of(robot)
+    robot.gripper_width, robot.gripper_effort = 0.07, 45.0
+    scene.update(robot, 0.0)
+    scene.grasped(thing, robot.can)
+    assert pick(robot, scene, thing).claim() == Holding(False)
+
+
+def test_nothing_there_is_contradicted_by_a_thing_there(tabletop: Any, scene_of: Any) -> None:
+    robot = tabletop()
+    robot.stays_hidden = True
+    thing = robot.detected()
+    result = pick(robot, scene_of(robot), thing)
+    claim = result.claim()
+    assert result.code == "NOTHING_THERE"
+    assert isinstance(claim, ObjectAt)
+    assert claim.asked == ObjectClass("can")
+    assert claim.odom_from_object == thing.pose.transform
+
+
+def test_what_cannot_be_reached_says_nothing_of_the_world(tabletop: Any, scene_of: Any) -> None:
+    robot = tabletop((1.2, 0.45))
+    assert pick(robot, scene_of(robot), robot.detected()).claim() is None

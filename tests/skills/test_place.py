@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from momantu_skills.place import Place
 
+from momantu_bt.claim import Holding, SetDown
 from momantu_bt.geometry import Pose, Transform
 from momantu_bt.messages import SupportPlane
 from momantu_bt.testing import run_skill
@@ -152,3 +153,27 @@ def test_what_does_not_move_is_stuck(holding: Any, actuator: str) -> None:
     robot, scene = holding()
     robot.frozen.add(actuator)
     assert place(robot, scene).code == "ARM_STUCK"
+
+
+@pytest.mark.parametrize("topples", [False, True])
+def test_standing_there_is_claimed_of_the_spot_whether_said_or_denied(
+    holding: Any, topples: bool
+) -> None:
+    robot, scene = holding()
+    robot.topples = topples
+    result = place(robot, scene)
+    claim = result.claim()
+    assert (result.code == "TOPPLED") is topples
+    assert isinstance(claim, SetDown)
+    assert np.linalg.norm(claim.odom_from_object.position - robot.can.position) < claim.tolerance
+    assert claim.odom_from_object.position[2] == pytest.approx(0.72 + 0.065, abs=0.005)
+
+
+def test_nothing_held_is_contradicted_by_something_held(tabletop: Any, scene_of: Any) -> None:
+    robot = tabletop()
+    assert place(robot, scene_of(robot)).claim() == Holding(True)
+
+
+def test_what_never_got_to_a_spot_claims_nothing(holding: Any) -> None:
+    robot, scene = holding()
+    assert place(robot, scene, ()).claim() is None

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 from momantu_skills.release import Release
 
+from momantu_bt.claim import GripperOpen, Holding
 from momantu_bt.geometry import Transform
 from momantu_bt.testing import run_skill
 
@@ -47,3 +48,18 @@ def test_a_gripper_that_does_not_open_is_stuck(tabletop: Any, scene_of: Any) -> 
     result = release(robot, scene_of(robot))
     assert result.code == "GRIPPER_STUCK"
     assert "30 mm of 100 mm" in result.failure.message
+
+
+@pytest.mark.parametrize("stuck", [False, True])
+def test_an_open_and_empty_hand_is_claimed_whether_said_or_denied(
+    tabletop: Any, scene_of: Any, stuck: bool
+) -> None:
+    robot = tabletop()
+    robot.gripper_width = 0.03
+    robot.frozen |= {"gripper"} if stuck else set()
+    result = release(robot, scene_of(robot))
+    assert (result.code == "GRIPPER_STUCK") is stuck
+    opened, empty = result.claim()
+    assert isinstance(opened, GripperOpen)
+    assert (robot.gripper_width >= opened.width) is not stuck
+    assert empty == Holding(False)

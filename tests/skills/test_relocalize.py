@@ -7,6 +7,7 @@ from momantu_skills.navigation.confidence import is_localized
 from momantu_skills.navigation.service import LocalizationService
 from momantu_skills.relocalize import Relocalize
 
+from momantu_bt.claim import BaseAt
 from momantu_bt.geometry import Pose2D
 from momantu_bt.testing.skill_run import SkillResult, run_skill
 
@@ -76,3 +77,12 @@ def test_it_does_not_turn_into_what_stands_beside_it(flat: Any) -> None:
     )
     result, _ = _run(world)
     assert world.robot.nearest > 0.0, result.explain()
+
+
+def test_the_base_is_claimed_to_be_where_it_is_believed_to_be(flat: Any) -> None:
+    world = flat(Pose2D(-2.0, 0.0, 0.0), believed=Pose2D(-1.8, 0.2, 0.2))
+    result, service = _run(world)
+    claim = result.claim()
+    assert isinstance(claim, BaseAt)
+    assert claim.map_from_base == service.map_from_base
+    assert claim.map_from_base.distance_to(world.robot.truth) < claim.tolerance

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from momantu_skills.reset_pose import ResetPose
 
+from momantu_bt.claim import JointsAt
 from momantu_bt.geometry import Transform
 from momantu_bt.messages import JointTrajectory
 from momantu_bt.testing import ScriptedRobot, run_skill
@@ -178,3 +179,24 @@ def test_the_same_seed_gives_the_same_trajectory(tabletop: Any, scene_of: Any) -
         sent.append(b"".join(goal.positions.tobytes() for goal in goals))
     assert sent[0] == sent[1]
     assert sent[0]
+
+
+@pytest.mark.parametrize("stuck", [False, True])
+def test_arm_and_camera_are_claimed_in_the_pose_whether_said_or_denied(
+    tabletop: Any, scene_of: Any, stuck: bool
+) -> None:
+    robot = tabletop(can=None, pose="carry")
+    robot.frozen |= {"arm"} if stuck else set()
+    result = reset(robot, scene_of(robot), "home")
+    claim = result.claim()
+    assert (result.code == "ARM_STUCK") is stuck
+    assert isinstance(claim, JointsAt)
+    wanted = dict(zip(claim.names, claim.positions, strict=True))
+    assert wanted == robot.description.named_poses["home"]
+    there = all(abs(robot.joints[n] - p) <= claim.tolerance for n, p in wanted.items())
+    assert there is not stuck
+
+
+def test_a_pose_that_is_not_known_claims_nothing(tabletop: Any, scene_of: Any) -> None:
+    robot = tabletop()
+    assert reset(robot, scene_of(robot), "hone").claim() is None

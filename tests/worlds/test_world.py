@@ -12,8 +12,22 @@ from momantu_worlds.robots import fetch
 from momantu_worlds.sapien.world import SapienWorld
 from momantu_worlds.worlds import four_rooms
 
-from momantu_bt.geometry import Pose2D
-from momantu_bt.messages import BaseVelocity
+from momantu_bt.claim import (
+    BaseAt,
+    BaseNear,
+    CameraOn,
+    GripperOpen,
+    Holding,
+    JointsAt,
+    Judge,
+    ObjectAt,
+    ObjectOn,
+    Sentence,
+    TagAt,
+    TagOn,
+)
+from momantu_bt.geometry import Pose2D, Transform
+from momantu_bt.messages import BaseVelocity, JointPositions
 from momantu_bt.robot import RobotDescription, read_camera, read_laser
 from momantu_bt.world import TICK, World, WorldEntry, WorldError
 
@@ -82,6 +96,62 @@ def test_at_first_the_job_is_not_done(world: SapienWorld) -> None:
     assert verdict is not None
     assert not verdict.success
     assert verdict.unmet
+
+
+def test_what_is_true_in_the_map_is_true_in_odometry_however_far_that_has_drifted() -> None:
+    """A robot that drives a bend on purpose: the judge brings its poses back into the map."""
+    opened = four_rooms.open(FETCH, 5)
+    assert isinstance(opened, SapienWorld)
+    for _ in range(60):
+        opened.robot.command("base", BaseVelocity(0.2, 0.8))
+        opened.robot.command("head", JointPositions(("head_pan_joint", "head_tilt_joint"), (0, 0)))
+        opened.step()
+    for _ in range(30):
+        opened.step()
+    truth, odometry = opened.simulator.truth, opened.robot.state().odom_from_base
+    odom_from_map = odometry @ truth.base().transform().inverse()
+    drift = (opened.site.start.transform() @ odometry).position - truth.base().transform().position
+    assert np.linalg.norm(drift) > 0.05
+    can = odom_from_map @ truth.pose("can") @ Transform((0.0, 0.0, 0.065))
+    tag = odom_from_map @ truth.pose("tag")
+    wanted = opened.site.objects["can"]
+    x, y, z = (float(v) for v in can.position)
+    frame = FETCH.camera()[1].frame
+    ahead = odom_from_map @ truth.link(frame) @ Transform((0.0, 0.0, 2.0))
+    home = FETCH.named_poses["home"]
+    arm = FETCH.actuators["arm"].joints
+    sentences: list[tuple[Sentence, bool]] = [
+        (ObjectAt(wanted, can, 0.001), True),
+        (ObjectAt(wanted, can @ Transform((0.01, 0.0, 0.0)), 0.001), False),
+        (ObjectOn(wanted, "table_a"), True),
+        (ObjectOn(wanted, "table_b"), False),
+        (TagAt(1, tag, 0.001, 0.002), True),
+        (TagOn(1, "table_b"), True),
+        (TagOn(2), False),
+        (BaseAt(truth.base(), 1e-6, 1e-6), True),
+        (BaseAt(truth.base() @ Pose2D(0.0, 0.0, 0.2), 0.1, 0.1), False),
+        (BaseNear((x, y), truth.base().distance_to(_floor(truth.pose("can"))) + 1e-3), True),
+        (BaseNear((x, y), truth.base().distance_to(_floor(truth.pose("can"))) - 1e-3), False),
+        (CameraOn(frame, _xyz(ahead), 1e-3), True),
+        (CameraOn(frame, (x, y, z - 9.0), 0.3), False),
+        (JointsAt(arm, tuple(home[name] for name in arm), 0.01), True),
+        (JointsAt(("head_tilt_joint",), (home["head_tilt_joint"],), 0.1), False),
+        (GripperOpen(0.09), True),
+        (Holding(False), True),
+    ]
+    judge: Judge = opened
+    told = [(str(s), judge.judge(s, odometry)) for s, _ in sentences]
+    assert told == [(str(s), said) for s, said in sentences]
+    opened.close()
+
+
+def _floor(pose: Transform) -> Pose2D:
+    return Pose2D.from_transform(pose)
+
+
+def _xyz(pose: Transform) -> tuple[float, float, float]:
+    x, y, z = (float(v) for v in pose.position)
+    return x, y, z
 
 
 def test_a_world_without_referee_has_no_word_and_runs_the_same() -> None:

@@ -72,6 +72,8 @@ class SkillLeaf(TreeNode):
             self._write(session, self._live_out)
             return RUNNING
         self.session = None
+        if self.context.skill_ended is not None:
+            self.context.skill_ended(self, session)
         if status is SUCCESS:
             self._write(session, list(self.outputs))
             return SUCCESS

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from momantu_bt.claim import BaseAt
 from momantu_bt.geometry import Array
 from momantu_bt.service import Localization
 
@@ -26,3 +27,8 @@ def is_localized(localization: Localization, quality: float = QUALITY) -> bool:
     """Whether the estimate is narrow and the newest scan agrees with it by `quality` or more."""
     position, yaw = sigmas(localization.covariance)
     return position < POSITION_SIGMA and yaw < YAW_SIGMA and localization.quality > quality
+
+
+def estimate(localization: Localization) -> BaseAt:
+    """The claim that the base is where it is believed to be, as well as driving needs to know."""
+    return BaseAt(localization.map_from_base, POSITION_SIGMA, YAW_SIGMA)

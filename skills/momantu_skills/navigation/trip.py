@@ -35,6 +35,7 @@ class Destination:
     """Candidate stands (map) computed anew when asked, and the tolerance to meet.
 
     in_odom: the chosen stand stays fixed in odometry's frame, for what was measured from here.
+    chosen: the stand of the newest attempt, map; None before the first.
     """
 
     def __init__(
@@ -47,6 +48,7 @@ class Destination:
     ) -> None:
         self.stands, self.tolerance = stands, tolerance
         self.side, self.in_odom = side, in_odom
+        self.chosen: Pose2D | None = None
 
 
 def travel(vehicle: Vehicle, mppi: Mppi, to: Destination, *, recovery: bool) -> Trip:
@@ -91,7 +93,7 @@ def _go(vehicle: Vehicle, mppi: Mppi, to: Destination) -> Trip:
     route: Route = yield from compute(
         lambda: choose(vehicle, to.stands(), to.side), vehicle.config.planning_time
     )
-    goal = _kept(vehicle, route.stand, to.in_odom)
+    to.chosen, goal = route.stand, _kept(vehicle, route.stand, to.in_odom)
     if within(vehicle.pose(), goal(), distance, angle):
         return
     for _ in range(3):
@@ -104,7 +106,7 @@ def _go(vehicle: Vehicle, mppi: Mppi, to: Destination) -> Trip:
         route = yield from compute(
             lambda: choose(vehicle, to.stands(), to.side), vehicle.config.planning_time
         )
-        goal = _kept(vehicle, route.stand, to.in_odom)
+        to.chosen, goal = route.stand, _kept(vehicle, route.stand, to.in_odom)
     raise Failure("NO_PROGRESS", "three approaches did not end at the goal")
 
 

@@ -16,7 +16,7 @@ from momantu_bt.geometry import Pose2D
 from momantu_bt.record.chain import chain_text
 from momantu_bt.record.files import OutputError, check_writable, write_whole
 from momantu_bt.record.log import prepare_folder
-from momantu_bt.record.report import NodeReport, Report
+from momantu_bt.record.report import Lie, NodeReport, Report, SkillClaims
 
 FIELDS = {
     "tree": str,
@@ -39,8 +39,9 @@ FIELDS = {
     "versions": dict,
     "error": str,
     "incidents": list,
+    "claims": dict,
 }
-MAY_BE_NULL = ("world", "robot", "success", "failure", "error")
+MAY_BE_NULL = ("world", "robot", "success", "failure", "error", "claims")
 
 FAILURES = st.deferred(
     lambda: st.builds(
@@ -91,6 +92,8 @@ REPORTS = st.builds(
     nodes=st.just((NodeReport("a", "wait", "t.yaml:1", 3, 1, 0, 0.1),)),
     fingerprint=st.just("0" * 64),
     error=st.none() | st.just("Traceback …"),
+    claims=st.none()
+    | st.just({"pick": SkillClaims(2, 1, 1, 1, lies=(Lie(0.1, "t:1", None, "held"),))}),
 )
 
 

@@ -66,6 +66,10 @@ class Truth:
         """`map_from_link` of one of the robot's links; KeyError when there is none."""
         return transform_of(self._model.links[name].entity_pose)
 
+    def joint(self, name: str) -> float:
+        """Position of one of the robot's joints, rad or m; KeyError when there is none."""
+        return float(self._model.positions()[self._model.index[name]])
+
     def base(self) -> Pose2D:
         """`map_from_base` on the floor."""
         return Pose2D.from_transform(self.link(self._base_link))

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from momantu_bt.claim import Sentence
+from momantu_bt.geometry import Transform
 from momantu_bt.robot import RobotDescription
 from momantu_bt.world import Site, Verdict, Video, View
 from momantu_worlds.sapien.robot import SimulatedRobot
 from momantu_worlds.sapien.simulator import Simulator
 from momantu_worlds.scenes.bodies import Episode
+from momantu_worlds.scenes.judge import ClaimJudge
 from momantu_worlds.scenes.referee import Referee
 
 
 class SapienWorld:
-    """Implements `momantu_bt.world.World`."""
+    """Implements `momantu_bt.world.World` and `momantu_bt.claim.Judge`."""
 
     def __init__(
         self,
@@ -29,6 +32,7 @@ class SapienWorld:
         wanted = referee and episode.goal is not None
         hand = description.end_effector.frame
         self._referee = Referee(episode, self.simulator.truth, hand) if wanted else None
+        self._bodies = {body.name: body for body in episode.bodies}
 
     @property
     def name(self) -> str:
@@ -58,6 +62,11 @@ class SapienWorld:
     def verdict(self) -> Verdict | None:
         """The referee's word on this instant; None without a referee."""
         return None if self._referee is None else self._referee.verdict()
+
+    def judge(self, sentence: Sentence, odom_from_base: Transform) -> bool | None:
+        """Whether something that a skill claims is true of this instant."""
+        judge = ClaimJudge(self.robot.description, self._bodies, self.simulator.truth)
+        return judge.judge(sentence, odom_from_base)
 
     def open_video(self, path: Path, title: str) -> Video:
         """Start a film at `path`."""

@@ -1,0 +1,85 @@
+"""Claims against truth: what skills said at their ends, and how often the world denies it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from momantu_bt.claim import Claim, Judge, Sentence
+from momantu_bt.engine.context import RunContext
+from momantu_bt.engine.nodes.skill import SkillLeaf
+from momantu_bt.engine.outside import SkillSession
+from momantu_bt.engine.session import Session
+from momantu_bt.geometry import Transform
+from momantu_bt.record.report import Lie, SkillClaims
+from momantu_bt.world import World
+
+
+class Auditor:
+    """Hears of each skill that ends, asks it what it claims, and the world whether that is so.
+
+    It listens to `context.skill_ended`. Nothing in the run depends on it: what goes wrong here is
+    remarked on, and counts as no claim. A world that is no `Judge` leaves everything unjudged.
+    """
+
+    def __init__(self, context: RunContext, world: World | None) -> None:
+        self._context = context
+        self._judge = world if isinstance(world, Judge) else None
+        self._claims: dict[str, SkillClaims] = {}
+        context.skill_ended = self._ended
+
+    def claims(self) -> Mapping[str, SkillClaims]:
+        """What was counted so far, by the skills' names in the tree, in the order of first ends."""
+        return dict(self._claims)
+
+    def _ended(self, leaf: SkillLeaf, session: SkillSession) -> None:
+        name, failure = leaf.model.type, session.failure
+        count = self._claims.get(name, SkillClaims())
+        claim, truth = self._judged(leaf, session)
+        false = truth is (failure is not None)
+        if failure is None:
+            count = replace(
+                count,
+                successes=count.successes + 1,
+                judged_successes=count.judged_successes + (truth is not None),
+                false_successes=count.false_successes + false,
+            )
+        else:
+            count = replace(
+                count,
+                failures=count.failures + 1,
+                judged_failures=count.judged_failures + (truth is not None),
+                false_failures=count.false_failures + false,
+            )
+        if false:
+            code = None if failure is None else failure.code
+            lie = Lie(self._context.now, leaf.place, code, str(claim))
+            count = replace(count, lies=(*count.lies, lie))
+        self._claims[name] = replace(count, runs=count.runs + 1)
+
+    def _judged(self, leaf: SkillLeaf, session: SkillSession) -> tuple[Claim | None, bool | None]:
+        """What the skill claims, and whether it is so; None where nobody can tell."""
+        skill = session.skill if isinstance(session, Session) else None
+        body = self._context.body
+        if self._judge is None or skill is None or body is None:
+            return None, None
+        # a lease that owns nothing: whoever claims, moves nothing
+        robot = body.actuators.lease(f"the claim of {leaf.name}", ())
+        try:
+            claim = skill.claim(robot, session.failure)
+            if claim is None:
+                return None, None
+            sentences = claim if isinstance(claim, tuple) else (claim,)
+            return claim, self._all(sentences, robot.state().odom_from_base)
+        except Exception as error:
+            what = f"{type(error).__name__}: {error}"
+            self._context.remark(f"{leaf.where}: its claim cannot be judged: {what}")
+            return None, None
+
+    def _all(self, sentences: tuple[Sentence, ...], odom_from_base: Transform) -> bool | None:
+        """Whether all are true: False when one is not, else None when of one nobody can tell."""
+        assert self._judge is not None
+        answers = [self._judge.judge(sentence, odom_from_base) for sentence in sentences]
+        if False in answers:
+            return False
+        return None if None in answers or not answers else True
