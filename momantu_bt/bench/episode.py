@@ -36,7 +36,7 @@ _RETRYING = ("Recover", "RetryUntilSuccessful", "RecoveryNode")
 
 _KEPT = (
     *("world", "robot", "status", "success", "failure", "unmet", "measures", "sim_time_s"),
-    *("wall_time_s", "start_time_s", "fingerprint", "error", "incidents"),
+    *("wall_time_s", "start_time_s", "fingerprint", "error", "incidents", "claims"),
 )
 """What a row takes over from a report as it is."""
 
@@ -77,7 +77,9 @@ def run(spec: EpisodeSpec) -> tuple[Report, int]:
         spec.tree, registry, world=spec.world, robot=spec.robot, values=dict(spec.values)
     )
     _check(spec, checked, registry)
-    options = Options(world=spec.world, robot=spec.robot, seed=spec.seed, max_time=spec.max_time)
+    options = Options(
+        world=spec.world, robot=spec.robot, seed=spec.seed, max_time=spec.max_time, audit=True
+    )
     executors: list[Executor] = []
 
     def watch(executor: Executor) -> list[Observer]:

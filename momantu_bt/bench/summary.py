@@ -14,6 +14,9 @@ from momantu_bt.bench.outcome import succeeded
 from momantu_bt.bench.process import REPORT
 from momantu_bt.bench.spec import Row
 
+LIES = "lies"
+"""What a row's claims hold beside numbers: each end that truth denies, in words."""
+
 
 @dataclass(frozen=True, slots=True)
 class Spread:
@@ -108,7 +111,8 @@ def _claims(rows: Iterable[Row]) -> dict[str, dict[str, int]]:
     found: dict[str, Counter[str]] = {}
     for row in rows:
         for skill, counts in (row.get("claims") or {}).items():
-            found.setdefault(skill, Counter()).update(counts)
+            numbers = {name: count for name, count in counts.items() if name != LIES}
+            found.setdefault(skill, Counter()).update(numbers)
     return {skill: dict(found[skill]) for skill in sorted(found)}
 
 

@@ -51,6 +51,7 @@ import signal
 from typing import Any
 
 from momantu_bt import Failure, In, Pose2D, Robot, Run, Skill
+from momantu_bt.claim import Holding
 from momantu_bt.testing import ScriptedRobot, ScriptedWorld, scripted_site, small_robot
 from momantu_bt.world import Verdict, WorldError
 
@@ -67,6 +68,9 @@ class Stall(Skill):
         for how, on in self.seeds.items():
             if seed in on:
                 globals()[how]()
+
+    def claim(self, robot, failure):
+        return Holding(True)
 
 
 def hang():
@@ -85,6 +89,13 @@ def fail():
     raise Failure("STALLED", "it was told to, 3 times")
 
 
+class Judged(ScriptedWorld):
+    """Something is held on seeds 4 and up."""
+
+    def judge(self, sentence, odom_from_base):
+        return sentence == Holding(odom_from_base.position[0] > 3.5)
+
+
 class BySeed:
     """A world entry: seed 5 is denied by the referee, seed 6 cannot be opened."""
 
@@ -98,7 +109,7 @@ class BySeed:
             raise WorldError("there is no world for seed 6")
         denied = Verdict(False, (f"the can is {seed}.25 m away",))
         robot = ScriptedRobot(description, base=Pose2D(float(seed), 0.0, 0.0))
-        return ScriptedWorld(robot, verdict_of=lambda _: denied if seed == 5 else Verdict(True))
+        return Judged(robot, verdict_of=lambda _: denied if seed == 5 else Verdict(True))
 
 
 world = BySeed()

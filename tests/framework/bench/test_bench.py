@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -68,6 +69,31 @@ def test_a_process_that_goes_wrong_is_a_row_and_harms_no_other(
     assert "processes without a report: 1 crashed, 1 killed" in said
     records = {int(path.name.split("-")[1]) for path in (out / "records").iterdir()}
     assert records == {2, 3, 4, 5}
+
+
+def test_what_skills_claim_is_judged_and_added_up(
+    stalling: str, tmp_path: Path, capsys: Out
+) -> None:
+    """On seed 0 a success is denied, on seed 4 a failure is a false alarm, 5 and 7 are honest."""
+    out, report = tmp_path / "out", tmp_path / "report.json"
+    assert bench(stalling, "--seeds", "0,4:6,7", "--out", out, "--report", report) == 0
+    rows = {row["seed"]: row["claims"]["stall"] for row in read_rows(out)}
+    lies = {seed: [lie["code"] for lie in claims["lies"]] for seed, claims in rows.items()}
+    assert lies == {0: [None], 4: ["STALLED"], 5: [], 7: []}
+    counts = json.loads(report.read_text())["claims"]["stall"]
+    assert counts == {
+        "runs": 4,
+        "successes": 3,
+        "judged_successes": 3,
+        "false_successes": 1,
+        "failures": 1,
+        "judged_failures": 1,
+        "false_failures": 1,
+    }
+    told = capsys.readouterr().out
+    assert [*re.findall(r"stall +(\d+) +(\d+) +(\d+) +(\d+) +(\d+)", told)] == [
+        ("4", "3", "1", "1", "1")
+    ]
 
 
 def test_a_hang_in_native_code_is_ended_from_outside(
