@@ -40,6 +40,7 @@ VERBS = {
     "skills": "List skills, or show one with its ports and failure codes.",
     "worlds": "List worlds, or show one with its places and surfaces.",
     "robots": "List robots, or show one with its actuators and named poses.",
+    "faults": "List what can be broken on purpose, or show one fault.",
     "doctor": "Say what this machine lacks, and the cure.",
 }
 """Built-in verbs. `momantu_bt.cli.<verb>` has a function or a typer app of the verb's name."""

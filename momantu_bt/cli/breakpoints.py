@@ -75,7 +75,8 @@ class Breakpoints:
             stops = self._stepping or id(node.model) in self._models
             if stops and node.state is not RUNNING and not self._quitting:
                 begun = time.perf_counter()
-                self._stop(run, node)
+                with run.context.watchdog.paused():
+                    self._stop(run, node)
                 run.context.waited += time.perf_counter() - begun
             return RUNNING if self._quitting else execute()
 

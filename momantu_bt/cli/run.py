@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from momantu_bt.cli.breakpoints import Breakpoints
     from momantu_bt.cli.terminal import Terminal
     from momantu_bt.engine.executor import Executor, Observer
+    from momantu_bt.fault import Fault
     from momantu_bt.record.report import Report
     from momantu_bt.tree.model import Document
     from momantu_bt.tree.substitution import Substitution
@@ -57,6 +58,14 @@ def run(
         list[str] | None,
         typer.Option("--break", metavar="NODE", help="Stop before a node: its name, type or line."),
     ] = None,
+    fault: Annotated[
+        list[str] | None,
+        typer.Option(metavar="FAULT", help="Break something; see momantu-bt faults."),
+    ] = None,
+    patience: Annotated[
+        float,
+        typer.Option(min=0.1, help="Wall-clock seconds after which a skill's step counts as hung."),
+    ] = 60.0,
     unattended: Annotated[
         bool, typer.Option("--unattended", help="Nobody answers: questions take their default.")
     ] = False,
@@ -72,6 +81,7 @@ def run(
       momantu-bt run bring_object
       momantu-bt run trees/bring_object.yaml --seed 3 --video run.mp4 --report run.json
       momantu-bt run bring_object --set "tag_edge=150 mm" --view
+      momantu-bt run bring_object --fault camera.dead@navigate:for=10s
     """
     from momantu_bt.cli.terminal import Terminal, is_interactive
 
@@ -79,7 +89,11 @@ def run(
     wanted = _Outputs(video, view, view_port, record, report, quiet, terminal, break_ or [])
     return _guarded(
         lambda: _run(tree, world, robot, seed, set_ or [], values, substitute, wanted)(
-            max_time=max_time, realtime=realtime, referee=referee
+            max_time=max_time,
+            realtime=realtime,
+            referee=referee,
+            patience=patience,
+            faults=_faults(fault or []),
         )
     )
 
@@ -101,16 +115,23 @@ def _guarded(start: Callable[[], Report]) -> int:
     from momantu_bt.engine.launch import LaunchError
     from momantu_bt.engine.makers import BuildError
     from momantu_bt.engine.services import ServiceCycleError
+    from momantu_bt.fault import FaultError
     from momantu_bt.record.files import OutputError
 
     try:
         return start().exit_code
-    except (LaunchError, BuildError, ServiceCycleError, OutputError) as error:
+    except (LaunchError, BuildError, ServiceCycleError, OutputError, FaultError) as error:
         _complain(error)
         return EXIT_WRONG_ARGUMENTS
     except KeyboardInterrupt:
         _complain("interrupted before the first tick; nothing was started")
         return EXIT_INTERRUPTED
+
+
+def _faults(texts: Sequence[str]) -> tuple[Fault, ...]:
+    from momantu_bt.faults.spec import parse_fault
+
+    return tuple(parse_fault(text) for text in texts)
 
 
 def _complain(message: object) -> None:

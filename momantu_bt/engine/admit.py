@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 import numpy as np
 
+from momantu_bt.engine.nan import nan_in
 from momantu_bt.failure import WRONG_TYPE, Failure
 from momantu_bt.skill import Port
 
@@ -18,9 +19,7 @@ def admit(value: Any, port: Port) -> Any:
     Raises:
         Failure: WRONG_TYPE, with what came and what was expected.
     """
-    if type(value) is port.type:
-        return value
-    if fits(value, port.type):
+    if type(value) is port.type or fits(value, port.type):
         return value
     if type(value) is int and fits(float(value), port.type):
         return float(value)
@@ -30,6 +29,26 @@ def admit(value: Any, port: Port) -> Any:
         f"expected {type_text(port.type)}",
         port=port.name,
         got=type(value).__name__,
+        expected=type_text(port.type),
+    )
+
+
+def admit_output(value: Any, port: Port) -> Any:
+    """What a skill gives, made immutable, and with a number wherever there should be one.
+
+    Raises:
+        Failure: WRONG_TYPE, also for a NaN: nobody may move by one.
+    """
+    admitted = admit(freeze(value), port)
+    where = None if type(admitted) in _WITHOUT_NAN else nan_in(admitted)
+    if where is None:
+        return admitted
+    raise Failure(
+        WRONG_TYPE,
+        f"port {port.name} got a value whose {'.'.join((port.name, *where))} is NaN, "
+        "expected numbers",
+        port=port.name,
+        got="NaN",
         expected=type_text(port.type),
     )
 
@@ -56,6 +75,9 @@ def fits(value: Any, annotation: Any) -> bool:
         return isinstance(value, list | tuple) and all(fits(v, arguments[0]) for v in value)
     return _is_instance(value, origin)
 
+
+_WITHOUT_NAN = frozenset((bool, int, str, type(None)))
+"""Types of values that hold no NaN."""
 
 _IMMUTABLE: Mapping[Any, Any] = types.MappingProxyType({list: tuple | list, dict: Mapping})
 """What a frozen value of a kind is."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import ChainMap
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -9,6 +10,7 @@ from typing import Any
 
 from momantu_bt.engine.launch import Options, Watch, launch
 from momantu_bt.engine.person import Scripted
+from momantu_bt.faults.spec import parse_fault
 from momantu_bt.record.report import Report
 from momantu_bt.robot import RobotDescription
 from momantu_bt.tree.load import load
@@ -33,6 +35,8 @@ def run(
     watch: Watch | None = None,
     answers: Iterable[str | bool] = (),
     substitute: str | Path | None = None,
+    faults: Iterable[str] = (),
+    patience: float = math.inf,
 ) -> Report:
     """Run a tree file, or a bundled tree by name.
 
@@ -42,14 +46,18 @@ def run(
     report: where to write it as JSON. registry: what trees can name; everything installed
     unless given. watch: makes observers of the run. answers: what `ask` and `confirm` are told,
     in turn; afterwards nobody answers. substitute: a file of rules that say what nodes do
-    instead of themselves.
+    instead of themselves. faults: what is broken on purpose, such as `camera.dead@navigate`.
+    patience: seconds of wall time that a skill's step may take; what hangs longer in native code
+    ends the process, which is yours: so there is no limit unless one is given.
 
     Raises:
         TreeNotFound: there is no such tree.
         TreeError: the tree has errors; all of them are in it.
         LaunchError: the run cannot begin as asked.
         WorldError: the world could not start.
+        FaultError: a fault that is none, or that this run cannot have.
     """
+    wanted = tuple(parse_fault(text) for text in faults)
     having = registry if registry is not None else Registry.installed()
     named = world if world is None or isinstance(world, str) else world.name
     if world is not None and not isinstance(world, str):
@@ -69,6 +77,8 @@ def run(
         keep_world=named is not world,
         person=Scripted(answers),
         substitution=replacing,
+        faults=wanted,
+        patience=patience,
     )
     result = launch(checked.document, options, having, watch)
     if report is not None:

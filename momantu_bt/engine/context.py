@@ -11,6 +11,7 @@ from momantu_bt.engine.blackboard import Journal
 from momantu_bt.engine.outside import Outside, SkillSession
 from momantu_bt.engine.person import Person, Scripted
 from momantu_bt.engine.status import Status
+from momantu_bt.engine.watchdog import Watchdog
 from momantu_bt.failure import FailureValue
 from momantu_bt.frames import FrameBuffer
 from momantu_bt.skill import Clock
@@ -51,7 +52,7 @@ class RunContext:
     writes: cells written in this tick, with what they held before. changes: of statuses.
     remark: tells a person something that never influences the run. person: answers questions.
     waited: seconds of wall time that the run has spent waiting for a person.
-    outside: whatever comes from beyond the tree comes through it.
+    outside: whatever comes from beyond the tree comes through it. watchdog: ends what hangs.
     skill_ended: told of each skill that ended, at that instant; it changes nothing.
     """
 
@@ -67,6 +68,7 @@ class RunContext:
     waited: float = 0.0
     outside: Outside = field(default_factory=Outside)
     skill_ended: Callable[[SkillLeaf, SkillSession], None] | None = None
+    watchdog: Watchdog = field(default_factory=Watchdog)
 
     def begin_tick(self) -> None:
         """Take the clock's reading and start empty journals."""

@@ -6,7 +6,7 @@ import time
 import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from momantu_bt.engine.build import Built
 from momantu_bt.engine.context import RunContext
@@ -21,6 +21,9 @@ from momantu_bt.messages import RobotState
 from momantu_bt.record import report as outcome
 from momantu_bt.record.fingerprint import Fingerprint
 from momantu_bt.world import Verdict, World
+
+if TYPE_CHECKING:
+    from momantu_bt.faults.director import Director
 
 SETTLE = 1.5
 """Simulated seconds after the end in which everything stops: the referee wants 1 s of stillness."""
@@ -66,7 +69,8 @@ class Ending:
 class Executor:
     """Runs one tree once.
 
-    settling: the tree has ended and the robot comes to rest.
+    settling: the tree has ended and the robot comes to rest. director: who begins and ends
+    faults between ticks; None in a run without any.
     """
 
     def __init__(
@@ -80,6 +84,7 @@ class Executor:
         observers: Sequence[Observer] = (),
         max_time: float = 600.0,
         realtime: bool = False,
+        director: Director | None = None,
     ) -> None:
         self.built = built
         self.context = context
@@ -88,6 +93,7 @@ class Executor:
         self.observers = list(observers)
         self.fingerprint = Fingerprint()
         self.settling = False
+        self.director = director
         self._stepper = stepper
         self._max_time = max_time
         self._realtime = realtime
@@ -136,6 +142,9 @@ class Executor:
 
     def _step(self) -> None:
         """Step the world; it is known to be sound when it comes back."""
+        if self.director is not None and self._error is None:
+            self.director.act(self.context, self.settling)
+        self.context.watchdog.beat()
         self._world_is_sound = False
         self._stepper.step()
         self._world_is_sound = True
@@ -203,14 +212,15 @@ class Executor:
                 self.context.body.actuators.stop_all()
 
     def _settle(self) -> None:
-        if self.world is None:
+        body = self.context.body
+        if body is None:
             return
         until = self._stepper.now() + SETTLE
         while self._stepper.now() < until - CLOCK_SLACK:
             self._note()
             self._step()
             self.context.begin_tick()
-            self._state = self.world.robot.state()
+            self._state = body.actuators.robot.state()
         self._note()
 
     def _settle_unseen(self) -> None:

@@ -22,10 +22,13 @@ from momantu_bt.engine.nodes.recovery import Catching
 from momantu_bt.engine.nodes.skill import SkillLeaf
 from momantu_bt.engine.person import Person, Scripted
 from momantu_bt.engine.services import Services, in_order
+from momantu_bt.engine.watchdog import PATIENCE, Watchdog
+from momantu_bt.fault import Fault
+from momantu_bt.faults.stage import Planned, Stage, plan
 from momantu_bt.frames import FrameBuffer
 from momantu_bt.record.report import ERROR, NodeReport, Report
 from momantu_bt.record.versions import versions
-from momantu_bt.robot import RobotDescription
+from momantu_bt.robot import Robot, RobotDescription
 from momantu_bt.service import Service
 from momantu_bt.skill import Skill
 from momantu_bt.tree.check import NO_WORLD, ROBOT_KEY
@@ -53,6 +56,8 @@ class Options:
     referee: False takes it out, which changes nothing else. audit: judge by ground truth what
     skills claim, which changes nothing else. person: who answers `ask` and
     `confirm`; nobody unless given. substitution: what nodes do instead of themselves.
+    faults: what is broken on purpose. patience: seconds of wall time that a skill's step may
+    take before it fails with HUNG; half as much more, and the process ends. inf: for ever.
     """
 
     world: str | None = None
@@ -66,6 +71,8 @@ class Options:
     remark: Callable[[str], None] = field(default=lambda text: None)
     person: Person = field(default_factory=Scripted)
     substitution: Substitution = field(default_factory=Substitution)
+    faults: tuple[Fault, ...] = ()
+    patience: float = PATIENCE
 
 
 def launch(
@@ -78,6 +85,7 @@ def launch(
     Raises:
         LaunchError: no world for a tree with skills, a service that is not installed, or a robot
             that lacks what a skill uses.
+        FaultError: the tree, the robot or the world cannot have a fault that is asked for.
         WorldError: the world could not start.
         KeyboardInterrupt: Ctrl-C before the first tick.
     """
@@ -86,22 +94,32 @@ def launch(
     with ExitStack() as stack:
         interrupts = stack.enter_context(Interrupts())
         needed = _services(kinds, registry)
+        planned = _planned(document, options, kinds)
         world = _open(document, options, registry, kinds)
         if world is not None and not options.keep_world:
             stack.callback(world.close)
-        executor = _assemble(document, options, kinds, needed, world)
+        stage = Stage(planned, world, options.seed, stack)
+        executor = _assemble(document, options, kinds, needed, stage)
         auditor = Auditor(executor.context, world) if options.audit else None
         if watch is not None:
             executor.observers = list(watch(executor))
         started = time.perf_counter() - begun
         try:
-            ending = executor.run(interrupts)
+            with executor.context.watchdog:
+                ending = executor.run(interrupts)
         finally:
             trouble = _close(executor.observers)
         if trouble is not None:
             ending = replace(ending, status=ERROR, error=ending.error or trouble)
         report = _report(document, options, executor, ending, started)
         return report if auditor is None else replace(report, claims=auditor.claims())
+
+
+def _planned(
+    document: Document, options: Options, kinds: Mapping[str, type[Skill]]
+) -> tuple[Planned, ...]:
+    with_world = (options.world or document.world or NO_WORLD) != NO_WORLD
+    return plan(options.faults, document, kinds, options.substitution, with_world=with_world)
 
 
 def _close(observers: Sequence[Observer]) -> str | None:
@@ -163,40 +181,48 @@ def _assemble(
     options: Options,
     kinds: Mapping[str, type[Skill]],
     needed: Mapping[str, type[Service]],
-    world: World | None,
+    stage: Stage,
 ) -> Executor:
-    stepper = world if world is not None else NoWorld()
-    context = RunContext(stepper, seed=options.seed, remark=options.remark, person=options.person)
+    stepper = stage.world if stage.world is not None else NoWorld()
+    context = RunContext(
+        stepper,
+        seed=options.seed,
+        remark=options.remark,
+        person=options.person,
+        watchdog=Watchdog(options.patience),
+    )
     services = Services({}, None)
-    if world is not None:
-        actuators = Actuators(world.robot)
+    if stage.robot is not None and stage.site is not None:
+        actuators = Actuators(stage.robot)
         services = Services({name: kind() for name, kind in needed.items()}, actuators)
-        frames = FrameBuffer(world.robot.description.kinematics())
-        context.body = Body(actuators, frames, world.site, services.running)
-    board = _board(context, document, services, world)
+        frames = FrameBuffer(stage.robot.description.kinematics())
+        context.body = Body(actuators, frames, stage.site, services.running)
+    board = _board(context, document, services, stage.robot)
     for key, value in options.substitution.values.items():
         board.set(key, natural(value))
-    built = build(document, context, kinds.__getitem__, board, options.substitution)
+    skills = {name: stage.skill(kind) for name, kind in kinds.items()}
+    built = build(document, context, skills.__getitem__, board, options.substitution)
     return Executor(
         built,
         context,
         stepper,
-        world=world,
+        world=stage.world,
         services=services,
         max_time=options.max_time,
         realtime=options.realtime,
+        director=stage.director(built, context, document),
     )
 
 
 def _board(
-    context: RunContext, document: Document, services: Services, world: World | None
+    context: RunContext, document: Document, services: Services, robot: Robot | None
 ) -> Board:
     """The root's board as the first tick finds it."""
     board = Board(context.writes)
     for name, service in services.running.items():
         board.publish(ReadOnlyCell(name, _asking(context, name, service.published)))
-    if world is not None:
-        board.publish(ReadOnlyCell(ROBOT_KEY, _asking(context, ROBOT_KEY, world.robot.state)))
+    if robot is not None:
+        board.publish(ReadOnlyCell(ROBOT_KEY, _asking(context, ROBOT_KEY, robot.state)))
     for key, literal in document.values.items():
         board.set(key, natural(literal.value))
     return board
@@ -230,6 +256,7 @@ def _report(
         versions=versions(),
         error=ending.error,
         incidents=() if verdict is None else verdict.incidents,
+        faults=() if executor.director is None else executor.director.reports(),
     )
 
 

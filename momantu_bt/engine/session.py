@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 
 from momantu_bt.engine.actuators import Lease
-from momantu_bt.engine.admit import admit, freeze
-from momantu_bt.engine.skill_errors import declared, skill_error
+from momantu_bt.engine.admit import admit, admit_output, freeze
+from momantu_bt.engine.skill_errors import declared, hung_failure, skill_error
 from momantu_bt.engine.status import FAILURE, RUNNING, SUCCESS, Status
+from momantu_bt.engine.watchdog import Hung
 from momantu_bt.failure import INPUT_MISSING, SERVICE_MISSING, Failure, FailureValue
 from momantu_bt.frames import FrameBuffer
 from momantu_bt.skill import MISSING, Clock, Compute, Run, Skill
@@ -86,6 +87,8 @@ class Session:
                 self._admit_live_outputs()
         except Failure as failure:
             self._fail(declared(self.kind, failure))
+        except Hung as hung:
+            self._fail(hung_failure(self.kind, hung))
         except Exception as error:
             self._fail(skill_error(self.kind, error))
         return self.status
@@ -97,6 +100,8 @@ class Session:
         if generator is not None:
             try:
                 generator.close()
+            except Hung as hung:
+                self.failure = hung_failure(self.kind, hung)
             except Exception as error:
                 self.failure = skill_error(self.kind, error)
         self.lease.end()
@@ -189,7 +194,7 @@ class Session:
         for port in self._live:
             value = values.get(port.name, MISSING)
             if value is not self._given.get(port.name, MISSING):
-                values[port.name] = self._given[port.name] = admit(freeze(value), port)
+                values[port.name] = self._given[port.name] = admit_output(value, port)
 
     def _finish(self) -> None:
         self._generator = None
@@ -213,7 +218,7 @@ class Session:
             value = values.get(port.name, MISSING)
             if value is MISSING:
                 raise TypeError(f"{self.kind.__name__} ended without giving output {port.name!r}")
-            values[port.name] = admit(freeze(value), port)
+            values[port.name] = admit_output(value, port)
 
     def _fail(self, failure: FailureValue) -> None:
         generator, self._generator = self._generator, None
@@ -222,6 +227,8 @@ class Session:
         if generator is not None:
             try:
                 generator.close()
+            except Hung as hung:
+                self.failure = hung_failure(self.kind, hung, cause=failure)
             except Exception as error:
                 self.failure = skill_error(self.kind, error, cause=failure)
         self.lease.end()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import traceback
 
-from momantu_bt.failure import ENGINE_CODES, SKILL_ERROR, Failure, FailureValue
+from momantu_bt.failure import ENGINE_CODES, HUNG, SKILL_ERROR, Failure, FailureValue
 from momantu_bt.skill import Skill
 
 
@@ -25,6 +25,15 @@ def skill_error(
     cause = error.value if isinstance(error, Failure) else cause
     data = {"traceback": text, "exception": type(error).__name__}
     return FailureValue(SKILL_ERROR, f"{kind.__name__} {said}", data, cause=cause)
+
+
+def hung_failure(
+    kind: type[Skill], hung: BaseException, cause: FailureValue | None = None
+) -> FailureValue:
+    """A step that the watchdog ended; where it was is in the data, for it is never twice there."""
+    text = "".join(traceback.format_exception(hung))
+    message = f"{kind.__name__} gave no step back within the run's patience"
+    return FailureValue(HUNG, message, {"traceback": text}, cause=cause)
 
 
 def _cause(failure: Failure) -> FailureValue | None:

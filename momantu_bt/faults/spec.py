@@ -126,4 +126,5 @@ def _wrong(text: str, begin: int, end: int, message: str) -> FaultError:
     stretch = text[begin:end]
     begin += len(stretch) - len(stretch.lstrip())
     marks = "^" * max(1, sum(map(cells, stretch.strip())))
-    return FaultError(f"{text}\n{' ' * sum(map(cells, text[:begin]))}{marks} {message}")
+    gap = " " * sum(map(cells, text[:begin]))
+    return FaultError(f"a fault is not right\n  {text}\n  {gap}{marks} {message}")

@@ -75,6 +75,18 @@ class SkillClaims:
 
 
 @dataclass(frozen=True, slots=True)
+class FaultReport:
+    """One fault that was asked for: as it is written, with the phase that was meant.
+
+    began: s; None when its phase never came. ended: s; None when it was not mended.
+    """
+
+    fault: str
+    began: float | None
+    ended: float | None
+
+
+@dataclass(frozen=True, slots=True)
 class Report:
     """How a run ended.
 
@@ -84,7 +96,7 @@ class Report:
     start_time_s: what building the world took before. ticks: of the tree. blackboard: the
     root's values at the end. error: traceback of an internal error. incidents: what was dangerous,
     by the referee. claims: what skills claimed, by their names in the tree; None in a run without
-    an audit.
+    an audit. faults: those asked for.
     """
 
     tree: str
@@ -107,6 +119,7 @@ class Report:
     error: str | None = None
     incidents: tuple[Incident, ...] = ()
     claims: Mapping[str, SkillClaims] | None = None
+    faults: tuple[FaultReport, ...] = ()
 
     @property
     def real_time_factor(self) -> float:
@@ -148,6 +161,7 @@ class Report:
             "error": self.error,
             "incidents": [_finite(plain(incident)) for incident in self.incidents],
             "claims": None if self.claims is None else plain(self.claims),
+            "faults": [plain(fault) for fault in self.faults],
         }
 
     def write(self, path: Path) -> None:

@@ -42,7 +42,8 @@ class _Asking(TreeNode):
             return self.fail(WRONG_TYPE, f"the default: {question.complaint(question.default)}")
         begun = time.perf_counter()
         try:
-            said = answer(_Heard(self.context), question)
+            with self.context.watchdog.paused():
+                said = answer(_Heard(self.context), question)
         except Interrupted:
             return RUNNING
         finally:

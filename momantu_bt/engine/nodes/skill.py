@@ -64,8 +64,12 @@ class SkillLeaf(TreeNode):
             live = None
         else:
             live = {name: self.inputs[name] for name in self._live_in if name in self.inputs}
-        session = self.session
-        status = session.step(live)
+        session, watchdog = self.session, self.context.watchdog
+        watchdog.begin_step()
+        try:
+            status = session.step(live)
+        finally:
+            watchdog.end_step()
         self.context.outside.stepped(self, session, status)
         self._note_time(session)
         if status is RUNNING:
@@ -85,7 +89,11 @@ class SkillLeaf(TreeNode):
         """Close the skill and stop what it owns."""
         session, self.session = self.session, None
         if session is not None:
-            session.halt()
+            self.context.watchdog.begin_step()
+            try:
+                session.halt()
+            finally:
+                self.context.watchdog.end_step()
             if session.failure is not None:
                 self.context.remark(f"{self.where}: while it was halted: {session.failure}")
 

@@ -10,10 +10,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from momantu_bt.engine.admit import admit, fits, freeze
+from momantu_bt.engine.admit import admit, admit_output, fits, freeze
+from momantu_bt.engine.nan import nan_in
 from momantu_bt.engine.status import RUNNING, Status
 from momantu_bt.failure import Failure
-from momantu_bt.geometry import Pose2D
+from momantu_bt.geometry import Pose, Pose2D, Transform
 from momantu_bt.skill import In, Out, Port, Run, Skill
 from momantu_bt.testing import run_skill
 
@@ -134,3 +135,36 @@ def test_lists_and_mappings_pass_through_ports():
     assert result.outputs["order"] == ("mug", "can")
     assert result.outputs["table"] == given_sizes
     assert not changeable(result.outputs["table"])
+
+
+NAN = float("nan")
+
+
+@given(st.integers(0, 5), st.booleans())
+def test_a_nan_is_found_wherever_it_is(where, there):
+    number = NAN if there else 1.0
+    value = [
+        number,
+        (1.0, (number,)),
+        {"a": [2, {"b": number}]},
+        np.array([[1.0, number]]),
+        Pose(Transform((1.0, number, 0.0)), "odom", 2.0),
+        Pose2D(number, 0.0),
+    ][where]
+    way = [(), ("1", "0"), ("a", "1", "b"), (), ("transform", "position"), ("x",)][where]
+    assert nan_in(value) == (way if there else None)
+
+
+def test_an_output_with_a_nan_is_refused_and_says_where():
+    port = Port("seen", "out", Pose, "where")
+    with pytest.raises(Failure, match=r"seen\.transform\.position is NaN") as caught:
+        admit_output(Pose(Transform((NAN, 0.0, 0.0)), "odom", 0.0), port)
+    assert caught.value.code == "WRONG_TYPE"
+    assert admit_output(float("inf"), Port("far", "out", float, "")) == float("inf")
+    assert admit_output([1, 2], Port("list", "out", tuple[int, ...], "")) == (1, 2)
+
+
+def test_a_value_that_holds_itself_has_an_end():
+    ring = []
+    ring.append(ring)
+    assert nan_in(ring) is None

@@ -91,10 +91,10 @@ def test_units_and_defaults():
 def test_a_wrong_fault_is_shown_with_a_caret_and_what_is_valid(text, at, said):
     with pytest.raises(FaultError) as caught:
         parse_fault(text)
-    shown, marked = str(caught.value).split("\n")
-    assert shown == text
+    _, shown, marked = str(caught.value).split("\n")
+    assert shown == f"  {text}"
     assert said in marked
-    begin = marked.index("^")
+    begin = marked.index("^") - 2
     assert text[begin : begin + marked.count("^")] == at or (not at and marked.count("^") == 1)
 
 

@@ -40,6 +40,7 @@ FIELDS = {
     "error": str,
     "incidents": list,
     "claims": dict,
+    "faults": list,
 }
 MAY_BE_NULL = ("world", "robot", "success", "failure", "error", "claims")
 

@@ -1,0 +1,84 @@
+"""Begins and ends the faults of one run, between its ticks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from math import inf
+
+from momantu_bt.engine.context import RunContext
+from momantu_bt.engine.node import TreeNode
+from momantu_bt.engine.session import CLOCK_SLACK
+from momantu_bt.fault import Effect, Fault, FaultError
+from momantu_bt.faults.kind import FOR
+from momantu_bt.faults.skills.victim import SkillFault
+from momantu_bt.faults.spec import format_fault
+from momantu_bt.faults.watch import PhaseWatch
+from momantu_bt.record.report import FaultReport
+
+NEVER = ""
+
+
+@dataclass(slots=True)
+class Staged:
+    """One fault of a run: when it is to begin, and what then happens.
+
+    effect: None for what is so from the start on (a site that tells something wrong).
+    began, ended: s, None as long as it has not.
+    """
+
+    fault: Fault
+    watch: PhaseWatch
+    effect: Effect | None
+    began: float | None = None
+    ended: float | None = None
+    waiting: str = NEVER
+
+    @property
+    def lasts(self) -> float:
+        """Seconds from its begin to its end."""
+        return float(self.fault.parameters.get(FOR, inf))
+
+
+class Director:
+    """Acts after each tick, when observers have seen it and before the world steps on."""
+
+    def __init__(
+        self, staged: Iterable[Staged], nodes: Sequence[TreeNode], remark: Callable[[str], None]
+    ) -> None:
+        self._staged = tuple(staged)
+        self._nodes = nodes
+        self._remark = remark
+
+    def act(self, context: RunContext, settling: bool = False) -> None:
+        """Begin what is due, and end what has lasted long enough.
+
+        settling: the tree has ended, and nothing begins any more.
+        """
+        for staged in self._staged:
+            if staged.began is None:
+                if not settling and staged.watch.begun(context):
+                    self._begin(staged, context.now)
+            elif staged.ended is None and context.now >= staged.began + staged.lasts - CLOCK_SLACK:
+                if staged.effect is not None:
+                    staged.effect.end()
+                staged.ended = context.now
+
+    def reports(self) -> tuple[FaultReport, ...]:
+        """What has happened so far, in the order in which the faults were given."""
+        return tuple(FaultReport(format_fault(s.fault), s.began, s.ended) for s in self._staged)
+
+    def _begin(self, staged: Staged, now: float) -> None:
+        """Begin it, or say once why it cannot happen at this instant and try again a tick later."""
+        effect = staged.effect
+        try:
+            if isinstance(effect, SkillFault):
+                effect.aim(staged.watch.node, self._nodes)
+            if effect is not None:
+                effect.begin()
+        except FaultError as error:
+            if staged.waiting != str(error):
+                staged.waiting = str(error)
+                self._remark(f"{staged.fault.name} at {now:.2f} s: {error}; it is tried again")
+            return
+        staged.began = now

@@ -1,0 +1,95 @@
+"""Wheels that count a way that the base does not go.
+
+Odometry never jumps: what went wrong while the fault lasted stays in it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from momantu_bt.fault import Fault
+from momantu_bt.faults.robot.layer import Layer
+from momantu_bt.geometry import Pose2D, wrap_angle
+from momantu_bt.messages import RobotState
+from momantu_bt.robot import Robot
+
+STANDING = 1e-6
+"""m or rad between two states below which the base stands."""
+
+
+class OdometryLayer(Layer):
+    """A layer that reports other motion than the robot's odometry does."""
+
+    def __init__(self, inner: Robot, fault: Fault, seed: int) -> None:
+        super().__init__(inner, fault, seed)
+        self._told_from_odom: Pose2D | None = None
+        self._inner: RobotState | None = None
+        self._told: RobotState | None = None
+
+    def begin(self) -> None:
+        """Count wrongly from here on."""
+        self.state()
+        super().begin()
+
+    def end(self) -> None:
+        """Count rightly again, from where it believes to be."""
+        self.state()
+        super().end()
+
+    def state(self) -> RobotState:
+        """The state with the odometry that is reported."""
+        now = self.inner.state()
+        if self._inner is None or self._told is None or now.stamp != self._inner.stamp:
+            self._told = self._told_of(now)
+            self._inner = now
+        return self._told
+
+    def _told_of(self, now: RobotState) -> RobotState:
+        if not self.active or self._inner is None or self._told is None:
+            if self._told_from_odom is None:
+                return now
+            pose = self._told_from_odom @ Pose2D.from_transform(now.odom_from_base)
+            return replace(now, odom_from_base=pose.transform())
+        here = Pose2D.from_transform(now.odom_from_base)
+        moved = Pose2D.from_transform(self._inner.odom_from_base).inverse() @ here
+        seconds = now.stamp - self._inner.stamp
+        moving = max(abs(moved.x), abs(moved.y), abs(moved.yaw)) > STANDING
+        told = Pose2D.from_transform(self._told.odom_from_base) @ self.moved(moved, seconds, moving)
+        self._told_from_odom = told @ here.inverse()
+        linear, angular = self.speeds(now, moving)
+        return replace(now, odom_from_base=told.transform(), linear=linear, angular=angular)
+
+    def moved(self, moved: Pose2D, seconds: float, moving: bool) -> Pose2D:
+        """The motion that is reported of one between two states, in the base's frame before it."""
+        raise NotImplementedError(f"{type(self).__name__} has no moved()")
+
+    def speeds(self, now: RobotState, moving: bool) -> tuple[float, float]:
+        """The speeds that go with it, m/s and rad/s."""
+        raise NotImplementedError(f"{type(self).__name__} has no speeds()")
+
+
+class Slip(OdometryLayer):
+    """`odometry.slip`: the wheels turn more, or less, than the base moves."""
+
+    def moved(self, moved: Pose2D, seconds: float, moving: bool) -> Pose2D:
+        """Scaled."""
+        scale = self.number("scale")
+        return Pose2D(moved.x * scale, moved.y * scale, wrap_angle(moved.yaw * scale))
+
+    def speeds(self, now: RobotState, moving: bool) -> tuple[float, float]:
+        """Scaled."""
+        scale = self.number("scale")
+        return now.linear * scale, now.angular * scale
+
+
+class Bias(OdometryLayer):
+    """`odometry.bias`: a turn that is none is counted while the base moves."""
+
+    def moved(self, moved: Pose2D, seconds: float, moving: bool) -> Pose2D:
+        """Turned by the rate."""
+        turn = self.number("rate") * seconds if moving else 0.0
+        return Pose2D(moved.x, moved.y, wrap_angle(moved.yaw + turn))
+
+    def speeds(self, now: RobotState, moving: bool) -> tuple[float, float]:
+        """The rate on top."""
+        return now.linear, now.angular + (self.number("rate") if moving else 0.0)

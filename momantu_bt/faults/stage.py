@@ -1,0 +1,137 @@
+"""From the faults that are asked for to a run in which they can happen."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from momantu_bt.engine.build import Built
+from momantu_bt.engine.context import RunContext
+from momantu_bt.fault import Effect, Fault, FaultError, FaultyWorld
+from momantu_bt.faults import robot as at_robot
+from momantu_bt.faults import site as at_site
+from momantu_bt.faults.catalogue import KINDS
+from momantu_bt.faults.director import Director, Staged
+from momantu_bt.faults.kind import FaultKind, Where
+from momantu_bt.faults.phase import START, Phase, parse_phase
+from momantu_bt.faults.phases import check_phase, usual_phase
+from momantu_bt.faults.process import Killed
+from momantu_bt.faults.skills import skill_fault
+from momantu_bt.faults.skills.victim import SkillFault
+from momantu_bt.faults.watch import PhaseWatch
+from momantu_bt.robot import Robot
+from momantu_bt.skill import Skill
+from momantu_bt.tree.model import Document
+from momantu_bt.tree.problems import valid_names
+from momantu_bt.tree.substitution import Substitution
+from momantu_bt.world import Site, World
+
+
+@dataclass(frozen=True, slots=True)
+class Planned:
+    """A fault that this tree can have, with its phase settled."""
+
+    fault: Fault
+    kind: FaultKind
+    phase: Phase
+
+
+def plan(
+    faults: Sequence[Fault],
+    document: Document,
+    skills: Mapping[str, type[Skill]],
+    substitution: Substitution,
+    *,
+    with_world: bool,
+) -> tuple[Planned, ...]:
+    """Settle when each fault begins, before anything is started.
+
+    skills: those that the run can reach.
+
+    Raises:
+        FaultError: the tree or the run has nothing of the kind; the message says what it has.
+    """
+    planned = []
+    for fault in faults:
+        kind = KINDS[fault.name]
+        if kind.place is not Where.PROCESS and not with_world:
+            raise FaultError(f"{fault.name}: this run has no world, and so no robot and no skills")
+        if kind.place is Where.SKILL and not skills:
+            raise FaultError(f"{fault.name}: the tree runs no skill")
+        text = fault.phase or usual_phase(kind, document, skills, substitution)
+        if kind.place is Where.SITE and parse_phase(text) != parse_phase(START):
+            raise FaultError(f"{fault.name} is so from the start on; it takes no phase {text!r}")
+        phase = check_phase(text, document, substitution)
+        planned.append(Planned(replace(fault, phase=text), kind, phase))
+    return tuple(planned)
+
+
+class Stage:
+    """The robot, the site and the skills of one run, as its faults may break them.
+
+    world: None in a run without one, which has neither robot nor site. What is made for faults
+    is freed with `stack`.
+
+    Raises:
+        FaultError: the world or the robot cannot have a fault.
+    """
+
+    def __init__(
+        self, planned: Sequence[Planned], world: World | None, seed: int, stack: ExitStack
+    ) -> None:
+        self.world = world
+        self._planned = planned
+        self._effects: list[Effect | None] = []
+        self.robot: Robot | None = None if world is None else world.robot
+        self.site: Site | None = None if world is None else world.site
+        for one in planned:
+            self._effects.append(self._effect(one, world, seed, stack))
+
+    def skill(self, kind: type[Skill]) -> type[Skill]:
+        """A skill's class as the run uses it."""
+        for effect in self._effects:
+            if isinstance(effect, SkillFault):
+                kind = effect.wrapped(kind)
+        return kind
+
+    def director(self, built: Built, context: RunContext, document: Document) -> Director | None:
+        """Who lets the faults happen; None where there are none."""
+        if not self._planned:
+            return None
+        staged = [
+            Staged(one.fault, PhaseWatch(one.phase, built.nodes, document), effect)
+            for one, effect in zip(self._planned, self._effects, strict=True)
+        ]
+        return Director(staged, built.nodes, context.remark)
+
+    def _effect(
+        self, one: Planned, world: World | None, seed: int, stack: ExitStack
+    ) -> Effect | None:
+        fault, place = one.fault, one.kind.place
+        if place is Where.PROCESS:
+            return Killed()
+        if place is Where.SKILL:
+            return skill_fault(fault)
+        assert world is not None
+        assert self.robot is not None
+        assert self.site is not None
+        if place is Where.WORLD:
+            return _of_world(fault, world)
+        if place is Where.ROBOT:
+            layer = at_robot.layer(self.robot, fault, seed)
+            self.robot = layer
+            return layer
+        folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="momantu_bt_site_"))
+        self.site = at_site.told(self.site, fault, seed, Path(folder))
+        return None
+
+
+def _of_world(fault: Fault, world: World) -> Effect:
+    having = world.faults() if isinstance(world, FaultyWorld) else ()
+    if fault.name not in having or not isinstance(world, FaultyWorld):
+        hint = valid_names(fault.name, having, "faults of the world's own")
+        raise FaultError(f"the world {world.name} cannot make {fault.name}; {hint}")
+    return world.effect(fault)
