@@ -32,7 +32,9 @@ class Blame:
 def blame(row: Row) -> Blame:
     """Whom a failed row blames."""
     if row["ended"] != REPORT:
-        return Blame("the process", "", f"{row['ended']}, exit code {row['exit_code']}")
+        code = row["exit_code"]
+        how = "its workers died" if code is None else f"exit code {code}"
+        return Blame("the process", "", f"{row['ended']}, {how}")
     if row["status"] == ERROR:
         last = (row["error"] or "").strip().rpartition("\n")[2]
         return Blame("the engine", "", general(last))

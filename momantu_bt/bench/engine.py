@@ -8,12 +8,16 @@ from typing import Protocol
 from momantu_bt.bench.spec import EpisodeSpec, Row
 
 
+class EngineError(Exception):
+    """An engine cannot run episodes; the message says why and what to do."""
+
+
 class Engine(Protocol):
     """Runs episodes, several at a time."""
 
     @property
     def workers(self) -> int:
-        """How many episodes it runs at a time."""
+        """How many episodes it runs at a time; 0 while that is not known."""
         ...
 
     def running(self) -> tuple[EpisodeSpec, ...]:
@@ -25,5 +29,8 @@ class Engine(Protocol):
 
         A row whose `ended` is "refused" is of an episode that could not begin; `output` says why.
         Closing the generator, or an exception in it, ends everything that runs.
+
+        Raises:
+            EngineError: what it runs on is not there, or is lost.
         """
         ...

@@ -11,7 +11,7 @@ import importlib.util
 import json
 import os.path
 import platform
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from functools import cache
 from importlib import metadata
@@ -28,6 +28,7 @@ from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.settings import Given
 
 DIGITS = 16
+_CODE = "the code of "
 _BESIDE = {"momantu_bt": ("bench", "cli", "diagnosis", "drawing", "page", "replay", "scaffold")}
 """Parts of a package that no episode depends on."""
 
@@ -49,10 +50,7 @@ def made_of(
     world = world or document.world or NO_WORLD
     if robot is None and world != NO_WORLD:
         robot = registry.worlds[world].default_robot
-    found = {"momantu-bt": momantu_bt.__version__, "python": platform.python_version()}
-    found |= _libraries()
-    for package in _packages(document, world, robot):
-        found[f"the code of {package}"] = _code(package)
+    found = _of_machine(_packages(document, world, robot))
     given = values.source if isinstance(values, Given) else {}
     folder = Path(document.file).parent
     for file, text in document.source.items():
@@ -63,6 +61,17 @@ def made_of(
     found["the values"] = json.dumps(dict(values or {}), sort_keys=True, default=str)
     found["the time limit"] = f"{max_time:g} s"
     return found
+
+
+def foreign(made: Mapping[str, str]) -> tuple[str, ...]:
+    """What this machine has otherwise than `made` says: a sentence each."""
+    packages = [name.removeprefix(_CODE) for name in made if name.startswith(_CODE)]
+    here = _of_machine(packages)
+    there = {name: made[name] for name in made if name in here or name in LIBRARIES.values()}
+    return tuple(
+        f"{name} is {here.get(name, 'missing')}, not {there.get(name, 'missing')}"
+        for name in difference(there, here)
+    )
 
 
 def key_of(made: Mapping[str, str], seed: int, fault: str | None) -> str:
@@ -78,6 +87,13 @@ def difference(made: Mapping[str, str], other: Mapping[str, str]) -> tuple[str, 
 
 def _digest(data: bytes) -> str:
     return hashlib.sha256(data).hexdigest()[:DIGITS]
+
+
+def _of_machine(packages: Iterable[str]) -> dict[str, str]:
+    """Versions, and digests of the code of these packages."""
+    found = {"momantu-bt": momantu_bt.__version__, "python": platform.python_version()}
+    found |= _libraries()
+    return found | {f"{_CODE}{package}": _code(package) for package in packages}
 
 
 def _libraries() -> dict[str, str]:

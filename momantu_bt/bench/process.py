@@ -94,7 +94,7 @@ class EpisodeProcess:
             os.killpg(self._process.pid, signal.SIGKILL)
 
     def _row(self, code: int) -> Row:
-        row = self.spec_row()
+        row = self.spec.row()
         told = self._told()
         if told is not None:
             return {**row, **told, "exit_code": code, "ended": REPORT}
@@ -106,19 +106,6 @@ class EpisodeProcess:
             ended = REFUSED if code == EXIT_REFUSED else CRASHED
         said = self._output.read_text(encoding="utf-8", errors="replace")[-MOST_OUTPUT:]
         return {**row, "exit_code": code, "ended": ended, "output": said.strip()}
-
-    def spec_row(self) -> Row:
-        """What a row says of its episode before anything has happened."""
-        spec = self.spec
-        return {
-            "key": spec.key,
-            "tree": Path(spec.tree).name,
-            "seed": spec.seed,
-            "fault": spec.fault,
-            "made_of": dict(spec.made_of),
-            "status": None,
-            "success": None,
-        }
 
     def _told(self) -> Row | None:
         """The row that the process wrote; it is whole or not there."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields
+from pathlib import PurePath
 from typing import Any, TypeAlias
 
 Row: TypeAlias = dict[str, Any]
@@ -41,6 +42,18 @@ class EpisodeSpec:
     def as_dict(self) -> dict[str, Any]:
         """Plain data for JSON."""
         return asdict(self)
+
+    def row(self) -> Row:
+        """What a row says of its episode before anything has happened."""
+        return {
+            "key": self.key,
+            "tree": PurePath(self.tree).name,
+            "seed": self.seed,
+            "fault": self.fault,
+            "made_of": dict(self.made_of),
+            "status": None,
+            "success": None,
+        }
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> EpisodeSpec:

@@ -71,7 +71,7 @@ class Summary:
             interval=wilson(len(good), len(rows)),
             sim_time_s=Spread.of([row["sim_time_s"] for row in good]),
             speed=Spread.of([_speed(row) for row in told if row["wall_time_s"] > 0.0]),
-            memory_mb=Spread.of([row["memory_mb"] for row in rows]),
+            memory_mb=Spread.of([row["memory_mb"] for row in rows if row["memory_mb"] is not None]),
             tries=sum(tries),
             retried=sum(count > 0 for count in tries),
             blame=tuple(blame_table(rows)),

@@ -20,6 +20,7 @@ from momantu_bt.cli.bench_setup import (
     engine_of,
     guarded,
     keep_plan,
+    one_tree,
     plan_of,
     say_missing,
     say_others,
@@ -34,7 +35,12 @@ if TYPE_CHECKING:
 
 
 def bench(
-    tree: Annotated[str, typer.Argument(help="A tree file, or the name of a bundled tree.")],
+    tree: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="TREE", help="A tree file, or the name of a bundled tree; folders for --merge."
+        ),
+    ],
     seeds: Annotated[str, typer.Option(help="0:500, 3,5,7 or 0:10,20:30.")] = "0:30",
     jobs: Annotated[
         int | None, typer.Option(min=1, help="Episodes at a time; else one per core.")
@@ -57,7 +63,18 @@ def bench(
     shard: Annotated[
         str | None, typer.Option(metavar="I/N", help="Only every N-th episode, from the I-th.")
     ] = None,
-    engine: Annotated[str, typer.Option(help="What runs the episodes: local.")] = "local",
+    merge: Annotated[
+        bool, typer.Option("--merge", help="Run nothing: join folders of results in --out.")
+    ] = False,
+    engine: Annotated[
+        str, typer.Option(help="What runs the episodes: local, or ray (several machines).")
+    ] = "local",
+    ray_address: Annotated[
+        str | None,
+        typer.Option(
+            metavar="HOST:PORT", help="The Ray cluster, or auto; else one on this machine."
+        ),
+    ] = None,
     record: Annotated[
         str, typer.Option(help="Which episodes leave a record: failures, all or none.")
     ] = "failures",
@@ -84,17 +101,23 @@ def bench(
       momantu-bt bench bring_object --seeds 0:100
       momantu-bt bench trees/bring_object.yaml --seeds 0:500 --jobs 8 --report bench.json
       momantu-bt bench my_tree.yaml --seeds 0:50 --set "speed=0.5 m/s" --demand 0.9
+      momantu-bt bench bring_object --seeds 0:500 --engine ray --ray-address 10.0.0.4:6379
+      momantu-bt bench --merge machine_1 machine_2 --out both
     """
-    options = _Options(out, shard, engine, jobs, coverage, report, demand)
+    options = _Options(out, shard, (engine, jobs, ray_address), coverage, report, demand)
 
     def start() -> int:
         from momantu_bt.bench.seeds import parse_seeds
+        from momantu_bt.cli.bench_merge import merge_folders
         from momantu_bt.cli.given import given_values
 
+        if merge:
+            return merge_folders(tree, out, report)
+        place = one_tree(tree)
         chosen = choose(record, RECORD, "--record")
         board = given_values(set_ or [], values)
         how = HowToRun(world, robot, board, max_time, episode_limit, chosen)
-        plan, document = plan_of(tree, parse_seeds(seeds), how)
+        plan, document = plan_of(place, parse_seeds(seeds), how)
         return _bench(plan, document, options)
 
     return guarded(start)
@@ -104,8 +127,7 @@ def bench(
 class _Options:
     out: Path | None
     shard: str | None
-    engine: str
-    jobs: int | None
+    engine: tuple[str, int | None, str | None]
     coverage: bool
     report: Path | None
     demand: float | None
@@ -119,7 +141,7 @@ def _bench(plan: Plan, document: Document, options: _Options) -> int:
     from momantu_bt.record.files import check_writable
 
     part = plan.wanted.shard(*shard_of(options.shard))
-    engine = engine_of(options.engine, options.jobs)
+    engine = engine_of(*options.engine)
     if options.report is not None:
         check_writable(options.report)
     folder = options.out or OUT / Path(plan.tree).stem

@@ -38,8 +38,9 @@ class Progress:
         self._good = sum(map(succeeded, rows))
         self._seconds = sum(row["process_time_s"] for row in rows)
         self._begun = time.monotonic()
+        at_a_time = f", {engine.workers} at a time" if engine.workers else ""
         had = f"{len(rows)} episodes are there already; " if rows else ""
-        typer.echo(f"{had}{waiting} to run, {engine.workers} at a time")
+        typer.echo(f"{had}{waiting} to run{at_a_time}")
 
     def row(self, row: Row) -> None:
         """Count it and say it."""
@@ -79,7 +80,7 @@ class Progress:
         had = self._there + self._done
         if had == 0 or self._engine is None:
             return None
-        return self._seconds / had * (self._waiting - self._done) / self._engine.workers
+        return self._seconds / had * (self._waiting - self._done) / max(1, self._engine.workers)
 
 
 class LiveProgress(Progress):

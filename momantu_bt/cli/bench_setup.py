@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from momantu_bt.tree.settings import Given
 
 EXIT_OK, EXIT_INCOMPLETE, EXIT_WRONG_ARGUMENTS, EXIT_INTERRUPTED = 0, 1, 2, 130
+ENGINES = ("local", "ray")
 OUT = Path("runs/bench")
 """Where results are kept unless something else is said, in a folder for each tree."""
 RECORD = ("failures", "all", "none")
@@ -78,6 +79,16 @@ def _check_world(document: Document, world: str | None, registry: Any) -> None:
         )
 
 
+def one_tree(words: Sequence[str]) -> str:
+    """The tree that is given; ArgumentError for several."""
+    if len(words) == 1:
+        return words[0]
+    raise ArgumentError(
+        f"a bench is of one tree, not of {', '.join(words)}; several folders go with --merge, "
+        "two trees with `momantu-bt compare`"
+    )
+
+
 def choose(value: str, valid: Sequence[str], option: str) -> str:
     """A value that is one of a few; ArgumentError says which."""
     from momantu_bt.tree.problems import valid_names
@@ -98,11 +109,16 @@ def shard_of(text: str | None) -> tuple[int, int]:
     return int(number), int(of)
 
 
-def engine_of(name: str, jobs: int | None) -> Engine:
-    """The engine of that name."""
+def engine_of(name: str, jobs: int | None, address: str | None) -> Engine:
+    """The engine of that name. address: of a Ray cluster that runs, None for one of our own."""
     from momantu_bt.bench.local_engine import LocalEngine
+    from momantu_bt.bench.ray_engine import RayEngine
 
-    choose(name, ("local",), "--engine")
+    choose(name, ENGINES, "--engine")
+    if name == "ray":
+        return RayEngine(jobs, address)
+    if address is not None:
+        raise ArgumentError("--ray-address needs --engine ray")
     return LocalEngine(jobs or os.cpu_count() or 1)
 
 
@@ -138,14 +154,16 @@ def say_refused(ended: Ended) -> None:
 
 def guarded(start: Callable[[], int]) -> int:
     """Run; what is wrong with arguments, files or folders becomes a sentence and an exit code."""
+    from momantu_bt.bench.engine import EngineError
     from momantu_bt.bench.seeds import SeedsError
     from momantu_bt.bench.store import StoreError
     from momantu_bt.engine.launch import LaunchError
     from momantu_bt.engine.makers import BuildError
     from momantu_bt.record.files import OutputError
 
+    wrong = (ArgumentError, SeedsError, StoreError, EngineError)
     try:
         return start()
-    except (ArgumentError, SeedsError, StoreError, LaunchError, BuildError, OutputError) as error:
+    except (*wrong, LaunchError, BuildError, OutputError) as error:
         typer.echo(f"momantu-bt: {error}", err=True)
         return EXIT_WRONG_ARGUMENTS

@@ -54,7 +54,15 @@ def compare(
     out: Annotated[
         Path, typer.Option(help="Folder with a folder of results for each tree, as bench's.")
     ] = OUT,
-    engine: Annotated[str, typer.Option(help="What runs the episodes: local.")] = "local",
+    engine: Annotated[
+        str, typer.Option(help="What runs the episodes: local, or ray (several machines).")
+    ] = "local",
+    ray_address: Annotated[
+        str | None,
+        typer.Option(
+            metavar="HOST:PORT", help="The Ray cluster, or auto; else one on this machine."
+        ),
+    ] = None,
     record: Annotated[
         str, typer.Option(help="Which episodes leave a record: failures, all or none.")
     ] = "failures",
@@ -85,7 +93,7 @@ def compare(
             raise ArgumentError(f"{tree_a} and {tree_b} are the same; name two different trees")
         if report is not None:
             check_writable(report)
-        return _compare(plans, engine_of(engine, jobs), out, report)
+        return _compare(plans, engine_of(engine, jobs, ray_address), out, report)
 
     return guarded(start)
 

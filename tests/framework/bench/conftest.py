@@ -40,7 +40,7 @@ world: by_seed
 trees:
   Main:
     - stall:
-        seeds: {hang: [1], crash: [2], kill: [3], fail: [4]}
+        seeds: {hang: [1], crash: [2], kill: [3], fail: [4], kill_worker: [8, 9]}
 """
 PLUGINS = '''
 """A skill that goes wrong on some seeds, in a world that tells it the seed."""
@@ -48,6 +48,7 @@ PLUGINS = '''
 import ctypes
 import os
 import signal
+import time
 from typing import Any
 
 from momantu_bt import Failure, In, Pose2D, Robot, Run, Skill
@@ -67,7 +68,7 @@ class Stall(Skill):
         seed = round(robot.state().odom_from_base.position[0])
         for how, on in self.seeds.items():
             if seed in on:
-                globals()[how]()
+                kill_worker(seed) if how == "kill_worker" else globals()[how]()
 
     def claim(self, robot, failure):
         return Holding(True)
@@ -83,6 +84,21 @@ def crash():
 
 def kill():
     os.kill(os.getpid(), signal.SIGKILL)
+
+
+def kill_worker(seed):
+    """Kill the Ray worker that waits for this episode; on seed 9 the first one alone."""
+    worker = os.getppid()
+    with open(f"/proc/{worker}/cmdline") as file:
+        if not file.read().startswith("ray::"):
+            raise Failure("STALLED", "it is no Ray worker that waits")
+    if seed == 9:
+        try:
+            os.close(os.open(os.environ["KILLED_ONCE"], os.O_CREAT | os.O_EXCL))
+        except FileExistsError:
+            return
+    os.kill(worker, signal.SIGKILL)
+    time.sleep(60)  # the kernel ends this process too
 
 
 def fail():
@@ -137,7 +153,8 @@ def small(tmp_path: Path) -> str:
 
 @pytest.fixture
 def stalling(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
-    """A tree that goes wrong in another way on each of seeds 1 to 6."""
+    """A tree that goes wrong in another way on each of seeds 1 to 6, 8 and 9."""
+    monkeypatch.setenv("KILLED_ONCE", str(tmp_path / "killed_once"))
     folder = tmp_path / "site"
     facts = folder / "stall_plugins-1.0.dist-info"
     facts.mkdir(parents=True)

@@ -1,0 +1,158 @@
+"""A Ray cluster to work on: one of this machine alone, or one that runs already."""
+
+from __future__ import annotations
+
+import logging
+import os
+import secrets
+import shutil
+import signal
+import socket
+import tempfile
+import threading
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from functools import cache
+from importlib import import_module
+from typing import Any
+
+from momantu_bt.bench.engine import EngineError
+
+AUTO = "auto"
+"""As an address: the cluster that `ray start` began on this machine."""
+_LOOPBACK = {"RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER": "0"}
+"""Ray's own setting for machines with firewalls: it listens on the loopback interface alone."""
+_NO_STATISTICS = {"RAY_USAGE_STATS_ENABLED": "0"}
+_STORE = 256 * 1024**2
+"""Bytes of Ray's object store on this machine: rows and the records of a few episodes."""
+_REACHABLE = 5.0
+"""Seconds within which a cluster answers."""
+_SIGNALS = (signal.SIGINT, signal.SIGTERM)
+
+
+@contextmanager
+def cluster(address: str | None, jobs: int) -> Iterator[Any]:
+    """Ray, connected; disconnected at the end, and what was started here ended.
+
+    address: None for a cluster of this machine alone, with `jobs` workers, that nobody else can
+    use; `"auto"` or HOST:PORT for one that runs.
+
+    Raises:
+        EngineError: Ray is not installed, or there is no such cluster.
+    """
+    if address is not None:
+        _check(address)
+    own = {} if address is not None else {**_LOOPBACK, **_secret()}
+    with _folder() as folder, _environment({**_NO_STATISTICS, **own}):
+        ray = _import()
+        try:
+            with _handlers_kept():
+                if address is None:
+                    _start(ray, jobs, folder)
+                else:
+                    _connect(ray, address)
+            yield ray
+        finally:
+            ray.shutdown()
+
+
+def _import() -> Any:
+    try:
+        return import_module("ray")
+    except ImportError as error:
+        raise EngineError(
+            f"--engine ray needs Ray ({error}); pip install 'momantu-bt[ray]'"
+        ) from None
+
+
+def _start(ray: Any, jobs: int, folder: str) -> None:
+    try:
+        ray.init(
+            "local",
+            num_cpus=jobs,
+            num_gpus=0,
+            include_dashboard=False,
+            log_to_driver=False,
+            logging_level=logging.ERROR,
+            object_store_memory=_STORE,
+            _temp_dir=folder,
+        )
+    except Exception as error:
+        raise EngineError(f"Ray cannot start on this machine: {_first_line(error)}") from error
+
+
+def _connect(ray: Any, address: str) -> None:
+    try:
+        ray.init(address, log_to_driver=False, logging_level=logging.ERROR)
+    except ConnectionError as error:
+        raise EngineError(
+            f"no Ray cluster at {address} ({_first_line(error)}); `ray start --head` begins one; "
+            "one that wants a token needs RAY_AUTH_MODE=token here too"
+        ) from error
+    except Exception as error:
+        raise EngineError(f"the Ray cluster at {address}: {_first_line(error)}") from error
+
+
+def _check(address: str) -> None:
+    """Whether it is an address, and somebody listens there: Ray itself would try for minutes."""
+    if address == AUTO:
+        return
+    host, _, port = address.rpartition(":")
+    if not host or not port.isdecimal():
+        raise EngineError(f"--ray-address {address} is no address; write auto or HOST:PORT")
+    try:
+        socket.create_connection((host.strip("[]"), int(port)), _REACHABLE).close()
+    except (OSError, OverflowError) as error:
+        raise EngineError(
+            f"no Ray cluster at {address} ({error}); `ray start --head` there begins one"
+        ) from None
+
+
+def _first_line(error: Exception) -> str:
+    return str(error).strip().partition("\n")[0]
+
+
+@cache
+def _secret() -> Mapping[str, str]:
+    """Other users of this machine reach the loopback interface too, and have no token.
+
+    One for the whole process, since Ray reads it once.
+    """
+    return {"RAY_AUTH_MODE": "token", "RAY_AUTH_TOKEN": secrets.token_hex(32)}
+
+
+@contextmanager
+def _folder() -> Iterator[str]:
+    """Where Ray keeps its sockets and logs. Names of sockets are short: not below TMPDIR."""
+    folder = tempfile.mkdtemp(prefix="momantu_ray_", dir="/tmp")
+    try:
+        yield folder
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+@contextmanager
+def _environment(settings: Mapping[str, str]) -> Iterator[None]:
+    """Environment variables for a while; what is started then has them for good."""
+    before = {name: os.environ.get(name) for name in settings}
+    os.environ.update(settings)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value
+
+
+@contextmanager
+def _handlers_kept() -> Iterator[None]:
+    """Ray takes SIGTERM for itself when it connects: whoever had it gets it back."""
+    before = {number: signal.getsignal(number) for number in _SIGNALS}
+    try:
+        yield
+    finally:
+        if threading.current_thread() is threading.main_thread():
+            for number, handler in before.items():
+                signal.signal(number, handler)

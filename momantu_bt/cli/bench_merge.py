@@ -1,0 +1,77 @@
+"""`momantu-bt bench --merge`: folders of results from several machines as one."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from momantu_bt.cli.bench_setup import EXIT_INCOMPLETE, EXIT_OK, ArgumentError
+
+if TYPE_CHECKING:
+    from momantu_bt.bench.merge import Merged
+    from momantu_bt.bench.spec import Row
+
+
+def merge_folders(words: Sequence[str], out: Path | None, report: Path | None) -> int:
+    """Join folders in another one, and say what all of it comes to.
+
+    Exit code 0: every episode that any of them was to run has a row; 1: some are missing, or
+    differ between two folders.
+    """
+    from momantu_bt.bench.merge import merge
+    from momantu_bt.bench.plan import PLAN
+    from momantu_bt.bench.store import Store
+    from momantu_bt.record.files import check_writable
+
+    if out is None:
+        raise ArgumentError("--merge needs --out, a folder for all of it")
+    if report is not None:
+        check_writable(report)
+    folders = list(dict.fromkeys(Path(word) for word in words))
+    before = [out] if (out / PLAN).exists() and out not in folders else []
+    merged = merge([*before, *folders])
+    with Store(out) as store:
+        merged.wanted.write(out)
+        for key, row in merged.rows.items():
+            if key not in store.rows:
+                _copy_record(row, folders, out)
+                store.add(row)
+    _say(merged, report)
+    missing = merged.wanted.missing(merged.rows)
+    if missing:
+        typer.echo(f"missing: {'; '.join(missing)}", err=True)
+    return EXIT_INCOMPLETE if missing else EXIT_OK
+
+
+def _copy_record(row: Row, folders: Sequence[Path], out: Path) -> None:
+    from momantu_bt.bench.plan import RECORDS, record_name
+
+    name = record_name(row["seed"], row["fault"], row["key"])
+    for folder in folders:
+        if (folder / RECORDS / name).is_dir():
+            shutil.copytree(folder / RECORDS / name, out / RECORDS / name, dirs_exist_ok=True)
+            return
+
+
+def _say(merged: Merged, report: Path | None) -> None:
+    from momantu_bt.bench.report import report as as_report
+    from momantu_bt.bench.report import write_report
+    from momantu_bt.bench.summary import Summary
+    from momantu_bt.bench.tables import summary_text
+
+    rows = list(merged.rows.values())
+    if rows:
+        typer.echo(summary_text(rows[0]["tree"], Summary.of(rows)))
+    if merged.doubles:
+        typer.echo(f"{merged.doubles} episodes were in two folders, with equal results")
+    if merged.others:
+        typer.echo(f"{merged.others} rows of other files or options are left out", err=True)
+    for conflict in merged.conflicts:
+        typer.echo(f"conflict, in no row: {conflict}", err=True)
+    if report is not None:
+        write_report(report, as_report(rows, {}))
+        typer.echo(f"report: {report}")
