@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from momantu_bt.engine.repeats import Repeats
+from momantu_bt.engine.sensor_check import SensorCheck
 from momantu_bt.failure import ACTUATOR_BUSY, Failure
 from momantu_bt.messages import ActuatorGoal, RobotState
 from momantu_bt.robot import Robot, RobotDescription, SensorReading
@@ -31,7 +31,7 @@ class Actuators:
         self.issued: list[Issued] = []
         """What was told to the robot since the list was last emptied."""
         self._owners: dict[str, Lease] = {}
-        self._repeats = Repeats(robot.description)
+        self._sensors = SensorCheck(robot.description)
 
     def lease(self, owner: str, uses: Iterable[str]) -> Lease:
         """The robot for a skill called `owner` that declares `uses`.
@@ -64,7 +64,7 @@ class Actuators:
 
     def _read(self, sensor: str) -> SensorReading:
         reading = self.robot.read(sensor)
-        self._repeats.check(sensor, reading, self.robot.state())
+        self._sensors.check(sensor, reading, self.robot.state())
         return reading
 
     def _claim(self, actuator: str, lease: Lease) -> None:
@@ -110,7 +110,7 @@ class Lease:
         """The newest reading of a sensor.
 
         Raises:
-            Failure: SENSOR_DEAD, also for a sensor that repeats itself while the robot moves.
+            Failure: SENSOR_DEAD, also for one that answers with nothing to rely on.
         """
         return self._book._read(sensor)
 

@@ -41,7 +41,7 @@ OUTPUTS: dict[str, Any] = {
 }
 
 
-ANY_SKILL = ("SENSOR_DEAD", "SKILL_ERROR", "WRONG_TYPE")
+ANY_SKILL = ("SENSOR_DEAD", "SKILL_ERROR", "WRONG_TYPE", "HUNG")
 """Codes of the engine that befall any skill."""
 
 

@@ -1,4 +1,4 @@
-"""A sensor that repeats itself while the robot moves is as good as dead."""
+"""A sensor that repeats itself while the robot moves, or is covered, is as good as dead."""
 
 from __future__ import annotations
 
@@ -129,3 +129,26 @@ def test_new_pictures_are_no_repetition(robot, lease):
         robot.readings["camera"] = picture(robot.now(), depth)
         lease.read("camera")
         moved(robot, x=0.3)
+
+
+def covered(robot, first: int, count: int, beams: int = 220):
+    ranges = np.full(beams, 2.0)
+    ranges[first : first + count] = 0.05
+    robot.readings["laser"] = LaserScan(robot.now(), "laser", -1.1, 0.01, 0.05, 10.0, ranges)
+
+
+@pytest.mark.parametrize("first", [0, 100, 200])
+def test_a_laser_that_sees_its_own_lens_over_a_sector_is_dead(robot, lease, first):
+    covered(robot, first, 20)
+    with pytest.raises(Failure, match="something covers its lens") as caught:
+        lease.read("laser")
+    assert caught.value.code == "SENSOR_DEAD"
+    assert caught.value.value.data["middle"] == pytest.approx(-1.1 + (first + 9.5) * 0.01)
+
+
+def test_a_few_beams_at_the_least_range_are_noise_or_something_thin(robot, lease):
+    covered(robot, 100, 14)
+    lease.read("laser")
+    for first in range(0, 200, 20):
+        robot.readings["laser"].ranges[first : first + 10] = 0.05
+    lease.read("laser")

@@ -1,11 +1,14 @@
-"""Noticing a sensor that repeats itself while the robot moves.
+"""Noticing a sensor that answers, but with nothing to rely on.
 
 A real reading is never the same twice: it has noise, and a robot that moves sees something else.
-A driver that goes on giving its last reading under new stamps looks healthy to everyone else.
+A driver that goes on giving its last reading under new stamps looks healthy to everyone else. So
+does a laser with dirt on its lens, which gives the least range over a whole sector: what stands
+there would stand in the robot.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,6 +24,12 @@ TURN = 0.04
 """rad that the base, or a joint that carries the camera, must have turned since."""
 
 
+COVERED = 0.15
+"""rad of neighbouring beams at the least range that mean a covered lens."""
+AT_LENS = 0.01
+"""m beyond the least range that still count as it."""
+
+
 @dataclass(slots=True)
 class _Seen:
     reading: SensorReading
@@ -28,7 +37,7 @@ class _Seen:
     carrier: Array
 
 
-class Repeats:
+class SensorCheck:
     """Remembers of each sensor the last reading that was new, and where the robot was then."""
 
     def __init__(self, description: RobotDescription) -> None:
@@ -39,8 +48,11 @@ class Repeats:
         """Take a reading that has just come in.
 
         Raises:
-            Failure: SENSOR_DEAD, when it repeats an older one though the robot has moved since.
+            Failure: SENSOR_DEAD, when it repeats an older one though the robot has moved since, or
+                a laser's lens is covered.
         """
+        if isinstance(reading, LaserScan):
+            _check_lens(sensor, reading)
         last = self._seen.get(sensor)
         if last is not None and reading is last.reading:
             return
@@ -68,6 +80,26 @@ class Repeats:
             return np.zeros(0)
         joints = self._description.actuators[spec.carrier].joints
         return np.array([state.position(name) for name in joints if name in state.names])
+
+
+def _check_lens(sensor: str, scan: LaserScan) -> None:
+    at_lens = np.concatenate(([0], scan.ranges <= scan.range_min + AT_LENS, [0]))
+    ends = np.flatnonzero(np.diff(at_lens.astype(np.int8)))
+    if not len(ends):
+        return
+    first, beyond = ends[::2], ends[1::2]
+    widest = int(np.argmax(beyond - first))
+    width = int(beyond[widest] - first[widest]) * scan.angle_increment
+    if width > COVERED:
+        middle = scan.angle_min + 0.5 * (first[widest] + beyond[widest] - 1) * scan.angle_increment
+        raise Failure(
+            SENSOR_DEAD,
+            f"{sensor} gives its least range over {math.degrees(width):.0f} degrees around "
+            f"{math.degrees(middle):.0f}: something covers its lens",
+            sensor=sensor,
+            width=width,
+            middle=float(middle),
+        )
 
 
 def same(one: SensorReading, other: SensorReading) -> bool:
