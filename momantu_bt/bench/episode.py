@@ -49,6 +49,7 @@ def main(arguments: Sequence[str]) -> int:
     """Run the episode; exit code 0 when a row was written, EXIT_REFUSED when it cannot begin."""
     told, row, parent = arguments
     _end_with(int(parent))
+    signal.pthread_sigmask(signal.SIG_SETMASK, ())  # workers of Ray hand on what they block
     spec = EpisodeSpec.from_dict(json.loads(Path(told).read_text(encoding="utf-8")))
     try:
         report, tries = run(spec)

@@ -22,6 +22,8 @@ AUTO = "auto"
 """As an address: the cluster that `ray start` began on this machine."""
 _LOOPBACK = {"RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER": "0"}
 """Ray's own setting for machines with firewalls: it listens on the loopback interface alone."""
+_NOT_NICE = {"RAY_worker_niceness": "0"}
+"""Workers would give way to all other programs, and episodes with them."""
 _NO_STATISTICS = {"RAY_USAGE_STATS_ENABLED": "0"}
 _STORE = 256 * 1024**2
 """Bytes of Ray's object store on this machine: rows and the records of a few episodes."""
@@ -42,7 +44,7 @@ def cluster(address: str | None, jobs: int) -> Iterator[Any]:
     """
     if address is not None:
         _check(address)
-    own = {} if address is not None else {**_LOOPBACK, **_secret()}
+    own = {} if address is not None else {**_LOOPBACK, **_NOT_NICE, **_secret()}
     with _folder() as folder, _environment({**_NO_STATISTICS, **own}):
         ray = _import()
         try:

@@ -87,7 +87,10 @@ def kill():
 
 
 def kill_worker(seed):
-    """Kill the Ray worker that waits for this episode; on seed 9 the first one alone."""
+    """Kill the Ray worker that waits for this episode; on seed 9 the first one alone.
+
+    The second time the process must be as if there was no Ray.
+    """
     worker = os.getppid()
     with open(f"/proc/{worker}/cmdline") as file:
         if not file.read().startswith("ray::"):
@@ -96,6 +99,10 @@ def kill_worker(seed):
         try:
             os.close(os.open(os.environ["KILLED_ONCE"], os.O_CREAT | os.O_EXCL))
         except FileExistsError:
+            if blocked := signal.pthread_sigmask(signal.SIG_BLOCK, ()):
+                raise Failure("STALLED", f"signals are blocked: {blocked}") from None
+            if os.nice(0) != int(os.environ["NICENESS"]):
+                raise Failure("STALLED", f"it gives way by {os.nice(0)}") from None
             return
     os.kill(worker, signal.SIGKILL)
     time.sleep(60)  # the kernel ends this process too
@@ -155,6 +162,7 @@ def small(tmp_path: Path) -> str:
 def stalling(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     """A tree that goes wrong in another way on each of seeds 1 to 6, 8 and 9."""
     monkeypatch.setenv("KILLED_ONCE", str(tmp_path / "killed_once"))
+    monkeypatch.setenv("NICENESS", str(os.nice(0)))
     folder = tmp_path / "site"
     facts = folder / "stall_plugins-1.0.dist-info"
     facts.mkdir(parents=True)

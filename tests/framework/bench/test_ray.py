@@ -90,7 +90,7 @@ def test_rows_are_those_of_the_local_engine_and_dead_workers_are_replaced(
         assert [n["place"] for n in rows[row["seed"]].get("nodes", [])] == [
             n["place"] for n in row.get("nodes", [])
         ]
-    assert (rows[9]["ended"], rows[9]["success"]) == ("report", True)
+    assert (rows[9]["ended"], rows[9]["status"]) == ("report", "SUCCESS"), rows[9]["failure"]
     assert (rows[8]["ended"], rows[8]["exit_code"]) == ("crashed", None)
     assert f"{MOST_DEATHS} workers died under this episode" in rows[8]["output"]
     assert "crashed, its workers died" in capsys.readouterr().out
