@@ -7,7 +7,7 @@ Both sides tick trees of one shape: a sequence of groups of nine leaves each. On
 leaf is a py_trees behaviour whose `update` returns a constant, and the groups are py_trees'
 sequences and selectors. On our side a leaf has ports: it reads one key and writes another, or
 fails with a code and a sentence that its group looks at. Recording is what `run --record` does on
-each tick: the fingerprint over statuses and written keys, and the lines of changed statuses.
+each tick: the fingerprint over statuses and written keys, and both in the run's log.
 
 walk      groups are sequences; every leaf is ticked and succeeds
 fallback  groups are fallbacks; of nine leaves eight fail, with their reasons, and one succeeds
@@ -37,9 +37,10 @@ from py_trees.composites import Composite, Selector, Sequence
 from momantu_bt.engine.build import Built, build
 from momantu_bt.engine.context import RunContext
 from momantu_bt.engine.executor import Executor
+from momantu_bt.engine.launch import Options
 from momantu_bt.engine.no_world import NoWorld
 from momantu_bt.record.fingerprint import Fingerprint
-from momantu_bt.record.log import LogObserver
+from momantu_bt.record.recorder import Recorder
 from momantu_bt.testing import ManualClock
 from momantu_bt.tree.model import Document, Literal, Node, Place, PortValue, Reference, Tree
 
@@ -94,8 +95,8 @@ def node(type_: str, ports: dict[str, PortValue] | None = None, children: tuple 
     return Node(type_, HERE, ports or {}, list(children))
 
 
-def ours(shape: str, nodes: int) -> Built:
-    """The same tree in our engine, with ports on every leaf."""
+def document_of(shape: str, nodes: int) -> Document:
+    """The same tree as a document, with ports on every leaf."""
     groups = [
         node(
             "Fallback" if shape == "fallback" else "Sequence",
@@ -104,7 +105,11 @@ def ours(shape: str, nodes: int) -> Built:
         for number in range(groups_of(nodes))
     ]
     tree = Tree("Main", node("Sequence", children=tuple(groups)), HERE)
-    document = Document("tick.yaml", "Main", {"Main": tree})
+    return Document("tick.yaml", "Main", {"Main": tree})
+
+
+def ours(document: Document) -> Built:
+    """It in our engine."""
     built = build(document, RunContext(ManualClock()), {}.__getitem__)
     built.board.set("a", 1.5)
     return built
@@ -129,12 +134,16 @@ def plain_tick(built: Built) -> Tick:
     return tick
 
 
-def recorded_tick(built: Built, folder: Path) -> Tick:
+def recorded_tick(document: Document, folder: Path) -> Tick:
     """A tick with all that a recorded run does in it."""
+    built = ours(document)
     context = built.root.context
     run = Executor(built, context, NoWorld())
     run.fingerprint = Fingerprint()
-    run.observers = [LogObserver(folder)]
+    recorder = Recorder(folder / "record", print)
+    recorder.listen(context)
+    recorder.begin(document, Options(), run)
+    run.observers = [recorder]
 
     def tick() -> None:
         context.begin_tick()
@@ -156,8 +165,8 @@ def compare(shape: str, nodes: int, rounds: int) -> None:
     with tempfile.TemporaryDirectory() as folder:
         sides = {
             "bare": bare(shape, nodes),
-            "ours": plain_tick(ours(shape, nodes)),
-            "recorded": recorded_tick(ours(shape, nodes), Path(folder)),
+            "ours": plain_tick(ours(document_of(shape, nodes))),
+            "recorded": recorded_tick(document_of(shape, nodes), Path(folder)),
         }
         times = {name: max(1, int(LEAST_TIME / seconds(tick, 3))) for name, tick in sides.items()}
         measured: dict[str, list[float]] = {name: [] for name in sides}

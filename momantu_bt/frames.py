@@ -81,6 +81,10 @@ class KinematicTree:
         below = [name for name in self._joint_above if self._chain(name) is not None]
         return (self.base_frame, *below)
 
+    def joints(self) -> tuple[Joint, ...]:
+        """Every joint below the base."""
+        return tuple(joint for name, joint in self._joint_above.items() if self._chain(name))
+
     def base_from_frame(self, frame: str, positions: Mapping[str, float]) -> Transform:
         """Pose of a link in the base; joints that `positions` does not name stand at 0.
 
@@ -169,6 +173,11 @@ class FrameBuffer:
         self._map_from_odom.append((stamp, transform))
         while len(self._map_from_odom) > 1 and self._map_from_odom[1][0] < stamp - HISTORY:
             self._map_from_odom.popleft()
+
+    @property
+    def map_from_odom(self) -> Transform | None:
+        """What localization believes now; None before it has spoken."""
+        return self._map_from_odom[-1][1] if self._map_from_odom else None
 
     @property
     def newest(self) -> float:

@@ -79,19 +79,20 @@ def run(spec: EpisodeSpec) -> tuple[Report, int]:
     )
     _check(spec, checked, registry)
     options = Options(
-        world=spec.world, robot=spec.robot, seed=spec.seed, max_time=spec.max_time, audit=True
+        world=spec.world,
+        robot=spec.robot,
+        seed=spec.seed,
+        max_time=spec.max_time,
+        audit=True,
+        record=_record(spec),
     )
     executors: list[Executor] = []
 
     def watch(executor: Executor) -> list[Observer]:
         executors.append(executor)
-        return _observers(spec)
+        return []
 
     report = launch(checked.document, options, registry, watch)
-    if spec.record is not None:
-        from momantu_bt.record.log import REPORT
-
-        report.write(Path(spec.record) / REPORT)
     return report, sum(map(_tries, executors[0].built.nodes))
 
 
@@ -114,14 +115,12 @@ def _check(spec: EpisodeSpec, checked: Checked, registry: Registry) -> None:
         )
 
 
-def _observers(spec: EpisodeSpec) -> list[Observer]:
+def _record(spec: EpisodeSpec) -> Path | None:
+    """Where it leaves a record; one of an attempt that was interrupted is removed."""
     if spec.record is None:
-        return []
-    from momantu_bt.record.log import LogObserver, prepare_folder
-
-    shutil.rmtree(spec.record, ignore_errors=True)  # of an attempt that was interrupted
-    prepare_folder(Path(spec.record))
-    return [LogObserver(Path(spec.record))]
+        return None
+    shutil.rmtree(spec.record, ignore_errors=True)
+    return Path(spec.record)
 
 
 def _tries(node: TreeNode) -> int:

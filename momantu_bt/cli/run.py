@@ -39,7 +39,7 @@ def run(
     view: Annotated[bool, typer.Option("--view", help="Serve the scene to a browser.")] = False,
     view_port: Annotated[int, typer.Option(help="The port of --view.")] = VIEW_PORT,
     record: Annotated[
-        Path | None, typer.Option(help="A new folder for the report and a log of every change.")
+        Path | None, typer.Option(help="A new folder for the report and a log of the whole run.")
     ] = None,
     report: Annotated[Path | None, typer.Option(help="Write the report to this JSON file.")] = None,
     realtime: Annotated[
@@ -151,7 +151,6 @@ def _run(
     """Check what was asked for; the result starts the run and says how it ended."""
     from momantu_bt.cli.given import given_values
     from momantu_bt.engine.launch import Options, launch
-    from momantu_bt.record.log import REPORT
     from momantu_bt.tree.load import load
     from momantu_bt.tree.registry import Registry
     from momantu_bt.tree.substitution import Substitution, load_substitution
@@ -174,14 +173,12 @@ def _run(
             seed=seed,
             remark=_complain,
             substitution=replacing,
+            record=wanted.record,
             **how,
         )
         result = launch(checked.document, options, registry, lambda run: _watch(run, wanted, stops))
-        paths = [wanted.report] if wanted.report is not None else []
-        if wanted.record is not None:
-            paths.append(wanted.record / REPORT)
-        for path in paths:
-            result.write(path)
+        if wanted.report is not None:
+            result.write(wanted.report)
         _say_end(result, wanted)
         return result
 
@@ -204,20 +201,16 @@ def _breakpoints(
 
 def _check_outputs(wanted: _Outputs) -> None:
     from momantu_bt.record.files import check_writable
-    from momantu_bt.record.log import prepare_folder
 
     for path in (wanted.report, wanted.video):
         if path is not None:
             check_writable(path)
-    if wanted.record is not None:
-        prepare_folder(wanted.record)
 
 
 def _watch(run: Executor, wanted: _Outputs, stops: Breakpoints | None) -> list[Observer]:
     """Observers of what the user asked to see; those opened are closed when one cannot be."""
     from momantu_bt.engine.launch import LaunchError
     from momantu_bt.record.film import FilmObserver, ViewObserver
-    from momantu_bt.record.log import LogObserver
 
     observers: list[Observer] = []
     with ExitStack() as stack:
@@ -226,8 +219,6 @@ def _watch(run: Executor, wanted: _Outputs, stops: Breakpoints | None) -> list[O
             stack.callback(observer.close)
             observers.append(observer)
 
-        if wanted.record is not None:
-            add(LogObserver(wanted.record))
         if (wanted.video is not None or wanted.view) and run.world is None:
             raise LaunchError("--video and --view need a world; this run has none")
         if wanted.video is not None and run.world is not None:

@@ -37,6 +37,7 @@ def run(
     substitute: str | Path | None = None,
     faults: Iterable[str] = (),
     patience: float = math.inf,
+    record: Path | None = None,
 ) -> Report:
     """Run a tree file, or a bundled tree by name.
 
@@ -48,7 +49,8 @@ def run(
     in turn; afterwards nobody answers. substitute: a file of rules that say what nodes do
     instead of themselves. faults: what is broken on purpose, such as `camera.dead@navigate`.
     patience: seconds of wall time that a skill's step may take; what hangs longer in native code
-    ends the process, which is yours: so there is no limit unless one is given.
+    ends the process, which is yours: so there is no limit unless one is given. record: a
+    new folder for the run's record.
 
     Raises:
         TreeNotFound: there is no such tree.
@@ -56,6 +58,7 @@ def run(
         LaunchError: the run cannot begin as asked.
         WorldError: the world could not start.
         FaultError: a fault that is none, or that this run cannot have.
+        OutputError: the record's folder cannot be written, or holds a record already.
     """
     wanted = tuple(parse_fault(text) for text in faults)
     having = registry if registry is not None else Registry.installed()
@@ -79,6 +82,7 @@ def run(
         substitution=replacing,
         faults=wanted,
         patience=patience,
+        record=record,
     )
     result = launch(checked.document, options, having, watch)
     if report is not None:

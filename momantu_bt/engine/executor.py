@@ -70,7 +70,7 @@ class Executor:
     """Runs one tree once.
 
     settling: the tree has ended and the robot comes to rest. director: who begins and ends
-    faults between ticks; None in a run without any.
+    faults between ticks; None in a run without any. state: what the robot reported last.
     """
 
     def __init__(
@@ -97,7 +97,7 @@ class Executor:
         self._stepper = stepper
         self._max_time = max_time
         self._realtime = realtime
-        self._state: RobotState | None = None
+        self.state: RobotState | None = None
         self._error: str | None = None
         self._world_is_sound = True
         self._failure: FailureValue | None = None
@@ -154,8 +154,8 @@ class Executor:
         self.context.begin_tick()
         body = self.context.body
         if body is not None:
-            self._state = body.actuators.robot.state()
-            body.frames.add_state(self._state)
+            self.state = body.actuators.robot.state()
+            body.frames.add_state(self.state)
         self.services.update(self.context.now)
         status = self.built.root.execute()
         self._note()
@@ -166,7 +166,7 @@ class Executor:
         context, body = self.context, self.context.body
         issued = [] if body is None else body.actuators.issued
         self.fingerprint.add(
-            self._state,
+            self.state,
             issued,
             [(change.node.index, change.status.value) for change in context.changes],
             self._written(),
@@ -220,7 +220,7 @@ class Executor:
             self._note()
             self._step()
             self.context.begin_tick()
-            self._state = body.actuators.robot.state()
+            self.state = body.actuators.robot.state()
         self._note()
 
     def _settle_unseen(self) -> None:

@@ -7,7 +7,8 @@ import traceback
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
-from typing import Any, TypeAlias
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from momantu_bt.engine.actuators import Actuators
 from momantu_bt.engine.audit import Auditor
@@ -39,6 +40,9 @@ from momantu_bt.tree.substitution import Substitution
 from momantu_bt.tree.values import natural
 from momantu_bt.world import World
 
+if TYPE_CHECKING:
+    from momantu_bt.record.recorder import Recorder
+
 Watch: TypeAlias = Callable[[Executor], Sequence[Observer]]
 
 
@@ -58,6 +62,7 @@ class Options:
     `confirm`; nobody unless given. substitution: what nodes do instead of themselves.
     faults: what is broken on purpose. patience: seconds of wall time that a skill's step may
     take before it fails with HUNG; half as much more, and the process ends. inf: for ever.
+    record: a new folder for the run's record.
     """
 
     world: str | None = None
@@ -73,6 +78,7 @@ class Options:
     substitution: Substitution = field(default_factory=Substitution)
     faults: tuple[Fault, ...] = ()
     patience: float = PATIENCE
+    record: Path | None = None
 
 
 def launch(
@@ -86,6 +92,7 @@ def launch(
         LaunchError: no world for a tree with skills, a service that is not installed, or a robot
             that lacks what a skill uses.
         FaultError: the tree, the robot or the world cannot have a fault that is asked for.
+        OutputError: the record's folder cannot be written, or holds a record already.
         WorldError: the world could not start.
         KeyboardInterrupt: Ctrl-C before the first tick.
     """
@@ -95,14 +102,18 @@ def launch(
         interrupts = stack.enter_context(Interrupts())
         needed = _services(kinds, registry)
         planned = _planned(document, options, kinds)
+        recorder = _recorder(options, stack)
         world = _open(document, options, registry, kinds)
         if world is not None and not options.keep_world:
             stack.callback(world.close)
         stage = Stage(planned, world, options.seed, stack)
-        executor = _assemble(document, options, kinds, needed, stage)
+        executor = _assemble(document, options, kinds, needed, stage, recorder)
         auditor = Auditor(executor.context, world) if options.audit else None
         if watch is not None:
             executor.observers = list(watch(executor))
+        if recorder is not None:
+            recorder.begin(document, options, executor)
+            executor.observers.insert(0, recorder)
         started = time.perf_counter() - begun
         try:
             with executor.context.watchdog:
@@ -112,7 +123,21 @@ def launch(
         if trouble is not None:
             ending = replace(ending, status=ERROR, error=ending.error or trouble)
         report = _report(document, options, executor, ending, started)
-        return report if auditor is None else replace(report, claims=auditor.claims())
+        if auditor is not None:
+            report = replace(report, claims=auditor.claims())
+        if recorder is not None:
+            recorder.finish(report)
+        return report
+
+
+def _recorder(options: Options, stack: ExitStack) -> Recorder | None:
+    if options.record is None:
+        return None
+    from momantu_bt.record.recorder import Recorder
+
+    recorder = Recorder(options.record, options.remark)
+    stack.callback(recorder.release)
+    return recorder
 
 
 def _planned(
@@ -182,6 +207,7 @@ def _assemble(
     kinds: Mapping[str, type[Skill]],
     needed: Mapping[str, type[Service]],
     stage: Stage,
+    recorder: Recorder | None,
 ) -> Executor:
     stepper = stage.world if stage.world is not None else NoWorld()
     context = RunContext(
@@ -191,9 +217,12 @@ def _assemble(
         person=options.person,
         watchdog=Watchdog(options.patience),
     )
+    if recorder is not None:
+        recorder.listen(context)
     services = Services({}, None)
     if stage.robot is not None and stage.site is not None:
-        actuators = Actuators(stage.robot)
+        robot = stage.robot if recorder is None else recorder.tap(stage.robot)
+        actuators = Actuators(robot)
         services = Services({name: kind() for name, kind in needed.items()}, actuators)
         frames = FrameBuffer(stage.robot.description.kinematics())
         context.body = Body(actuators, frames, stage.site, services.running)

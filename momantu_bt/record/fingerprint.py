@@ -17,9 +17,11 @@ class Fingerprint:
 
     It takes what the robot reported, each command and stop in order, each node whose status
     changed, and each cell that was written. Names of files do not enter.
+    state: what the robot reported in the newest tick, every float to its last bit.
     """
 
     def __init__(self) -> None:
+        self.state = b""
         self._hash = hashlib.sha256()
         self._goals: dict[str, tuple[ActuatorGoal, bytes]] = {}
         self._statuses: dict[tuple[int, str], bytes] = {}
@@ -34,7 +36,8 @@ class Fingerprint:
         """One tick. statuses: (node index, status name); written: (cell name, value)."""
         update = self._hash.update
         if state is not None:
-            update(_state_bytes(state))
+            self.state = _state_bytes(state)
+            update(self.state)
         for command in issued:
             update(b"c" + command.actuator.encode())
             update(b"stop" if command.goal is None else self._goal_bytes(command))

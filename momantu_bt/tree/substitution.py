@@ -44,11 +44,13 @@ class Result:
 class Substitution:
     """What a file of rules makes of one document.
 
-    values: keys of the root's board in the place of what services publish.
+    values: keys of the root's board in the place of what services publish. source: the file's
+    text, by its name.
     """
 
     results: Mapping[int, tuple[Result, ...]] = field(default_factory=dict)
     values: Mapping[str, Any] = field(default_factory=dict)
+    source: Mapping[str, str] = field(default_factory=dict)
 
     def of(self, node: Node) -> tuple[Result, ...]:
         """What a node does at its starts, in turn; then it is itself."""
@@ -82,7 +84,7 @@ def load_substitution(
     _check_values(context, found, results, without_world)
     if errors(problems.sorted()):
         raise TreeError(problems.sorted(), source)
-    return Substitution(results, found.values)
+    return Substitution(results, found.values, {name: text})
 
 
 def reached(document: Document, replaced: Mapping[int, tuple[Result, ...]]) -> Iterator[Node]:

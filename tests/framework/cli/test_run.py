@@ -7,6 +7,7 @@ import json
 import pytest
 
 from momantu_bt.cli import main
+from momantu_bt.record.reader import read_record
 from momantu_bt.tree.settings import setting
 
 TREE = """
@@ -73,8 +74,8 @@ def test_set_wins_over_values_and_values_over_the_tree(tree, tmp_path, capsys):
 
 def test_record_leaves_a_log_and_a_report(tree, tmp_path):
     assert run(tree, "--record", tmp_path / "record", "-q") == 0
-    log = (tmp_path / "record/changes.jsonl").read_text().splitlines()
-    assert json.loads(log[0])["status"] == "RUNNING"
+    recording = read_record(tmp_path / "record")
+    assert recording.ticks[1].changes[0].status == "RUNNING"
     assert json.loads((tmp_path / "record/report.json").read_text())["status"] == "SUCCESS"
 
 

@@ -17,7 +17,6 @@ from momantu_bt.failure import Failure
 from momantu_bt.geometry import Transform
 from momantu_bt.messages import BaseVelocity
 from momantu_bt.record.film import FilmObserver
-from momantu_bt.record.log import LogObserver, prepare_folder
 from momantu_bt.service import Service
 from momantu_bt.skill import In, Needs, Out, Run, Skill
 from momantu_bt.testing import ScriptedRobot, ScriptedWorld
@@ -273,31 +272,15 @@ def test_observers_and_referee_leave_the_fingerprint_alone(run_yaml, tmp_path):
     judged = fingerprint(run_yaml, world=ScriptedWorld(verdict_of=verdict(True)))
 
     def watch(run):
-        prepare_folder(tmp_path / "record")
-        film = run.world.open_video(tmp_path / "film.txt", "title")
-        return [LogObserver(tmp_path / "record"), FilmObserver(film)]
+        return [FilmObserver(run.world.open_video(tmp_path / "film.txt", "title"))]
 
-    assert fingerprint(run_yaml, watch=watch) == judged == plain
+    watched = fingerprint(run_yaml, watch=watch, record=tmp_path / "record")
+    assert watched == judged == plain
 
 
 def test_another_start_gives_another_fingerprint(run_yaml):
     robot = ScriptedRobot(joints={"lift": 0.1})
     assert fingerprint(run_yaml, world=ScriptedWorld(robot)) != fingerprint(run_yaml)
-
-
-def test_the_log_tells_every_change_with_its_reason(run_yaml, tmp_path):
-    def watch(run):
-        prepare_folder(tmp_path / "record")
-        return [LogObserver(tmp_path / "record")]
-
-    run_yaml(PARALLEL, Drive, Crash, watch=watch)
-    lines = [json.loads(t) for t in (tmp_path / "record/changes.jsonl").read_text().splitlines()]
-    crash = [(line["t"], line["status"]) for line in lines if line["name"] == "crash"]
-    assert crash == [(0.05, "RUNNING"), (0.15, "FAILURE")]
-    drive = [line["status"] for line in lines if line["name"] == "drive"]
-    assert drive == ["RUNNING", "IDLE"]
-    failed = next(line for line in lines if line["status"] == "FAILURE")
-    assert failed["failure"]["code"] == "SKILL_ERROR"
 
 
 def test_a_tree_with_skills_needs_a_world(run_yaml):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -15,7 +13,7 @@ from momantu_bt.engine.nodes.fallbacks import RoundRobin
 from momantu_bt.engine.nodes.recovery import Catch, Handle, Recover
 from momantu_bt.engine.ports import Inputs
 from momantu_bt.engine.status import FAILURE, RUNNING, SUCCESS
-from momantu_bt.record.log import LogObserver, prepare_folder
+from momantu_bt.record.reader import read_record
 from momantu_bt.skill import MISSING, Failure, In, Run, Skill
 
 CODES = ("A", "B", "C")
@@ -241,17 +239,20 @@ def test_the_reason_of_a_failure_is_told_though_the_node_starts_again_at_once(
 ):
     said = []
 
-    def watch(run):
-        prepare_folder(tmp_path / "record")
-        return [LogObserver(tmp_path / "record"), ChangeLines(said.append)]
-
-    report = run_yaml(f"trees: {{Main: [{tree}]}}", Slip, watch=watch)
+    record = tmp_path / "record"
+    report = run_yaml(
+        f"trees: {{Main: [{tree}]}}",
+        Slip,
+        watch=lambda run: [ChangeLines(said.append)],
+        record=record,
+    )
     assert report.status == "SUCCESS"
-    lines = [json.loads(t) for t in (tmp_path / "record/changes.jsonl").read_text().splitlines()]
+    recording = read_record(record)
     reasons = [
-        line["failure"]["message"]
-        for line in lines
-        if line["name"] == "slip" and line["status"] == FAILURE.value
+        change.failure.message
+        for tick in recording.ticks
+        for change in tick.changes
+        if recording.nodes[change.node].name == "slip" and change.status == FAILURE.value
     ]
     assert reasons == ["time 1", "time 2"]
     assert [line.partition("fails: ")[2] for line in said if "fails" in line] == [

@@ -15,7 +15,7 @@ from momantu_bt.failure import FailureValue
 from momantu_bt.geometry import Pose2D
 from momantu_bt.record.chain import chain_text
 from momantu_bt.record.files import OutputError, check_writable, write_whole
-from momantu_bt.record.log import prepare_folder
+from momantu_bt.record.folder import prepare_folder
 from momantu_bt.record.report import Lie, NodeReport, Report, SkillClaims
 
 FIELDS = {
@@ -192,4 +192,4 @@ def test_a_record_in_the_place_of_a_file_is_told_from_an_old_record(tmp_path):
 
 def test_folders_of_a_record_are_made(tmp_path):
     prepare_folder(tmp_path / "a" / "b")
-    assert [entry.name for entry in (tmp_path / "a" / "b").iterdir()] == ["changes.jsonl"]
+    assert [entry.name for entry in (tmp_path / "a" / "b").iterdir()] == ["run.mcap"]

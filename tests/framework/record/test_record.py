@@ -20,7 +20,7 @@ from momantu_bt.record.encode import encode
 from momantu_bt.record.ending import ending_text
 from momantu_bt.record.files import OutputError, check_writable, write_whole
 from momantu_bt.record.fingerprint import Fingerprint
-from momantu_bt.record.log import prepare_folder
+from momantu_bt.record.folder import prepare_folder
 from momantu_bt.record.report import Report
 
 VALUES = st.recursive(

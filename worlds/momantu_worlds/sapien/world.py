@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 from momantu_bt.claim import Sentence
@@ -12,6 +13,7 @@ from momantu_worlds.sapien.robot import SimulatedRobot
 from momantu_worlds.sapien.simulator import Simulator
 from momantu_worlds.scenes.bodies import Episode
 from momantu_worlds.scenes.judge import ClaimJudge
+from momantu_worlds.scenes.loading import world_path
 from momantu_worlds.scenes.referee import Referee
 
 
@@ -79,6 +81,11 @@ class SapienWorld:
         from momantu_worlds.display.view import open_view
 
         return open_view(self.simulator, self._episode, port)
+
+    def texts(self) -> Mapping[str, str]:
+        """The world file, by its name."""
+        path = world_path(self._name)
+        return {path.name: path.read_text(encoding="utf-8")}
 
     def close(self) -> None:
         """Free the scene; safe to call twice."""

@@ -1,0 +1,76 @@
+"""What a record says before the first tick: the run, its files, its nodes."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Mapping
+from dataclasses import fields
+from typing import TYPE_CHECKING, Any
+
+from momantu_bt.engine.executor import Executor
+from momantu_bt.engine.node import TreeNode
+from momantu_bt.record.codec import dumps, to_json
+from momantu_bt.record.versions import versions
+from momantu_bt.tree.model import Document
+from momantu_bt.tree.settings import SET
+from momantu_bt.world import WorldTexts
+
+if TYPE_CHECKING:
+    from momantu_bt.engine.launch import Options
+
+FORMAT = 1
+"""Counts up when records change so that older readers would be wrong."""
+SITE = "site.json"
+_NOT_OPTIONS = frozenset(("seed", "remark", "person", "substitution", "record", "keep_world"))
+"""Fields of `Options` that are no choice of the user's, or are told elsewhere."""
+
+
+def run_data(document: Document, options: Options, run: Executor) -> dict[str, Any]:
+    """`/run`."""
+    world = run.world
+    chosen = [f.name for f in fields(options) if f.name not in _NOT_OPTIONS]
+    return {
+        "format": FORMAT,
+        "tree": document.file,
+        "main": document.main,
+        "world": None if world is None else world.name,
+        "robot": None if world is None else world.robot.description.name,
+        "seed": options.seed,
+        "options": {name: to_json(getattr(options, name)) for name in chosen},
+        "values": {key: to_json(value.value) for key, value in document.values.items()},
+        "versions": versions(),
+        "unix_time": time.time(),
+    }
+
+
+def files_of(document: Document, options: Options, run: Executor) -> Iterator[dict[str, str]]:
+    """`/files`, one by one: the tree's with what it includes, then all others."""
+    given = {place.file for place in document.value_places.values()} - {document.file}
+    for name, text in document.source.items():
+        if name != SET or text:
+            yield {"name": name, "kind": "values" if name in given else "tree", "text": text}
+    for name, text in options.substitution.source.items():
+        yield {"name": name, "kind": "substitution", "text": text}
+    if run.context.body is not None:
+        site = dumps(to_json(run.context.body.site))
+        yield {"name": SITE, "kind": "site", "text": site}
+    if isinstance(run.world, WorldTexts):
+        for name, text in run.world.texts().items():
+            yield {"name": name, "kind": "world", "text": text}
+
+
+def nodes_data(run: Executor) -> dict[str, Any]:
+    """`/nodes`."""
+    return {"nodes": [_node(node) for node in run.built.nodes]}
+
+
+def _node(node: TreeNode) -> Mapping[str, Any]:
+    return {
+        "index": node.index,
+        "name": node.name,
+        "type": node.model.target or node.model.type,
+        "place": node.place,
+        "depth": node.depth,
+        "parent": node.parent.index if isinstance(node.parent, TreeNode) else None,
+        "label": node.label,
+    }

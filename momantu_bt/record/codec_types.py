@@ -1,0 +1,45 @@
+"""Types by name, for values of a record: the framework's own and those of plug-ins."""
+
+from __future__ import annotations
+
+import sys
+from functools import cache
+from importlib import import_module
+
+from momantu_bt.plugins import COMMANDS, ROBOTS, SERVICES, SKILLS, WORLDS, installed
+
+_OWN = "momantu_bt"
+_GROUPS = (SKILLS, SERVICES, ROBOTS, WORLDS, COMMANDS)
+
+
+def type_name(kind: type) -> str:
+    """`module:qualified name`."""
+    return f"{kind.__module__}:{kind.__qualname__}"
+
+
+def find_type(name: str) -> type | None:
+    """The type of a name; None where it cannot be had here.
+
+    A module is imported only when it is loaded already or belongs to a package that gives
+    plug-ins: reading a record runs no other code.
+    """
+    module_name, _, path = name.partition(":")
+    package = module_name.partition(".")[0]
+    if module_name not in sys.modules and package not in _packages():
+        return None
+    try:
+        found: object = import_module(module_name)
+        for part in path.split("."):
+            found = getattr(found, part)
+    except (ImportError, AttributeError, ValueError):
+        return None
+    return found if isinstance(found, type) else None
+
+
+@cache
+def _packages() -> frozenset[str]:
+    """Top-level packages of this framework and of everything that is plugged into it."""
+    entries = [entry for group in _GROUPS for entry in installed(group).values()]
+    return frozenset(
+        {_OWN, *(entry.value.partition(":")[0].partition(".")[0] for entry in entries)}
+    )

@@ -1,0 +1,180 @@
+"""Recording a run: an observer that writes `run.mcap` while the run lasts.
+
+It changes nothing in the run. What goes wrong in it (a full disk) is remarked on once; then the
+run goes on without it, and what was written before stays readable.
+"""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from momantu_bt.engine.context import RunContext
+from momantu_bt.engine.executor import Executor
+from momantu_bt.engine.outside import Heard
+from momantu_bt.record.about import files_of, nodes_data, run_data
+from momantu_bt.record.channel import Channel, stamp_of
+from momantu_bt.record.codec import dumps
+from momantu_bt.record.files import OutputError, write_whole
+from momantu_bt.record.floor_plan import grid_text, read_floor_plan
+from momantu_bt.record.folder import LOG, REPORT, prepare_folder
+from momantu_bt.record.log_lines import LogLines
+from momantu_bt.record.mcap_file import McapFile
+from momantu_bt.record.objects import Objects
+from momantu_bt.record.poses import Poses
+from momantu_bt.record.published import Published
+from momantu_bt.record.report import Report
+from momantu_bt.record.schemas import END, FILE, NODES, RUN, Schema
+from momantu_bt.record.sensors import Sensors
+from momantu_bt.record.tap import Tap
+from momantu_bt.record.ticks import Ticks
+from momantu_bt.record.viewer_schemas import GRID
+from momantu_bt.robot import Robot
+from momantu_bt.tree.model import Document
+
+if TYPE_CHECKING:
+    from momantu_bt.engine.launch import Options
+
+
+MOST_TICKS, MOST_SECONDS = 10, 0.1
+"""Ticks in which nothing changed, and seconds of wall time, that a crash may take away."""
+
+
+class Recorder:
+    """One record. First `tap` and `listen` while the run is made, then `begin`, then `finish`.
+
+    Raises:
+        OutputError: the folder cannot be written, or holds a record already.
+    """
+
+    def __init__(self, folder: Path, remark: Callable[[str], None]) -> None:
+        prepare_folder(folder)
+        self._folder = folder
+        self._remark = remark
+        self._file: McapFile | None = None
+        self._broken = False
+        self._stamp = 0
+        self._flushed = time.monotonic()
+        self._tap: Tap | None = None
+        self._heard = Heard()
+        self._remarks: list[str] = []
+        self._ticks: Ticks | None = None
+        self._others: Sequence[Channel] = ()
+
+    # while the run is made
+
+    def tap(self, robot: Robot) -> Robot:
+        """The robot, of which what is read is kept."""
+        self._tap = Tap(robot)
+        return self._tap
+
+    def listen(self, context: RunContext) -> None:
+        """Hear what comes to the tree from outside, and remarks."""
+        context.outside = self._heard
+        context.remark = self._noted
+
+    def _noted(self, text: str) -> None:
+        self._remarks.append(text)
+        self._remark(text)
+
+    # while it lasts
+
+    def begin(self, document: Document, options: Options, run: Executor) -> None:
+        """Write what is known before the first tick, the board's first values included."""
+        self._guarded(self._open, document, options, run)
+
+    def ticked(self, run: Executor) -> None:
+        """Write the tick; hand it to the operating system when anything changed or it is time."""
+        self._guarded(self._write, run)
+
+    def close(self) -> None:
+        """The last tick is over; the report is still to come."""
+
+    def finish(self, report: Report) -> None:
+        """Write how the run ended, in the log and as a file of its own."""
+        text = json.dumps(report.as_dict(), default=str)
+        self._guarded(self._end, text)
+        try:
+            write_whole(self._folder / REPORT, text + "\n")
+        except OutputError as error:
+            self._remark(f"the record has no report: {error}")
+
+    def release(self) -> None:
+        """Close the log of a run that has no report; one that never began leaves nothing."""
+        if self._file is not None:
+            self._guarded(self._file.close)
+        elif not self._broken:
+            (self._folder / LOG).unlink(missing_ok=True)
+
+    def _guarded(self, work: Callable[..., None], *arguments: Any) -> None:
+        """Do it, unless the record has broken off; from the first trouble on it has."""
+        if self._broken:
+            return
+        try:
+            work(*arguments)
+        except Exception as error:
+            self._broken = True
+            why = (isinstance(error, OSError) and error.strerror) or repr(error)
+            self._remark(f"the record {self._folder} breaks off here: {why}; the run goes on")
+            if self._file is not None:
+                self._file.abandon()
+
+    def _open(self, document: Document, options: Options, run: Executor) -> None:
+        file = self._file = McapFile(self._folder / LOG)
+        _add(file, "/run", "momantu.Run", RUN, run_data(document, options, run))
+        for text in files_of(document, options, run):
+            _add(file, "/files", "momantu.File", FILE, text)
+        _add(file, "/nodes", "momantu.Nodes", NODES, nodes_data(run))
+        self._ticks = Ticks(file, self._heard)
+        self._ticks.write(run, file)
+        others: list[Channel] = [LogLines(file, self._remarks)]
+        body = run.context.body
+        if body is not None and self._tap is not None:
+            others += [Poses(file, body), Published(self._remark), Objects(file)]
+            others.append(Sensors(self._tap))
+            self._write_map(file, body.site.map_file)
+        self._others = others
+        file.flush()
+
+    def _write_map(self, file: McapFile, map_file: Path | None) -> None:
+        if map_file is None:
+            return
+        try:
+            text = grid_text(read_floor_plan(map_file))
+        except ValueError as error:
+            self._remark(f"the record has no map: {error}")
+            return
+        file.add(file.channel("/map", "foxglove.Grid", GRID), 0, text)
+
+    def _write(self, run: Executor) -> None:
+        file, ticks = self._file, self._ticks
+        assert file is not None
+        assert ticks is not None
+        ticks.write(run, file)
+        for channel in self._others:
+            channel.write(run, file)
+        self._stamp = stamp_of(run.context.now)
+        if run.context.changes or run.context.tick % MOST_TICKS == 0 or self._late():
+            file.flush()
+
+    def _late(self) -> bool:
+        now = time.monotonic()
+        late = now - self._flushed > MOST_SECONDS
+        if late:
+            self._flushed = now
+        return late
+
+    def _end(self, text: str) -> None:
+        file = self._file
+        assert file is not None
+        if file.removed:
+            raise FileNotFoundError(0, "somebody has deleted it")
+        file.add(file.channel("/end", "momantu.End", END), self._stamp, text)
+        file.finish()
+
+
+def _add(file: McapFile, topic: str, name: str, schema: Schema, data: Any) -> None:
+    file.add(file.channel(topic, name, schema), 0, dumps(data))

@@ -1,0 +1,146 @@
+"""Ticks as messages: what changed, was written, read and commanded, each thing encoded once."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable
+from typing import Any
+
+from momantu_bt.engine.actuators import Issued
+from momantu_bt.engine.blackboard import Cell
+from momantu_bt.engine.context import Change
+from momantu_bt.engine.executor import Executor
+from momantu_bt.engine.outside import Heard, Step
+from momantu_bt.failure import FailureValue
+from momantu_bt.messages import ActuatorGoal
+from momantu_bt.record.channel import stamp_of
+from momantu_bt.record.codec import dumps, to_json
+from momantu_bt.record.mcap_file import McapFile
+from momantu_bt.record.schemas import TICK
+
+AGAIN = '{"$again":true}'
+"""In the place of a value that is the same object as the last one of its name."""
+_MOST_TEXTS = 10_000
+"""Changes and steps that are kept as text; there may be more, for a note may hold a count."""
+
+
+class Ticks:
+    """Writes `/tick`. heard: what came from outside since the last tick."""
+
+    def __init__(self, file: McapFile, heard: Heard) -> None:
+        self._channel = file.channel("/tick", "momantu.Tick", TICK)
+        self._heard = heard
+        self._steps: dict[tuple[int, str, str], str] = {}
+        self._changes: dict[tuple[int, str, str], str] = {}
+        self._failures: dict[int, FailureValue] = {}
+        self._failed: dict[int, int] = {}
+        self._values: dict[str, tuple[Any, str]] = {}
+        self._read: dict[str, Any] = {}
+        self._goals: dict[str, ActuatorGoal] = {}
+        self._quoted: dict[str, str] = {}
+
+    def write(self, run: Executor, file: McapFile) -> None:
+        """One tick. Before the first it is tick 0, with the values that the run begins with."""
+        context = run.context
+        parts = [f'{{"number":{context.tick},"now":{round(context.now, 9)!r}']
+        if context.changes:
+            parts.append(f'"changes":[{",".join(map(self._change, context.changes))}]')
+        if context.writes:
+            parts.append(f'"writes":[{",".join(self._written(context.writes))}]')
+        if self._heard.reads:
+            parts.append(f'"reads":[{",".join(map(self._value_read, self._heard.reads))}]')
+        if self._heard.steps:
+            parts.append(f'"steps":[{",".join(map(self._step, self._heard.steps))}]')
+        self._heard.clear()
+        if context.body is not None and context.body.actuators.issued:
+            issued = map(self._issued, context.body.actuators.issued)
+            parts.append(f'"issued":[{",".join(issued)}]')
+        if run.fingerprint.state:
+            digest = hashlib.blake2b(run.fingerprint.state, digest_size=8).hexdigest()
+            parts.append(f'"state":"{digest}"')
+        if run.settling:
+            parts.append('"settling":true')
+        file.add(self._channel, stamp_of(context.now), ",".join(parts) + "}")
+
+    def _change(self, change: Change) -> str:
+        """The same few changes come again and again."""
+        node, status, note, failure = change
+        if failure is not None:
+            text = self._failure(node.index, failure)
+            return f'[{node.index},"{status.value}",{dumps(note)},{text}]'
+        key = (node.index, status.value, note)
+        known = self._changes.get(key)
+        if known is None:
+            known = f'[{node.index},"{status.value}",{dumps(note)},null]'
+            _keep(self._changes, key, known)
+        return known
+
+    def _failure(self, index: int, failure: FailureValue) -> str:
+        """A failure as JSON; of one that a node has had last, that node's index."""
+        of = self._failed.get(id(failure))
+        if of is not None:
+            return f'{{"$again":{of}}}'
+        before = self._failures.get(index)
+        if before is not None:
+            del self._failed[id(before)]
+        self._failures[index], self._failed[id(failure)] = failure, index
+        return dumps(to_json(failure))
+
+    def _written(self, journal: list[tuple[Cell, Any]]) -> Iterable[str]:
+        """What each write put there: what the next one of the same cell found, or what is now."""
+        after: dict[Cell, Any] = {}
+        texts = []
+        for cell, before in reversed(journal):
+            texts.append(self._write(cell.name, after.get(cell, cell.value)))
+            after[cell] = before
+        texts.reverse()
+        return texts
+
+    def _write(self, name: str, value: Any) -> str:
+        known = self._values.get(name)
+        if known is None or known[0] is not value:
+            known = (value, f"[{dumps(name)},{dumps(to_json(value))}]")
+            self._values[name] = known
+        return known[1]
+
+    def _value_read(self, read: tuple[str, Any]) -> str:
+        name, value = read
+        if name in self._read and self._read[name] is value:
+            return f"[{dumps(name)},{AGAIN}]"
+        self._read[name] = value
+        return f"[{dumps(name)},{dumps(to_json(value))}]"
+
+    def _step(self, step: Step) -> str:
+        """Most steps only go on in the phase of the one before."""
+        index = step.leaf.index
+        if step.failure is not None or step.outputs:
+            failure = "null" if step.failure is None else dumps(to_json(step.failure))
+            outputs = {name: to_json(value) for name, value in step.outputs.items()}
+            status = step.status.value
+            return f'[{index},"{status}",{dumps(step.phase)},{failure},{dumps(outputs)}]'
+        key = (index, step.status.value, step.phase)
+        known = self._steps.get(key)
+        if known is None:
+            known = f'[{index},"{step.status.value}",{dumps(step.phase)},null,{{}}]'
+            _keep(self._steps, key, known)
+        return known
+
+    def _issued(self, issued: Issued) -> str:
+        """A trajectory that is commanded again is named, not written out again."""
+        name, goal = issued.actuator, issued.goal
+        quoted = self._quoted.get(name)
+        if quoted is None:
+            quoted = self._quoted[name] = dumps(name)
+        if goal is None:
+            self._goals.pop(name, None)
+            return f"[{quoted},null]"
+        if self._goals.get(name) is goal:
+            return f"[{quoted},{AGAIN}]"
+        self._goals[name] = goal
+        return f"[{quoted},{dumps(to_json(goal))}]"
+
+
+def _keep(texts: dict[tuple[int, str, str], str], key: tuple[int, str, str], text: str) -> None:
+    if len(texts) >= _MOST_TEXTS:
+        texts.clear()
+    texts[key] = text
