@@ -191,10 +191,23 @@ def test_a_tag_lies_on_a_surface_until_something_covers_it() -> None:
     assert judged(TagOn(500), truth) is False
     truth.moved["mug"] = Transform((2.97, 1.0, TOP))
     assert judged(TagOn(1, "desk"), truth) is False
-    sheet = Part(Box((0.25, 0.25, 0.002)), Transform((0.0, 0.0, 0.003)))
+
+
+@pytest.mark.parametrize(
+    "cover",
+    [
+        Part(Box((0.25, 0.25, 0.002)), Transform((0.0, 0.0, 0.003))),
+        Part(Picture((0.1875, 0.1875), tag_picture(2)), Transform((0, 0, 0.001)), collision=False),
+    ],
+    ids=["sheet", "tag"],
+)
+def test_a_tag_under_paper_is_covered_and_another_one_may_lie_open(cover: Part) -> None:
     truth = Truth()
-    truth.bodies["sheet"] = Body("sheet", "sheet", Transform((2.9, 1.0, TOP)), (sheet,))
+    truth.bodies["cover"] = Body("cover", "cover", Transform((2.9, 1.0, TOP)), (cover,))
     assert judged(TagOn(1, "desk"), truth) is False
+    assert judged(TagOn(2, "desk"), truth) is isinstance(cover.geometry, Picture)
+    truth.moved["cover"] = Transform((2.9, 1.4, TOP))
+    assert judged(TagOn(1, "desk"), truth) is True
 
 
 @pytest.mark.parametrize(

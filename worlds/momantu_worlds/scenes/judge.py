@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -119,15 +120,17 @@ class ClaimJudge:
 
     # tags
 
-    def _tags(self, tag_id: int) -> Iterator[tuple[Transform, Picture]]:
-        if not 0 <= tag_id < len(CODES):
-            return
-        wanted = tag_picture(tag_id)
+    def _pictures(self) -> Iterator[tuple[Transform, Picture]]:
         for name, body in self._bodies.items():
             for part in body.parts:
-                picture = part.geometry
-                if isinstance(picture, Picture) and np.array_equal(picture.pixels, wanted):
-                    yield self._truth.pose(name) @ part.body_from_part, picture
+                if isinstance(part.geometry, Picture):
+                    yield self._truth.pose(name) @ part.body_from_part, part.geometry
+
+    def _tags(self, tag_id: int) -> Iterator[tuple[Transform, Picture]]:
+        wanted = tag_picture(tag_id) if 0 <= tag_id < len(CODES) else None
+        for pose, picture in self._pictures():
+            if wanted is not None and np.array_equal(picture.pixels, wanted):
+                yield pose, picture
 
     def _tag_at(self, tag_id: int, there: Transform, tolerance: float, turn: float) -> bool:
         return any(
@@ -145,7 +148,9 @@ class ClaimJudge:
     def _covered(self, tag: Transform, picture: Picture) -> bool:
         x, y = (np.linspace(-edge / 2, edge / 2, 9) for edge in picture.size)
         points = tag.apply(np.array([(a, b, c) for a in x for b in y for c in ON_TAG]))
-        return any(bool(thing.inside(points).any()) for thing in self._scene.solid())
+        return any(bool(thing.inside(points).any()) for thing in self._scene.solid()) or any(
+            _lies_on(tag.inverse() @ other, sheet, picture) for other, sheet in self._pictures()
+        )
 
     # tops
 
@@ -162,10 +167,10 @@ class ClaimJudge:
             things = [
                 solid
                 for thing in self._scene.solid()
-                if not self._gripped(thing)
                 for solid in thing.solids
                 if solid.vertices[:, 2].max() - top.height > FLUSH
                 and solid.vertices[:, 2].min() - top.height < ROOM_ABOVE
+                and not self._gripped(thing)
             ]
             for spot in point + tries:
                 if top.margin(spot) >= radius and all(
@@ -181,12 +186,17 @@ class ClaimJudge:
 
     def _gripped(self, thing: Standing) -> bool:
         """Whether any of it is between the pads."""
+        return bool(thing.inside(self._between_pads).any())
+
+    @cached_property
+    def _between_pads(self) -> Array:
+        """Points (n, 3) in the map between the gripper's pads."""
         hand = self._description.end_effector
         extent = (hand.pad_length, self._opening(), hand.pad_height)
         axes = [np.linspace(-e / 2, e / 2, n) for e, n in zip(extent, PADS, strict=True)]
         grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
         grasp = self._truth.link(hand.frame) @ Transform((hand.grasp_offset, 0.0, 0.0))
-        return bool(thing.inside(grasp.apply(grid)).any())
+        return np.asarray(grasp.apply(grid))
 
     def _opening(self) -> float:
         gripper = self._description.actuators[self._description.end_effector.actuator]
@@ -200,6 +210,13 @@ class ClaimJudge:
     def _joint_off(self, name: str, position: float) -> float:
         off = self._truth.joint(name) - position
         return wrap_angle(off) if self._description.joint_limits[name].lower is None else off
+
+
+def _lies_on(lower_from_upper: Transform, upper: Picture, lower: Picture) -> bool:
+    """Whether a picture hides some of another one beneath it."""
+    x, y, z = lower_from_upper.position
+    reach = (math.hypot(*upper.size) + min(lower.size)) / 2
+    return 0.0 < z <= ON_TAG[-1] and math.hypot(x, y) < reach
 
 
 def _apart(a: Array, b: Array) -> float:
