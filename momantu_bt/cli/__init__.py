@@ -34,6 +34,8 @@ VERBS = {
     "run": "Run a tree.",
     "bench": "Run a tree many times and say how often it works, and why not.",
     "compare": "Run two trees on the same seeds and say which works more often.",
+    "replay": "Go through a recorded run, or tick its tree again.",
+    "diff": "Say what two recorded runs differ in.",
     "check": "Say everything that is wrong with tree files.",
     "convert": "Write a tree in the other spelling, YAML or BehaviorTree.CPP's XML.",
     "show": "Print a tree in plain words or as a picture, or the difference of two.",

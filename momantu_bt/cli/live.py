@@ -10,9 +10,10 @@ from rich.console import Console, Group
 from rich.live import Live
 from rich.text import Text
 
-from momantu_bt.cli.changes import ChangeLines
 from momantu_bt.engine.executor import Executor
+from momantu_bt.record.changes import ChangeLines
 from momantu_bt.record.lines import tree_lines
+from momantu_bt.world import TreeLine
 
 REFRESH = 0.1
 """Seconds of wall time between two pictures: enough for the eye, cheap for the run."""
@@ -68,12 +69,14 @@ class LiveTree:
     def _picture(self, run: Executor) -> Group:
         rest = "  (coming to rest)" if run.settling else ""
         lines = [Text(f"{run.context.now:7.1f} s simulated{rest}", style="bold")]
-        lines += [_line(line.depth, line.text, line.status) for line in tree_lines(run.built.root)]
+        lines += [line_text(line) for line in tree_lines(run.built.root)]
         lines.append(Text())
         lines += [Text(said, style="dim", no_wrap=True, overflow="ellipsis") for said in self._said]
         return Group(*lines)
 
 
-def _line(depth: int, words: str, status: str) -> Text:
-    mark, style = _MARKS[status]
-    return Text(f"{'  ' * depth}{mark} {words}", style=style, no_wrap=True, overflow="ellipsis")
+def line_text(line: TreeLine) -> Text:
+    """A line of the tree with the mark and the colour of its status."""
+    mark, style = _MARKS[line.status]
+    words = f"{'  ' * line.depth}{mark} {line.text}"
+    return Text(words, style=style, no_wrap=True, overflow="ellipsis")

@@ -237,7 +237,7 @@ def _watch(run: Executor, wanted: _Outputs, stops: Breakpoints | None) -> list[O
 
 def _display(terminal: Terminal | None) -> Observer:
     """A live tree on a terminal, plain lines elsewhere."""
-    from momantu_bt.cli.changes import ChangeLines
+    from momantu_bt.record.changes import ChangeLines
 
     if not sys.stdout.isatty():
         return ChangeLines(typer.echo)

@@ -163,6 +163,17 @@ class _Overlay(Board):
         return self.cells.get(key) or self._under.cell(key)
 
 
+def written(journal: Journal) -> list[tuple[Cell, Any]]:
+    """Each write with what it put there: what the next one of its cell found, or what is now."""
+    after: dict[Cell, Any] = {}
+    found = []
+    for cell, before in reversed(journal):
+        found.append((cell, after.get(cell, cell.value)))
+        after[cell] = before
+    found.reverse()
+    return found
+
+
 def rollback(before: Iterable[tuple[Cell, Any]]) -> None:
     """Give cells back the values they had; MISSING clears them."""
     for cell, value in before:

@@ -206,7 +206,7 @@ class Executor:
     def _halt_and_stop(self) -> None:
         """Every actuator is stopped even when halting the tree goes wrong."""
         try:
-            self.halt_all()
+            halt_tree(self.built)
         finally:
             if self.context.body is not None:
                 self.context.body.actuators.stop_all()
@@ -231,19 +231,20 @@ class Executor:
         while self._stepper.now() < until - CLOCK_SLACK:
             self._step()
 
-    def halt_all(self) -> None:
-        """Halt the tree; nodes that an exception left running are halted one by one.
 
-        What goes wrong in one node keeps no other from being halted; the first is raised.
-        """
-        troubles: list[Exception] = []
-        for halt in (self.built.root.reset, *map(_halting, reversed(self.built.nodes))):
-            try:
-                halt()
-            except Exception as trouble:
-                troubles.append(trouble)
-        if troubles:
-            raise troubles[0]
+def halt_tree(built: Built) -> None:
+    """Halt a tree; nodes that an exception left running are halted one by one.
+
+    What goes wrong in one node keeps no other from being halted; the first is raised.
+    """
+    troubles: list[Exception] = []
+    for halt in (built.root.reset, *map(_halting, reversed(built.nodes))):
+        try:
+            halt()
+        except Exception as trouble:
+            troubles.append(trouble)
+    if troubles:
+        raise troubles[0]
 
 
 def _halting(node: TreeNode) -> Callable[[], None]:

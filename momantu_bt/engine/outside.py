@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-PERSON = "person"
-"""The key of what a person says. Keys of published values are the blackboard's."""
+PERSON, POSITION, SPEED = "a person", "odometry's position", "odometry's speed"
+"""Keys of what is asked. Those of published values are the blackboard's, which have no spaces."""
 
 
 class SkillSession(Protocol):

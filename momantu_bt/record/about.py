@@ -73,4 +73,5 @@ def _node(node: TreeNode) -> Mapping[str, Any]:
         "depth": node.depth,
         "parent": node.parent.index if isinstance(node.parent, TreeNode) else None,
         "label": node.label,
+        "role": node.role.value,
     }

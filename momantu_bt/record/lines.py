@@ -56,21 +56,18 @@ def tree_lines(root: Shown) -> list[TreeLine]:
     What has succeeded or has not begun is one line, so that the picture stays small. A tree
     shares the line of the node that runs it, a decorator the line of its child.
     """
-    return [line for line, _ in lines_with_nodes(root)]
-
-
-def lines_with_nodes(root: Shown) -> list[tuple[TreeLine, Shown]]:
-    """The same lines, each with the node whose status it shows."""
-    lines: list[tuple[TreeLine, Shown]] = []
+    lines: list[TreeLine] = []
 
     def visit(node: Shown, depth: int) -> None:
         inner = node
-        notes = [node.note]
+        notes = [_note(node)]
         while inner.role is Role.AROUND and inner.kids:
             inner = inner.kids[0]
-            notes.append(inner.note)
-        words = _with_notes(node, inner, notes)
-        lines.append((TreeLine(depth, words, node.shown.value), node))
+            notes.append(_note(inner))
+        words = ", ".join([inner.label, *filter(None, notes)])
+        if node.shown is FAILURE and node.failure is not None:
+            words += f": {node.failure.code}"
+        lines.append(TreeLine(depth, words, node.shown.value))
         if node.shown is RUNNING or node.shown is FAILURE or depth == 0:
             for child in _below(inner):
                 if child.shown is not IDLE or inner.shown is RUNNING:
@@ -92,27 +89,18 @@ def _below(node: Shown) -> tuple[Shown, ...]:
     return tuple(found)
 
 
-def _with_notes(outer: Shown, inner: Shown, notes: list[str]) -> str:
-    words = inner.label
-    if outer.shown is RUNNING:
-        words = ", ".join([words, *filter(None, notes)])
-    if outer.shown is FAILURE and outer.failure is not None:
-        words += f": {outer.failure.code}"
-    return words
+def _note(node: Shown) -> str:
+    """What it is at; a note that was left behind by an end says nothing."""
+    return node.note if node.shown is RUNNING else ""
 
 
 def running_text(root: Shown) -> str:
     """What runs deepest: `navigate table_a, follow`; or how the tree ended."""
     if root.shown is SUCCESS or root.shown is FAILURE:
         return root.shown.value
-    deepest = deepest_running(root) or root
-    return ", ".join(filter(None, (deepest.label, deepest.note)))
-
-
-def deepest_running(root: Shown) -> Shown | None:
-    """The node that runs deepest, the first of several; None where none runs."""
     running = (node for node in _all(root) if node.shown is RUNNING)
-    return max(running, key=lambda node: node.depth, default=None)
+    deepest = max(running, key=lambda node: node.depth, default=root)
+    return ", ".join(filter(None, (deepest.label, _note(deepest))))
 
 
 def _all(root: Shown) -> Iterator[Shown]:

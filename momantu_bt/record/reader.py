@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, BinaryIO
 
+from momantu_bt.engine.role import Role
 from momantu_bt.record.about import FORMAT
 from momantu_bt.record.codec import CodecError, from_json
 from momantu_bt.record.folder import LOG
@@ -59,7 +60,7 @@ def read_record(folder: Path) -> Recording:
             folder=path.parent,
             about=about,
             files={file["name"]: file["text"] for file in files},
-            nodes=tuple(NodeInfo(**node) for node in nodes["nodes"]),
+            nodes=tuple(map(_node, nodes["nodes"])),
             ticks=_Ticks().all(raw.get("/tick", ())),
             report=_first(raw, "/end"),
             complete=complete and "/end" in raw,
@@ -118,6 +119,10 @@ def _first(raw: Mapping[str, list[tuple[float, bytes]]], topic: str) -> Any:
     return json.loads(found[0][1]) if found else None
 
 
+def _node(data: Mapping[str, Any]) -> NodeInfo:
+    return NodeInfo(**{**data, "role": Role(data["role"])})
+
+
 class _Ticks:
     """Messages of `/tick` as values; what was named again is the object that it was."""
 
@@ -146,6 +151,8 @@ class _Ticks:
                 for node, status, phase, failure, outputs in data.get("steps", ())
             ),
             settling=data.get("settling", False),
+            notes=tuple((node, note) for node, note in data.get("notes", ())),
+            labels=tuple((node, label) for node, label in data.get("labels", ())),
         )
 
     def _failure(self, node: int, data: Any) -> Any:

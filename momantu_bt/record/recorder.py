@@ -128,7 +128,7 @@ class Recorder:
         for text in files_of(document, options, run):
             _add(file, "/files", "momantu.File", FILE, text)
         _add(file, "/nodes", "momantu.Nodes", NODES, nodes_data(run))
-        self._ticks = Ticks(file, self._heard)
+        self._ticks = Ticks(file, self._heard, run)
         self._ticks.write(run, file)
         others: list[Channel] = [LogLines(file, self._remarks)]
         body = run.context.body

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from momantu_bt.engine.role import Role
 from momantu_bt.failure import FailureValue
 
 
@@ -16,7 +17,7 @@ class NodeInfo:
     """One node of the tree. type: the built-in's name, the skill's or the subtree's.
 
     index: its number in the order of the file; parent: that of the node above it. label: the node
-    in one line, as the file has it.
+    in one line, as the file has it. role: how it is drawn and told of.
     """
 
     index: int
@@ -26,6 +27,7 @@ class NodeInfo:
     depth: int
     parent: int | None
     label: str
+    role: Role = Role.PLAIN
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +59,9 @@ class TickRecord:
     order; `Refused` where it was a failure. issued: actuators with their goals, None to stop; the
     same object where the same was commanded again. state: a digest of what the robot reported,
     empty without a robot. settling: the tree had ended and the robot came to rest; the first such
-    record has the number of the last tick, and in it everything is halted.
+    record has the number of the last tick, and in it everything is halted. notes, labels: by node,
+    those that are new and that `changes` does not say: what a running node is at, and its line with
+    the values of its newest start.
     """
 
     number: int
@@ -69,6 +73,8 @@ class TickRecord:
     state: str = ""
     steps: tuple[StepRecord, ...] = ()
     settling: bool = False
+    notes: tuple[tuple[int, str], ...] = ()
+    labels: tuple[tuple[int, str], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

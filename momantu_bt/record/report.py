@@ -146,20 +146,20 @@ class Report:
             "seed": self.seed,
             "status": self.status,
             "success": self.success,
-            "failure": None if self.failure is None else _finite(plain(self.failure.as_dict())),
+            "failure": None if self.failure is None else finite(plain(self.failure.as_dict())),
             "unmet": list(self.unmet),
-            "measures": _finite(dict(self.measures)),
+            "measures": finite(dict(self.measures)),
             "sim_time_s": self.sim_time_s,
             "wall_time_s": self.wall_time_s,
             "start_time_s": self.start_time_s,
             "real_time_factor": self.real_time_factor,
             "ticks": self.ticks,
-            "blackboard": _finite(plain(self.blackboard)),
+            "blackboard": finite(plain(self.blackboard)),
             "nodes": [plain(node) for node in self.nodes],
             "fingerprint": self.fingerprint,
             "versions": dict(self.versions),
             "error": self.error,
-            "incidents": [_finite(plain(incident)) for incident in self.incidents],
+            "incidents": [finite(plain(incident)) for incident in self.incidents],
             "claims": None if self.claims is None else plain(self.claims),
             "faults": [plain(fault) for fault in self.faults],
         }
@@ -169,12 +169,12 @@ class Report:
         write_whole(path, json.dumps(self.as_dict(), indent=2, default=str) + "\n")
 
 
-def _finite(value: Any) -> Any:
+def finite(value: Any) -> Any:
     """JSON has no infinity and no NaN: they become text."""
     if isinstance(value, float) and not math.isfinite(value):
         return str(value)
     if isinstance(value, dict):
-        return {key: _finite(item) for key, item in value.items()}
+        return {key: finite(item) for key, item in value.items()}
     if isinstance(value, list):
-        return [_finite(item) for item in value]
+        return [finite(item) for item in value]
     return value

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, TypeAlias
 
+from momantu_bt.engine.role import Role
+
 Schema: TypeAlias = Mapping[str, Any]
 
 TEXT: Schema = {"type": "string"}
@@ -80,6 +82,7 @@ NODE = record(
         "depth": COUNT,
         "parent": optional(COUNT),
         "label": TEXT,
+        "role": {"enum": [role.value for role in Role]},
     }
 )
 NODES = record({"nodes": array(NODE)})
@@ -94,12 +97,14 @@ TICK = record(
         "steps": array(row(COUNT, {"enum": list(STATUSES)}, TEXT, ANY, {"type": "object"})),
         "issued": array(row(TEXT, ANY)),
         "state": TEXT,
+        "notes": array(row(COUNT, TEXT)),
+        "labels": array(row(COUNT, TEXT)),
         "settling": {"const": True},
     },
 )
 """`/tick`, each tick, with what there is of: changes [node, status, note, failure], writes [cell,
 value], reads [key, value], steps of skills [node, status, phase, failure, outputs], issued
-[actuator, goal]."""
+[actuator, goal], notes of running nodes [node, note], new lines of nodes [node, label]."""
 
 SERVICE: Schema = {"type": "object"}
 """`/service/<name>`: published values by key."""

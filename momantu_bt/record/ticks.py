@@ -7,12 +7,13 @@ from collections.abc import Iterable
 from typing import Any
 
 from momantu_bt.engine.actuators import Issued
-from momantu_bt.engine.blackboard import Cell
+from momantu_bt.engine.blackboard import Journal, written
 from momantu_bt.engine.context import Change
 from momantu_bt.engine.executor import Executor
 from momantu_bt.engine.outside import Heard, Step
 from momantu_bt.failure import FailureValue
 from momantu_bt.messages import ActuatorGoal
+from momantu_bt.record.captions import Captions
 from momantu_bt.record.channel import stamp_of
 from momantu_bt.record.codec import dumps, to_json
 from momantu_bt.record.mcap_file import McapFile
@@ -27,9 +28,10 @@ _MOST_TEXTS = 10_000
 class Ticks:
     """Writes `/tick`. heard: what came from outside since the last tick."""
 
-    def __init__(self, file: McapFile, heard: Heard) -> None:
+    def __init__(self, file: McapFile, heard: Heard, run: Executor) -> None:
         self._channel = file.channel("/tick", "momantu.Tick", TICK)
         self._heard = heard
+        self._captions = Captions(run)
         self._steps: dict[tuple[int, str, str], str] = {}
         self._changes: dict[tuple[int, str, str], str] = {}
         self._failures: dict[int, FailureValue] = {}
@@ -42,7 +44,7 @@ class Ticks:
     def write(self, run: Executor, file: McapFile) -> None:
         """One tick. Before the first it is tick 0, with the values that the run begins with."""
         context = run.context
-        parts = [f'{{"number":{context.tick},"now":{round(context.now, 9)!r}']
+        parts = [f'{{"number":{context.tick},"now":{context.now!r}']
         if context.changes:
             parts.append(f'"changes":[{",".join(map(self._change, context.changes))}]')
         if context.writes:
@@ -52,6 +54,11 @@ class Ticks:
         if self._heard.steps:
             parts.append(f'"steps":[{",".join(map(self._step, self._heard.steps))}]')
         self._heard.clear()
+        notes, labels = self._captions.new(run)
+        if notes:
+            parts.append(f'"notes":{dumps(notes)}')
+        if labels:
+            parts.append(f'"labels":{dumps(labels)}')
         if context.body is not None and context.body.actuators.issued:
             issued = map(self._issued, context.body.actuators.issued)
             parts.append(f'"issued":[{",".join(issued)}]')
@@ -86,15 +93,8 @@ class Ticks:
         self._failures[index], self._failed[id(failure)] = failure, index
         return dumps(to_json(failure))
 
-    def _written(self, journal: list[tuple[Cell, Any]]) -> Iterable[str]:
-        """What each write put there: what the next one of the same cell found, or what is now."""
-        after: dict[Cell, Any] = {}
-        texts = []
-        for cell, before in reversed(journal):
-            texts.append(self._write(cell.name, after.get(cell, cell.value)))
-            after[cell] = before
-        texts.reverse()
-        return texts
+    def _written(self, journal: Journal) -> Iterable[str]:
+        return [self._write(cell.name, value) for cell, value in written(journal)]
 
     def _write(self, name: str, value: Any) -> str:
         known = self._values.get(name)

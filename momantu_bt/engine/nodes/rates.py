@@ -12,6 +12,7 @@ from typing import Any
 
 from momantu_bt.engine.decorator import Decorator
 from momantu_bt.engine.nodes.goals import Goals
+from momantu_bt.engine.outside import POSITION, SPEED
 from momantu_bt.engine.ports import Inputs
 from momantu_bt.engine.session import CLOCK_SLACK
 from momantu_bt.engine.status import IDLE, RUNNING, SUCCESS, Status
@@ -95,7 +96,7 @@ class DistanceController(_Paced):
         self.origin = self._position()
 
     def _position(self) -> Array | None:
-        return self.context.outside.ask("position", self._position_now)
+        return self.context.outside.ask(POSITION, self._position_now)
 
     def _position_now(self) -> Array | None:
         body = self.context.body
@@ -148,7 +149,7 @@ class SpeedController(_Paced):
         return float(min(max(slow + share * (fast - slow), slow), fast))
 
     def _speed(self) -> float:
-        return self.context.outside.ask("speed", self._speed_now)
+        return self.context.outside.ask(SPEED, self._speed_now)
 
     def _speed_now(self) -> float:
         body = self.context.body

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from momantu_bt.engine.outside import PERSON, Heard, Refused
+from momantu_bt.engine.outside import PERSON, POSITION, Heard, Refused
 from momantu_bt.service import Service
 from momantu_bt.skill import Failure, In, Needs, Out, Run, Skill
 
@@ -98,7 +98,7 @@ def test_answers_are_kept_whatever_they_are(run_yaml):
     _, kept = heard(run_yaml)
     said, refused = kept.reads[0]
     assert said == (PERSON, "red")
-    assert refused[0] == "position"
+    assert refused[0] == POSITION
     assert isinstance(refused[1], Refused)
     assert refused[1].failure.code == "FRAME_UNKNOWN"
     keys, values = zip(*kept.reads[2], strict=True)

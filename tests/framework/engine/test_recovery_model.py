@@ -6,13 +6,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from momantu_bt.cli.changes import ChangeLines
 from momantu_bt.engine.blackboard import Cell
 from momantu_bt.engine.node import TreeNode
 from momantu_bt.engine.nodes.fallbacks import RoundRobin
 from momantu_bt.engine.nodes.recovery import Catch, Handle, Recover
 from momantu_bt.engine.ports import Inputs
 from momantu_bt.engine.status import FAILURE, RUNNING, SUCCESS
+from momantu_bt.record.changes import ChangeLines
 from momantu_bt.record.reader import read_record
 from momantu_bt.skill import MISSING, Failure, In, Run, Skill
 

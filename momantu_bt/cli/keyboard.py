@@ -1,0 +1,72 @@
+"""Keys of a terminal one by one, without Enter and without being shown."""
+
+from __future__ import annotations
+
+import os
+import re
+import select
+import sys
+import termios
+import tty
+from types import TracebackType
+from typing import Any
+
+_SEQUENCES = {
+    "\x1b[A": "up",
+    "\x1b[B": "down",
+    "\x1b[C": "right",
+    "\x1b[D": "left",
+    "\x1b[H": "home",
+    "\x1b[F": "end",
+    "\x1b[1~": "home",
+    "\x1b[4~": "end",
+    "\x1bOA": "up",
+    "\x1bOB": "down",
+    "\x1bOC": "right",
+    "\x1bOD": "left",
+    "\x1bOH": "home",
+    "\x1bOF": "end",
+    "\x1b": "escape",
+    "\r": "enter",
+    "\n": "enter",
+    "\x7f": "backspace",
+    "\x08": "backspace",
+    "\x04": "q",
+}
+"""What terminals send for keys that are no characters; the end of the input (Ctrl-D) leaves."""
+_KEY = re.compile(r"\x1b\[[0-9;]*[A-Za-z~]|\x1bO[A-Z]|.", re.DOTALL)
+_MOST = 1024
+
+
+class Keyboard:
+    """While it is entered, the terminal gives single keys. Standard input must be one."""
+
+    def __init__(self) -> None:
+        self._file = sys.stdin.fileno()
+        self._before: list[Any] = []
+
+    def __enter__(self) -> Keyboard:
+        self._before = termios.tcgetattr(self._file)
+        tty.setcbreak(self._file)
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        termios.tcsetattr(self._file, termios.TCSADRAIN, self._before)
+
+    def wait(self, seconds: float) -> list[str]:
+        """The keys that are pressed within a time, as soon as there is one; none after it."""
+        ready, _, _ = select.select([self._file], [], [], seconds)
+        if not ready:
+            return []
+        return keys_in(os.read(self._file, _MOST).decode(errors="replace") or "\x04")
+
+
+def keys_in(text: str) -> list[str]:
+    """Names of the keys that a terminal's characters mean; unknown sequences mean none."""
+    found = [_SEQUENCES.get(key, key) for key in _KEY.findall(text)]
+    return [key for key in found if not key.startswith("\x1b")]

@@ -1,0 +1,156 @@
+"""`momantu-bt replay`: a recorded run in the terminal, or its tree once more without the world."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from momantu_bt import __version__
+from momantu_bt.cli.records import EXIT_WRONG_ARGUMENTS, complain, open_record
+
+if TYPE_CHECKING:
+    from momantu_bt.record.recording import Recording
+    from momantu_bt.replay.timeline import Timeline
+
+EXIT_DIFFERENT = 1
+
+
+def replay(
+    run: Annotated[Path, typer.Argument(help="The folder of a record.")],
+    at: Annotated[
+        float | None, typer.Option(help="Print the instant at this time, in s, and end.")
+    ] = None,
+    node: Annotated[
+        str | None,
+        typer.Option(help="Print the first instant at which a node changes: its name or line."),
+    ] = None,
+    failure: Annotated[
+        int | None, typer.Option(help="Print the instant of a failure: 1 the first, -1 the last.")
+    ] = None,
+    json_: Annotated[bool, typer.Option("--json", help="The instant as JSON.")] = False,
+    check: Annotated[
+        bool, typer.Option("--check", help="Tick the tree again; it must do what it did.")
+    ] = False,
+) -> int:
+    """Go through a recorded run; without a terminal print what it said.
+
+    On a terminal, keys step through it; ? shows them. With --at and --node, --node is sought from
+    that time on.
+
+    Exit code 0: it was shown, and with --check the tree did the same; 1: it did not; 2: there is
+    no such record, or no such instant in it.
+
+    Examples:
+      momantu-bt replay runs/3
+      momantu-bt replay runs/3 --at 42.5
+      momantu-bt replay runs/3 --failure -1 --json
+      momantu-bt replay runs/3 --check
+    """
+    from momantu_bt.cli.terminal import is_interactive
+    from momantu_bt.replay.seek import SeekError
+    from momantu_bt.replay.timeline import Timeline
+
+    recording = open_record(run)
+    if check:
+        return _check(recording)
+    timeline = Timeline(recording)
+    chosen = (at, node, failure) != (None, None, None)
+    try:
+        index = _chosen(timeline, at, node, failure)
+    except SeekError as error:
+        complain(error)
+        return EXIT_WRONG_ARGUMENTS
+    if chosen or json_:
+        _print_instant(timeline, index, as_json=json_)
+    elif is_interactive():
+        _step(timeline)
+    else:
+        _print_all(recording)
+    return 0
+
+
+def _chosen(timeline: Timeline, at: float | None, node: str | None, failure: int | None) -> int:
+    """The index of the instant that is asked for; the last one where none is.
+
+    Raises:
+        SeekError: there is none.
+    """
+    from momantu_bt.replay.seek import SeekError, changes_of, failures, following, matching
+
+    if failure is not None:
+        found = failures(timeline.recording)
+        if not 1 <= abs(failure) <= len(found):
+            raise SeekError(f"there is no failure {failure}; the record has {len(found)}")
+        return found[failure - 1 if failure > 0 else failure].index
+    start = -1 if at is None else timeline.at(at)
+    if node is None:
+        return len(timeline) - 1 if at is None else start
+    indices = changes_of(timeline.recording, matching(timeline.recording, node))
+    index = following(indices, start - 1)
+    if index is None:
+        since = "" if at is None else f" from {at:g} s on"
+        raise SeekError(f"{node} never changes{since}")
+    return index
+
+
+def _print_instant(timeline: Timeline, index: int, *, as_json: bool) -> None:
+    from momantu_bt.replay.instant import instant_data, instant_lines
+
+    moment = timeline.moment(index)
+    if as_json:
+        typer.echo(json.dumps(instant_data(moment), indent=2, default=str))
+        return
+    for line in instant_lines(moment):
+        typer.echo(line)
+
+
+def _print_all(recording: Recording) -> None:
+    from momantu_bt.replay.telling import ending, headline, told
+
+    typer.echo(headline(recording))
+    for _, line in told(recording):
+        typer.echo(line)
+    typer.echo(ending(recording))
+
+
+def _step(timeline: Timeline) -> None:
+    from rich.console import Console
+
+    from momantu_bt.cli.replay_screen import show
+    from momantu_bt.replay.stepper import Stepper
+    from momantu_bt.replay.telling import ending, headline, told
+
+    recording = timeline.recording
+    typer.echo(headline(recording))
+    show(Stepper(timeline), list(told(recording)), Console())
+    typer.echo(ending(recording))
+
+
+def _check(recording: Recording) -> int:
+    from momantu_bt.replay.rebuild import RebuildError
+    from momantu_bt.replay.recheck import recheck
+    from momantu_bt.tree.registry import Registry
+
+    try:
+        result = recheck(recording, Registry.installed())
+    except RebuildError as error:
+        complain(f"{recording.folder}: {error}")
+        return EXIT_WRONG_ARGUMENTS
+    different = result.difference
+    if different is None:
+        typer.echo(f"the tree did the same in all {result.ticks} ticks")
+        return 0
+    where = f" of {different.where}" if different.where else ""
+    typer.echo(
+        f"after {result.ticks} equal ticks, in tick {different.tick}, {different.now:.2f} s: "
+        f"another {different.kind}{where}"
+    )
+    typer.echo(f"  recorded: {different.left}")
+    typer.echo(f"  here:     {different.right}")
+    recorded = recording.about["versions"].get("momantu-bt", "an unknown version")
+    if recorded != __version__:
+        typer.echo(f"the record is of momantu-bt {recorded}, this is {__version__}")
+    return EXIT_DIFFERENT

@@ -1,0 +1,114 @@
+"""The outside of a tree as a record has it: skills and services say what they said in the run."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any, TypeVar, cast
+
+from momantu_bt.engine.outside import PERSON, Outside, Refused, SkillSession
+from momantu_bt.engine.person import Interrupted
+from momantu_bt.engine.status import Status
+from momantu_bt.failure import Failure, FailureValue
+from momantu_bt.record.recording import StepRecord, TickRecord
+
+if TYPE_CHECKING:
+    from momantu_bt.engine.context import Body
+    from momantu_bt.engine.nodes.skill import SkillLeaf
+
+T = TypeVar("T")
+
+
+class Untold(Exception):
+    """The tree wants to know what nobody told it in the run; what: in words, node: its index."""
+
+    def __init__(self, what: str, node: int | None = None) -> None:
+        super().__init__(what)
+        self.what = what
+        self.node = node
+
+
+class RecordedOutside(Outside):
+    """Give it each tick's record with `load`, then tick the tree."""
+
+    def __init__(self) -> None:
+        self._steps: dict[int, deque[StepRecord]] = {}
+        self._answers: dict[str, deque[Any]] = {}
+        self._is_last = False
+
+    def load(self, tick: TickRecord, *, last: bool) -> None:
+        """What is told in a tick. last: the run was over after it, interrupted perhaps."""
+        self._steps, self._answers, self._is_last = {}, {}, last
+        for step in tick.steps:
+            self._steps.setdefault(step.node, deque()).append(step)
+        for key, value in tick.reads:
+            self._answers.setdefault(key, deque()).append(value)
+
+    def unheard(self) -> tuple[str, int | None] | None:
+        """What the tree did not ask for, though it did in the run: what, and of which node."""
+        for node, steps in self._steps.items():
+            if steps:
+                return f"a step of its skill, to {_words(steps[0])}", node
+        for key, answers in self._answers.items():
+            if answers:
+                return f"a question for {key}", None
+        return None
+
+    def runs_skills(self, body: Body | None) -> bool:
+        """They do what they did."""
+        return True
+
+    def begin(self, leaf: SkillLeaf, inputs: Mapping[str, Any]) -> SkillSession:
+        """A start of a skill as it was."""
+        return _RecordedSession(self, leaf.index)
+
+    def ask(self, key: str, ask: Callable[[], T]) -> T:
+        """The answer that was given."""
+        answers = self._answers.get(key)
+        if not answers:
+            if key == PERSON and self._is_last:
+                raise Interrupted
+            raise Untold(f"a question for {key}")
+        answer = answers.popleft()
+        if isinstance(answer, Refused):
+            raise _raised(answer.failure)
+        return cast("T", answer)
+
+    def step(self, node: int) -> StepRecord:
+        """The next step of a leaf in this tick."""
+        steps = self._steps.get(node)
+        if not steps:
+            raise Untold("a step of its skill", node)
+        return steps.popleft()
+
+
+class _RecordedSession:
+    """One start of one skill."""
+
+    def __init__(self, outside: RecordedOutside, node: int) -> None:
+        self._outside = outside
+        self._node = node
+        self.phase = ""
+        self.failure: FailureValue | None = None
+        self.took = 0.0
+        self.outputs: dict[str, Any] = {}
+
+    def step(self, live_inputs: Mapping[str, Any] | None = None) -> Status:
+        """What the skill did in this tick."""
+        step = self._outside.step(self._node)
+        self.phase, self.failure = step.phase, step.failure
+        self.outputs |= step.outputs
+        return Status(step.status)
+
+    def halt(self) -> None:
+        """There is nothing to end."""
+
+
+def _words(step: StepRecord) -> str:
+    return ", ".join(filter(None, (step.status, step.phase)))
+
+
+def _raised(value: FailureValue) -> Failure:
+    failure = Failure(value.code, value.message)
+    failure.value = value
+    return failure
