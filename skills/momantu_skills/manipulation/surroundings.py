@@ -22,6 +22,8 @@ EDGE = 0.03
 lies beyond their border is taken from the site, beside which furniture stands a little."""
 KNOWN_HEIGHT = 0.03
 """m by which it may be higher."""
+TOLD_WRONG = 0.12
+"""m by which a top may lie beside the height that is told of it and still be the same one."""
 BESIDE = 0.37
 """m outside a known surface at which the middle of a seen patch still belongs to it."""
 SUPPORT_DEPTH = 0.5
@@ -142,7 +144,7 @@ def known_support(surface: Surface, odom_from_map: Transform) -> Support:
 def same_surface(seen: Support, known: Support) -> bool:
     """Whether a patch that was seen is part of a surface that the site names."""
     near = within(seen.outline.mean(axis=0)[None], known.outline, BESIDE)
-    return abs(seen.height + KNOWN_HEIGHT - known.height) < 2 * KNOWN_HEIGHT and bool(near[0])
+    return abs(seen.height + KNOWN_HEIGHT - known.height) < TOLD_WRONG and bool(near[0])
 
 
 def merged(seen: Support, known: Support) -> Support:

@@ -21,8 +21,9 @@ from momantu_skills.perception.views import Snapshot, sweep, take
 
 BESIDE = 0.20
 """m by which a surface may lie beside where it is believed: 0.10 m of its own and localization."""
-HEIGHT_ERROR = 0.06
-"""m by which it may be higher or lower: 0.03 m of its own, and the camera's mounting."""
+HEIGHT_ERROR = 0.12
+"""m by which it may be higher or lower: 0.03 m of its own, the camera's mounting, and a person who
+measured it badly. The largest level surface in between is it."""
 HEADROOM = 0.55
 """m above a surface within which things stand on it."""
 OFF_AXIS = math.radians(12.0)
