@@ -10,7 +10,7 @@ from itertools import zip_longest
 from typing import Protocol
 
 from momantu_bt.bench.engine import Engine
-from momantu_bt.bench.outcome import succeeded
+from momantu_bt.bench.outcome import Outcome, outcome_of, succeeded
 from momantu_bt.bench.plan import RECORDS, Plan, record_name
 from momantu_bt.bench.process import REFUSED
 from momantu_bt.bench.spec import EpisodeSpec, Row
@@ -89,7 +89,9 @@ def _take(row: Row, plan: Plan, store: Store, ended: Ended) -> None:
         ended.refused.append(row)
         return
     ended.refused_in_a_row.clear()
+    row["outcome"] = outcome_of(row)
     store.add(row)
-    if plan.record == "failures" and succeeded(row):
+    fine = succeeded(row) and row["outcome"] in (None, Outcome.RECOVERED)
+    if plan.record == "failures" and fine:
         name = record_name(row["seed"], row["fault"], row["key"])
         shutil.rmtree(store.folder / RECORDS / name, ignore_errors=True)

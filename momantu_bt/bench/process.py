@@ -18,11 +18,15 @@ from pathlib import Path
 
 from momantu_bt.bench.spec import EpisodeSpec, Row
 
-REPORT, HUNG, KILLED, CRASHED, REFUSED = "report", "hung", "killed", "crashed", "refused"
-"""How a process ended: it left its row; the watchdog ended it; a signal did; it exited without a
-row; it could not begin."""
-EXIT_REFUSED = 75
-"""An episode that cannot begin exits with this (EX_TEMPFAIL of sysexits.h), and says why."""
+REPORT, HUNG, KILLED, CRASHED = "report", "hung", "killed", "crashed"
+"""How a process ended: it left its row; the watchdog ended it; a signal did; it exited without."""
+IMPOSSIBLE = "impossible"
+"""Its fault cannot happen in this tree, robot or world."""
+REFUSED = "refused"
+"""It could not begin, for a reason that has nothing to do with what was asked for."""
+EXIT_IMPOSSIBLE, EXIT_REFUSED = 69, 75
+"""Exit codes of these two (EX_UNAVAILABLE, EX_TEMPFAIL of sysexits.h); the process says why."""
+_WITHOUT_ROW = {EXIT_IMPOSSIBLE: IMPOSSIBLE, EXIT_REFUSED: REFUSED}
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "LP_NUM_THREADS": "1"}
 """Numerical libraries and the software renderer, each with one thread: episodes share the cores."""
 MOST_OUTPUT = 4000
@@ -103,7 +107,7 @@ class EpisodeProcess:
         elif code < 0:
             ended = KILLED
         else:
-            ended = REFUSED if code == EXIT_REFUSED else CRASHED
+            ended = _WITHOUT_ROW.get(code, CRASHED)
         said = self._output.read_text(encoding="utf-8", errors="replace")[-MOST_OUTPUT:]
         return {**row, "exit_code": code, "ended": ended, "output": said.strip()}
 

@@ -7,6 +7,8 @@ from collections.abc import Iterable
 
 MOST = 1_000_000
 """Seeds of one bench."""
+MOST_NAMED = 8
+"""Seeds that a line names."""
 _PART = re.compile(r"(\d+)(?::(\d+))?")
 _VALID = "write 0:500 (500 itself is not among them), 3,5,7 or 0:10,20:30"
 
@@ -48,3 +50,10 @@ def seeds_text(seeds: Iterable[int]) -> str:
             runs.append([seed])
     parts = [f"{run[0]}-{run[-1]}" if len(run) > 2 else ", ".join(map(str, run)) for run in runs]
     return ", ".join(parts)
+
+
+def few_seeds(seeds: Iterable[int]) -> str:
+    """`seeds 3, 40-47 and 12 more`: not more than a line holds."""
+    found = sorted(set(seeds))
+    more = f" and {len(found) - MOST_NAMED} more" if len(found) > MOST_NAMED else ""
+    return f"seed{'s' if len(found) > 1 else ''} {seeds_text(found[:MOST_NAMED])}{more}"

@@ -9,13 +9,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from momantu_bt.bench.blame import Blame, blame_table
+from momantu_bt.bench.claims import Claimed, claims_of
 from momantu_bt.bench.intervals import Interval, quantile, wilson
 from momantu_bt.bench.outcome import succeeded
-from momantu_bt.bench.process import REPORT
+from momantu_bt.bench.process import IMPOSSIBLE, REPORT
 from momantu_bt.bench.spec import Row
-
-LIES = "lies"
-"""What a row's claims hold beside numbers: each end that truth denies, in words."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,13 +53,14 @@ class Summary:
     tries: int
     retried: int
     blame: tuple[tuple[Blame, list[int]], ...]
-    claims: dict[str, dict[str, int]]
+    claims: dict[str, Claimed]
     incidents: dict[str, list[int]]
     ended: dict[str, int]
 
     @classmethod
     def of(cls, rows: Sequence[Row]) -> Summary:
-        """The figures of these rows."""
+        """The figures of these rows, without those of faults that cannot happen."""
+        rows = [row for row in rows if row["ended"] != IMPOSSIBLE]
         good = [row for row in rows if succeeded(row)]
         told = [row for row in rows if row["ended"] == REPORT]
         tries = [row["tries"] for row in told]
@@ -75,7 +74,7 @@ class Summary:
             tries=sum(tries),
             retried=sum(count > 0 for count in tries),
             blame=tuple(blame_table(rows)),
-            claims=_claims(told),
+            claims=claims_of(told),
             incidents=_incidents(told),
             ended=dict(Counter(row["ended"] for row in rows)),
         )
@@ -95,7 +94,7 @@ class Summary:
                 {"node": b.node, "place": b.place, "code": b.code, "seeds": seeds}
                 for b, seeds in self.blame
             ],
-            "claims": self.claims,
+            "claims": {skill: each.as_dict() for skill, each in self.claims.items()},
             "incidents": self.incidents,
             "ended": self.ended,
         }
@@ -104,16 +103,6 @@ class Summary:
 def _speed(row: Row) -> float:
     speed: float = row["sim_time_s"] / row["wall_time_s"]
     return speed
-
-
-def _claims(rows: Iterable[Row]) -> dict[str, dict[str, int]]:
-    """The counts of each skill, added up over episodes."""
-    found: dict[str, Counter[str]] = {}
-    for row in rows:
-        for skill, counts in (row.get("claims") or {}).items():
-            numbers = {name: count for name, count in counts.items() if name != LIES}
-            found.setdefault(skill, Counter()).update(numbers)
-    return {skill: dict(found[skill]) for skill in sorted(found)}
 
 
 def _incidents(rows: Iterable[Row]) -> dict[str, list[int]]:

@@ -3,27 +3,29 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 from momantu_bt.bench.blame import blame
+from momantu_bt.bench.claims import claims_text
 from momantu_bt.bench.outcome import succeeded
-from momantu_bt.bench.process import REPORT
-from momantu_bt.bench.seeds import seeds_text
+from momantu_bt.bench.process import IMPOSSIBLE, REPORT
+from momantu_bt.bench.seeds import few_seeds
 from momantu_bt.bench.spec import Row
 from momantu_bt.bench.summary import Spread, Summary
-
-MOST_SEEDS = 8
-"""Seeds that a line names."""
+from momantu_bt.bench.table import columns
 
 
 def row_text(row: Row) -> str:
     """One line: seed, how it ended, times, and why it failed."""
     name = f"seed {row['seed']}" + (f" {row['fault']}" if row["fault"] else "")
+    if row["ended"] == IMPOSSIBLE:
+        return f"{row['tree']} {name}: {row['output']}"
     if row["ended"] != REPORT:
         return f"{row['tree']} {name}: {row['ended']} after {row['process_time_s']:.0f} s"
     good = succeeded(row)
+    how = row["outcome"] or ("success" if good else "FAILED ")
     line = (
-        f"{row['tree']} {name}: {'success' if good else 'FAILED '} {row['sim_time_s']:6.1f} s "
+        f"{row['tree']} {name}: {how} {row['sim_time_s']:6.1f} s "
         f"simulated in {row['process_time_s']:.1f} s, {row['memory_mb']:.0f} MB"
     )
     if good:
@@ -52,31 +54,14 @@ def summary_text(name: str, summary: Summary) -> str:
     lines = [f"{name}: {rate_text(summary.successes, summary.episodes, summary.interval)}"]
     lines += _figures(summary)
     lines += _blame(summary)
-    lines += _claims(summary)
+    lines += claims_text(summary.claims)
     if summary.incidents:
         lines.append("incidents, by the referee:")
         lines += [
-            f"  {kind}: {len(seeds)} in {_seeds(seeds)}"
+            f"  {kind}: {len(seeds)} in {few_seeds(seeds)}"
             for kind, seeds in summary.incidents.items()
         ]
     return "\n".join(lines)
-
-
-def columns(rows: Sequence[Sequence[str]], indent: str = "  ") -> list[str]:
-    """Rows as lines, columns under each other; numbers to the right."""
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    lines = []
-    for row in rows:
-        cells = [
-            cell.rjust(width) if _is_number(cell) else cell.ljust(width)
-            for cell, width in zip(row, widths, strict=True)
-        ]
-        lines.append(indent + "  ".join(cells).rstrip())
-    return lines
-
-
-def _is_number(cell: str) -> bool:
-    return cell.replace(".", "").replace("%", "").replace("-", "").strip().isdigit()
 
 
 def _figures(summary: Summary) -> Iterator[str]:
@@ -107,22 +92,5 @@ def _blame(summary: Summary) -> list[str]:
     rows = [("share", "failures", "code", "node", "line", "seeds")]
     for each, seeds in summary.blame:
         share = f"{len(seeds) / failures:.0%}".replace("%", " %")
-        rows.append((share, str(len(seeds)), each.code, each.node, each.place, _seeds(seeds)))
+        rows.append((share, str(len(seeds)), each.code, each.node, each.place, few_seeds(seeds)))
     return ["why it failed:", *columns(rows)]
-
-
-def _claims(summary: Summary) -> list[str]:
-    if not summary.claims:
-        return []
-    names = ("runs", "successes", "false_successes", "failures", "false_failures")
-    rows = [("skill", *(name.replace("_", " ") for name in names))]
-    for skill, counts in summary.claims.items():
-        rows.append((skill, *(str(counts.get(name, 0)) for name in names)))
-    return ["what skills claimed, judged by ground truth:", *columns(rows)]
-
-
-def _seeds(seeds: Sequence[int]) -> str:
-    """Seeds as ranges, not too many."""
-    few = sorted(set(seeds))
-    more = f" and {len(few) - MOST_SEEDS} more" if len(few) > MOST_SEEDS else ""
-    return f"seed{'s' if len(few) > 1 else ''} {seeds_text(few[:MOST_SEEDS])}{more}"
