@@ -17,8 +17,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import momantu_bt.cli.threads  # noqa: F401 - before numpy, which the next imports load
-from momantu_bt.bench.process import EXIT_REFUSED
+from momantu_bt.bench.process import EXIT_IMPOSSIBLE, EXIT_REFUSED
 from momantu_bt.bench.spec import EpisodeSpec, Row
+from momantu_bt.fault import FaultError
 from momantu_bt.record.files import write_whole
 
 if TYPE_CHECKING:
@@ -36,7 +37,7 @@ _RETRYING = ("Recover", "RetryUntilSuccessful", "RecoveryNode")
 
 _KEPT = (
     *("world", "robot", "status", "success", "failure", "unmet", "measures", "sim_time_s"),
-    *("wall_time_s", "start_time_s", "fingerprint", "error", "incidents", "claims"),
+    *("wall_time_s", "start_time_s", "fingerprint", "error", "incidents", "claims", "faults"),
 )
 """What a row takes over from a report as it is."""
 
@@ -46,13 +47,20 @@ class Refused(Exception):
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Run the episode; exit code 0 when a row was written, EXIT_REFUSED when it cannot begin."""
+    """Run the episode.
+
+    Exit code 0 when a row was written, EXIT_IMPOSSIBLE when its fault cannot happen here,
+    EXIT_REFUSED when it cannot begin.
+    """
     told, row, parent = arguments
     _end_with(int(parent))
     signal.pthread_sigmask(signal.SIG_SETMASK, ())  # workers of Ray hand on what they block
     spec = EpisodeSpec.from_dict(json.loads(Path(told).read_text(encoding="utf-8")))
     try:
         report, tries = run(spec)
+    except FaultError as error:
+        print(error, file=sys.stderr)
+        return EXIT_IMPOSSIBLE
     except Exception as error:
         if type(error) in _refusals():
             print(error, file=sys.stderr)
@@ -67,9 +75,11 @@ def run(spec: EpisodeSpec) -> tuple[Report, int]:
 
     Raises:
         Refused: the files or the code are not those that the spec names.
+        FaultError: the tree, the robot or the world cannot have the fault.
         TreeError, LaunchError, WorldError and the like: it cannot begin.
     """
     from momantu_bt.engine.launch import Options, launch
+    from momantu_bt.faults.spec import parse_fault
     from momantu_bt.tree.load import load
     from momantu_bt.tree.registry import Registry
 
@@ -85,6 +95,7 @@ def run(spec: EpisodeSpec) -> tuple[Report, int]:
         max_time=spec.max_time,
         audit=True,
         record=_record(spec),
+        faults=() if spec.fault is None else (parse_fault(spec.fault),),
     )
     executors: list[Executor] = []
 

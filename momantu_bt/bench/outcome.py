@@ -41,7 +41,8 @@ def outcome(row: Row, demand: Demand) -> Outcome:
     if row["ended"] == IMPOSSIBLE:
         return Outcome.IMPOSSIBLE
     if row["ended"] != REPORT:
-        ends = demand.kind.ends_process and row["ended"] != HUNG
+        from_outside = row["ended"] == HUNG and row["exit_code"] < 0
+        ends = demand.kind.ends_process and not from_outside
         return Outcome.SAFE if ends else Outcome.UNSAFE
     begun = [fault["began"] for fault in row["faults"] if fault["began"] is not None]
     if not begun:

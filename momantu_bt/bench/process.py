@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -19,7 +20,8 @@ from pathlib import Path
 from momantu_bt.bench.spec import EpisodeSpec, Row
 
 REPORT, HUNG, KILLED, CRASHED = "report", "hung", "killed", "crashed"
-"""How a process ended: it left its row; the watchdog ended it; a signal did; it exited without."""
+"""How a process ended: it left its row; a watchdog ended it, this one by a signal or the run's own
+with exit code 1; another signal did; it exited without a row."""
 IMPOSSIBLE = "impossible"
 """Its fault cannot happen in this tree, robot or world."""
 REFUSED = "refused"
@@ -29,6 +31,8 @@ EXIT_IMPOSSIBLE, EXIT_REFUSED = 69, 75
 _WITHOUT_ROW = {EXIT_IMPOSSIBLE: IMPOSSIBLE, EXIT_REFUSED: REFUSED}
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "LP_NUM_THREADS": "1"}
 """Numerical libraries and the software renderer, each with one thread: episodes share the cores."""
+_TRACEBACKS = re.compile(r"^Timeout \(\d+:\d\d:\d\d", re.MULTILINE)
+"""How faulthandler begins when the run's own watchdog has it end the process."""
 MOST_OUTPUT = 4000
 """Characters of what a process said that are kept when it left no row."""
 
@@ -102,14 +106,14 @@ class EpisodeProcess:
         told = self._told()
         if told is not None:
             return {**row, **told, "exit_code": code, "ended": REPORT}
-        if self._overdue:
+        said = self._output.read_text(encoding="utf-8", errors="replace")
+        if self._overdue or (code == 1 and _TRACEBACKS.search(said)):
             ended = HUNG
         elif code < 0:
             ended = KILLED
         else:
             ended = _WITHOUT_ROW.get(code, CRASHED)
-        said = self._output.read_text(encoding="utf-8", errors="replace")[-MOST_OUTPUT:]
-        return {**row, "exit_code": code, "ended": ended, "output": said.strip()}
+        return {**row, "exit_code": code, "ended": ended, "output": said[-MOST_OUTPUT:].strip()}
 
     def _told(self) -> Row | None:
         """The row that the process wrote; it is whole or not there."""

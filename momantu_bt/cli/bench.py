@@ -16,7 +16,9 @@ from momantu_bt.cli.bench_setup import (
     OUT,
     RECORD,
     HowToRun,
+    check_faults,
     choose,
+    demands_of,
     engine_of,
     guarded,
     keep_plan,
@@ -31,6 +33,7 @@ from momantu_bt.cli.bench_setup import (
 if TYPE_CHECKING:
     from momantu_bt.bench.plan import Plan
     from momantu_bt.bench.spec import Row
+    from momantu_bt.faults.matrix import Row as Demand
     from momantu_bt.tree.model import Document
 
 
@@ -57,6 +60,14 @@ def bench(
     episode_limit: Annotated[
         float, typer.Option(min=1.0, help="Seconds of wall time after which one is killed.")
     ] = 900.0,
+    fault: Annotated[
+        list[str] | None,
+        typer.Option(metavar="FAULT", help="Break this, once for each seed."),
+    ] = None,
+    faults: Annotated[
+        str | None,
+        typer.Option(metavar="all|GLOB", help="All faults, or those like camera.*,skill.*."),
+    ] = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder of the results; else runs/bench/<tree>.")
     ] = None,
@@ -91,6 +102,7 @@ def bench(
 ) -> int:
     """Run a tree many times, each time with another seed and in a process of its own.
 
+    With --fault or --faults something is broken in each, and a table says what became of it.
     Rows are kept in a folder as they come. The same command goes on where it was stopped; rows
     of other files, versions or options are not mixed in.
 
@@ -101,6 +113,7 @@ def bench(
       momantu-bt bench bring_object --seeds 0:100
       momantu-bt bench trees/bring_object.yaml --seeds 0:500 --jobs 8 --report bench.json
       momantu-bt bench my_tree.yaml --seeds 0:50 --set "speed=0.5 m/s" --demand 0.9
+      momantu-bt bench bring_object --seeds 0:10 --faults all
       momantu-bt bench bring_object --seeds 0:500 --engine ray --ray-address 10.0.0.4:6379
       momantu-bt bench --merge machine_1 machine_2 --out both
     """
@@ -116,9 +129,12 @@ def bench(
         place = one_tree(tree)
         chosen = choose(record, RECORD, "--record")
         board = given_values(set_ or [], values)
-        how = HowToRun(world, robot, board, max_time, episode_limit, chosen)
+        demands = demands_of(fault or [], faults)
+        broken: list[str | None] = [demand.fault for demand in demands] or [None]
+        how = HowToRun(world, robot, board, max_time, episode_limit, chosen, broken)
         plan, document = plan_of(place, parse_seeds(seeds), how)
-        return _bench(plan, document, options)
+        check_faults(fault or [], document, how)
+        return _bench(plan, document, demands, options)
 
     return guarded(start)
 
@@ -133,7 +149,7 @@ class _Options:
     demand: float | None
 
 
-def _bench(plan: Plan, document: Document, options: _Options) -> int:
+def _bench(plan: Plan, document: Document, demands: Sequence[Demand], options: _Options) -> int:
     """Run what is missing, then say what all of it comes to."""
     from momantu_bt.bench.carry_out import carry_out
     from momantu_bt.bench.store import Store
@@ -150,7 +166,7 @@ def _bench(plan: Plan, document: Document, options: _Options) -> int:
         keep_plan(plan, store)
         ended = carry_out([(plan.of(part), store)], engine, progress())
         rows, missing = part.present(store.rows), part.missing(store.rows)
-    _say(plan, rows, document, options)
+    _say(plan, rows, document, demands, options)
     say_refused(ended)
     say_missing(missing)
     if ended.interrupted:
@@ -158,16 +174,27 @@ def _bench(plan: Plan, document: Document, options: _Options) -> int:
     return EXIT_INCOMPLETE if missing or _falls_short(rows, options.demand) else EXIT_OK
 
 
-def _say(plan: Plan, rows: Sequence[Row], document: Document, options: _Options) -> None:
+def _say(
+    plan: Plan,
+    rows: Sequence[Row],
+    document: Document,
+    demands: Sequence[Demand],
+    options: _Options,
+) -> None:
     """Print the figures, and write them if that is wanted."""
     from momantu_bt.bench.coverage import coverage
     from momantu_bt.bench.coverage_text import coverage_text
+    from momantu_bt.bench.matrix import Matrix, matrix_text
     from momantu_bt.bench.report import report, write_report
     from momantu_bt.bench.summary import Summary
     from momantu_bt.bench.tables import summary_text
 
     typer.echo(summary_text(Path(plan.tree).name, Summary.of(rows)))
     more: dict[str, Any] = {}
+    if demands:
+        matrix = Matrix.of(demands, rows)
+        typer.echo(f"\n{matrix_text(matrix)}")
+        more["matrix"] = matrix.as_dict()
     if options.coverage:
         points = coverage(document, rows)
         typer.echo(f"\n{coverage_text(points, document.source)}")

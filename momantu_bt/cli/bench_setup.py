@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from momantu_bt.bench.engine import Engine
     from momantu_bt.bench.plan import Plan
     from momantu_bt.bench.store import Store
+    from momantu_bt.faults.matrix import Row as Demand
     from momantu_bt.tree.model import Document
     from momantu_bt.tree.settings import Given
 
@@ -64,6 +65,41 @@ def plan_of(tree: str, seeds: Sequence[int], how: HowToRun) -> tuple[Plan, Docum
     wanted = Wanted(tuple((seed, fault) for seed in seeds for fault in how.faults), made)
     values: Mapping[str, Any] = dict(how.values)
     return Plan(place, wanted, values=values, limit=how.limit, record=how.record, **told), document
+
+
+def demands_of(faults: Sequence[str], patterns: str | None) -> tuple[Demand, ...]:
+    """The faults that `--fault` and `--faults` mean, each once and always written the same way.
+
+    Raises:
+        FaultError: a text is no fault, or a pattern fits none.
+    """
+    from momantu_bt.faults.matrix import row_of, rows_like
+    from momantu_bt.faults.spec import parse_fault
+
+    like = () if patterns is None else rows_like(patterns)
+    texts = [*faults, *(demand.fault for demand in like)]
+    found = [row_of(parse_fault(text)) for text in texts]
+    return tuple({demand.fault: demand for demand in found}.values())
+
+
+def check_faults(faults: Sequence[str], document: Document, how: HowToRun) -> None:
+    """Refuse faults that the tree cannot have; what only the world knows, an episode will tell.
+
+    Raises:
+        FaultError: the tree has nothing of the kind, or its phase occurs nowhere.
+    """
+    from momantu_bt.engine.build import skills_in
+    from momantu_bt.faults.spec import parse_fault
+    from momantu_bt.faults.stage import plan
+    from momantu_bt.tree.check import NO_WORLD
+    from momantu_bt.tree.registry import Registry
+    from momantu_bt.tree.substitution import Substitution
+
+    having = Registry.installed().skills
+    skills = {name: having[name] for name in skills_in(document)}
+    with_world = (how.world or document.world or NO_WORLD) != NO_WORLD
+    wanted = [parse_fault(text) for text in faults]
+    plan(wanted, document, skills, Substitution(), with_world=with_world)
 
 
 def _check_world(document: Document, world: str | None, registry: Any) -> None:
@@ -159,9 +195,10 @@ def guarded(start: Callable[[], int]) -> int:
     from momantu_bt.bench.store import StoreError
     from momantu_bt.engine.launch import LaunchError
     from momantu_bt.engine.makers import BuildError
+    from momantu_bt.fault import FaultError
     from momantu_bt.record.files import OutputError
 
-    wrong = (ArgumentError, SeedsError, StoreError, EngineError)
+    wrong = (ArgumentError, SeedsError, FaultError, StoreError, EngineError)
     try:
         return start()
     except (*wrong, LaunchError, BuildError, OutputError) as error:

@@ -97,6 +97,44 @@ def test_what_skills_claim_is_judged_and_added_up(
     assert line.split() == ["4", "3", "3", "1", "1", "1", "1", "seed", "0"]
 
 
+def test_faults_give_a_matrix(stalling: str, tmp_path: Path, capsys: Out) -> None:
+    """A broken skill fails the tree with the true reason; this world has nothing to remove."""
+    out, report = tmp_path / "out", tmp_path / "report.json"
+    words = ("--fault", "skill.exception", "--faults", "process.*,object.removed")
+    assert bench(stalling, "--seeds", "0,7", *words, "--out", out, "--report", report) == 0
+    rows = {(row["fault"], row["seed"]): row["outcome"] for row in read_rows(out)}
+    assert rows == {
+        ("skill.exception", 0): "safe",
+        ("skill.exception", 7): "safe",
+        ("process.killed", 0): "safe",
+        ("process.killed", 7): "safe",
+        ("object.removed", 0): "impossible",
+        ("object.removed", 7): "impossible",
+    }
+    told = json.loads(report.read_text())
+    assert told["episodes"] == 4
+    found = {line["fault"]: line for line in told["matrix"]["faults"]}
+    assert found["skill.exception"]["safe"] == [0, 7]
+    assert told["matrix"]["recoverable"]["episodes"] == 2
+    said = capsys.readouterr().out
+    assert "cannot happen: the world scripted cannot make object.removed" in said
+    assert bench(stalling, "--seeds", "0,7", *words, "--out", out) == 0
+    assert "0 to run" in capsys.readouterr().out
+
+
+def test_a_fault_that_the_tree_cannot_have_is_refused(
+    stalling: str, small: str, tmp_path: Path, capsys: Out
+) -> None:
+    words = ("--out", tmp_path / "out", "--fault")
+    assert bench(stalling, *words, "skill.exception@pick") == 2
+    assert "no node that runs is called 'pick'" in capsys.readouterr().err
+    assert bench(small, *words, "camera.dead") == 2
+    assert "this run has no world" in capsys.readouterr().err
+    assert bench(small, *words, "camera.ded") == 2
+    assert "did you mean dead?" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
 def test_a_hang_in_native_code_is_ended_from_outside(
     stalling: str, tmp_path: Path, capsys: Out
 ) -> None:
