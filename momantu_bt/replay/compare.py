@@ -171,5 +171,10 @@ def _files(left: Recording, right: Recording) -> Mapping[str, tuple[str, ...]]:
 
 
 def _texts(recording: Recording) -> dict[str, str]:
-    tree = recording.about["tree"]
-    return {"the tree" if n == tree else n: text for n, text in recording.files.items()}
+    """All but those of values, which are compared one by one."""
+    tree, kinds = recording.about["tree"], recording.kinds
+    return {
+        "the tree" if name == tree else name: text
+        for name, text in recording.files.items()
+        if kinds[name] != "values"
+    }

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from momantu_bt.failure import FailureValue
 from momantu_bt.replay.compare import compare
 from momantu_bt.replay.difference import same, value_words
+from momantu_bt.tree.settings import Given
 
 TREE = """
 values: {letters: RRS, far: 6}
@@ -137,3 +138,11 @@ def test_long_values_are_shown_from_where_they_part(one):
     assert found.left.endswith("499]")
     assert found.right.endswith("-1]")
     assert len(value_words(long)) == 200
+
+
+def test_given_values_are_told_once_and_not_as_texts(recorded, one):
+    given = Given()
+    given.set(["letters=RS"])
+    found = compare(one, recorded(TREE, values=given))
+    assert ("value letters", "RRS", "RS") in found.given
+    assert found.files == {}
