@@ -1,6 +1,6 @@
 # make setup   everything that is missing, into .venv (quick when nothing is)
 # make demo    setup, then the main job: bring the can from table A to table B
-# make test    setup, then linters, types and tests
+# make test    setup with a headless browser, then linters, types and tests
 # make lint    setup, then linters and types alone
 
 # The first Python that is new and old enough; `make PYTHON=…` names another.
@@ -37,6 +37,7 @@ lint: setup
 
 # One thread per process: the numerical libraries would otherwise quarrel over few cores.
 test: lint
+	@$(BIN)/python setup/browser.py
 	OMP_NUM_THREADS=1 LP_NUM_THREADS=1 $(BIN)/pytest -q -n $(JOBS) --dist loadfile $(TESTS)
 
 clean:

@@ -31,6 +31,9 @@ def replay(
         int | None, typer.Option(help="Print the instant of a failure: 1 the first, -1 the last.")
     ] = None,
     json_: Annotated[bool, typer.Option("--json", help="The instant as JSON.")] = False,
+    html: Annotated[
+        Path | None, typer.Option(help="Write the run as one HTML page, for any browser.")
+    ] = None,
     check: Annotated[
         bool, typer.Option("--check", help="Tick the tree again; it must do what it did.")
     ] = False,
@@ -47,6 +50,7 @@ def replay(
       momantu-bt replay runs/3
       momantu-bt replay runs/3 --at 42.5
       momantu-bt replay runs/3 --failure -1 --json
+      momantu-bt replay runs/3 --html run.html
       momantu-bt replay runs/3 --check
     """
     from momantu_bt.cli.terminal import is_interactive
@@ -56,6 +60,8 @@ def replay(
     recording = open_record(run)
     if check:
         return _check(recording)
+    if html is not None:
+        return _write_page(recording, html)
     timeline = Timeline(recording)
     chosen = (at, node, failure) != (None, None, None)
     try:
@@ -94,6 +100,19 @@ def _chosen(timeline: Timeline, at: float | None, node: str | None, failure: int
         since = "" if at is None else f" from {at:g} s on"
         raise SeekError(f"{node} never changes{since}")
     return index
+
+
+def _write_page(recording: Recording, path: Path) -> int:
+    from momantu_bt.page import write_page
+    from momantu_bt.record.files import OutputError
+
+    try:
+        write_page(recording, path)
+    except OutputError as error:
+        complain(error)
+        return EXIT_WRONG_ARGUMENTS
+    typer.echo(f"{path}: open it in a browser")
+    return 0
 
 
 def _print_instant(timeline: Timeline, index: int, *, as_json: bool) -> None:

@@ -77,12 +77,19 @@ def tree_lines(root: Shown) -> list[TreeLine]:
     return lines
 
 
+def is_frame(role: Role, above: Role) -> bool:
+    """Whether a node is only what a list of steps, or all of a subtree, is written in.
+
+    above: the role of its parent.
+    """
+    return role is Role.STEPS or (role is Role.NAMED_STEPS and above is Role.TREE)
+
+
 def _below(node: Shown) -> tuple[Shown, ...]:
-    """Children, without the nameless frames that lists of steps and subtrees are written in."""
+    """Children, without frames."""
     found: list[Shown] = []
     for child in node.kids:
-        named_frame = node.role is Role.TREE and child.role is Role.NAMED_STEPS
-        if child.role is Role.STEPS or named_frame:
+        if is_frame(child.role, node.role):
             found.extend(_below(child))
         else:
             found.append(child)

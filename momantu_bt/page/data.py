@@ -1,0 +1,109 @@
+"""Everything that the page shows, as plain data; `assets/record.js` and its fellows read it."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from pathlib import PurePath
+from typing import Any
+
+from momantu_bt.page.about import about
+from momantu_bt.page.board import board
+from momantu_bt.page.cameras import cameras
+from momantu_bt.page.codes import FAILURE, IDLE, RUNNING, SKIPPED, STATUS_NUMBERS
+from momantu_bt.page.failures import failure_rows
+from momantu_bt.page.floor import floor
+from momantu_bt.page.lanes import lanes
+from momantu_bt.page.rows import rows_above
+from momantu_bt.page.statuses import shown
+from momantu_bt.page.tables import Texts
+from momantu_bt.record.recording import Recording
+
+
+def page_data(recording: Recording) -> dict[str, Any]:
+    """The page's data. Ticks are indices into `times`, nodes and files are indices too."""
+    changes = list(shown(recording))
+    failures = failure_rows(recording)
+    notes = Texts("")
+    return {
+        "about": about(recording),
+        "times": [round(tick.now, 6) for tick in recording.ticks],
+        "numbers": [tick.number for tick in recording.ticks],
+        "end": sum(not tick.settling for tick in recording.ticks) - 1,
+        "files": [{"name": n, "text": text} for n, text in recording.files.items()],
+        "nodes": _nodes(recording),
+        "changes": {
+            "tick": [change.tick for change in changes],
+            "node": [change.node for change in changes],
+            "status": [STATUS_NUMBERS[change.status] for change in changes],
+            "note": [notes.number(change.note) for change in changes],
+        },
+        "notes": notes.texts,
+        "labels": _labels(recording),
+        "failures": failures,
+        "lanes": lanes(recording, failures),
+        "cameras": cameras(recording),
+        "floor": floor(recording),
+        **board(recording),
+    }
+
+
+def _labels(recording: Recording) -> dict[str, list[Any]]:
+    """The lines of nodes over time; those that they begin with are at tick -1."""
+    texts = Texts()
+    rows = [(-1, node.index, node.label) for node in recording.nodes]
+    rows += [(i, *each) for i, tick in enumerate(recording.ticks) for each in tick.labels]
+    return {
+        "tick": [tick for tick, _, _ in rows],
+        "node": [node for _, node, _ in rows],
+        "text": [texts.number(text) for _, _, text in rows],
+        "texts": texts.texts,
+    }
+
+
+def _nodes(recording: Recording) -> dict[str, list[Any]]:
+    """Columns by node. row, above: see `rows_above`. file: -1 where the record has it not."""
+    places = [node.place.rpartition(":") for node in recording.nodes]
+    runs, failures = _counts(recording)
+    own, above = rows_above(recording.nodes)
+    return {
+        "name": [node.name for node in recording.nodes],
+        "type": [node.type for node in recording.nodes],
+        "row": own,
+        "above": above,
+        "file": [_file_number(file, list(recording.files)) for file, _, _ in places],
+        "line": [int(line) if line.isdigit() else 0 for _, _, line in places],
+        "runs": runs,
+        "failures": failures,
+    }
+
+
+def _file_number(file: str, names: Sequence[str]) -> int:
+    """The file of a place, which may be written with another way to the same name."""
+    if file in names:
+        return names.index(file)
+    alike = [i for i, name in enumerate(names) if PurePath(name).name == PurePath(file).name]
+    return alike[0] if len(alike) == 1 else -1
+
+
+def _counts(recording: Recording) -> tuple[list[int], list[int]]:
+    """How often each node started and failed: the report knows, or else it is counted.
+
+    The record shows no start that ends at once as the one before it did.
+    """
+    told: Sequence[Mapping[str, Any]] = (recording.report or {}).get("nodes", ())
+    if len(told) == len(recording.nodes):
+        return [each["runs"] for each in told], [each["failures"] for each in told]
+    runs: Counter[int] = Counter()
+    failed: Counter[int] = Counter()
+    running: set[int] = set()
+    for change in (change for tick in recording.ticks for change in tick.changes):
+        if change.status not in (IDLE, SKIPPED) and change.node not in running:
+            runs[change.node] += 1
+        if change.status == RUNNING:
+            running.add(change.node)
+        else:
+            running.discard(change.node)
+        failed[change.node] += change.status == FAILURE
+    count = len(recording.nodes)
+    return [runs[node] for node in range(count)], [failed[node] for node in range(count)]

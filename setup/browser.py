@@ -1,0 +1,101 @@
+"""Bring a headless Chromium for the tests of HTML pages, where there is none: `make test` runs it.
+
+Without root, out of the machine's own package mirror, into the user's cache folder, and only once.
+Where that cannot be done (no apt, no network), it says so and exits with 0: those tests are
+skipped then.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import tempfile
+from pathlib import Path
+
+from momantu_bt.vulkan.apt import AptError, PrivateApt, this_system
+from momantu_bt.vulkan.places import cache_folder
+
+VARIABLE = "MOMANTU_BROWSER"
+"""Names another browser."""
+NAMES = ("chromium-headless-shell", "chromium", "google-chrome", "google-chrome-stable")
+PACKAGES = ("chromium-headless-shell", "fonts-dejavu-core")
+FOLDER = "browser"
+LAUNCHER = """\
+#!/bin/sh
+root=$(cd "$(dirname "$0")" && pwd)/root
+LD_LIBRARY_PATH=$(find "$root" -name '*.so*' -printf '%h\\n' | sort -u | paste -sd:)
+export LD_LIBRARY_PATH FONTCONFIG_FILE="$root/../fonts.conf"
+exec "$root/usr/lib/chromium/chromium-headless-shell" "$@"
+"""
+"""Starts the unpacked browser with the libraries and fonts that came with it."""
+FONTS = """\
+<?xml version="1.0"?>
+<fontconfig>
+<dir prefix="relative">root/usr/share/fonts</dir>
+<cachedir prefix="xdg">fontconfig</cachedir>
+</fontconfig>
+"""
+"""A bare system has no fonts, and without any a browser ends at the first text."""
+PROBE_SECONDS = 60.0
+
+
+def main() -> None:
+    """Bring it, unless there is one."""
+    if find_browser() is not None:
+        return
+    print("Fetching a headless browser for the tests of HTML pages (100 MB, no root)", flush=True)
+    try:
+        fetch(cache_folder() / FOLDER)
+    except (AptError, OSError, subprocess.SubprocessError) as error:
+        print(f"  there is none ({error}); those tests are skipped")
+
+
+def find_browser() -> str | None:
+    """What starts a browser: `$MOMANTU_BROWSER`, one on PATH, or the one that this file brings."""
+    brought = cache_folder() / FOLDER / FOLDER
+    found = [os.environ.get(VARIABLE), *map(shutil.which, NAMES)]
+    found.append(str(brought) if brought.is_file() else None)
+    return next(filter(None, found), None)
+
+
+def fetch(folder: Path) -> None:
+    """Unpack it into a folder, which appears whole or not at all.
+
+    Raises:
+        AptError: apt cannot get it.
+        OSError, SubprocessError: it cannot be written or does not start.
+    """
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=folder.parent, prefix="browser-setup-") as name:
+        scratch = Path(name)
+        apt = PrivateApt(scratch, this_system(), backports=False)
+        fresh = scratch / FOLDER
+        fresh.mkdir()
+        apt.unpack(apt.download(PACKAGES, None), fresh / "root")
+        launcher = fresh / FOLDER
+        launcher.write_text(LAUNCHER, encoding="ascii")
+        launcher.chmod(0o755)
+        (fresh / "fonts.conf").write_text(FONTS, encoding="ascii")
+        probe(launcher)
+        fresh.rename(folder)
+
+
+def probe(launcher: Path) -> None:
+    """Let it read a page; SubprocessError when it cannot."""
+    command = [
+        str(launcher),
+        "--no-sandbox",
+        "--disable-gpu",
+        "--dump-dom",
+        "data:text/html,it-works",
+    ]
+    said = subprocess.run(
+        command, capture_output=True, text=True, timeout=PROBE_SECONDS, check=True
+    ).stdout
+    if "it-works" not in said:
+        raise subprocess.SubprocessError("it was fetched, but shows nothing")
+
+
+if __name__ == "__main__":
+    main()
