@@ -29,8 +29,13 @@ from momantu_bt.tree.settings import Given
 
 DIGITS = 16
 _CODE = "the code of "
-_BESIDE = {"momantu_bt": ("bench", "cli", "diagnosis", "drawing", "page", "replay", "scaffold")}
-"""Parts of a package that no episode depends on."""
+_BESIDE = {
+    "momantu_bt": (
+        *("bench", "cli", "diagnosis", "drawing", "page", "replay", "scaffold"),
+        *("trees", "problems", "constraints.txt", "pytest_plugin.py"),
+    )
+}
+"""Parts of a package that no episode depends on; a tree's own files count by themselves."""
 
 
 def made_of(

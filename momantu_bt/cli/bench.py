@@ -189,7 +189,8 @@ def _say(
     from momantu_bt.bench.summary import Summary
     from momantu_bt.bench.tables import summary_text
 
-    typer.echo(summary_text(Path(plan.tree).name, Summary.of(rows)))
+    name = Path(plan.tree).name + (", with faults" if demands else "")
+    typer.echo(summary_text(name, Summary.of(rows)))
     more: dict[str, Any] = {}
     if demands:
         matrix = Matrix.of(demands, rows)

@@ -117,6 +117,7 @@ def test_faults_give_a_matrix(stalling: str, tmp_path: Path, capsys: Out) -> Non
     assert found["skill.exception"]["safe"] == [0, 7]
     assert told["matrix"]["recoverable"]["episodes"] == 2
     said = capsys.readouterr().out
+    assert "stalling.yaml, with faults: 0 of 4" in said
     assert "cannot happen: the world scripted cannot make object.removed" in said
     assert bench(stalling, "--seeds", "0,7", *words, "--out", out) == 0
     assert "0 to run" in capsys.readouterr().out
