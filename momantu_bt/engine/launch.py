@@ -90,13 +90,15 @@ def launch(
 
     Raises:
         LaunchError: no world for a tree with skills, a service that is not installed, or a robot
-            that lacks what a skill uses.
+            that lacks what a skill uses, or no patience.
         FaultError: the tree, the robot or the world cannot have a fault that is asked for.
         OutputError: the record's folder cannot be written, or holds a record already.
         WorldError: the world could not start.
         KeyboardInterrupt: Ctrl-C before the first tick.
     """
     begun = time.perf_counter()
+    if not options.patience > 0.0:
+        raise LaunchError(f"a patience of {options.patience} s; expected more than 0, or inf")
     kinds = {name: registry.skills[name] for name in skills_in(document, options.substitution)}
     with ExitStack() as stack:
         interrupts = stack.enter_context(Interrupts())

@@ -11,6 +11,7 @@ import time
 
 import pytest
 
+from momantu_bt.engine.launch import LaunchError
 from momantu_bt.engine.watchdog import Hung, Watchdog
 from momantu_bt.skill import Run, Skill
 
@@ -59,6 +60,12 @@ def test_the_failure_says_where_it_was(run_yaml):
     assert "Sleepy gave no step back" in report.failure.message
     assert "time.sleep(1e6)" in report.failure.data["traceback"]
     assert report.fingerprint == run_yaml(tree, Sleepy, patience=0.3).fingerprint
+
+
+@pytest.mark.parametrize("patience", [0.0, -1.0, math.nan])
+def test_there_is_no_run_without_patience(run_yaml, patience):
+    with pytest.raises(LaunchError, match="expected more than 0, or inf"):
+        run_yaml("trees:\n  Main: [sleepy]\n", Sleepy, patience=patience)
 
 
 def test_closing_a_skill_may_hang_too(run_yaml):
