@@ -19,6 +19,7 @@ from momantu_bt.record.recording import (
     StepRecord,
     TickRecord,
 )
+from momantu_bt.record.soundness import check_sound
 
 __all__ = [
     "ChangeRecord",
@@ -56,7 +57,7 @@ def read_record(folder: Path) -> Recording:
             )
         files = [json.loads(text) for _, text in raw.get("/files", ())]
         nodes = _first(raw, "/nodes") or {"nodes": []}
-        return Recording(
+        recording = Recording(
             folder=path.parent,
             about=about,
             files={file["name"]: file["text"] for file in files},
@@ -67,8 +68,10 @@ def read_record(folder: Path) -> Recording:
             kinds={file["name"]: file["kind"] for file in files},
             raw={topic: tuple(found) for topic, found in raw.items()},
         )
+        check_sound(recording)
     except (CodecError, KeyError, TypeError, ValueError, RecursionError) as error:
         raise RecordError(f"{path} is damaged: {error!r}") from None
+    return recording
 
 
 def _messages(path: Path) -> tuple[dict[str, list[tuple[float, bytes]]], bool]:
