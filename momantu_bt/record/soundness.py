@@ -27,9 +27,9 @@ def check_sound(recording: Recording) -> None:
         for named in _nodes_in(tick):
             if named not in known:
                 raise ValueError(f"tick {tick.number} names node {named} of {len(nodes)}")
-        for told in (*tick.changes, *tick.steps):
-            if told.status not in _STATUSES:
-                raise ValueError(f"tick {tick.number} has the status {told.status!r}")
+        for status in _statuses_in(tick):
+            if status not in _STATUSES:
+                raise ValueError(f"tick {tick.number} has the status {status!r}")
 
 
 def _nodes_in(tick: TickRecord) -> Iterator[int]:
@@ -37,3 +37,8 @@ def _nodes_in(tick: TickRecord) -> Iterator[int]:
     yield from (step.node for step in tick.steps)
     yield from (node for node, _ in tick.notes)
     yield from (node for node, _ in tick.labels)
+
+
+def _statuses_in(tick: TickRecord) -> Iterator[str]:
+    yield from (change.status for change in tick.changes)
+    yield from (step.status for step in tick.steps)
