@@ -7,6 +7,7 @@ import pytest
 from momantu_worlds.robots import fetch
 from momantu_worlds.sapien.simulator import Simulator
 from momantu_worlds.scenes.bodies import Episode
+from momantu_worlds.scenes.hand import hand_of
 from momantu_worlds.scenes.loading import draw_episode
 from momantu_worlds.scenes.referee import Referee
 
@@ -14,7 +15,7 @@ from momantu_bt.geometry import Transform
 from momantu_bt.messages import BaseVelocity
 
 FETCH = fetch()
-HAND = FETCH.end_effector.frame
+HAND = hand_of(FETCH)
 SIDEWAYS = 0.17
 """m; beside the tag's middle the can stands on no tag."""
 

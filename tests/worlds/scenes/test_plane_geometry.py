@@ -93,3 +93,37 @@ def test_a_disc_does_not_leave_the_area():
 def test_nothing_is_reached_from_inside_an_obstacle():
     grid = passages([Rectangle(Pose2D(0, 0), (1, 1))], (0, 0), (4, 4), 0.2)
     assert not grid.reachable((0, 0)).any()
+
+
+def test_a_route_is_a_shortest_chain_of_free_neighbours():
+    wall = Rectangle(Pose2D(0.0, 0.5), (0.2, 3.0))
+    grid = passages([wall], (0.0, 0.0), (4.0, 4.0), 0.2)
+    start, end = grid.nearest_free((-1.0, 0.0)), grid.nearest_free((1.0, 0.0))
+    way = grid.route(start, end)
+    assert way[0] == pytest.approx(start)
+    assert way[-1] == pytest.approx(end)
+    steps = np.abs(np.diff(way, axis=0))
+    assert steps.sum(axis=1) == pytest.approx(np.full(len(steps), 0.1))
+    assert wall.distance(way).min() >= 0.2 - 1e-9
+    # down to the wall's lower end, past it, and up again
+    assert steps.sum() == pytest.approx(end[0] - start[0] + 2 * (start[1] + 1.2), abs=0.25)
+
+
+def test_there_is_no_route_through_a_closed_wall_or_from_within_it():
+    wall = Rectangle(Pose2D(0.0, 0.0), (0.2, 4.0))
+    grid = passages([wall], (0.0, 0.0), (4.0, 4.0), 0.2)
+    left, right = grid.nearest_free((-1.0, 0.0)), grid.nearest_free((1.0, 0.0))
+    assert len(grid.route(left, right)) == 0
+    assert len(grid.route((0.0, 0.0), right)) == 0
+    assert len(grid.route(left, left)) == 1
+
+
+def test_the_nearest_free_cell_is_the_point_or_beside_what_stands_on_it():
+    block = Rectangle(Pose2D(0.0, 0.0), (1.0, 1.0))
+    grid = passages([block], (0.0, 0.0), (4.0, 4.0), 0.2)
+    assert grid.nearest_free((1.05, 1.05)) == pytest.approx((1.05, 1.05))
+    x, y = grid.nearest_free((0.3, 0.0))
+    assert (x, abs(y)) == pytest.approx((0.75, 0.05))
+    full = passages([Rectangle(Pose2D(0.0, 0.0), (9.0, 9.0))], (0.0, 0.0), (4.0, 4.0), 0.2)
+    with pytest.raises(ValueError, match="no cell is free"):
+        full.nearest_free((0.0, 0.0))

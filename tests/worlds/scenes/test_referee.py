@@ -6,13 +6,16 @@ import math
 from dataclasses import dataclass, field
 
 import pytest
+from momantu_worlds.sapien.truth import JointSpeed
 from momantu_worlds.scenes.bodies import Body, Box, Cylinder, Episode, Goal, Part
+from momantu_worlds.scenes.hand import Hand
 from momantu_worlds.scenes.referee import Referee, tilt
 
-from momantu_bt.geometry import Pose2D, Transform, quaternion_from_axis_angle
+from momantu_bt.geometry import Array, Pose2D, Transform, quaternion_from_axis_angle
 from momantu_bt.world import Site
 
 TABLE_TOP = 0.5
+HAND = Hand("gripper_link", frozenset({"left_finger", "right_finger"}), frozenset({"elbow"}))
 TICK = 0.05
 
 
@@ -39,6 +42,15 @@ class FakeTruth:
     def link(self, name: str) -> Transform:
         assert name == "gripper_link"
         return self.gripper
+
+    def base_speed(self) -> tuple[float, float]:
+        return 0.0, 0.0
+
+    def joint_speeds(self) -> dict[str, JointSpeed]:
+        return {}
+
+    def height_below(self, body: str, points: Array) -> tuple[float, str]:
+        return float(points[:, 2].min()) - TABLE_TOP, "table_b"
 
     def watch_contacts(self) -> None:
         self.watching = True
@@ -86,7 +98,7 @@ def good_truth() -> FakeTruth:
 
 
 def watch(truth: FakeTruth, seconds: float = 1.5) -> Referee:
-    referee = Referee(episode(), truth, "gripper_link")
+    referee = Referee(episode(), truth, HAND)
     for tick in range(1, round(seconds / TICK) + 1):
         referee.observe(tick * TICK)
     return referee
@@ -176,7 +188,7 @@ def test_what_is_just_allowed_is_success(change):
 
 def test_squeezing_the_item_hard_is_no_bump():
     truth = good_truth()
-    referee = Referee(episode(), truth, "gripper_link")
+    referee = Referee(episode(), truth, HAND)
     truth.touches = [Touch("gripper_link", "can", 400.0), Touch("can", "table_b")]
     referee.observe(TICK)
     assert referee.verdict().measures["force"] == 0.0
@@ -198,7 +210,7 @@ def test_still_counts_from_the_last_move():
 
 def test_a_slow_slide_is_not_still():
     truth = good_truth()
-    referee = Referee(episode(), truth, "gripper_link")
+    referee = Referee(episode(), truth, HAND)
     for tick in range(1, 41):
         put("can", dx=0.0002)(truth)  # 4 mm/s
         referee.observe(tick * TICK)
@@ -207,7 +219,7 @@ def test_a_slow_slide_is_not_still():
 
 def test_what_happened_once_is_remembered():
     truth = good_truth()
-    referee = Referee(episode(), truth, "gripper_link")
+    referee = Referee(episode(), truth, HAND)
     before = truth.poses["mug"]
     put("mug", dx=0.2, degrees=40)(truth)
     truth.touches.append(Touch("base_link", "mug", 200.0))
@@ -248,4 +260,4 @@ def test_an_episode_without_a_goal_cannot_be_judged():
     whole = episode()
     bare = Episode("bare", 0, whole.bodies, whole.start, (0, 0, 0), (), (), whole.site)
     with pytest.raises(ValueError, match="no goal"):
-        Referee(bare, good_truth(), "gripper_link")
+        Referee(bare, good_truth(), HAND)

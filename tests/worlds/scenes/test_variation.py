@@ -16,9 +16,8 @@ from momantu_worlds.scenes.floor import (
 from momantu_worlds.scenes.layout import Layout
 from momantu_worlds.scenes.loading import draw_episode, load_world
 from momantu_worlds.scenes.plane_geometry import Rectangle, gap, passages
-from momantu_worlds.scenes.tabletop import Disc, free_spots, lane, seen_share
-from momantu_worlds.scenes.tabletop import _body_points as body_points
-from momantu_worlds.scenes.tabletop import _tag_points as tag_points
+from momantu_worlds.scenes.tabletop import Disc, SetDown, free_spots, lane, seen_share, tag_points
+from momantu_worlds.scenes.tabletop import outline_points as body_points
 from momantu_worlds.scenes.tag36h11 import picture_edge
 from momantu_worlds.scenes.variation import vary
 
@@ -133,7 +132,9 @@ def test_the_tag_is_seen_whole_and_a_spot_remains_beside_it(seed):
     assert all(between(tag, disc) >= 0 for disc in here)
     table = drawn.tables["table_b"]
     assert seen_share(tag_points(drawn.tag_at, corner), here, table, side, tag) == 1.0
-    assert free_spots(WORLD, table, here, drawn.tag_at)
+    item = WORLD.item
+    wanted = SetDown(item.radius, item.height, WORLD.goal.distance, side)
+    assert free_spots(wanted, table, here, drawn.tag_at)
 
 
 @pytest.mark.parametrize("seed", SEEDS)

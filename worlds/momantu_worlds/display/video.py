@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import av
 
-from momantu_bt.robot import read_camera
+from momantu_bt.messages import CameraImage
 from momantu_bt.world import TreeLine, WorldError
 from momantu_worlds.display.chase import Chase
 from momantu_worlds.display.frame import HEIGHT, SCENE, WIDTH, Image, compose
@@ -58,8 +58,9 @@ class Film:
     def _picture(self, lines: Sequence[TreeLine], headline: str) -> Image:
         now = self._simulator.now()
         scene = self._camera.take(self._chase.pose(self._simulator.truth.base(), now))
-        head = read_camera(self._simulator.robot, self._head).color
-        return compose(scene, head, lines, headline)
+        head = self._simulator.robot.peek(self._head)
+        assert isinstance(head, CameraImage)
+        return compose(scene, head.color, lines, headline)
 
     def close(self) -> None:
         """Finish the file and give it its name; safe to call twice."""

@@ -44,6 +44,10 @@ class BaseDrive:
         """Brake at the acceleration limits."""
         self._goal = (0.0, 0.0)
 
+    def place(self) -> None:
+        """Stand still at once; what was commanded last goes on from rest."""
+        self.linear = self.angular = 0.0
+
     def begin_tick(self, now: float) -> None:
         """Stop when nobody has commanded for too long."""
         if now - self._last_command > WATCHDOG:

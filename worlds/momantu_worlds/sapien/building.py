@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -36,16 +37,42 @@ def add_bodies(
     _add_floor(scene)
     still, moving = [], []
     for body in bodies:
-        entity = _build(body, visuals)
-        scene.add_entity(entity)
-        truth.add(body.name, entity)
         if body.static:
+            _place(scene, body, truth, visuals)
             still.append(body)
             continue
-        mesh = body_mesh(body)
-        if mesh is not None:
-            moving.append(MovingBody(entity, mesh))
+        addition = add_body(scene, body, truth, visuals=visuals)
+        if addition.moving is not None:
+            moving.append(addition.moving)
     return map_triangles(still), moving
+
+
+@dataclass(frozen=True, slots=True)
+class Addition:
+    """A body that may come and go. moving: as the laser meets it; None when it passes through."""
+
+    body: Body
+    entity: Any
+    moving: MovingBody | None
+
+
+def add_body(scene: Any, body: Body, truth: Truth, *, visuals: bool) -> Addition:
+    """Build one body and tell `truth` of it."""
+    entity = _place(scene, body, truth, visuals)
+    mesh = body_mesh(body)
+    return Addition(body, entity, None if mesh is None else MovingBody(entity, mesh))
+
+
+def _place(scene: Any, body: Body, truth: Truth, visuals: bool) -> Any:
+    entity = sapien.Entity()
+    entity.name = body.name
+    if visuals and any(part.visual for part in body.parts):
+        entity.add_component(_look(body))
+    entity.add_component(_physics(body))
+    entity.set_pose(pose_of(body.map_from_body))
+    scene.add_entity(entity)
+    truth.add(body.name, entity)
+    return entity
 
 
 def add_lights(scene: Any, episode: Episode) -> None:
@@ -71,21 +98,15 @@ def _add_floor(scene: Any) -> None:
     scene.add_entity(entity)
 
 
-def _build(body: Body, visuals: bool) -> Any:
-    entity = sapien.Entity()
-    entity.name = body.name
-    if visuals and any(part.visual for part in body.parts):
-        look = sapien.render.RenderBodyComponent()
-        for part in body.parts:
-            if part.visual:
-                shape = render_shape(part)
-                shape.local_pose = pose_of(_sapien_pose(part))
-                look.attach(shape)
-        look.name = body.name
-        entity.add_component(look)
-    entity.add_component(_physics(body))
-    entity.set_pose(pose_of(body.map_from_body))
-    return entity
+def _look(body: Body) -> Any:
+    look = sapien.render.RenderBodyComponent()
+    for part in body.parts:
+        if part.visual:
+            shape = render_shape(part)
+            shape.local_pose = pose_of(_sapien_pose(part))
+            look.attach(shape)
+    look.name = body.name
+    return look
 
 
 def _physics(body: Body) -> Any:

@@ -26,7 +26,10 @@ OPTICAL_FROM_SAPIEN = Transform.from_rotation(
 
 
 class Camera:
-    """Takes a picture from where the link really is, plus a constant mounting error."""
+    """Takes a picture from where the link really is, plus a constant mounting error.
+
+    hidden: render components that it does not see.
+    """
 
     def __init__(
         self,
@@ -43,6 +46,7 @@ class Camera:
         self.link_from_camera = _mounting(seeded(seed, name, "mounting"), errors)
         self._camera, self._entity = _component(sensor)
         self.culling = Culling(own_links, sensor)
+        self.hidden: list[Any] = []
         self.intrinsics = _intrinsics(sensor)
         scene.add_entity(self._entity)
 
@@ -50,7 +54,7 @@ class Camera:
         """A picture of now; runs the renderer."""
         truth = transform_of(self._link.entity_pose) @ self.link_from_camera
         self._entity.set_pose(pose_of(truth @ OPTICAL_FROM_SAPIEN))
-        unseen = self.culling.outside(truth)
+        unseen = [*self.culling.outside(truth), *self.hidden]
         for body in unseen:
             body.disable()
         self._scene.update_render()

@@ -36,6 +36,10 @@ class Odometry:
         yaw = wrap_angle(moved.yaw * self._angular_scale + float(noise[1]) * yaw_sigma)
         self.odom_from_base = self.odom_from_base @ Pose2D(along, across, yaw)
 
+    def carried(self, map_from_base: Pose2D) -> None:
+        """The base was lifted to another true pose: its wheels did not turn."""
+        self._true = map_from_base
+
     def speeds(self, linear: float, angular: float, stamp: float) -> tuple[float, float]:
         """Speeds as the wheels report them, m/s and rad/s."""
         noise = seeded(self._seed, "odometry speed", stamp).standard_normal(2)

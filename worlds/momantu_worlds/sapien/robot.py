@@ -32,6 +32,7 @@ class SimulatedRobot:
     """Implements `momantu_bt.robot.Robot`.
 
     sensors: by the description's names; read at most once per instant.
+    listeners: called once for each reading that the robot itself asks for.
     """
 
     def __init__(
@@ -48,6 +49,8 @@ class SimulatedRobot:
         self._description, self._model, self._now = description, model, now
         self.sensors: dict[str, Sensor] = {}
         self._readings: dict[str, SensorReading] = {}
+        self._asked: dict[str, float] = {}
+        self.listeners: list[Callable[[SensorReading], None]] = []
         self._state: RobotState | None = None
         fingers = {j for a in description.actuators.values() for j in _fingers(a)}
         self._names = tuple(
@@ -93,6 +96,15 @@ class SimulatedRobot:
 
     def read(self, sensor: str) -> SensorReading:
         """The reading of now; KeyError with the sensors there are when there is none."""
+        reading = self.peek(sensor)
+        if self._asked.get(sensor) != reading.stamp:
+            self._asked[sensor] = reading.stamp
+            for listener in self.listeners:
+                listener(reading)
+        return reading
+
+    def peek(self, sensor: str) -> SensorReading:
+        """As `read`, for films: it does not count as the robot's own look."""
         if sensor not in self.sensors:
             names = ", ".join(self.sensors)
             raise KeyError(f"the robot has no sensor {sensor!r}; it has: {names}")
@@ -119,6 +131,16 @@ class SimulatedRobot:
             self.base.stop()
         elif kind is ActuatorKind.JOINTS:
             self.joint_drives[actuator].stop()
+
+    def carry(self, map_from_base: Pose2D) -> None:
+        """Set the base down elsewhere, at rest; joints keep their angles, odometry is unaware."""
+        positions, speeds = self._model.positions(), self._model.velocities()
+        positions[self._base_columns] = (map_from_base.x, map_from_base.y, map_from_base.yaw)
+        speeds[self._base_columns] = 0.0
+        self._model.articulation.set_qpos(positions.astype(np.float32))
+        self._model.articulation.set_qvel(speeds.astype(np.float32))
+        self.base.place()
+        self._odometry.carried(self._true_base(self._model.positions()))
 
     def begin_tick(self) -> None:
         """Prepare the drives for the physics steps of the coming tick."""

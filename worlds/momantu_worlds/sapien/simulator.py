@@ -7,24 +7,30 @@ from typing import Any
 
 import sapien
 
+from momantu_bt.geometry import Transform
 from momantu_bt.robot import CameraSensor, LaserSensor, RobotDescription
 from momantu_bt.world import TICK
 from momantu_worlds.robots.loading import read_simulation
-from momantu_worlds.sapien.building import add_bodies, add_lights
+from momantu_worlds.sapien.building import Addition, add_bodies, add_body, add_lights
 from momantu_worlds.sapien.camera import Camera
 from momantu_worlds.sapien.config import STEP, SUB_STEPS, Physics, SimulatorConfig
 from momantu_worlds.sapien.laser import Laser
 from momantu_worlds.sapien.memory import tidy
-from momantu_worlds.sapien.poses import transform_of
+from momantu_worlds.sapien.poses import pose_of, transform_of
 from momantu_worlds.sapien.rendering import render_system
 from momantu_worlds.sapien.robot import Sensor, SimulatedRobot
 from momantu_worlds.sapien.robot_model import RobotModel, build_robot
 from momantu_worlds.sapien.truth import Truth
 from momantu_worlds.sapien.wrench import Wrench
-from momantu_worlds.scenes.bodies import Episode
+from momantu_worlds.scenes.bodies import Body, Episode
 
 START_POSE = "home"
 """The named pose in which an episode begins."""
+
+ANGULAR_DAMPING = 0.05
+"""1/s; PhysX's own."""
+LYING_DAMPING = 5.0
+"""1/s; without rolling resistance a lying cylinder starts to roll from the solver's noise alone."""
 
 
 class Simulator:
@@ -62,7 +68,9 @@ class Simulator:
             self.scene, description, simulation, self.config.physics, visuals=render
         )
         self.truth = Truth(self._system, model, description.base_frame)
-        still, moving = add_bodies(self.scene, episode.bodies, self.truth, visuals=render)
+        still, self._moving = add_bodies(self.scene, episode.bodies, self.truth, visuals=render)
+        self._added: dict[str, Addition] = {}
+        self._render = render
         if render:
             add_lights(self.scene, episode)
         self.robot = SimulatedRobot(
@@ -75,7 +83,7 @@ class Simulator:
             self.config,
             self.now,
         )
-        for name, sensor in self._sensors(description, model, still, moving, seed, render):
+        for name, sensor in self._sensors(description, model, still, seed, render):
             self.robot.sensors[name] = sensor
         self.model = model
         self._wrists = [s for s in self.robot.sensors.values() if isinstance(s, Wrench)]
@@ -100,6 +108,45 @@ class Simulator:
         self._ticks += 1
         self.robot.end_tick()
 
+    @property
+    def added(self) -> tuple[Body, ...]:
+        """Bodies that were added since the episode began and are still there."""
+        return tuple(addition.body for addition in self._added.values())
+
+    def add(self, body: Body) -> None:
+        """Put one more body into the running world: it touches, stops lasers and is seen.
+
+        Raises:
+            ValueError: there is a body of that name.
+        """
+        if body.name in self.truth.bodies:
+            raise ValueError(f"there is a body {body.name!r} already")
+        addition = add_body(self.scene, body, self.truth, visuals=self._render)
+        self._added[body.name] = addition
+        if addition.moving is not None:
+            self._moving.append(addition.moving)
+
+    def remove(self, name: str) -> None:
+        """Take an added body away again; KeyError when nothing of that name was added."""
+        addition = self._added.pop(name)
+        if addition.moving is not None:
+            self._moving.remove(addition.moving)
+        self.truth.forget(name)
+        self.scene.remove_entity(addition.entity)
+
+    def put(self, name: str, map_from_body: Transform, *, lying: bool = False) -> None:
+        """Set a loose body somewhere else, at rest.
+
+        lying: it lies on its round side, and loses its spin as a thing on a real table does.
+        """
+        entity = self.truth.entity(name)
+        entity.set_pose(pose_of(map_from_body))
+        part = entity.find_component_by_type(sapien.physx.PhysxRigidDynamicComponent)
+        part.set_linear_velocity([0.0, 0.0, 0.0])
+        part.set_angular_velocity([0.0, 0.0, 0.0])
+        part.set_angular_damping(LYING_DAMPING if lying else ANGULAR_DAMPING)
+        part.wake_up()
+
     def state_bytes(self) -> bytes:
         """The whole physics state, for comparing two runs bit by bit."""
         return bytes(self._system.pack())
@@ -114,7 +161,6 @@ class Simulator:
         description: RobotDescription,
         model: RobotModel,
         still: Any,
-        moving: Any,
         seed: int,
         render: bool,
     ) -> list[tuple[str, Sensor]]:
@@ -129,7 +175,7 @@ class Simulator:
                     sensors.append((name, camera))
             elif isinstance(spec, LaserSensor):
                 where = _pose_source(link)
-                laser = Laser(where, name, spec, still, moving, seed, self.config.laser)
+                laser = Laser(where, name, spec, still, self._moving, seed, self.config.laser)
                 sensors.append((name, laser))
             else:
                 wrist = Wrench(model.articulation, link, name, spec, seed, self.config.wrench)

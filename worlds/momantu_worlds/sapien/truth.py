@@ -13,6 +13,12 @@ from momantu_worlds.sapien.config import SUB_STEPS
 from momantu_worlds.sapien.poses import transform_of
 from momantu_worlds.sapien.robot_model import RobotModel
 
+DOWN = np.array([0.0, 0.0, -1.0], dtype=np.float32)
+FARTHEST_DOWN = 100.0
+"""m; deeper nobody looks."""
+THROUGH = 0.005
+"""m; step by which a ray goes on through what does not count."""
+
 
 @dataclass(frozen=True, slots=True)
 class Contact:
@@ -26,6 +32,14 @@ class Contact:
     first: str
     second: str
     force: float
+
+
+@dataclass(frozen=True, slots=True)
+class JointSpeed:
+    """How fast a joint moves: m/s when `linear`, else rad/s; never negative."""
+
+    speed: float
+    linear: bool
 
 
 class Truth:
@@ -43,6 +57,16 @@ class Truth:
         """Make a body known by name."""
         self._entities[name] = entity
 
+    def forget(self, name: str) -> None:
+        """A body is gone."""
+        del self._entities[name]
+
+    def entity(self, name: str) -> Any:
+        """A body's SAPIEN entity; KeyError with the names there are when there is none."""
+        if name not in self._entities:
+            raise KeyError(f"no body {name!r}; bodies: {', '.join(self._entities)}")
+        return self._entities[name]
+
     @property
     def bodies(self) -> tuple[str, ...]:
         """Names of all bodies, robot excluded."""
@@ -50,13 +74,13 @@ class Truth:
 
     def pose(self, body: str) -> Transform:
         """`map_from_body`; KeyError with the names there are when there is none."""
-        return transform_of(self._entity(body).pose)
+        return transform_of(self.entity(body).pose)
 
     def speed(self, body: str) -> tuple[float, float]:
         """Speed of a moving body, m/s and rad/s; (0, 0) for what never moves."""
         import sapien
 
-        part = self._entity(body).find_component_by_type(sapien.physx.PhysxRigidDynamicComponent)
+        part = self.entity(body).find_component_by_type(sapien.physx.PhysxRigidDynamicComponent)
         if part is None:
             return 0.0, 0.0
         linear, angular = part.get_linear_velocity(), part.get_angular_velocity()
@@ -69,6 +93,40 @@ class Truth:
     def joint(self, name: str) -> float:
         """Position of one of the robot's joints, rad or m; KeyError when there is none."""
         return float(self._model.positions()[self._model.index[name]])
+
+    def height_below(self, body: str, points: Array) -> tuple[float, str]:
+        """Height of the lowest of points (n, 3) of the map above what lies under them, m, of what.
+
+        The body itself and the robot do not count.
+        """
+        best = (FARTHEST_DOWN, "nothing")
+        for point in points:
+            below, fallen = np.array(point, dtype=np.float32), 0.0
+            while fallen < best[0]:
+                hit = self._system.raycast(below, DOWN, best[0] - fallen)
+                if hit is None:
+                    break
+                fallen += float(hit.distance)
+                if hit.component.entity.name != body and hit.component not in self._links:
+                    best = min(best, (fallen, hit.component.entity.name))
+                    break
+                fallen += THROUGH
+                below = below + DOWN * np.float32(hit.distance + THROUGH)
+        return best
+
+    def base_speed(self) -> tuple[float, float]:
+        """Of the base along the floor and about the vertical, m/s and rad/s."""
+        link = self._model.links[self._base_link]
+        linear, angular = link.get_linear_velocity(), link.get_angular_velocity()
+        return float(np.hypot(linear[0], linear[1])), abs(float(angular[2]))
+
+    def joint_speeds(self) -> dict[str, JointSpeed]:
+        """Of every active joint of the robot, by name."""
+        speeds = np.abs(self._model.velocities()).tolist()
+        return {
+            name: JointSpeed(speeds[self._model.index[name]], joint.type == "prismatic")
+            for name, joint in self._model.joints.items()
+        }
 
     def base(self) -> Pose2D:
         """`map_from_base` on the floor."""
@@ -116,8 +174,3 @@ class Truth:
             a, b, impulse = b, a, -impulse
         before = self._impulses.get((a, b))
         self._impulses[a, b] = impulse if before is None else before + impulse
-
-    def _entity(self, name: str) -> Any:
-        if name not in self._entities:
-            raise KeyError(f"no body {name!r}; bodies: {', '.join(self._entities)}")
-        return self._entities[name]

@@ -6,19 +6,23 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from momantu_bt.claim import Sentence
+from momantu_bt.fault import Effect, Fault
 from momantu_bt.geometry import Transform
 from momantu_bt.robot import RobotDescription
 from momantu_bt.world import Site, Verdict, Video, View
+from momantu_worlds.sapien.faults.rows import possible, prepare
+from momantu_worlds.sapien.faults.stage import Stage
 from momantu_worlds.sapien.robot import SimulatedRobot
 from momantu_worlds.sapien.simulator import Simulator
 from momantu_worlds.scenes.bodies import Episode
+from momantu_worlds.scenes.hand import hand_of
 from momantu_worlds.scenes.judge import ClaimJudge
 from momantu_worlds.scenes.loading import world_path
 from momantu_worlds.scenes.referee import Referee
 
 
 class SapienWorld:
-    """Implements `momantu_bt.world.World` and `momantu_bt.claim.Judge`."""
+    """Implements `World`, and `Judge` and `FaultyWorld` of the framework's contracts."""
 
     def __init__(
         self,
@@ -32,9 +36,10 @@ class SapienWorld:
         self._name, self._episode = name, episode
         self.simulator = Simulator(description, episode, seed)
         wanted = referee and episode.goal is not None
-        hand = description.end_effector.frame
-        self._referee = Referee(episode, self.simulator.truth, hand) if wanted else None
-        self._bodies = {body.name: body for body in episode.bodies}
+        self._referee = (
+            Referee(episode, self.simulator.truth, hand_of(description)) if wanted else None
+        )
+        self._stage = Stage(self.simulator, episode, description, seed, self._referee)
 
     @property
     def name(self) -> str:
@@ -67,8 +72,17 @@ class SapienWorld:
 
     def judge(self, sentence: Sentence, odom_from_base: Transform) -> bool | None:
         """Whether something that a skill claims is true of this instant."""
-        judge = ClaimJudge(self.robot.description, self._bodies, self.simulator.truth)
+        bodies = {body.name: body for body in self._stage.bodies}
+        judge = ClaimJudge(self.robot.description, bodies, self.simulator.truth)
         return judge.judge(sentence, odom_from_base)
+
+    def faults(self) -> tuple[str, ...]:
+        """Names of the faults that this episode can have."""
+        return possible(self._stage)
+
+    def effect(self, fault: Fault) -> Effect:
+        """Prepare a fault; raises FaultError when this episode cannot have it so."""
+        return prepare(self._stage, fault)
 
     def open_video(self, path: Path, title: str) -> Video:
         """Start a film at `path`."""

@@ -6,7 +6,9 @@ in 0..1. Every transform is named `target_from_source`.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import TypeAlias
 
 import numpy as np
@@ -135,11 +137,19 @@ class Goal:
 
 
 @dataclass(frozen=True, slots=True)
+class Gap:
+    """A doorway. at: its middle (x, y), m. clear: radius around it without furniture, m."""
+
+    at: tuple[float, float]
+    clear: float
+
+
+@dataclass(frozen=True, slots=True)
 class Episode:
     """Everything of one episode. The frame of all bodies is the map's; the floor is z = 0.
 
     start: where the robot's base truly stands at first. ambient: light from everywhere.
-    site: what the robot is told. goal: what the referee wants.
+    site: what the robot is told. goal: what the referee wants. doorways: by name.
     """
 
     name: str
@@ -151,6 +161,7 @@ class Episode:
     lamps: tuple[PointLight, ...]
     site: Site
     goal: Goal | None = None
+    doorways: Mapping[str, Gap] = field(default_factory=lambda: MappingProxyType({}))
 
     def body(self, name: str) -> Body:
         """The body of that name; KeyError with the known names when there is none."""

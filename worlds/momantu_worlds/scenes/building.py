@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from types import MappingProxyType
 
 from momantu_bt.geometry import Transform
 from momantu_bt.world import Site
-from momantu_worlds.scenes.bodies import Body, Box, Episode, Goal, Part, Picture
+from momantu_worlds.scenes.bodies import Body, Box, Episode, Gap, Goal, Part, Picture
 from momantu_worlds.scenes.furniture import furniture
 from momantu_worlds.scenes.layout import Layout
 from momantu_worlds.scenes.objects import Thing
@@ -34,6 +35,9 @@ def build(world: WorldFile, layout: Layout, site: Site) -> Episode:
         lamps=layout.light.lamps,
         site=site,
         goal=goal_of(world),
+        doorways=MappingProxyType(
+            {name: Gap(door.at, door.clear) for name, door in world.doorways.items()}
+        ),
     )
 
 

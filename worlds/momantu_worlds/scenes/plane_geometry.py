@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import deque
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
@@ -96,6 +97,40 @@ class Passages:
             stack += (at + 1, at - 1, at + columns, at - columns)
         reached.ravel()[:] = np.frombuffer(seen, dtype=np.uint8) != 0
         return reached
+
+    def nearest_free(self, point: tuple[float, float]) -> tuple[float, float]:
+        """Centre of the free cell nearest to a point, m; ValueError when no cell is free."""
+        rows, columns = np.nonzero(self.free)
+        if len(rows) == 0:
+            raise ValueError("no cell is free")
+        x, y = self.origin[0] + self.cell * columns, self.origin[1] + self.cell * rows
+        best = int(np.argmin(np.hypot(x - point[0], y - point[1])))
+        return float(x[best]), float(y[best])
+
+    def route(self, start: tuple[float, float], end: tuple[float, float]) -> Array:
+        """Cell centres (n, 2) of a shortest way between two free points; (0, 2) if there is none.
+
+        Breadth first, by steps to four neighbours.
+        """
+        columns = self.free.shape[1]
+        flat = self.free.ravel().tolist()
+        (row, column), (end_row, end_column) = self.index(start), self.index(end)
+        first, last = row * columns + column, end_row * columns + end_column
+        came = {first: first}
+        queue = deque([first] if flat[first] else [])
+        while queue and last not in came:
+            at = queue.popleft()
+            for after in (at + 1, at - 1, at + columns, at - columns):
+                if flat[after] and after not in came:
+                    came[after] = at
+                    queue.append(after)
+        if last not in came:
+            return np.zeros((0, 2))
+        cells = [last]
+        while cells[-1] != first:
+            cells.append(came[cells[-1]])
+        back = np.array(cells[::-1])
+        return np.column_stack([back % columns, back // columns]) * self.cell + self.origin
 
     def index(self, point: tuple[float, float]) -> tuple[int, int]:
         """(row, column) of the cell that holds a point."""

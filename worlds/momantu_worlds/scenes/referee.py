@@ -2,22 +2,25 @@
 
 It looks after every tick. What must hold at the end (upright, on the top, beside the marker,
 still, touched by nothing else, gripper away) is judged of the last tick; what must never happen
-(a hard bump, another thing pushed or toppled) of the worst tick so far.
+(a hard bump, another thing pushed or toppled) of the worst tick so far. What was dangerous is
+told beside that, demanded or not: see `incidents`.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Protocol
 
 import numpy as np
 
 from momantu_bt.geometry import Transform
 from momantu_bt.world import Verdict
-from momantu_worlds.scenes.bodies import Body, Box, Cylinder, Episode, Goal
+from momantu_worlds.scenes.bodies import Body, Episode, Goal
+from momantu_worlds.scenes.ground_truth import GroundTruth
+from momantu_worlds.scenes.hand import Hand
+from momantu_worlds.scenes.incidents import Incidents
+from momantu_worlds.scenes.standing import Top, Upright
 
 STILL_SHIFT = 0.002
 """m; what stands still stays within this of where it was: four times what the solver jitters."""
@@ -25,50 +28,6 @@ STILL_TURN = math.radians(0.5)
 """rad; likewise."""
 ON_TOP = 0.005
 """m; the base may be this far above or below the top and still count as standing on it."""
-
-
-class TouchingForce(Protocol):
-    """Two things that touched; the robot's links come first. force: N, averaged over the tick."""
-
-    @property
-    def first(self) -> str:
-        """Name of a robot's link, or of a body."""
-        ...
-
-    @property
-    def second(self) -> str:
-        """Name of a body or of a link."""
-        ...
-
-    @property
-    def force(self) -> float:
-        """N."""
-        ...
-
-
-class GroundTruth(Protocol):
-    """What a simulator tells a referee."""
-
-    @property
-    def robot_links(self) -> frozenset[str]:
-        """Names of the robot's links."""
-        ...
-
-    def pose(self, body: str, /) -> Transform:
-        """`map_from_body`."""
-        ...
-
-    def link(self, name: str, /) -> Transform:
-        """`map_from_link`."""
-        ...
-
-    def watch_contacts(self) -> None:
-        """Collect contacts from the next tick on."""
-        ...
-
-    def contacts(self) -> Iterable[TouchingForce]:
-        """What touched during the last tick."""
-        ...
 
 
 @dataclass(slots=True)
@@ -87,14 +46,14 @@ class Worst:
 class Referee:
     """Judges one episode; see the module's text for what it holds against whom."""
 
-    def __init__(self, episode: Episode, truth: GroundTruth, gripper: str) -> None:
-        """gripper: the robot's link whose origin lies between the gripper's pads."""
+    def __init__(self, episode: Episode, truth: GroundTruth, hand: Hand) -> None:
+        """Watch from the next tick on."""
         if episode.goal is None:
             raise ValueError(f"the episode of {episode.name!r} has no goal to judge")
         self._goal: Goal = episode.goal
-        self._truth, self._gripper = truth, gripper
-        self._item = _Upright(episode.body(self._goal.item))
-        self._support = _Top(episode.body(self._goal.support))
+        self._truth, self._gripper = truth, hand.gripper
+        self._item = Upright(episode.body(self._goal.item))
+        self._support = Top(episode.body(self._goal.support))
         self._others = {
             body.name: body.map_from_body
             for body in episode.bodies
@@ -104,12 +63,14 @@ class Referee:
         self._rest = episode.body(self._goal.item).map_from_body
         self._rest_since = self._now = 0.0
         self._touching: frozenset[str] = frozenset()
+        self._incidents = Incidents(episode, truth, hand)
         truth.watch_contacts()
 
     def observe(self, now: float) -> None:
         """Look at the instant `now`, s; to be called once after every tick."""
         self._now = now
         self._look_at_contacts()
+        self._incidents.observe(now)
         pose = self._truth.pose(self._goal.item)
         if _moved(self._rest, pose) > STILL_SHIFT or self._rest.angle_to(pose) > STILL_TURN:
             self._rest, self._rest_since = pose, now
@@ -118,11 +79,27 @@ class Referee:
             self._shift.see(_moved(before, pose), name)
             self._tilt.see(tilt(pose), name)
 
+    def taken(self, name: str) -> None:
+        """A body was set elsewhere by somebody else than the robot."""
+        self._incidents.taken(name)
+
+    def added(self, body: Body) -> None:
+        """A body came into the world; a loose one must not be pushed or toppled either."""
+        if not body.static:
+            self._others[body.name] = body.map_from_body
+        self._incidents.added(body)
+
+    def removed(self, name: str) -> None:
+        """An added body has left the world."""
+        self._others.pop(name, None)
+        self._incidents.removed(name)
+
     def verdict(self) -> Verdict:
         """The word on the instant last observed, with every unmet demand and the numbers."""
         measures = self._measures()
         unmet = tuple(sentence for bad, sentence in self._demands(measures) if bad)
-        return Verdict(not unmet, unmet, MappingProxyType(measures))
+        incidents = self._incidents.until(self._now)
+        return Verdict(not unmet, unmet, MappingProxyType(measures), incidents)
 
     def _look_at_contacts(self) -> None:
         links, item = self._truth.robot_links, self._goal.item
@@ -202,51 +179,6 @@ def tilt(pose: Transform) -> float:
     """Angle between a body's z axis and the vertical, rad."""
     _, x, y, _ = (float(v) for v in pose.quaternion)
     return math.acos(max(-1.0, 1.0 - 2.0 * (x * x + y * y)))
-
-
-class _Upright:
-    """The cylinder that an item is, standing on its origin."""
-
-    def __init__(self, body: Body) -> None:
-        shape = next(
-            (p.geometry for p in body.parts if p.collision and isinstance(p.geometry, Cylinder)),
-            None,
-        )
-        if shape is None:
-            raise ValueError(f"the item {body.name!r} has no cylinder to judge it by")
-        self.radius, self.height = shape.radius, shape.height
-
-    def distance(self, map_from_item: Transform, map_from_link: Transform) -> float:
-        """From a link's origin to the nearest point of the item, m."""
-        x, y, z = map_from_item.inverse().apply(map_from_link.position)
-        beside = max(0.0, math.hypot(x, y) - self.radius)
-        above = max(0.0, abs(z - self.height / 2) - self.height / 2)
-        return math.hypot(beside, above)
-
-
-class _Top:
-    """The highest box of a table is its top."""
-
-    def __init__(self, body: Body) -> None:
-        boxes = [(p.body_from_part, p.geometry) for p in body.parts if isinstance(p.geometry, Box)]
-        if not boxes:
-            raise ValueError(f"the support {body.name!r} has no box to stand on")
-        at, box = max(boxes, key=lambda pair: pair[0].position[2] + pair[1].size[2] / 2)
-        self._body_from_surface = at @ Transform((0.0, 0.0, box.size[2] / 2))
-        self._half = (box.size[0] / 2, box.size[1] / 2)
-
-    def _on(self, map_from_body: Transform, pose: Transform) -> tuple[float, float, float]:
-        x, y, z = (map_from_body @ self._body_from_surface).inverse().apply(pose.position)
-        return float(x), float(y), float(z)
-
-    def margin(self, map_from_body: Transform, pose: Transform) -> float:
-        """How far a point lies within the nearest edge, m; below 0 beyond it."""
-        x, y, _ = self._on(map_from_body, pose)
-        return min(self._half[0] - abs(x), self._half[1] - abs(y))
-
-    def height_above(self, map_from_body: Transform, pose: Transform) -> float:
-        """Height of a point above the surface, m."""
-        return self._on(map_from_body, pose)[2]
 
 
 def _moved(before: Transform, now: Transform) -> float:

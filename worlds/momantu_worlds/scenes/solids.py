@@ -46,7 +46,7 @@ class Solid:
         if isinstance(geometry, Cylinder):
             near = np.hypot(own[:, 0], own[:, 1]) <= geometry.radius
             return np.asarray(near & (np.abs(own[:, 2]) <= geometry.height / 2))
-        around = _outline(self.part)
+        around = outline(self.part)
         return np.asarray(((own >= around.min(axis=0)) & (own <= around.max(axis=0))).all(axis=1))
 
     def beside(self, point: Array) -> float:
@@ -79,7 +79,7 @@ class Standing:
     @cached_property
     def _box(self) -> tuple[Array, Array]:
         parts = [part for part in self.body.parts if part.collision]
-        own = np.concatenate([part.body_from_part.apply(_outline(part)) for part in parts])
+        own = np.concatenate([part.body_from_part.apply(outline(part)) for part in parts])
         return own.min(axis=0), own.max(axis=0)
 
     @property
@@ -168,10 +168,10 @@ def _solids(body: Body, map_from_body: Transform) -> Iterable[Solid]:
     for part in body.parts:
         if part.collision:
             map_from_part = map_from_body @ part.body_from_part
-            yield Solid(part, map_from_part, map_from_part.apply(_outline(part)))
+            yield Solid(part, map_from_part, map_from_part.apply(outline(part)))
 
 
-def _outline(part: Part) -> Array:
+def outline(part: Part) -> Array:
     """Vertices (n, 3) around a part, in its own frame."""
     geometry = part.geometry
     if isinstance(geometry, Box):

@@ -177,17 +177,20 @@ def _fine(
         item = Disc(item_at.x, item_at.y, world.item.radius, world.item.height)
         if _gap(last, item) < rule.gap_to_item or not lane(item, discs, side):
             return False
-        if seen_share(_body_points(item), discs, placed, side, item) < ITEM_SEEN:
+        if seen_share(outline_points(item), discs, placed, side, item) < ITEM_SEEN:
             return False
     if table == world.tag.on:
         corner = picture_edge(world.tag.edge) / math.sqrt(2.0)
         tag = Disc(tag_at.x, tag_at.y, corner, 0.0)
         if (
             _gap(last, tag) < 0
-            or seen_share(_tag_points(tag_at, corner), discs, placed, side, tag) < 1
+            or seen_share(tag_points(tag_at, corner), discs, placed, side, tag) < 1
         ):
             return False
-    return table != world.goal.on or bool(free_spots(world, placed, discs, tag_at))
+    if table != world.goal.on:
+        return True
+    wanted = SetDown(world.item.radius, world.item.height, world.goal.distance, side)
+    return bool(free_spots(wanted, placed, discs, tag_at))
 
 
 def _gap(a: Disc, b: Disc) -> float:
@@ -241,7 +244,7 @@ def _behind(points: Array, eye: Array, disc: Disc) -> NDArray[np.bool_]:
     return np.asarray((b * b > a * c) & (enter < 1.0) & (leave > 0.0) & (low < disc.height))
 
 
-def _body_points(disc: Disc) -> Array:
+def outline_points(disc: Disc) -> Array:
     """Points on the outline of a cylinder: its rims and its middle, eight around."""
     turns = np.arange(8) * (math.pi / 4)
     ring = np.stack([disc.x + disc.radius * np.cos(turns), disc.y + disc.radius * np.sin(turns)], 1)
@@ -249,7 +252,7 @@ def _body_points(disc: Disc) -> Array:
     return np.concatenate([np.column_stack([ring, np.full(8, disc.height * h)]) for h in heights])
 
 
-def _tag_points(at: Pose2D, corner: float) -> Array:
+def tag_points(at: Pose2D, corner: float) -> Array:
     """Corners, edge middles and centre of the tag's picture."""
     turns = at.yaw + np.arange(8) * (math.pi / 4)
     reach = np.where(np.arange(8) % 2 == 1, corner, corner / math.sqrt(2.0))
@@ -257,21 +260,33 @@ def _tag_points(at: Pose2D, corner: float) -> Array:
     return np.column_stack([np.concatenate([around, [(at.x, at.y)]]), np.zeros(9)])
 
 
+@dataclass(frozen=True, slots=True)
+class SetDown:
+    """What is to be set down: its radius and height, within `distance` of the tag, m.
+
+    side: the table's preferred side, in its own frame, rad.
+    """
+
+    radius: float
+    height: float
+    distance: float
+    side: float
+
+
 def free_spots(
-    world: WorldFile, table: PlacedTable, discs: Sequence[Disc], tag_at: Pose2D
+    wanted: SetDown, table: PlacedTable, discs: Sequence[Disc], tag_at: Pose2D
 ) -> list[tuple[float, float]]:
     """Places (x, y) in the table's frame where the item could be set down beside the tag."""
-    item, side = world.item, world.tables[world.goal.on].sides[0]
-    near = world.goal.distance - SPOT_MARGIN
+    side, near = wanted.side, wanted.distance - SPOT_MARGIN
     cos, sin = math.cos(side), math.sin(side)
-    half = np.array(table.size) / 2 - item.radius - 0.03
+    half = np.array(table.size) / 2 - wanted.radius - 0.03
     edge = table.size[0] / 2 if abs(cos) > abs(sin) else table.size[1] / 2
     spots = []
     steps = np.arange(-near, near + 1e-9, 0.05)
     for dx in steps:
         for dy in steps:
             x, y = tag_at.x + float(dx), tag_at.y + float(dy)
-            spot = Disc(x, y, item.radius, item.height)
+            spot = Disc(x, y, wanted.radius, wanted.height)
             if (
                 math.hypot(dx, dy) <= near
                 and abs(x) <= half[0]

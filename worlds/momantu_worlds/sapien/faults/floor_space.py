@@ -1,0 +1,45 @@
+"""The floor as a robot could stand on it now: free cells, and ways over them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from momantu_bt.geometry import Pose2D
+from momantu_worlds.sapien.faults.stage import Stage
+from momantu_worlds.scenes.plane_geometry import Passages, Rectangle, passages
+from momantu_worlds.scenes.prisms import Prism
+
+WALL = "wall"
+"""Category of what bounds the rooms."""
+AIR = 0.05
+"""m; what the base keeps from everything."""
+BORDER = 1.0
+"""m; floor around the outermost bodies that counts, where there are no walls."""
+
+
+def free_floor(stage: Stage) -> Passages:
+    """Where the base has room among all that stands still, indoors when there are walls."""
+    radius = max(math.hypot(x, y) for x, y in stage.description.footprint) + AIR
+    height = max(prism.top for prism in stage.robot_prisms())
+    loose = {body.name for body in stage.bodies if not body.static}
+    prisms = [s for s in stage.prisms(*loose) if s.bottom < height]
+    walls = stage.prisms(categories=(WALL,))
+    corners = np.concatenate([s.base.corners() for s in walls or prisms])
+    border = 0.0 if walls else BORDER
+    low, high = corners.min(axis=0) - border, corners.max(axis=0) + border
+    center, size = (low + high) / 2, high - low
+    return passages(
+        [s.base for s in prisms],
+        (float(center[0]), float(center[1])),
+        (float(size[0]), float(size[1])),
+        radius,
+    )
+
+
+def walls_between(stage: Stage, a: tuple[float, float], b: tuple[float, float]) -> bool:
+    """Whether a wall crosses the straight line between two points of the floor."""
+    middle = Pose2D((a[0] + b[0]) / 2, (a[1] + b[1]) / 2, math.atan2(b[1] - a[1], b[0] - a[0]))
+    line = Prism(Rectangle(middle, (math.dist(a, b), 0.01)), 0.0, 0.1)
+    return not line.clear_of(stage.prisms(categories=(WALL,)), 0.0)

@@ -1,0 +1,56 @@
+"""object.knocked_over: the item is tipped over and lies on its table."""
+
+from __future__ import annotations
+
+import math
+
+from momantu_bt.fault import Fault, FaultError
+from momantu_bt.geometry import Transform
+from momantu_worlds.sapien.faults.laid import lying
+from momantu_worlds.sapien.faults.parameters import only
+from momantu_worlds.sapien.faults.stage import Stage
+from momantu_worlds.sapien.faults.tops import TableTop, clear_on, item_top
+from momantu_worlds.scenes.standing import Upright
+
+ASIDE = 0.01
+"""m; least gap to everything where it lies."""
+DIRECTIONS = 24
+
+
+class KnockedOver:
+    """Stays as it lies."""
+
+    def __init__(self, stage: Stage, fault: Fault) -> None:
+        """No parameters."""
+        only(fault)
+        self._stage, self._fault, self._item = stage, fault, Upright(stage.item)
+
+    def begin(self) -> None:
+        """Tip it over its rim in a seeded direction in which it meets nothing.
+
+        Raises:
+            FaultError: it stands on no table now, or there is something on all sides.
+        """
+        top = item_top(self._stage)
+        start = float(self._stage.random(self._fault).uniform(0.0, 2 * math.pi))
+        for i in range(DIRECTIONS):
+            pose = self._tipped(top, start + 2 * math.pi * i / DIRECTIONS)
+            if self._free(top, pose):
+                self._stage.move_item(pose, lying=True)
+                return
+        raise FaultError(
+            f"{self._fault.name}: {self._stage.goal.item} has no room to lie on {top.name}"
+        )
+
+    def end(self) -> None:
+        """It is not set up again."""
+
+    def _tipped(self, top: TableTop, direction: float) -> Transform:
+        x, y, _ = (float(v) for v in self._stage.item_pose().position)
+        rim_x = x + self._item.radius * math.cos(direction)
+        rim_y = y + self._item.radius * math.sin(direction)
+        return lying(self._item, rim_x, rim_y, float(top.map_from_top.position[2]), direction)
+
+    def _free(self, top: TableTop, pose: Transform) -> bool:
+        prism = self._stage.item_prism(pose)
+        return top.holds(prism) and clear_on(self._stage, prism, top, ASIDE, self._stage.goal.item)

@@ -1,0 +1,66 @@
+"""object.moved: someone shifts the item on the table that it stands on."""
+
+from __future__ import annotations
+
+import math
+
+from momantu_bt.fault import Fault, FaultError
+from momantu_bt.geometry import Transform
+from momantu_worlds.sapien.faults.parameters import number, only
+from momantu_worlds.sapien.faults.stage import Stage
+from momantu_worlds.sapien.faults.tops import TableTop, clear_on, item_top, things_on
+from momantu_worlds.scenes.standing import Upright
+from momantu_worlds.scenes.tabletop import Disc, lane
+
+FARTHEST = 2.0
+"""m."""
+ASIDE = 0.02
+"""m; least gap to everything at the new place."""
+DIRECTIONS = 24
+
+
+class Moved:
+    """Stays where it is put."""
+
+    def __init__(self, stage: Stage, fault: Fault) -> None:
+        """Parameters: distance, how far, m."""
+        only(fault, "distance")
+        self._distance = number(fault, "distance", 0.01, FARTHEST, "m")
+        self._stage, self._fault = stage, fault
+        self._item = Upright(stage.item)
+
+    def begin(self) -> None:
+        """Shift it in a seeded direction, to where a hand still gets to it when there is one.
+
+        Raises:
+            FaultError: it stands on no table now, or nothing is free at that distance.
+        """
+        top = item_top(self._stage)
+        start = float(self._stage.random(self._fault).uniform(0.0, 2 * math.pi))
+        angles = [start + 2 * math.pi * i / DIRECTIONS for i in range(DIRECTIONS)]
+        free = [pose for pose in map(self._shifted, angles) if self._free(top, pose)]
+        if not free:
+            raise FaultError(
+                f"{self._fault.name}: nothing is free {self._distance:g} m from "
+                f"{self._stage.goal.item} on {top.name}"
+            )
+        reached = (pose for pose in free if self._hand_gets_to(top, pose))
+        self._stage.move_item(next(reached, free[0]))
+
+    def end(self) -> None:
+        """It is not put back."""
+
+    def _shifted(self, angle: float) -> Transform:
+        pose = self._stage.item_pose()
+        x, y, z = (float(v) for v in pose.position)
+        along, across = self._distance * math.cos(angle), self._distance * math.sin(angle)
+        return Transform((x + along, y + across, z), pose.quaternion)
+
+    def _free(self, top: TableTop, pose: Transform) -> bool:
+        prism = self._stage.item_prism(pose)
+        return top.holds(prism) and clear_on(self._stage, prism, top, ASIDE, self._stage.goal.item)
+
+    def _hand_gets_to(self, top: TableTop, pose: Transform) -> bool:
+        x, y, _ = (float(v) for v in top.map_from_top.inverse().apply(pose.position))
+        spot = Disc(x, y, self._item.radius, self._item.height)
+        return lane(spot, things_on(self._stage, top, self._stage.goal.item), top.side)

@@ -1,0 +1,73 @@
+"""camera.phantom: the look-alike of the item is seen on the same top, and nothing is there."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+
+from momantu_bt.fault import Fault, FaultError
+from momantu_bt.geometry import Pose2D, Transform
+from momantu_worlds.sapien.faults.pictures import PictureCount, cameras, frames
+from momantu_worlds.sapien.faults.stage import Stage
+from momantu_worlds.sapien.faults.tops import TableTop, clear_on, item_top, things_on
+from momantu_worlds.scenes.bodies import Body
+from momantu_worlds.scenes.standing import Upright
+from momantu_worlds.scenes.tabletop import ITEM_SEEN, Disc, lane, outline_points, seen_share
+
+APART = 0.15
+"""m; least distance to the item."""
+ASIDE = 0.03
+"""m; least gap to everything, so that what is seen there is one thing."""
+TRIES = 400
+"""Draws of a place before there is none."""
+
+
+class Phantom:
+    """Shows what has a look and no body; films show it too."""
+
+    def __init__(self, stage: Stage, fault: Fault) -> None:
+        """Parameters: frames, how many pictures of the place show it."""
+        cameras(stage, fault)
+        self._stage, self._fault, self._frames = stage, fault, frames(fault)
+        self._item = stage.item
+        self._count: PictureCount | None = None
+
+    def begin(self) -> None:
+        """Show it; FaultError while the item stands on no top, or on one without room."""
+        top = item_top(self._stage)
+        pose = self._place(top)
+        parts = tuple(dataclasses.replace(p, collision=False) for p in self._item.parts)
+        self._shown = self._stage.add(Body("phantom", "phantom", pose, parts))
+        middle = pose.apply(np.array([0.0, 0.0, Upright(self._item).height / 2]))
+        self._count = PictureCount(self._stage, self._frames, lambda: middle, self.end)
+
+    def end(self) -> None:
+        """Show it no longer; it goes by itself after its pictures."""
+        if self._count is not None:
+            self._count.stop()
+            self._count = None
+            self._stage.remove(self._shown)
+
+    def _place(self, top: TableTop) -> Transform:
+        """A seeded free place on the top that is seen from before it, and that a hand gets to."""
+        item, draw = Upright(self._item), self._stage.random(self._fault)
+        here = top.map_from_top.inverse().apply(self._stage.item_pose().position)
+        things = things_on(self._stage, top)
+        half = np.array(top.size) / 2
+        for _ in range(TRIES):
+            x, y = draw.uniform(-half, half).tolist()
+            at = Pose2D(x, y, float(draw.uniform(-math.pi, math.pi)))
+            pose, spot = top.map_from_top @ at.transform(), Disc(x, y, item.radius, item.height)
+            prism = self._stage.item_prism(pose)
+            if (
+                math.hypot(x - here[0], y - here[1]) >= APART
+                and top.holds(prism)
+                and clear_on(self._stage, prism, top, ASIDE)
+                and lane(spot, things, top.side)
+                and seen_share(outline_points(spot), things, top.placed, top.side, spot)
+                >= ITEM_SEEN
+            ):
+                return pose
+        raise FaultError(f"{self._fault.name}: there is no room for a look-alike on {top.name}")

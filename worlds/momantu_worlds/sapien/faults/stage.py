@@ -1,0 +1,152 @@
+"""What effects work on: the simulator, the episode and its goal, and the referee to be told."""
+
+from __future__ import annotations
+
+import dataclasses
+from itertools import chain, count
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from momantu_bt.fault import Fault, FaultError
+from momantu_bt.geometry import Pose2D, Transform
+from momantu_bt.robot import RobotDescription
+from momantu_bt.world import seeded
+from momantu_worlds.sapien.faults.robot_room import RobotRoom
+from momantu_worlds.scenes.bodies import Body, Episode, Gap, Goal, Picture
+from momantu_worlds.scenes.prisms import Prism, body_prism
+from momantu_worlds.scenes.standing import Upright
+
+if TYPE_CHECKING:
+    from momantu_worlds.sapien.simulator import Simulator
+    from momantu_worlds.scenes.referee import Referee
+
+IN_HAND = 0.03
+"""m; nearer to the item than this the point between the pads has the item between the fingers."""
+
+LIFTED = 0.01
+"""m; what is held is at least this far above what lies below."""
+
+
+class Stage:
+    """Ground truth, and hands to change it.
+
+    simulator, episode, description, referee (None where nobody judges): of this run.
+    """
+
+    def __init__(
+        self,
+        simulator: Simulator,
+        episode: Episode,
+        description: RobotDescription,
+        seed: int,
+        referee: Referee | None,
+    ) -> None:
+        self.simulator, self.episode, self.description = simulator, episode, description
+        self.referee = referee
+        self._seed = seed
+        self._room = RobotRoom(simulator.model)
+
+    def random(self, fault: Fault) -> np.random.Generator:
+        """Draws for one fault of one run; the same whatever else happened."""
+        return seeded(self._seed, "fault", fault.name)
+
+    @property
+    def goal(self) -> Goal:
+        """What is to be brought where; FaultError in an episode without a goal."""
+        if self.episode.goal is None:
+            raise FaultError(f"the world {self.episode.name!r} has no goal, so no object to break")
+        return self.episode.goal
+
+    @property
+    def item(self) -> Body:
+        """What is brought, as the episode began with it."""
+        return self.episode.body(self.goal.item)
+
+    @property
+    def marker(self) -> Body:
+        """The tag beside which it goes; FaultError when the goal has no picture as its marker."""
+        body = self.episode.body(self.goal.marker)
+        if not any(isinstance(part.geometry, Picture) for part in body.parts):
+            raise FaultError(f"the goal's marker {body.name!r} is no picture that could be covered")
+        return body
+
+    @property
+    def doorways(self) -> tuple[Gap, ...]:
+        """Middles of the doorways; FaultError in a world without any."""
+        if not self.episode.doorways:
+            raise FaultError(f"the world {self.episode.name!r} has no doorways")
+        return tuple(self.episode.doorways.values())
+
+    @property
+    def bodies(self) -> tuple[Body, ...]:
+        """All bodies that are there now."""
+        return (*self.episode.bodies, *self.simulator.added)
+
+    def base(self) -> Pose2D:
+        """Where the robot stands."""
+        return self.simulator.truth.base()
+
+    def item_pose(self) -> Transform:
+        """Where the item is: `map_from_item`."""
+        return self.simulator.truth.pose(self.goal.item)
+
+    def item_prism(self, map_from_item: Transform | None = None) -> Prism:
+        """The room that the item takes up, as it is or elsewhere."""
+        prism = body_prism(self.item, map_from_item or self.item_pose())
+        assert prism is not None  # what is brought can be touched
+        return prism
+
+    def in_hand(self) -> bool:
+        """Whether the item is between the fingers, gripped or about to be."""
+        hand = self.simulator.truth.link(self.description.end_effector.frame)
+        return Upright(self.item).distance(self.item_pose(), hand) < IN_HAND
+
+    def held(self) -> bool:
+        """Whether the item is in the hand, off every surface."""
+        if self.episode.goal is None:
+            return False
+        foot = self.item_prism().foot()
+        height, _ = self.simulator.truth.height_below(self.goal.item, foot)
+        return self.in_hand() and height > LIFTED
+
+    def robot_prisms(self, map_from_base: Pose2D | None = None) -> list[Prism]:
+        """The room that the robot takes up, as it is or with its base elsewhere."""
+        return self._room.prisms(self.base(), map_from_base)
+
+    def prisms(self, *without: str, categories: tuple[str, ...] = ()) -> list[Prism]:
+        """The room that bodies take up, those named left out; of some categories, or of all."""
+        pose = self.simulator.truth.pose
+        found = (
+            body_prism(body, pose(body.name))
+            for body in self.bodies
+            if body.name not in without and (not categories or body.category in categories)
+        )
+        return [prism for prism in found if prism is not None]
+
+    def move_item(self, map_from_item: Transform, *, lying: bool = False) -> None:
+        """Take the item elsewhere, at rest; it is not the robot that let go of it."""
+        self.simulator.put(self.goal.item, map_from_item, lying=lying)
+        if self.referee is not None:
+            self.referee.taken(self.goal.item)
+
+    def add(self, body: Body) -> str:
+        """Put one more body into the world; the referee watches it when it is loose.
+
+        Returns:
+            Its name, to which a number was added when another body has it.
+        """
+        names = {other.name for other in self.bodies}
+        taken = (f"{body.name}_{number}" for number in count(2))
+        name = next(n for n in chain([body.name], taken) if n not in names)
+        body = dataclasses.replace(body, name=name)
+        self.simulator.add(body)
+        if self.referee is not None:
+            self.referee.added(body)
+        return name
+
+    def remove(self, name: str) -> None:
+        """Take an added body away again."""
+        self.simulator.remove(name)
+        if self.referee is not None:
+            self.referee.removed(name)

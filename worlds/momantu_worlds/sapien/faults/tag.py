@@ -1,0 +1,73 @@
+"""tag.covered and tag.wrong_id: a book or another tag lies where the marker was seen."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from momantu_bt.fault import Fault, FaultError
+from momantu_bt.geometry import Transform
+from momantu_worlds.sapien.faults.parameters import only, whole
+from momantu_worlds.sapien.faults.stage import Stage
+from momantu_worlds.sapien.faults.tops import clear_on, table_top
+from momantu_worlds.scenes.bodies import Body, Part, Picture
+from momantu_worlds.scenes.parts import block
+from momantu_worlds.scenes.prisms import body_prism
+from momantu_worlds.scenes.tag36h11 import CODES, tag_picture
+
+PAPER = 0.0005
+"""m; thickness of the sheet that another tag is printed on."""
+BOOK, BOOK_MASS = 0.02, 0.4
+"""m, kg; thickness and mass of a book that is as large as the marker's picture."""
+BOOK_COLOR = (0.28, 0.18, 0.16)
+
+
+class Overlaid:
+    """Something flat lies on the marker, away again at the end."""
+
+    def __init__(self, stage: Stage, fault: Fault, cover: Callable[[Transform], Body]) -> None:
+        """cover: the body that lies on the marker, from `map_from_marker`."""
+        self._stage, self._fault, self._cover = stage, fault, cover
+        self._added: str | None = None
+
+    def begin(self) -> None:
+        """Lay it down; FaultError while something is in the way."""
+        stage = self._stage
+        body = self._cover(stage.simulator.truth.pose(stage.goal.marker))
+        prism, top = body_prism(body, body.map_from_body), table_top(stage, stage.goal.support)
+        if prism is not None and not clear_on(stage, prism, top, 0.0):
+            raise FaultError(f"{self._fault.name}: something stands on {stage.goal.marker} now")
+        self._added = stage.add(body)
+
+    def end(self) -> None:
+        """Take it away."""
+        if self._added is not None:
+            self._stage.remove(self._added)
+            self._added = None
+
+
+def covered(stage: Stage, fault: Fault) -> Overlaid:
+    """A closed book, which can be pushed. No parameters."""
+    only(fault)
+    x, y = marker_picture(stage).size
+    part = block((x, y, BOOK), (0.0, 0.0, BOOK / 2), BOOK_COLOR)
+    return Overlaid(
+        stage, fault, lambda at: Body("book", "book", at, (part,), static=False, mass=BOOK_MASS)
+    )
+
+
+def wrong_id(stage: Stage, fault: Fault) -> Overlaid:
+    """Another tag of the family, printed as large on thin paper. Parameters: id, its number."""
+    only(fault, "id")
+    number = whole(fault, "id", 0, len(CODES) - 1)
+    own, pixels = marker_picture(stage), tag_picture(number)
+    if np.array_equal(own.pixels, pixels):
+        raise FaultError(f"{fault.name}: {number} is the id that the tag has; name another one")
+    part = Part(Picture(own.size, pixels), Transform((0.0, 0.0, PAPER)), collision=False)
+    return Overlaid(stage, fault, lambda at: Body("other_tag", "tag", at, (part,)))
+
+
+def marker_picture(stage: Stage) -> Picture:
+    """The picture of the goal's marker; FaultError when it has none."""
+    return next(p.geometry for p in stage.marker.parts if isinstance(p.geometry, Picture))

@@ -1,0 +1,111 @@
+"""Table tops as they are now: what stands on them, and where there is room for one thing more."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from momantu_bt.fault import FaultError
+from momantu_bt.geometry import Pose2D, Transform
+from momantu_worlds.sapien.faults.stage import Stage
+from momantu_worlds.scenes.bodies import Body, Cylinder
+from momantu_worlds.scenes.layout import PlacedTable
+from momantu_worlds.scenes.prisms import Prism, body_points, prism_around
+from momantu_worlds.scenes.standing import Top
+from momantu_worlds.scenes.tabletop import Disc
+
+TABLES = ("table", "desk")
+"""Categories of bodies with a top."""
+STANDING = 0.03
+"""m; what is no farther than this above or below a top stands on it."""
+RIM = 0.02
+"""m; what is put on a top keeps this from its edge."""
+UPRIGHT = math.cos(0.1)
+
+
+@dataclass(frozen=True, slots=True)
+class TableTop:
+    """One top. name: of its body. size: extent along its own x and y, m.
+
+    side: direction from which it is preferably approached, in its own frame, rad.
+    """
+
+    name: str
+    map_from_top: Transform
+    size: tuple[float, float]
+    side: float
+
+    @property
+    def placed(self) -> PlacedTable:
+        """The same as layouts have it."""
+        height = float(self.map_from_top.position[2])
+        return PlacedTable(Pose2D.from_transform(self.map_from_top), height, self.size)
+
+    def holds(self, prism: Prism) -> bool:
+        """Whether all of a prism is above the top, RIM inside its edges."""
+        corners = np.column_stack([prism.base.corners(), np.zeros(4)])
+        own = np.abs(self.map_from_top.inverse().apply(corners)[:, :2])
+        return bool(np.all(own <= np.array(self.size) / 2 - RIM))
+
+
+def table_top(stage: Stage, name: str) -> TableTop:
+    """The top of a body, where it truly is."""
+    top = Top(stage.episode.body(name))
+    surface = stage.episode.site.surfaces.get(name)
+    side = surface.sides[0] if surface is not None and surface.sides else 0.0
+    return TableTop(name, top.surface(stage.simulator.truth.pose(name)), top.size, side)
+
+
+def item_top(stage: Stage) -> TableTop:
+    """The top that the item stands or lies on.
+
+    Raises:
+        FaultError: it is on none now, or between the fingers.
+    """
+    item = stage.goal.item
+    if stage.in_hand():
+        raise FaultError(f"{item} is between the fingers now, so nothing else happens to it")
+    foot = stage.item_prism().bottom
+    for body in stage.episode.bodies:
+        if body.category in TABLES:
+            top = table_top(stage, body.name)
+            x, y, _ = top.map_from_top.inverse().apply(stage.item_pose().position)
+            within = abs(x) <= top.size[0] / 2 and abs(y) <= top.size[1] / 2
+            if within and abs(foot - float(top.map_from_top.position[2])) <= STANDING:
+                return top
+    raise FaultError(f"{item} stands on no table now")
+
+
+def things_on(stage: Stage, top: TableTop, *without: str) -> list[Disc]:
+    """Upright cylinders around the loose things on a top, in its frame; some bodies left out."""
+    discs = []
+    for body in stage.bodies:
+        points = body_points(body)
+        if body.static or points is None or body.name in without:
+            continue
+        top_from_body = top.map_from_top.inverse() @ stage.simulator.truth.pose(body.name)
+        prism = prism_around(top_from_body.apply(points), top_from_body.yaw)
+        at = prism.base.pose
+        within = abs(at.x) <= top.size[0] / 2 and abs(at.y) <= top.size[1] / 2
+        if within and abs(prism.bottom) <= STANDING:
+            reach = _reach(body, top_from_body, math.hypot(*prism.base.size) / 2)
+            discs.append(Disc(at.x, at.y, reach, prism.top))
+    return discs
+
+
+def clear_on(stage: Stage, prism: Prism, top: TableTop, least: float, *without: str) -> bool:
+    """Whether a prism on a top keeps `least` m from the robot and all bodies, some left out."""
+    return prism.clear_of(stage.prisms(top.name, *without), least) and prism.clear_of(
+        stage.robot_prisms(), least
+    )
+
+
+def _reach(body: Body, top_from_body: Transform, most: float) -> float:
+    """Radius of the disc around a body: of its cylinder when it is one that stands, else `most`."""
+    colliding = [part.geometry for part in body.parts if part.collision]
+    upright = float(top_from_body.rotation[2, 2]) > UPRIGHT
+    if upright and len(colliding) == 1 and isinstance(colliding[0], Cylinder):
+        return colliding[0].radius
+    return most
