@@ -22,6 +22,7 @@ from momantu_bt.record.files import OutputError, check_writable, write_whole
 from momantu_bt.record.fingerprint import Fingerprint
 from momantu_bt.record.folder import prepare_folder
 from momantu_bt.record.report import Report
+from momantu_bt.world import Incident
 
 VALUES = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False) | st.text(),
@@ -125,6 +126,18 @@ def report(**changes):
 )
 def test_exit_codes(status, success, code):
     assert report(status=status, success=success).exit_code == code
+
+
+def test_a_report_tells_what_was_dangerous():
+    drop = Incident(12.5, "dropped", "can left the hand 0.31 m above floor", 0.31)
+    assert report(incidents=(drop,)).as_dict()["incidents"] == [
+        {
+            "time": 12.5,
+            "kind": "dropped",
+            "sentence": "can left the hand 0.31 m above floor",
+            "value": 0.31,
+        }
+    ]
 
 
 def test_a_report_is_plain_json_whatever_is_on_the_board(tmp_path):

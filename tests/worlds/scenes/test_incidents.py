@@ -74,7 +74,7 @@ def play(truth: FakeTruth, ticks: list[list[Touch]]) -> list[Incident]:
     watched = watching(truth)
     for number, touches in enumerate(ticks, 1):
         truth.touches = touches
-        watched.observe(number * TICK)
+        watched.observe(number * TICK, truth.touches)
     return list(watched.until(len(ticks) * TICK))
 
 
@@ -160,17 +160,17 @@ def test_what_is_taken_is_not_dropped_and_what_is_added_can_be():
     truth = FakeTruth(can=HIGH)
     watched = watching(truth)
     truth.touches = HELD
-    watched.observe(TICK)
+    watched.observe(TICK, truth.touches)
     watched.taken("can")
     truth.touches = []
     for tick in range(2, 6):
-        watched.observe(tick * TICK)
+        watched.observe(tick * TICK, truth.touches)
     assert watched.until(1.0) == ()
     watched.removed("can")
     watched.added(Body("can", "box", Transform(), (CAN,), static=False))
     for tick, touches in enumerate([HELD, [], [], []], 6):
         truth.touches = touches
-        watched.observe(tick * TICK)
+        watched.observe(tick * TICK, truth.touches)
     assert len(watched.until(1.0)) == 1
 
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from momantu_bt.world import Incident
 from momantu_worlds.scenes.blows import Blows
 from momantu_worlds.scenes.bodies import Body, Episode
 from momantu_worlds.scenes.drops import Drops
-from momantu_worlds.scenes.ground_truth import GroundTruth
+from momantu_worlds.scenes.ground_truth import GroundTruth, TouchingForce
 from momantu_worlds.scenes.hand import Hand
 from momantu_worlds.scenes.restless import still_moving
 
@@ -19,9 +21,8 @@ class Incidents:
         self._blows = Blows(truth, hand)
         self._drops = Drops(episode, truth, hand)
 
-    def observe(self, now: float) -> None:
-        """Look at the instant `now`, s; to be called once after every tick."""
-        contacts = tuple(self._truth.contacts())
+    def observe(self, now: float, contacts: Sequence[TouchingForce]) -> None:
+        """Take what touched during the tick that ended at `now`, s."""
         self._blows.observe(now, contacts)
         self._drops.observe(now, contacts)
 

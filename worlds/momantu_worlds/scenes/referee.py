@@ -9,6 +9,7 @@ told beside that, demanded or not: see `incidents`.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -17,7 +18,7 @@ import numpy as np
 from momantu_bt.geometry import Transform
 from momantu_bt.world import Verdict
 from momantu_worlds.scenes.bodies import Body, Episode, Goal
-from momantu_worlds.scenes.ground_truth import GroundTruth
+from momantu_worlds.scenes.ground_truth import GroundTruth, TouchingForce
 from momantu_worlds.scenes.hand import Hand
 from momantu_worlds.scenes.incidents import Incidents
 from momantu_worlds.scenes.standing import Top, Upright
@@ -69,8 +70,9 @@ class Referee:
     def observe(self, now: float) -> None:
         """Look at the instant `now`, s; to be called once after every tick."""
         self._now = now
-        self._look_at_contacts()
-        self._incidents.observe(now)
+        contacts = tuple(self._truth.contacts())
+        self._look_at_contacts(contacts)
+        self._incidents.observe(now, contacts)
         pose = self._truth.pose(self._goal.item)
         if _moved(self._rest, pose) > STILL_SHIFT or self._rest.angle_to(pose) > STILL_TURN:
             self._rest, self._rest_since = pose, now
@@ -101,10 +103,10 @@ class Referee:
         incidents = self._incidents.until(self._now)
         return Verdict(not unmet, unmet, MappingProxyType(measures), incidents)
 
-    def _look_at_contacts(self) -> None:
+    def _look_at_contacts(self, contacts: Iterable[TouchingForce]) -> None:
         links, item = self._truth.robot_links, self._goal.item
         touching = set()
-        for contact in self._truth.contacts():
+        for contact in contacts:
             pair = (contact.first, contact.second)
             if item in pair:
                 touching.add(pair[pair[0] == item])
