@@ -1,1 +1,1 @@
-"""A run on paper: its fingerprint, its report, its log of changes."""
+"""A run on paper: its fingerprint, its report, its record, written and read back."""

@@ -21,7 +21,8 @@ FREE, OCCUPIED, UNKNOWN = 0, 100, 255
 """What a cell's byte says."""
 _UINT8 = 1
 """foxglove.NumericType."""
-_PGM = re.compile(rb"P5(?:\s+|#[^\n]*\n)+(\d+)(?:\s+|#[^\n]*\n)+(\d+)(?:\s+|#[^\n]*\n)+(\d+)\s")
+_GAP = rb"(?:\s|#[^\n]*\n)+"
+_PGM = re.compile(rb"P5" + _GAP + rb"(\d+)" + _GAP + rb"(\d+)" + _GAP + rb"(\d+)\s")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,7 +52,7 @@ def read_floor_plan(file: Path) -> FloorPlan:
             darkness = 1.0 - darkness
         occupied = darkness > float(entry["occupied_thresh"])
         free = darkness < float(entry["free_thresh"])
-    except (OSError, YAMLError, KeyError, TypeError, AttributeError) as error:
+    except (OSError, YAMLError, KeyError, TypeError, AttributeError, ValueError) as error:
         raise ValueError(f"{file} is no floor plan: {error!r}") from None
     cells = np.where(occupied, OCCUPIED, np.where(free, FREE, UNKNOWN)).astype(np.uint8)
     return FloorPlan(np.ascontiguousarray(cells[::-1]), resolution, (x, y))

@@ -110,7 +110,9 @@ class McapFile:
             self._raw.close()
 
     def abandon(self) -> None:
-        """Give up after an OSError; what was whole before it stays readable."""
+        """Give up after an error; what is whole stays readable."""
+        with suppress(OSError):
+            self.flush()
         with suppress(OSError):
             os.ftruncate(self._raw.fileno(), self._whole)
         with suppress(OSError):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from typing import Any
 
@@ -53,6 +54,7 @@ class Objects:
                 self._shown[name] = names
         if due:
             held = getattr(run.services.running.get("planning_scene"), "held", None)
+            held = held if isinstance(held, HeldObject) and _drawable(held.object) else None
             if held is not self._held:
                 entities += [] if held is None else [_in_hand(run, held, time)]
                 gone += [HELD] if held is None else []
@@ -64,11 +66,13 @@ class Objects:
 
 
 def _objects(value: Any) -> list[DetectedObject]:
-    if type(value) is DetectedObject:
-        return [value]
-    if type(value) is tuple:
-        return [item for item in value if type(item) is DetectedObject]
-    return []
+    """Those in a value that viewers can draw: they know no NaN."""
+    things = value if type(value) is tuple else (value,)
+    return [thing for thing in things if type(thing) is DetectedObject and _drawable(thing)]
+
+
+def _drawable(thing: DetectedObject) -> bool:
+    return math.isfinite(sum(thing.size) + float(thing.pose.position.sum()) + thing.score)
 
 
 def _seen(name: str, thing: DetectedObject, time: str) -> str:

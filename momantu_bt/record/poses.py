@@ -54,10 +54,15 @@ class Poses:
     def _base_moved(
         self, body: Body, state: RobotState, now: float, time: str, file: McapFile
     ) -> list[str]:
-        """The transforms down to the base, with `/pose`; none while it stands, but each second."""
+        """The transforms down to the base, with `/pose`; none while it stands, but each second.
+
+        Viewers know no NaN.
+        """
         odom_from_base, map_from_odom = state.odom_from_base, body.frames.map_from_odom
         where = (_numbers(odom_from_base), _numbers(map_from_odom))
         if where == self._where and not self._still_due(now):
+            return []
+        if not math.isfinite(sum(map(sum, where))):
             return []
         self._where = where
         frame, pose = ODOM, odom_from_base
@@ -93,6 +98,8 @@ class _Link:
     def text(self, time: str, position: float) -> str | None:
         """The transform as JSON; None where it has not moved since it was written."""
         if self._written is not None and abs(position - self._written) < _MOVED:
+            return None
+        if not math.isfinite(position):
             return None
         self._written = position
         x, y, z = self._position

@@ -133,7 +133,7 @@ class Recorder:
         others: list[Channel] = [LogLines(file, self._remarks)]
         body = run.context.body
         if body is not None and self._tap is not None:
-            others += [Poses(file, body), Published(self._remark), Objects(file)]
+            others += [Poses(file, body), Published(self._noted), Objects(file)]
             others.append(Sensors(self._tap))
             self._write_map(file, body.site.map_file)
         self._others = others
@@ -145,7 +145,7 @@ class Recorder:
         try:
             text = grid_text(read_floor_plan(map_file))
         except ValueError as error:
-            self._remark(f"the record has no map: {error}")
+            self._noted(f"the record has no map: {error}")
             return
         file.add(file.channel("/map", "foxglove.Grid", GRID), 0, text)
 
