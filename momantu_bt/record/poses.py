@@ -74,12 +74,12 @@ class Poses:
         file.add(self._pose, stamp_of(now), text)
         return transforms
 
-    def _moved(self, state: RobotState, time: str) -> Iterable[str]:
+    def _moved(self, state: RobotState, time: str) -> list[str]:
+        """Links that have moved, the first time all; others than measured joints never move."""
         positions = dict(zip(state.names, state.positions.tolist(), strict=True))
-        for link in self._links:
-            text = link.text(time, positions.get(link.joint.name, 0.0))
-            if text is not None:
-                yield text
+        texts = [link.text(time, positions.get(link.joint.name, 0.0)) for link in self._links]
+        self._links = [link for link in self._links if link.joint.name in positions]
+        return [text for text in texts if text is not None]
 
 
 class _Link:

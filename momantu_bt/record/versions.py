@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import platform
 import sys
+from functools import cache
 from importlib import metadata
 
 import momantu_bt
@@ -30,8 +31,14 @@ def versions() -> dict[str, str]:
     found = {"momantu-bt": momantu_bt.__version__, "python": platform.python_version()}
     for module, distribution in LIBRARIES.items():
         if module in sys.modules:
-            try:
-                found[distribution] = metadata.version(distribution)
-            except metadata.PackageNotFoundError:
-                found[distribution] = "unknown"
+            found[distribution] = _version(distribution)
     return found
+
+
+@cache
+def _version(distribution: str) -> str:
+    """A record and a report both ask; looking it up is slow."""
+    try:
+        return metadata.version(distribution)
+    except metadata.PackageNotFoundError:
+        return "unknown"
