@@ -16,6 +16,7 @@ from momantu_bt.bench.process import CRASHED, REFUSED
 from momantu_bt.bench.ray_cluster import cluster
 from momantu_bt.bench.ray_task import errand, order
 from momantu_bt.bench.spec import EpisodeSpec, Row
+from momantu_bt.record.files import OutputError
 
 MOST_DEATHS = 3
 """Workers that may die under one episode; then it has crashed."""
@@ -138,12 +139,15 @@ def _row_without(task: _Task, ended: str, told: str) -> Row:
 
 
 def _keep(record: Mapping[str, bytes], spec: EpisodeSpec) -> None:
-    """Put the files of a record where the bench wants them."""
+    """Put a record where the bench wants it; OutputError when that is not possible."""
     if spec.record is None:
         return
     folder = Path(spec.record)
     shutil.rmtree(folder, ignore_errors=True)
-    for name, data in record.items():
-        path = folder / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(data)
+    try:
+        for name, data in record.items():
+            path = folder / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(data)
+    except OSError as error:
+        raise OutputError(f"{folder} cannot be written: {error.strerror or error}") from None
