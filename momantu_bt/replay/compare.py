@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from difflib import unified_diff
 from itertools import zip_longest
+from pathlib import PurePath
 from typing import Any
 
 from momantu_bt.record.recording import NodeInfo, Recording
@@ -174,7 +176,16 @@ def _texts(recording: Recording) -> dict[str, str]:
     """All but those of values, which are compared one by one."""
     tree, kinds = recording.about["tree"], recording.kinds
     return {
-        "the tree" if name == tree else name: text
+        "the tree" if name == tree else name: _readable(text) if kinds[name] == "site" else text
         for name, text in recording.files.items()
         if kinds[name] != "values"
     }
+
+
+def _readable(site: str) -> str:
+    """A site on many lines, without the folders of its files."""
+
+    def without_folder(data: dict[str, Any]) -> dict[str, Any]:
+        return {"$path": PurePath(data["$path"]).name} if "$path" in data else data
+
+    return json.dumps(json.loads(site, object_hook=without_folder), indent=1)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from dataclasses import replace
 
@@ -146,3 +147,16 @@ def test_given_values_are_told_once_and_not_as_texts(recorded, one):
     found = compare(one, recorded(TREE, values=given))
     assert ("value letters", "RRS", "RS") in found.given
     assert found.files == {}
+
+
+def test_sites_are_compared_line_by_line_and_not_by_their_folders(one):
+    def moved(folder, start):
+        site = {"map_file": {"$path": f"{folder}/map.yaml"}, "start": start}
+        return replace(one, files={**one.files, "site.json": json.dumps(site)})
+
+    assert compare(moved("/a", 1.0), moved("/b", 1.0)).files == {}
+    lines = compare(moved("/a", 1.0), moved("/b", 2.0)).files["site.json"]
+    assert [line for line in lines if line[1:].startswith(' "start"')] == [
+        '- "start": 1.0',
+        '+ "start": 2.0',
+    ]
