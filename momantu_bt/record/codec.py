@@ -51,6 +51,24 @@ def to_json(value: Any) -> Any:
     return _to_json(value, MAX_DEPTH)
 
 
+def to_text(value: Any) -> str:
+    """`dumps(to_json(value))`, quicker for a dataclass that holds nothing but finite floats."""
+    kind: Any = type(value)
+    if is_dataclass(kind):
+        head, names = _flat(kind)
+        numbers = [getattr(value, name) for name in names]
+        if all(type(number) is float and math.isfinite(number) for number in numbers):
+            pairs = [f',"{name}":{number!r}' for name, number in zip(names, numbers, strict=True)]
+            return f"{head}{''.join(pairs)}}}"
+    return dumps(to_json(value))
+
+
+@cache
+def _flat(kind: Any) -> tuple[str, tuple[str, ...]]:
+    head = f'{{"$type":{dumps(type_name(kind))}'
+    return head, tuple(field.name for field in fields(kind))
+
+
 def from_json(data: Any) -> Any:
     """The value that `to_json` was given.
 

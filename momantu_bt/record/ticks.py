@@ -15,7 +15,7 @@ from momantu_bt.failure import FailureValue
 from momantu_bt.messages import ActuatorGoal
 from momantu_bt.record.captions import Captions
 from momantu_bt.record.channel import stamp_of
-from momantu_bt.record.codec import dumps, to_json
+from momantu_bt.record.codec import dumps, to_json, to_text
 from momantu_bt.record.mcap_file import McapFile
 from momantu_bt.record.schemas import TICK
 
@@ -137,7 +137,7 @@ class Ticks:
         if self._goals.get(name) is goal:
             return f"[{quoted},{AGAIN}]"
         self._goals[name] = goal
-        return f"[{quoted},{dumps(to_json(goal))}]"
+        return f"[{quoted},{to_text(goal)}]"
 
 
 def _keep(texts: dict[tuple[int, str, str], str], key: tuple[int, str, str], text: str) -> None:

@@ -16,8 +16,8 @@ from hypothesis.extra import numpy as hnp
 
 from momantu_bt.failure import FailureValue
 from momantu_bt.geometry import Pose, Pose2D, Transform
-from momantu_bt.messages import DetectedObject
-from momantu_bt.record.codec import CodecError, Opaque, dumps, from_json, to_json
+from momantu_bt.messages import BaseVelocity, DetectedObject
+from momantu_bt.record.codec import CodecError, Opaque, dumps, from_json, to_json, to_text
 from momantu_bt.record.codec_types import find_type
 from momantu_bt.record.encode import encode
 from momantu_bt.skill import MISSING
@@ -105,6 +105,17 @@ def test_what_is_on_the_board_survives():
     failure = FailureValue("OH", "why", cause=cause, beside=(cause,))
     for value in (can, failure, (can, Pose2D(1.0, -0.0)), Path("a/b"), {3: can}, {1, 2}):
         assert there_and_back(value) == value
+
+
+@given(
+    value=VALUES
+    | st.builds(Pose2D, st.floats(), st.floats() | st.integers())
+    | st.builds(BaseVelocity, st.floats(), st.floats())
+    | st.just(Colour)
+    | st.just(Pose2D)
+)
+def test_the_quick_way_to_text_is_the_same_text(value):
+    assert to_text(value) == dumps(to_json(value))
 
 
 class Odd:
