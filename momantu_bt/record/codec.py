@@ -54,7 +54,7 @@ def to_json(value: Any) -> Any:
 def to_text(value: Any) -> str:
     """`dumps(to_json(value))`, quicker for a dataclass that holds nothing but finite floats."""
     kind: Any = type(value)
-    if is_dataclass(kind):
+    if is_dataclass(type(value)):
         head, names = _flat(kind)
         numbers = [getattr(value, name) for name in names]
         if all(type(number) is float and math.isfinite(number) for number in numbers):
