@@ -6,6 +6,8 @@ from typing import Any
 
 import pytest
 
+import momantu_bt
+
 TREE = """
 momantu_bt: 1
 world: four_rooms
@@ -39,6 +41,17 @@ def test_watching_changes_nothing(run: Callable[..., Any], tree: Path, tmp_path:
     assert plain.report["fingerprint"] == watched.report["fingerprint"]
     assert plain.report["blackboard"] == watched.report["blackboard"]
     assert watched.report["success"] is None
+
+
+def test_an_audit_changes_nothing_and_finds_what_is_claimed_to_be_true(tree: Path) -> None:
+    plain = momantu_bt.run(tree, seed=4)
+    judged = momantu_bt.run(tree, seed=4, audit=True)
+    assert plain.fingerprint == judged.fingerprint
+    assert plain.claims is None
+    assert judged.claims is not None
+    assert list(judged.claims) == ["reset_pose", "navigate", "detect_object", "check"]
+    for count in judged.claims.values():
+        assert (count.successes, count.judged_successes, count.lies) == (1, 1, ())
 
 
 def test_another_seed_is_another_run(run: Callable[..., Any], tree: Path) -> None:
