@@ -11,10 +11,13 @@ import weakref
 import numpy as np
 import pytest
 from momantu_worlds.robots import fetch
+from momantu_worlds.sapien.laser import Laser
 from momantu_worlds.sapien.simulator import Simulator
-from momantu_worlds.scenes.plain import WALL_FACE, plain_episode
+from momantu_worlds.scenes.bodies import Body
+from momantu_worlds.scenes.furniture import furniture
+from momantu_worlds.scenes.plain import CAN_HEIGHT, TABLE_HEIGHT, WALL_FACE, plain_episode
 
-from momantu_bt.geometry import Pose2D
+from momantu_bt.geometry import Pose2D, Transform
 from momantu_bt.messages import BaseVelocity, GripperCommand, JointPositions, JointTrajectory
 
 FETCH = fetch()
@@ -218,3 +221,46 @@ def test_a_closed_simulator_is_gone_once_another_is_built() -> None:
     del before
     empty_room()
     assert lives() is None
+
+
+def test_bodies_come_into_a_running_world_and_leave_it() -> None:
+    simulator = empty_room()
+    run(simulator, 3)
+    laser = simulator.robot.sensors["laser"]
+    assert isinstance(laser, Laser)
+    free = laser.exact()
+    crate = Body("crate", "crate", Transform((1.5, 0.0, 0.0)), furniture("crate"))
+    simulator.add(crate)
+    assert simulator.added == (crate,)
+    assert laser.exact()[len(free) // 2] < free[len(free) // 2] - 0.5
+    with pytest.raises(ValueError, match="there is a body 'crate' already"):
+        simulator.add(crate)
+    simulator.remove("crate")
+    assert "crate" not in simulator.truth.bodies
+    assert np.array_equal(laser.exact(), free)
+    with pytest.raises(KeyError):
+        simulator.remove("wall")
+
+
+def test_a_carried_base_rests_where_it_is_set_down_and_odometry_does_not_know() -> None:
+    simulator = empty_room()
+    run(simulator, 20, base=BaseVelocity(0.5, 0.0))
+    before = simulator.robot.state().odom_from_base
+    goal = Pose2D(-1.0, 2.0, 1.0)
+    simulator.robot.carry(goal)
+    run(simulator, 1)
+    assert simulator.truth.base().distance_to(goal) < 0.01
+    assert simulator.truth.base_speed() == pytest.approx((0.0, 0.0), abs=0.1)
+    after = simulator.robot.state().odom_from_base
+    assert np.abs(after.position - before.position).max() < 0.01
+
+
+def test_what_lies_under_a_point_is_found_and_the_robot_does_not_count() -> None:
+    simulator = Simulator(FETCH, plain_episode(), 0, render=False)
+    point = np.array([[0.95, 0.0, TABLE_HEIGHT + 0.4]])
+    below = simulator.truth.height_below
+    assert below("can", point) == (pytest.approx(0.4, abs=1.1e-3), "table_a")
+    assert below("other", point) == (pytest.approx(0.4 - CAN_HEIGHT, abs=1e-3), "can")
+    assert below("can", np.array([[0.0, 0.0, 2.0]])) == (pytest.approx(2.0, abs=1.1e-3), "floor")
+    beside = np.array([[0.95, 0.0, 1.0], [0.2, 1.5, 0.9]])
+    assert below("can", beside) == (pytest.approx(1.0 - TABLE_HEIGHT, abs=1.1e-3), "table_a")

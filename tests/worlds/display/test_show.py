@@ -11,8 +11,11 @@ from momantu_worlds.display.video import open_video
 from momantu_worlds.display.view import open_view
 from momantu_worlds.robots import fetch
 from momantu_worlds.sapien.simulator import Simulator
+from momantu_worlds.scenes.bodies import Body
+from momantu_worlds.scenes.furniture import furniture
 from momantu_worlds.scenes.plain import plain_episode
 
+from momantu_bt.geometry import Transform
 from momantu_bt.messages import BaseVelocity
 from momantu_bt.world import TreeLine, WorldError
 
@@ -84,6 +87,23 @@ def test_a_port_in_use_is_a_world_error(simulator):
     view = open_view(simulator, plain_episode(), PORT + 1)
     with pytest.raises(WorldError, match="choose another port"):
         open_view(simulator, plain_episode(), PORT + 1)
+    view.close()
+
+
+def test_bodies_that_come_and_go_are_shown_while_they_are_there(simulator):
+    view = open_view(simulator, plain_episode(), PORT + 2)
+    crate = Body("crate", "crate", Transform((2.0, 1.0, 0.0)), furniture("crate"))
+    own = set(view.shown)
+    simulator.add(crate)
+    view.update()
+    assert set(view.shown) - own == {"crate"}
+    simulator.remove("crate")
+    view.update()
+    assert set(view.shown) == own
+    simulator.add(crate)
+    view.update()
+    assert "crate" in view.shown
+    simulator.remove("crate")
     view.close()
 
 

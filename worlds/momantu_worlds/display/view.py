@@ -51,6 +51,7 @@ class BrowserView:
         for name, link in simulator.model.links.items():
             self._links[name] = self._frame(f"/robot/{name}", link_meshes(link))
         self._sent: dict[str, Transform] = {}
+        self._guests: set[str] = set()
         self.update()
 
     @property
@@ -58,10 +59,16 @@ class BrowserView:
         """Where to look."""
         return f"http://{HOST}:{self._port}"
 
+    @property
+    def shown(self) -> tuple[str, ...]:
+        """Names of the bodies that may move, come or go, as they are shown now."""
+        return tuple(self._frames)
+
     def update(self) -> None:
         """Show the world as it is now."""
         truth = self._simulator.truth
         with self._server.atomic():
+            self._come_and_go()
             for name, frame in self._frames.items():
                 self._put(f"body {name}", frame, truth.pose(name))
             for name, frame in self._links.items():
@@ -74,6 +81,18 @@ class BrowserView:
             self._open = False
             with redirect_stdout(io.StringIO()):
                 self._server.stop()
+
+    def _come_and_go(self) -> None:
+        """Show bodies that were added to the world, and no longer those that were removed."""
+        added = {body.name: body for body in self._simulator.added}
+        for name in [name for name in self._guests if name not in added]:
+            self._guests.remove(name)
+            self._sent.pop(f"body {name}", None)
+            self._frames.pop(name).remove()
+        for name, body in added.items():
+            if name not in self._guests:
+                self._guests.add(name)
+                self._frames[name] = self._frame(f"/things/{name}", body_meshes(body))
 
     def _put(self, key: str, frame: Any, pose: Transform) -> None:
         sent = self._sent.get(key)

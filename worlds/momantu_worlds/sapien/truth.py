@@ -12,12 +12,11 @@ from momantu_bt.world import TICK
 from momantu_worlds.sapien.config import SUB_STEPS
 from momantu_worlds.sapien.poses import transform_of
 from momantu_worlds.sapien.robot_model import RobotModel
+from momantu_worlds.scenes.solids import FLOOR
 
 DOWN = np.array([0.0, 0.0, -1.0], dtype=np.float32)
-FARTHEST_DOWN = 100.0
-"""m; deeper nobody looks."""
-THROUGH = 0.005
-"""m; step by which a ray goes on through what does not count."""
+THROUGH = 0.001
+"""m; step by which a ray goes on through what does not count: by as much heights are off."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,9 +96,9 @@ class Truth:
     def height_below(self, body: str, points: Array) -> tuple[float, str]:
         """Height of the lowest of points (n, 3) of the map above what lies under them, m, of what.
 
-        The body itself and the robot do not count.
+        The body itself and the robot do not count; the floor is under everything.
         """
-        best = (FARTHEST_DOWN, "nothing")
+        best = (float(points[:, 2].min()), FLOOR)
         for point in points:
             below, fallen = np.array(point, dtype=np.float32), 0.0
             while fallen < best[0]:
