@@ -15,20 +15,17 @@ from momantu_bt.engine.audit import Auditor
 from momantu_bt.engine.blackboard import Board, ReadOnlyCell
 from momantu_bt.engine.build import build, skills_in
 from momantu_bt.engine.context import Body, RunContext
-from momantu_bt.engine.executor import Ending, Executor, Observer
+from momantu_bt.engine.executor import Executor, Observer
 from momantu_bt.engine.interrupts import Interrupts
 from momantu_bt.engine.no_world import NoWorld
-from momantu_bt.engine.node import TreeNode
-from momantu_bt.engine.nodes.recovery import Catching
-from momantu_bt.engine.nodes.skill import SkillLeaf
 from momantu_bt.engine.person import Person, Scripted
+from momantu_bt.engine.reporting import report_of
 from momantu_bt.engine.services import Services, in_order
 from momantu_bt.engine.watchdog import PATIENCE, Watchdog
 from momantu_bt.fault import Fault
 from momantu_bt.faults.stage import Planned, Stage, plan
 from momantu_bt.frames import FrameBuffer
-from momantu_bt.record.report import ERROR, NodeReport, Report
-from momantu_bt.record.versions import versions
+from momantu_bt.record.report import ERROR, Report
 from momantu_bt.robot import Robot, RobotDescription
 from momantu_bt.service import Service
 from momantu_bt.skill import Skill
@@ -124,7 +121,7 @@ def launch(
             trouble = _close(executor.observers)
         if trouble is not None:
             ending = replace(ending, status=ERROR, error=ending.error or trouble)
-        report = _report(document, options, executor, ending, started)
+        report = report_of(document.file, executor, ending, started)
         if auditor is not None:
             report = replace(report, claims=auditor.claims())
         if recorder is not None:
@@ -261,48 +258,3 @@ def _board(
 
 def _asking(context: RunContext, key: str, ask: Callable[[], Any]) -> Callable[[], Any]:
     return lambda: context.outside.ask(key, ask)
-
-
-def _report(
-    document: Document, options: Options, executor: Executor, ending: Ending, started: float
-) -> Report:
-    world, verdict = executor.world, ending.verdict
-    return Report(
-        tree=document.file,
-        world=None if world is None else world.name,
-        robot=None if world is None else world.robot.description.name,
-        seed=options.seed,
-        status=ending.status,
-        success=None if verdict is None else verdict.success,
-        failure=ending.failure,
-        unmet=() if verdict is None else verdict.unmet,
-        measures={} if verdict is None else verdict.measures,
-        sim_time_s=ending.sim_time,
-        wall_time_s=ending.wall_time,
-        start_time_s=started,
-        ticks=ending.ticks,
-        blackboard=executor.built.board.values(),
-        nodes=tuple(_node_report(node) for node in executor.built.nodes),
-        fingerprint=executor.fingerprint.hexdigest(),
-        versions=versions(),
-        error=ending.error,
-        incidents=() if verdict is None else verdict.incidents,
-        faults=() if executor.director is None else executor.director.reports(),
-    )
-
-
-def _node_report(node: TreeNode) -> NodeReport:
-    slow = node if isinstance(node, SkillLeaf) else None
-    return NodeReport(
-        name=node.name,
-        type=node.model.target or node.model.type,
-        place=node.place,
-        ticks=node.ticks,
-        runs=node.runs,
-        failures=node.failures,
-        seconds=round(node.seconds, 9),
-        slow_ticks=0 if slow is None else slow.slow_steps,
-        slowest_s=0.0 if slow is None else round(slow.slowest, 4),
-        conditions={} if node.conditions is None else node.conditions.counts,
-        answered=tuple(node.answered) if isinstance(node, Catching) else (),
-    )
