@@ -283,7 +283,7 @@ def test_a_bench_that_is_ended_goes_on_without_loss_or_double(
         assert running.returncode == 130, said
         assert "missing: seeds" in said
         assert "the same command goes on there" in said
-    for _ in range(100):
+    for _ in range(300):
         if not _processes_of(tmp_path):
             break
         time.sleep(0.1)
