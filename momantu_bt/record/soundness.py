@@ -2,20 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
 
 from momantu_bt.engine.status import Status
 from momantu_bt.record.recording import Recording, TickRecord
 
 _STATUSES = frozenset(status.value for status in Status)
+_ABOUT = ("tree", "world", "robot", "seed", "options", "values", "versions")
+_REPORT = (
+    *("status", "success", "failure", "unmet", "measures", "sim_time_s", "wall_time_s", "ticks"),
+    *("nodes", "fingerprint", "error"),
+)
+_FAILURE = ("code", "message")
+_NODE = ("name", "type", "place", "ticks", "runs", "failures", "seconds")
 
 
 def check_sound(recording: Recording) -> None:
-    """Look at what readers follow: the tree's shape, numbers of nodes, names of statuses.
+    """Look at what readers follow: the tree's shape, numbers of nodes, names of statuses, fields.
 
     Raises:
-        ValueError: something leads nowhere; the message says what.
+        ValueError: something leads nowhere or is missing; the message says what.
     """
+    _check_fields("the run", recording.about, _ABOUT)
+    if recording.report is not None:
+        _check_fields("the report", recording.report, _REPORT)
+        if recording.report["failure"] is not None:
+            _check_fields("the report's failure", recording.report["failure"], _FAILURE)
+        for place, counts in enumerate(recording.report["nodes"]):
+            _check_fields(f"node {place} of the report", counts, _NODE)
     nodes = recording.nodes
     for place, node in enumerate(nodes):
         if node.index != place or (node.parent is None) != (place == 0):
@@ -30,6 +45,12 @@ def check_sound(recording: Recording) -> None:
         for status in _statuses_in(tick):
             if status not in _STATUSES:
                 raise ValueError(f"tick {tick.number} has the status {status!r}")
+
+
+def _check_fields(what: str, data: Any, names: Iterable[str]) -> None:
+    missing = [name for name in names if not isinstance(data, Mapping) or name not in data]
+    if missing:
+        raise ValueError(f"{what} lacks {', '.join(missing)}")
 
 
 def _nodes_in(tick: TickRecord) -> Iterator[int]:

@@ -3,7 +3,6 @@
 from typing import Any
 
 import pytest
-import sapien
 
 from momantu_bt import run
 from momantu_bt.engine.executor import Executor
@@ -25,14 +24,7 @@ class Thief:
         lifted = self._simulator.truth.pose("can").position[2] - self._start.position[2]
         if "reset_pose" in running and lifted > 0.1:
             self.stolen_at = executor.context.now
-            self._put_back()
-
-    def _put_back(self) -> None:
-        entity = self._simulator.truth._entity("can")
-        entity.set_pose(sapien.Pose(self._start.position, self._start.quaternion))
-        body = entity.find_component_by_type(sapien.physx.PhysxRigidDynamicComponent)
-        body.set_linear_velocity([0.0, 0.0, 0.0])
-        body.set_angular_velocity([0.0, 0.0, 0.0])
+            self._simulator.put("can", self._start)
 
     def close(self) -> None: ...
 

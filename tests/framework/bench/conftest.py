@@ -6,6 +6,7 @@ The plug-ins stand in a folder of their own, so that the processes of episodes f
 from __future__ import annotations
 
 import os
+import sys
 from pathlib import Path
 
 import pytest
@@ -172,6 +173,7 @@ def stalling(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     path = os.environ.get("PYTHONPATH", "")
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join(filter(None, [str(folder), path])))
     monkeypatch.syspath_prepend(folder)
+    monkeypatch.delitem(sys.modules, "stall_plugins", raising=False)
     find = plugins.entry_points
     monkeypatch.setattr(plugins, "entry_points", lambda group: find(group=group))
     return _write(tmp_path / "stalling.yaml", STALLING)

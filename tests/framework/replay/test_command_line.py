@@ -144,8 +144,9 @@ def test_check_says_that_the_tree_does_the_same_or_where_it_does_not(folder, cal
 
 
 def test_diff_says_equal_or_what_differs(folder, call, tmp_path):
-    call("run", folder / "tree.yaml", "-q", "--record", tmp_path / "same")
-    assert call("diff", folder / "run", tmp_path / "same") == (
+    for name in ("one", "same"):
+        call("run", folder / "tree.yaml", "-q", "--record", tmp_path / name)
+    assert call("diff", tmp_path / "one", tmp_path / "same") == (
         0,
         "the runs are equal: the same in every tick, and the same end\n",
         "",

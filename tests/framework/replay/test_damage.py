@@ -77,3 +77,17 @@ def test_what_leads_nowhere_is_named(whole):
         tick = replace(ticks[1], changes=(change,))
         with pytest.raises(ValueError, match=said):
             check_sound(replace(whole, ticks=(ticks[0], tick)))
+
+
+def test_what_is_missing_is_named(whole):
+    report = dict(whole.report)
+    counts = {name: value for name, value in report["nodes"][1].items() if name != "failures"}
+    nodes = [report["nodes"][0], counts, *report["nodes"][2:]]
+    for wrong, said in (
+        ({"about": {"tree": "t.yaml"}}, "the run lacks world, robot, seed"),
+        ({"report": {**report, "nodes": nodes}}, "node 1 of the report lacks failures"),
+        ({"report": {**report, "failure": {"code": "LOST"}}}, "failure lacks message"),
+        ({"report": {"status": "SUCCESS"}}, "the report lacks success"),
+    ):
+        with pytest.raises(ValueError, match=said):
+            check_sound(replace(whole, **wrong))
