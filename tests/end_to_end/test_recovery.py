@@ -28,6 +28,7 @@ NEVER_HERE = {
 """Failures that only a wrong tree provokes, or questions that this tree never asks."""
 FINAL = {("place", "TOPPLED"), ("place", "LOST")}
 """The object lies somewhere: no skill picks up what has fallen."""
+LETS_GO = {"place", "release"}
 HANDLERS_OWN = {"relocalize", "release"}
 """Skills that only handlers start."""
 
@@ -55,12 +56,17 @@ ONCE = [(name, code) for name in USED if name not in HANDLERS_OWN for code in po
 
 
 class Script:
-    """What each start of a skill does: succeed, or fail with the next code scripted for it."""
+    """What each start of a skill does: succeed, or fail with the next code scripted for it.
+
+    holding: whether the hand has the object, for the question that asks for it. cut_off: a pick
+    that fails has the object all the same.
+    """
 
     def __init__(self) -> None:
         self.failures: dict[str, list[str]] = {}
         self.always: dict[str, str] = {}
         self.starts: list[str] = []
+        self.holding = self.cut_off = False
 
     def skills(self) -> dict[str, type[Skill]]:
         return {name: self._stand_in(name) for name in USED}
@@ -71,11 +77,16 @@ class Script:
         def work(self: Skill, robot: Robot) -> Run:
             script.starts.append(name)
             yield "working"
+            if name == "check" and self.what == "holding" and not script.holding:
+                raise Failure("NOT_HOLDING", "there is nothing in the hand")
             code = next(iter(script.failures.get(name, [])), script.always.get(name))
             if code is not None:
                 if script.failures.get(name):
                     script.failures[name].pop(0)
+                script.holding &= code != "NOT_HOLDING"
+                script.holding |= name == "pick" and script.cut_off
                 raise Failure(code, "as the test wants it")
+            script.holding = (script.holding or name == "pick") and name not in LETS_GO
             for port in real.ports.values():
                 if port.direction == "out":
                     setattr(self, port.name, OUTPUTS[port.name])
@@ -93,8 +104,9 @@ def test_without_failures_each_step_runs_in_order() -> None:
     assert bring(script).status == "SUCCESS"
     assert script.starts == [
         "reset_pose", "navigate", "check", "detect_object", "navigate", "reset_pose",
-        "detect_object", "pick", "reset_pose", "check", "check", "navigate", "check", "check",
-        "find_apriltag", "navigate", "find_apriltag", "detect_plane", "place", "reset_pose",
+        "check", "detect_object", "pick", "reset_pose", "check", "check", "navigate", "check",
+        "check", "find_apriltag", "navigate", "find_apriltag", "detect_plane", "place",
+        "reset_pose",
     ]  # fmt: skip
 
 
@@ -105,6 +117,16 @@ def test_one_failure_is_mended(name: str, code: str) -> None:
     report = bring(script)
     assert report.status == "SUCCESS", report.failure
     assert script.failures[name] == []
+
+
+@pytest.mark.parametrize("code", ["ARM_STUCK", "SLIPPED", "SENSOR_DEAD", "SKILL_ERROR", "HUNG"])
+def test_what_a_grasp_that_was_cut_off_holds_is_not_let_fall(code: str) -> None:
+    script = Script()
+    script.cut_off = True
+    script.failures["pick"] = [code]
+    assert bring(script).status == "SUCCESS"
+    assert script.starts.count("pick") == 1
+    assert "release" not in script.starts
 
 
 @pytest.mark.parametrize(("name", "code"), ONCE)
