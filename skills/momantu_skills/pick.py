@@ -146,7 +146,7 @@ class Pick(Skill):
         arrived = yield from arm.follow(plan.approach, "approaching", watch)
         if not arrived:
             self.planning_scene.touched()
-            yield from self._draw_back(arm)
+            yield from arm.back_off(arm.hand.approach)
             raise Failure("GRASP_MISSED", "the hand met something before it was around the object")
 
     def _close(self, arm: Arm, plan: PickPlan) -> Generator[str | Compute, Any, Array | None]:
@@ -214,14 +214,6 @@ class Pick(Skill):
         """Open and draw back along the approach."""
         yield from self._let_go(arm)
         yield from arm.follow(plan.retreat, "drawing back")
-
-    def _draw_back(self, arm: Arm) -> Run:
-        """Draw back along the fingers from wherever the hand is now, as far as the arm can."""
-        start = arm.joints
-        tip = arm.group.tip_pose(start)
-        path = arm.line(start, tip @ Transform((-arm.hand.approach, 0.0, 0.0)))
-        if path is not None:
-            yield from arm.follow(arm.trajectory(path, arm.hand.lift_speed), "drawing back")
 
     def _let_go(self, arm: Arm) -> Run:
         from momantu_skills.manipulation.hand import open_hand

@@ -1,4 +1,4 @@
-"""release: open the hand."""
+"""release: open the hand, and get it clear of what it held."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 from momantu_bt.claim import Claim, GripperOpen, Holding
 from momantu_bt.failure import FailureValue
 from momantu_bt.robot import Robot
-from momantu_bt.skill import Needs, Run, Skill
+from momantu_bt.skill import In, Needs, Run, Skill
 
 OPEN = 0.01
 """m short of its widest at which the gripper still counts as open: gauge and control."""
@@ -16,12 +16,23 @@ OPEN = 0.01
 class Release(Skill):
     """Open the gripper as wide as it goes; what it held is let go where it is."""
 
-    failures = {"GRIPPER_STUCK": "the gripper does not open"}
-    uses = {"gripper"}
+    back: float = In(
+        0.0,
+        unit="m",
+        least=0,
+        doc="how far the open hand then draws back along its fingers, where it can: what stands "
+        "between them is not swept along by the next motion",
+    )
+    failures = {
+        "GRIPPER_STUCK": "the gripper does not open",
+        "ARM_STUCK": "the arm does not follow on its way back",
+    }
+    uses = {"gripper", "arm"}
     planning_scene: Any = Needs()
 
     def run(self, robot: Robot) -> Run:
-        """Open and wait until it is."""
+        """Open, wait until it is, draw back."""
+        from momantu_skills.manipulation.arm import Arm
         from momantu_skills.manipulation.config import HandConfig
         from momantu_skills.manipulation.hand import open_hand
 
@@ -31,6 +42,10 @@ class Release(Skill):
         yield from open_hand(robot, self.clock, width, config.force, config.close_time)
         if holding:
             self.planning_scene.released()
+        if self.back > 0.0:
+            arm = Arm(self, robot, self.planning_scene)
+            yield from arm.settle()
+            yield from arm.back_off(self.back)
 
     def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
         """The hand is open and empty, whether that is said or denied."""

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from itertools import product
 from typing import Any
 
+import numpy as np
 import pytest
+from momantu_skills.manipulation.surroundings import Surroundings
 from momantu_skills.release import Release
 
 from momantu_bt.claim import GripperOpen, Holding
@@ -12,9 +15,9 @@ from momantu_bt.geometry import Transform
 from momantu_bt.testing import run_skill
 
 
-def release(robot: Any, scene: Any) -> Any:
+def release(robot: Any, scene: Any, **inputs: Any) -> Any:
     services = {"planning_scene": scene}
-    return run_skill(Release, robot=robot, services=services, frames=scene.frames)
+    return run_skill(Release, robot=robot, services=services, frames=scene.frames, inputs=inputs)
 
 
 def test_what_was_held_is_let_go(tabletop: Any, scene_of: Any) -> None:
@@ -63,3 +66,38 @@ def test_an_open_and_empty_hand_is_claimed_whether_said_or_denied(
     assert isinstance(opened, GripperOpen)
     assert (robot.gripper_width >= opened.width) is not stuck
     assert empty == Holding(False)
+
+
+def test_the_open_hand_draws_back_along_its_fingers(tabletop: Any, scene_of: Any) -> None:
+    robot = tabletop(can=None)
+    before = robot.odom_from_hand
+    result = release(robot, scene_of(robot), back=0.1)
+    assert result.status == "SUCCESS", result.explain()
+    moved = before.inverse() @ robot.odom_from_hand
+    assert moved.position == pytest.approx((-0.1, 0.0, 0.0), abs=0.01)
+    assert before.angle_to(robot.odom_from_hand) < 0.05
+
+
+def test_it_stays_where_it_is_without_being_asked(tabletop: Any, scene_of: Any) -> None:
+    robot = tabletop(can=None)
+    before = robot.odom_from_hand
+    release(robot, scene_of(robot))
+    assert before.position == pytest.approx(robot.odom_from_hand.position, abs=1e-6)
+
+
+def test_it_does_not_draw_back_into_something(tabletop: Any, scene_of: Any) -> None:
+    robot = tabletop(can=None)
+    scene = scene_of(robot)
+    before = robot.odom_from_hand
+    x, y, z = (before @ Transform((-0.35, 0.0, 0.0))).position
+    block = [(x + i, y + j, z + k) for i, j, k in product(np.arange(-0.1, 0.1, 0.02), repeat=3)]
+    scene.scene.surroundings = Surroundings(np.array(block))
+    result = release(robot, scene, back=0.1)
+    assert result.status == "SUCCESS", result.explain()
+    assert before.position == pytest.approx(robot.odom_from_hand.position, abs=1e-6)
+
+
+def test_an_arm_that_does_not_come_along_is_stuck(tabletop: Any, scene_of: Any) -> None:
+    robot = tabletop(can=None)
+    robot.frozen.add("arm")
+    assert release(robot, scene_of(robot), back=0.1).code == "ARM_STUCK"

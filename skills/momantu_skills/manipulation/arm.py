@@ -28,6 +28,8 @@ SETTLE_TICKS = 20
 """Ticks to wait for a stop at most: 1 s, longer than any braking."""
 LEAN_PENALTY = 2.0
 """s per rad: turning what is held upside down on the way costs about as much."""
+AROUND = 0.08
+"""m beyond half the widest opening, from between the pads, where what is grasped may be."""
 ACTUATOR = "arm"
 """The actuator that carries the hand, and the planning group of the same name."""
 
@@ -162,6 +164,25 @@ class Arm:
         )
         path, reached = self.group.trace(targets, start)
         return np.vstack([start, path]) if reached == len(targets) else None
+
+    def back_off(self, distance: float) -> Generator[str, None, None]:
+        """Draw the hand back along its fingers, from wherever it is, where that can be done.
+
+        Not where the arm would meet something; what the fingers may be around does not count.
+        Raises Failure ARM_STUCK.
+        """
+        start = self.joints
+        path = self.line(start, self.group.tip_pose(start) @ Transform((-distance, 0.0, 0.0)))
+        if path is not None and self._way_out(path):
+            yield from self.follow(self.trajectory(path, self.hand.lift_speed), "drawing back")
+
+    def _way_out(self, path: Array) -> bool:
+        state, half = self.state, self.open_width / 2 + AROUND
+        tip = self.group.tip_pose(self.joints) @ self.scene.model.tip_from_grasp
+        cut = (state.odom_from_base @ tip, (half, half, half))
+        return self.scene.world(state, None, 0.0, width=self.open_width, cut=cut).path_free(
+            path[1:]
+        )
 
     def lean(self, held: HeldObject, q: Array) -> float:
         """Angle of what is held from upright at joints (n,), rad."""
