@@ -195,8 +195,19 @@ class Pick(Skill):
             text = (
                 "the fingers lost it" if weight is None else f"the hand is {weight:.1f} N heavier"
             )
+            yield from self._set_back(arm, plan, loaded)
             yield from self._let_go(arm)
             raise Failure("SLIPPED", f"after lifting, {text}", weight=weight)
+
+    def _set_back(self, arm: Arm, plan: PickPlan, rest: Array | None) -> Run:
+        """Lower again before the hand opens, while there still seems to be something in it."""
+        from momantu_skills.manipulation.hand import bump
+
+        gap = abs(arm.state.gripper_width - plan.grasp.width)
+        if gap <= arm.hand.width_tolerance:
+            watch = bump(self.frames, rest, BUMP)
+            down = arm.reversed(plan.lift, arm.hand.approach_speed)
+            yield from arm.follow(down, "setting back", watch)
 
     def _look_again(self, arm: Arm) -> Run:
         """The place where it stood must be empty, unless the hand hides it."""

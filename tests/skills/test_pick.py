@@ -160,6 +160,18 @@ def test_a_hand_that_gets_no_heavier_holds_nothing(tabletop: Any, scene_of: Any)
     assert "heavier" in result.failure.message
 
 
+def test_what_seems_not_to_be_held_is_set_back_and_not_dropped(
+    tabletop: Any, scene_of: Any
+) -> None:
+    robot = tabletop()
+    robot.weightless = True
+    height, heights = robot.can.position[2], list[float]()
+    drop = robot._drop
+    robot._drop = lambda: (heights.append(robot.can.position[2]), drop())
+    assert pick(robot, scene_of(robot), robot.detected()).code == "SLIPPED"
+    assert heights == pytest.approx([height], abs=0.01)
+
+
 def test_what_still_stands_there_has_slipped(tabletop: Any, scene_of: Any) -> None:
     robot = tabletop()
     x, y, z = robot.can.position

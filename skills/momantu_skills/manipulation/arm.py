@@ -150,12 +150,15 @@ class Arm:
                 return
             last = now
 
-    def reversed(self, trajectory: JointTrajectory) -> JointTrajectory:
-        """The way back along a trajectory, from where the arm is to its start, at lifting speed."""
+    def reversed(self, trajectory: JointTrajectory, speed: float | None = None) -> JointTrajectory:
+        """The way back along a trajectory, from where the arm is to its start.
+
+        speed: of the hand, m/s; that of lifting if None.
+        """
         back = trajectory.positions[::-1]
         nearest = int(np.argmin(np.abs(back - self.joints).max(axis=1)))
         path = np.vstack([self.joints, back[min(nearest + 1, len(back) - 1) :]])
-        return self.trajectory(path, self.hand.lift_speed)
+        return self.trajectory(path, speed or self.hand.lift_speed)
 
     def line(self, start: Array, base_from_tip: Transform) -> Array | None:
         """Joints (k, n) along the straight line from `start` to a tip pose; None if it breaks."""
