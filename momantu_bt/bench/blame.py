@@ -14,6 +14,8 @@ from momantu_bt.bench.spec import Row
 from momantu_bt.failure import HALTED
 from momantu_bt.record.report import ERROR
 
+REFEREE = "the referee"
+"""Who is to blame where the tree succeeded and ground truth denies it."""
 _NUMBER = re.compile(r"-?\d+(\.\d+)?")
 
 
@@ -44,7 +46,7 @@ def blame(row: Row) -> Blame:
         name, _, line = link["place"].rpartition(":")
         return Blame(link["node"], f"{PurePath(name).name}:{line}", link["code"])
     unmet = row["unmet"] or [f"the run was {row['status']}"]
-    return Blame("the referee", "", "; ".join(general(sentence) for sentence in unmet))
+    return Blame(REFEREE, "", "; ".join(general(sentence) for sentence in unmet))
 
 
 def innermost(failure: Mapping[str, Any]) -> Mapping[str, Any]:

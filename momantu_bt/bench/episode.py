@@ -93,6 +93,7 @@ def run(spec: EpisodeSpec) -> tuple[Report, int]:
         robot=spec.robot,
         seed=spec.seed,
         max_time=spec.max_time,
+        referee=spec.referee,
         audit=True,
         record=_record(spec),
         faults=() if spec.fault is None else (parse_fault(spec.fault),),
@@ -118,6 +119,7 @@ def _check(spec: EpisodeSpec, checked: Checked, registry: Registry) -> None:
         robot=spec.robot,
         values=spec.values,
         max_time=spec.max_time,
+        referee=spec.referee,
     )
     if changed := difference(spec.made_of, made):
         raise Refused(

@@ -46,6 +46,7 @@ def made_of(
     robot: str | None = None,
     values: Mapping[str, Any] | None = None,
     max_time: float = 600.0,
+    referee: bool = True,
 ) -> dict[str, str]:
     """All that decides an episode but its seed and its fault, by names that people understand.
 
@@ -65,6 +66,8 @@ def made_of(
     found["the robot"] = robot or "none"
     found["the values"] = json.dumps(dict(values or {}), sort_keys=True, default=str)
     found["the time limit"] = f"{max_time:g} s"
+    if not referee:
+        found["the referee"] = "none"
     return found
 
 

@@ -106,6 +106,7 @@ class Plan:
     robot: str | None = None
     values: Mapping[str, Any] = field(default_factory=dict)
     max_time: float = 600.0
+    referee: bool = True
     limit: float = 900.0
     record: str = "none"
 
@@ -134,6 +135,7 @@ class Plan:
             self.robot,
             dict(self.values),
             self.max_time,
+            self.referee,
             fault,
             place,
             self.limit,

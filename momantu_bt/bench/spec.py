@@ -16,10 +16,11 @@ class EpisodeSpec:
     """What one episode is a pure function of, and where its record goes.
 
     key: names the episode wherever it runs. tree: path of its file. world, robot: as asked for.
-    values: keys of the root's board, raw as in a file. max_time: simulated seconds. fault: as
-    written, None without one. record: a folder to make, None for none. limit: seconds of wall
-    time after which the process is ended from outside. made_of: whatever else its outcome
-    depends on, by name (versions, digests of files and code).
+    values: keys of the root's board, raw as in a file. max_time: simulated seconds. referee:
+    False takes it out, and what the tree says counts. fault: as written, None without one.
+    record: a folder to make, None for none. limit: seconds of wall time after which the process
+    is ended from outside. made_of: whatever else its outcome depends on, by name (versions,
+    digests of files and code).
     """
 
     key: str
@@ -29,6 +30,7 @@ class EpisodeSpec:
     robot: str | None = None
     values: Mapping[str, Any] = field(default_factory=dict)
     max_time: float = 600.0
+    referee: bool = True
     fault: str | None = None
     record: str | None = None
     limit: float = 900.0

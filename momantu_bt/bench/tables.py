@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from momantu_bt.bench.blame import blame
+from momantu_bt.bench.blame import REFEREE, blame
 from momantu_bt.bench.claims import claims_text
 from momantu_bt.bench.outcome import succeeded
 from momantu_bt.bench.process import IMPOSSIBLE, REPORT
@@ -93,4 +93,10 @@ def _blame(summary: Summary) -> list[str]:
     for each, seeds in summary.blame:
         share = f"{len(seeds) / failures:.0%}".replace("%", " %")
         rows.append((share, str(len(seeds)), each.code, each.node, each.place, few_seeds(seeds)))
-    return ["why it failed:", *columns(rows)]
+    lines = ["why it failed:", *columns(rows)]
+    if summary.successes == 0 and all(each.node == REFEREE for each, _ in summary.blame):
+        lines.append(
+            "the tree never failed: if the world's referee judges another job than this tree's, "
+            "--no-referee counts what the tree says"
+        )
+    return lines

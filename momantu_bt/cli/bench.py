@@ -57,6 +57,9 @@ def bench(
     max_time: Annotated[
         float, typer.Option(min=0.05, help="Simulated seconds after which an episode fails.")
     ] = 600.0,
+    referee: Annotated[
+        bool, typer.Option("--referee/--no-referee", help="Whether somebody judges the episodes.")
+    ] = True,
     episode_limit: Annotated[
         float, typer.Option(min=1.0, help="Seconds of wall time after which one is killed.")
     ] = 900.0,
@@ -131,7 +134,7 @@ def bench(
         board = given_values(set_ or [], values)
         demands = demands_of(fault or [], faults)
         broken: list[str | None] = [demand.fault for demand in demands] or [None]
-        how = HowToRun(world, robot, board, max_time, episode_limit, chosen, broken)
+        how = HowToRun(world, robot, board, max_time, referee, episode_limit, chosen, broken)
         plan, document = plan_of(place, parse_seeds(seeds), how)
         check_faults(fault or [], document, how)
         return _bench(plan, document, demands, options)

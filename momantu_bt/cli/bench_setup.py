@@ -38,6 +38,7 @@ class HowToRun:
     robot: str | None
     values: Given
     max_time: float
+    referee: bool
     limit: float
     record: str
     faults: Sequence[str | None] = field(default=(None,))
@@ -60,7 +61,7 @@ def plan_of(tree: str, seeds: Sequence[int], how: HowToRun) -> tuple[Plan, Docum
     told: dict[str, Any] = {"world": how.world, "robot": how.robot}
     document = load(place, registry, values=how.values, **told).document
     _check_world(document, how.world, registry)
-    told |= {"max_time": how.max_time}
+    told |= {"max_time": how.max_time, "referee": how.referee}
     made = made_of(document, registry, values=how.values, **told)
     wanted = Wanted(tuple((seed, fault) for seed in seeds for fault in how.faults), made)
     values: Mapping[str, Any] = dict(how.values)

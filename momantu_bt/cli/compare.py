@@ -48,6 +48,9 @@ def compare(
     max_time: Annotated[
         float, typer.Option(min=0.05, help="Simulated seconds after which an episode fails.")
     ] = 600.0,
+    referee: Annotated[
+        bool, typer.Option("--referee/--no-referee", help="Whether somebody judges the episodes.")
+    ] = True,
     episode_limit: Annotated[
         float, typer.Option(min=1.0, help="Seconds of wall time after which one is killed.")
     ] = 900.0,
@@ -87,7 +90,7 @@ def compare(
 
         chosen = choose(record, RECORD, "--record")
         board = given_values(set_ or [], values)
-        how = HowToRun(world, robot, board, max_time, episode_limit, chosen)
+        how = HowToRun(world, robot, board, max_time, referee, episode_limit, chosen)
         plans = [plan_of(tree, parse_seeds(seeds), how)[0] for tree in (tree_a, tree_b)]
         if plans[0].wanted == plans[1].wanted:
             raise ArgumentError(f"{tree_a} and {tree_b} are the same; name two different trees")

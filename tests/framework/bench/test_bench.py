@@ -264,6 +264,22 @@ def _started(small: str, out: Path, **more: Any) -> subprocess.Popen[str]:
     )
 
 
+def test_without_a_referee_the_tree_has_the_last_word(
+    stalling: str, tmp_path: Path, capsys: Out
+) -> None:
+    words = (stalling, "--seeds", "5", "--out", tmp_path / "out")
+    assert bench(*words) == 0
+    said = capsys.readouterr().out
+    assert "0 of 1" in said
+    assert "--no-referee counts what the tree says" in said
+    assert bench(*words, "--no-referee") == 0
+    said = capsys.readouterr()
+    assert "1 of 1" in said.out
+    assert "the referee" in said.err
+    judged, told = read_rows(tmp_path / "out")
+    assert (judged["success"], told["success"]) == (False, None)
+
+
 @pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGKILL])
 def test_a_bench_that_is_ended_goes_on_without_loss_or_double(
     small: str, tmp_path: Path, capsys: Out, monkeypatch: pytest.MonkeyPatch, end: signal.Signals
