@@ -25,9 +25,7 @@ def usual_phase(
 
     skills: those that the run can reach, in the order of the file.
     """
-    answering = (
-        n for n, s in skills.items() if any(p.direction == "out" for p in s.ports.values())
-    )
+    answering = (name for name, skill in skills.items() if _has_outputs(skill))
     stand_ins = {FIRST_SKILL: next(iter(skills), None), FIRST_ANSWER: next(answering, None)}
     for text in kind.phases:
         phase = stand_ins.get(text, text)
