@@ -29,6 +29,18 @@ from momantu_bt.cli.bench_setup import (
     say_refused,
     shard_of,
 )
+from momantu_bt.cli.options import (
+    EpisodeLimit,
+    Jobs,
+    Judged,
+    Kept,
+    MaxTime,
+    RayAddress,
+    Robot,
+    Runner,
+    Seeds,
+    Values,
+)
 
 if TYPE_CHECKING:
     from momantu_bt.bench.plan import Plan
@@ -44,25 +56,17 @@ def bench(
             metavar="TREE", help="A tree file, or the name of a bundled tree; folders for --merge."
         ),
     ],
-    seeds: Annotated[str, typer.Option(help="0:500, 3,5,7 or 0:10,20:30.")] = "0:30",
-    jobs: Annotated[
-        int | None, typer.Option(min=1, help="Episodes at a time; else one per core.")
-    ] = None,
+    seeds: Seeds = "0:30",
+    jobs: Jobs = None,
     world: Annotated[str | None, typer.Option(help="A world's name; else the tree's own.")] = None,
-    robot: Annotated[str | None, typer.Option(help="A robot's name; else the world's own.")] = None,
+    robot: Robot = None,
     set_: Annotated[
         list[str] | None, typer.Option("--set", help="key=value: a value of the tree's board.")
     ] = None,
-    values: Annotated[Path | None, typer.Option(help="A YAML file of values.")] = None,
-    max_time: Annotated[
-        float, typer.Option(min=0.05, help="Simulated seconds after which an episode fails.")
-    ] = 600.0,
-    referee: Annotated[
-        bool, typer.Option("--referee/--no-referee", help="Whether somebody judges the episodes.")
-    ] = True,
-    episode_limit: Annotated[
-        float, typer.Option(min=1.0, help="Seconds of wall time after which one is killed.")
-    ] = 900.0,
+    values: Values = None,
+    max_time: MaxTime = 600.0,
+    referee: Judged = True,
+    episode_limit: EpisodeLimit = 900.0,
     fault: Annotated[
         list[str] | None,
         typer.Option(metavar="FAULT", help="Break this, once for each seed."),
@@ -80,18 +84,9 @@ def bench(
     merge: Annotated[
         bool, typer.Option("--merge", help="Run nothing: join folders of results in --out.")
     ] = False,
-    engine: Annotated[
-        str, typer.Option(help="What runs the episodes: local, or ray (several machines).")
-    ] = "local",
-    ray_address: Annotated[
-        str | None,
-        typer.Option(
-            metavar="HOST:PORT", help="The Ray cluster, or auto; else one on this machine."
-        ),
-    ] = None,
-    record: Annotated[
-        str, typer.Option(help="Which episodes leave a record: failures, all or none.")
-    ] = "failures",
+    engine: Runner = "local",
+    ray_address: RayAddress = None,
+    record: Kept = "failures",
     coverage: Annotated[
         bool, typer.Option("--coverage", help="Print the tree with how often each line ran.")
     ] = False,

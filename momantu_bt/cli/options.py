@@ -1,0 +1,34 @@
+"""Options that `bench` and `compare` have in common, spelled once."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, TypeAlias
+
+import typer
+
+Seeds: TypeAlias = Annotated[str, typer.Option(help="0:500, 3,5,7 or 0:10,20:30.")]
+Jobs: TypeAlias = Annotated[
+    int | None, typer.Option(min=1, help="Episodes at a time; else one per core.")
+]
+Robot: TypeAlias = Annotated[str | None, typer.Option(help="A robot's name; else the world's own.")]
+Values: TypeAlias = Annotated[Path | None, typer.Option(help="A YAML file of values.")]
+MaxTime: TypeAlias = Annotated[
+    float, typer.Option(min=0.05, help="Simulated seconds after which an episode fails.")
+]
+Judged: TypeAlias = Annotated[
+    bool, typer.Option("--referee/--no-referee", help="Whether somebody judges the episodes.")
+]
+EpisodeLimit: TypeAlias = Annotated[
+    float, typer.Option(min=1.0, help="Seconds of wall time after which one is killed.")
+]
+Runner: TypeAlias = Annotated[
+    str, typer.Option(help="What runs the episodes: local, or ray (several machines).")
+]
+RayAddress: TypeAlias = Annotated[
+    str | None,
+    typer.Option(metavar="HOST:PORT", help="The Ray cluster, or auto; else one on this machine."),
+]
+Kept: TypeAlias = Annotated[
+    str, typer.Option(help="Which episodes leave a record: failures, all or none.")
+]
