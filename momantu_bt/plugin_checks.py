@@ -5,13 +5,15 @@ from __future__ import annotations
 import keyword
 import re
 from collections.abc import Callable, Mapping
+from importlib import import_module
 from typing import Any
 
 from momantu_bt.failure import CODE
-from momantu_bt.plugins import ROBOTS, SERVICES, SKILLS, WORLDS
+from momantu_bt.plugins import COMMANDS, ROBOTS, SERVICES, SKILLS, WORLDS, installed, load
 from momantu_bt.service import Service
 from momantu_bt.skill import Port, Skill
 
+_WORD = re.compile(r"[a-z][a-z0-9_-]*")
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
 WORDS_OF_TREES = ("again", "any", "child", "children", "try", "catch", "then", "else", "do")
 """Words that stand where a node's name could, and mean something else."""
@@ -110,9 +112,32 @@ def _world(name: str, plugin: Any) -> str | None:
     return f"{plugin!r} has no {' and no '.join(lacking)}" if lacking else None
 
 
+def _command(name: str, plugin: Any) -> str | None:
+    if not callable(plugin):
+        return f"{plugin!r} is no function and no typer app"
+    if not all(_WORD.fullmatch(word) for word in name.split(" ")) or name.count(" ") > 1:
+        return f"{name!r} is no verb, and no verb, one blank and a sub-verb"
+    verb, blank, _ = name.partition(" ")
+    if blank and not _is_group(verb):
+        return f"the verb {verb!r} takes no sub-verbs"
+    return None
+
+
+def _is_group(verb: str) -> bool:
+    """Whether a verb is a typer app, which takes sub-verbs."""
+    import typer
+
+    from momantu_bt.cli import VERBS
+
+    if verb in VERBS:
+        return isinstance(getattr(import_module(f"momantu_bt.cli.{verb}"), verb), typer.Typer)
+    return verb in installed(COMMANDS) and isinstance(load(COMMANDS, verb), typer.Typer)
+
+
 _CHECKS: Mapping[str, Callable[[str, Any], str | None]] = {
     SKILLS: _skill,
     SERVICES: _service,
     ROBOTS: _robot,
     WORLDS: _world,
+    COMMANDS: _command,
 }

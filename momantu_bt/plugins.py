@@ -19,7 +19,14 @@ WORLDS = "momantu_bt.worlds"
 TREES = "momantu_bt.trees"
 COMMANDS = "momantu_bt.commands"
 
-_WHAT = {SKILLS: "skill", SERVICES: "service", ROBOTS: "robot", WORLDS: "world", TREES: "tree"}
+_WHAT = {
+    SKILLS: "skill",
+    SERVICES: "service",
+    ROBOTS: "robot",
+    WORLDS: "world",
+    TREES: "tree",
+    COMMANDS: "verb",
+}
 
 _Found: TypeAlias = Mapping[str, tuple[EntryPoint, ...]]
 

@@ -11,13 +11,12 @@ import os
 import sys
 from collections.abc import Sequence
 from importlib import import_module
-from typing import Any
 
 import typer
 
 import momantu_bt.cli.threads  # noqa: F401 - before numpy, which the next imports load
 from momantu_bt import __version__, plugins
-from momantu_bt.cli.help import help_of
+from momantu_bt.cli.subverbs import add_command, with_subverbs
 from momantu_bt.world import WorldError
 
 EXIT_OK = 0
@@ -53,10 +52,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     given = list(sys.argv[1:] if arguments is None else arguments)
     try:
         if not given:
-            _app(None)(args=["--help"], prog_name="momantu-bt", standalone_mode=False)
+            _app(given)(args=["--help"], prog_name="momantu-bt", standalone_mode=False)
             return EXIT_WRONG_INPUT
-        verb = next((word for word in given if not word.startswith("-")), None)
-        result = _app(verb)(args=given, prog_name="momantu-bt", standalone_mode=False)
+        result = _app(given)(args=given, prog_name="momantu-bt", standalone_mode=False)
     except KeyboardInterrupt:
         return EXIT_INTERRUPTED
     except SystemExit as error:
@@ -70,8 +68,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return result if isinstance(result, int) else EXIT_OK
 
 
-def _app(verb: str | None) -> typer.Typer:
-    """The command line with one verb ready; the others are names with a line of help."""
+def _app(given: Sequence[str]) -> typer.Typer:
+    """The command line with the verb ready that is given; the others are a line of help each."""
+    at = next((n for n, word in enumerate(given) if not word.startswith("-")), None)
+    verb, rest = (None, ()) if at is None else (given[at], given[at + 1 :])
     app = typer.Typer(
         name="momantu-bt",
         help="Program a mobile manipulator by editing one tree file.",
@@ -82,23 +82,20 @@ def _app(verb: str | None) -> typer.Typer:
     app.callback(epilog="momantu-bt VERB --help shows worked examples.")(_options)
     for name, help_line in VERBS.items():
         if name == verb:
-            _add(app, name, getattr(import_module(f"momantu_bt.cli.{name}"), name))
+            own = getattr(import_module(f"momantu_bt.cli.{name}"), name)
+            add_command(app, name, with_subverbs(own, name, rest))
         else:
             app.command(name, help=help_line)(_never)
     for name, entry in plugins.installed(plugins.COMMANDS).items():
-        if name == verb and name not in VERBS:
-            _add(app, name, plugins.load(plugins.COMMANDS, name))
-        elif name not in VERBS:
+        if name in VERBS or " " in name:
+            continue
+        if name == verb:
+            own = plugins.load(plugins.COMMANDS, name)
+            add_command(app, name, with_subverbs(own, name, rest))
+        else:
             package = entry.dist.name if entry.dist is not None else "a plug-in"
             app.command(name, help=f"From {package}.")(_never)
     return app
-
-
-def _add(app: typer.Typer, name: str, verb: Any) -> None:
-    if isinstance(verb, typer.Typer):
-        app.add_typer(verb, name=name)
-    else:
-        app.command(name, help=help_of(verb))(verb)
 
 
 def _print_version(wanted: bool) -> None:

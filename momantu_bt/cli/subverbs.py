@@ -1,0 +1,112 @@
+"""Sub-verbs that other packages bring: `worlds check` is an entry point of that name.
+
+Only the one that is asked for is imported. The others are names with a line of help, which is
+read from their source, so that neither a heavy module nor a broken one is in anybody's way.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Sequence
+from copy import copy
+from importlib.metadata import EntryPoint
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import typer
+
+from momantu_bt import plugins
+from momantu_bt.cli.help import help_of
+
+
+def with_subverbs(verb: Any, name: str, given: Sequence[str]) -> Any:
+    """The verb, and if it is a group of commands, what others add to it; itself it stays as it is.
+
+    Of a name that the verb has itself, the verb's own command counts.
+
+    Args:
+        verb: a function or a typer app.
+        name: the verb's name.
+        given: the words that follow the verb on the command line.
+
+    Raises:
+        PluginError: the sub-verb that is asked for is broken.
+    """
+    if not isinstance(verb, typer.Typer):
+        return verb
+    app = copy(verb)
+    app.registered_commands = list(verb.registered_commands)
+    app.registered_groups = list(verb.registered_groups)
+    own = _names(verb)
+    asked = next((word for word in given if not word.startswith("-")), None)
+    for full_name, entry in plugins.installed(plugins.COMMANDS).items():
+        first, blank, sub = full_name.partition(" ")
+        if first != name or not blank or sub in own:
+            continue
+        if sub == asked:
+            add_command(app, sub, plugins.load(plugins.COMMANDS, full_name))
+        else:
+            app.command(sub, help=summary(entry))(_never)
+    return app
+
+
+def add_command(app: typer.Typer, name: str, command: Any) -> None:
+    """Add a command, a function or a typer app, under a name."""
+    if isinstance(command, typer.Typer):
+        app.add_typer(command, name=name)
+    else:
+        app.command(name, help=help_of(command))(command)
+
+
+def summary(entry: EntryPoint) -> str:
+    """The first line of what a command says of itself, else which package it is from.
+
+    The command's module is read, not run.
+    """
+    package = entry.dist.name if entry.dist is not None else "a plug-in"
+    return _first_line(entry) or f"From {package}."
+
+
+def _names(app: typer.Typer) -> set[str]:
+    """What the app can do before others add to it."""
+    commands = [
+        command.name or command.callback.__name__
+        for command in app.registered_commands
+        if command.callback is not None
+    ]
+    return {*commands, *(str(group.name) for group in app.registered_groups)}
+
+
+def _first_line(entry: EntryPoint) -> str:
+    try:
+        source = _source(entry.module)
+        tree = ast.parse(source.read_bytes()) if source is not None else None
+    except (ImportError, OSError, SyntaxError, ValueError):
+        return ""
+    kinds = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
+    named = [
+        n for n in (tree.body if tree else []) if isinstance(n, kinds) and n.name == entry.attr
+    ]
+    doc = ast.get_docstring(named[-1]) if named else None
+    return (doc or "").partition("\n")[0]
+
+
+def _source(module: str) -> Path | None:
+    """A module's file, found beneath its first package; nothing is imported."""
+    first, *inner = module.split(".")
+    spec = find_spec(first)
+    if spec is None:
+        return None
+    if not inner:
+        return Path(spec.origin) if spec.has_location and spec.origin else None
+    for folder in spec.submodule_search_locations or ():
+        path = Path(folder, *inner)
+        for file in (path.with_suffix(".py"), path / "__init__.py"):
+            if file.is_file():
+                return file
+    return None
+
+
+def _never() -> None:
+    """Stand for a sub-verb that was not asked for."""
