@@ -74,6 +74,11 @@ class KinematicTree:
         links = [link.get("name", "") for link in root.findall("link")]
         if base_frame not in links:
             raise ValueError(f"{path} has no link {base_frame!r}; links: {', '.join(links)}")
+        return cls.from_element(root, base_frame)
+
+    @classmethod
+    def from_element(cls, root: etree._Element, base_frame: str) -> KinematicTree:
+        """Read joints from a URDF's `robot` element, which has the link `base_frame`."""
         return cls([_joint(element) for element in root.findall("joint")], base_frame)
 
     def frames(self) -> tuple[str, ...]:

@@ -91,6 +91,15 @@ class LaserScan:
 
 
 @dataclass(frozen=True, slots=True)
+class PointCloud:
+    """What a lidar met in one turn. points: (n, 3) float32, m, in `frame`; misses are left out."""
+
+    stamp: float
+    frame: str
+    points: NDArray[np.float32]
+
+
+@dataclass(frozen=True, slots=True)
 class WrenchReading:
     """Force (3,) in N and torque (3,) in Nm that the hand's load puts on the wrist, in `frame`."""
 

@@ -2,22 +2,76 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Literal, Protocol, TypeAlias, TypeVar
+from typing import Annotated, Protocol, Self, TypeAlias, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field, model_validator
 
+from momantu_bt.descriptions.quantities import Length, Size
 from momantu_bt.frames import KinematicTree
 from momantu_bt.messages import (
     ActuatorGoal,
     CameraImage,
     LaserScan,
+    PointCloud,
     RobotState,
     WrenchReading,
 )
+from momantu_bt.robot_parts import (
+    Actuator,
+    ActuatorKind,
+    BaseLimits,
+    CameraSensor,
+    EndEffector,
+    JointLimit,
+    LaserSensor,
+    LidarSensor,
+    Part,
+    PlanningGroup,
+    Sensor,
+    Working,
+    WristWrench,
+)
+from momantu_bt.robot_simulation import (
+    BaseJoints,
+    Cuts,
+    JointGains,
+    PlanarDrive,
+    SimulationModel,
+)
 
-SensorReading: TypeAlias = CameraImage | LaserScan | WrenchReading
+__all__ = [
+    "CAMERA_CARRIER",
+    "REQUIRED_POSES",
+    "WATCHDOG",
+    "Actuator",
+    "ActuatorKind",
+    "BaseJoints",
+    "BaseLimits",
+    "CameraSensor",
+    "Cuts",
+    "EndEffector",
+    "JointGains",
+    "JointLimit",
+    "LaserSensor",
+    "LidarSensor",
+    "PlanarDrive",
+    "PlanningGroup",
+    "Robot",
+    "RobotDescription",
+    "Sensor",
+    "SensorReading",
+    "SimulationModel",
+    "Working",
+    "WristWrench",
+    "laser_band",
+    "read_camera",
+    "read_laser",
+    "read_lidar",
+]
+
+SensorReading: TypeAlias = CameraImage | LaserScan | PointCloud | WrenchReading
 
 CAMERA_CARRIER = "camera_carrier"
 """In a skill's `uses`: whichever actuator carries the camera (a head, or the arm)."""
@@ -29,121 +83,25 @@ WATCHDOG = 0.25
 """Seconds after the last command at which a driver stops its actuator by itself."""
 
 
-class _Part(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-
-class ActuatorKind(StrEnum):
-    """What goals an actuator takes: BaseVelocity, joint goals, or GripperCommand."""
-
-    BASE = "base"
-    JOINTS = "joints"
-    GRIPPER = "gripper"
-
-
-class Actuator(_Part):
-    """A thing that can be commanded. joints: in the order of its trajectories."""
-
-    kind: ActuatorKind
-    joints: tuple[str, ...] = ()
-
-
-class JointLimit(_Part):
-    """Limits of one joint: rad or m, per second, per second squared. None: turns for ever."""
-
-    lower: float | None = None
-    upper: float | None = None
-    velocity: float
-    acceleration: float
-
-
-class CameraSensor(_Part):
-    """An RGB-D camera. carrier: the actuator that moves it. Fields in px, rad and m."""
-
-    kind: Literal["camera"] = "camera"
-    frame: str
-    carrier: str
-    width: int = 640
-    height: int = 480
-    horizontal_fov: float
-    min_depth: float
-    max_depth: float
-
-
-class LaserSensor(_Part):
-    """A planar laser scanner. Fields in rad, m and counts."""
-
-    kind: Literal["laser"] = "laser"
-    frame: str
-    angle_min: float
-    angle_max: float
-    beams: int
-    range_min: float
-    range_max: float
-
-
-class WristWrench(_Part):
-    """A force-torque sensor at the wrist, or an estimate from joint efforts."""
-
-    kind: Literal["wrench"] = "wrench"
-    frame: str
-
-
-Sensor: TypeAlias = Annotated[CameraSensor | LaserSensor | WristWrench, Field(discriminator="kind")]
-
-
-class PlanningGroup(_Part):
-    """Joints that are planned together, from the base outwards, and the link they carry."""
-
-    joints: tuple[str, ...]
-    tip: str
-
-
-class EndEffector(_Part):
-    """The gripper.
-
-    In its grasp frame x points out along the fingers, y is the closing direction, and the origin
-    lies between the pads.
-
-    frame: link the grasp frame is fixed to; grasp_offset: distance of the grasp frame's origin
-    along that link's x, m. pad_length: the pads' length along x, pad_height along z, m.
-    hand_clearance: how deep an object may reach behind the grasp frame's origin, m.
-    touch_links: links that may touch what is grasped.
-    """
-
-    actuator: str = "gripper"
-    frame: str
-    grasp_offset: float = 0.0
-    max_width: float
-    max_force: float
-    pad_length: float
-    pad_height: float
-    hand_clearance: float
-    touch_links: tuple[str, ...]
-
-
-class BaseLimits(_Part):
-    """m/s, rad/s, m/s2, rad/s2."""
-
-    linear: float
-    angular: float
-    linear_acceleration: float
-    angular_acceleration: float
-
-
-class RobotDescription(_Part):
-    """All that skills may know of a robot; nothing in them mentions a robot by name.
-
-    urdf: absolute path; mesh_directories: where `package://` addresses are looked up.
-    footprint: (x, y) corners of the base in its frame, counter-clockwise, m.
-    ignored_collisions: pairs of links that never matter to a collision check.
-    """
+class RobotDescription(Part):
+    """All that skills may know of a robot; nothing in them mentions a robot by name."""
 
     name: str
+    source: Path | None = None
+    """The robot file that it was read from."""
+    files: dict[str, Path] = {}
+    """Every file that it is made of except meshes, by names that mean something elsewhere."""
     urdf: Path
+    """One URDF of the whole robot; absolute."""
     mesh_directories: tuple[Path, ...] = ()
+    """Where `package://` addresses are looked up."""
     base_frame: str = "base_link"
-    footprint: tuple[tuple[float, float], ...]
+    """On the floor, x forward."""
+    footprint: Annotated[tuple[tuple[Length, Length], ...], Field(min_length=3)]
+    """(x, y) corners of the base in its frame, counter-clockwise."""
+    height: Size
+    """Of the robot in its tallest working posture; what hangs lower is in its way."""
+    working: Working
     base: BaseLimits
     actuators: dict[str, Actuator]
     joint_limits: dict[str, JointLimit]
@@ -151,7 +109,30 @@ class RobotDescription(_Part):
     groups: dict[str, PlanningGroup]
     end_effector: EndEffector
     named_poses: dict[str, dict[str, float]]
+    """Joint positions by name, rad or m."""
     ignored_collisions: tuple[tuple[str, str], ...] = ()
+    """Pairs of links that never matter to a collision check."""
+    simulation: SimulationModel | None = None
+    """None: the robot cannot be simulated."""
+
+    @model_validator(mode="after")
+    def _usual_opening(self) -> Self:
+        """Fingers without a table share the opening evenly."""
+        hand = self.end_effector
+        gripper = self.actuators.get(hand.actuator)
+        if hand.opening or gripper is None or not gripper.joints:
+            return self
+        row = (hand.max_width, hand.max_width / len(gripper.joints))
+        opening = dict.fromkeys(gripper.joints, ((0.0, 0.0), row))
+        object.__setattr__(self, "end_effector", hand.model_copy(update={"opening": opening}))
+        return self
+
+    def texts(self) -> Mapping[str, str]:
+        """Texts of all that the robot is made of except meshes, by file name."""
+        return {
+            name: path.read_text(encoding="utf-8", errors="replace")
+            for name, path in self.files.items()
+        }
 
     def kinematics(self) -> KinematicTree:
         """Forward kinematics below the base frame, read from the URDF."""
@@ -171,6 +152,11 @@ class RobotDescription(_Part):
         lasers = {k: s for k, s in self.sensors.items() if isinstance(s, LaserSensor)}
         return _pick("laser", lasers, name)
 
+    def lidar(self, name: str | None = None) -> tuple[str, LidarSensor]:
+        """Name and description of a lidar: the named one, or the first; KeyError if none."""
+        lidars = {k: s for k, s in self.sensors.items() if isinstance(s, LidarSensor)}
+        return _pick("lidar", lidars, name)
+
     def resolve_use(self, use: str) -> str:
         """The actuator that an entry of a skill's `uses` means on this robot.
 
@@ -178,6 +164,8 @@ class RobotDescription(_Part):
             KeyError: the robot has no such actuator, with those it has.
         """
         actuator = self.camera()[1].carrier if use == CAMERA_CARRIER else use
+        if actuator is None:
+            raise KeyError("the robot's camera is fixed: no actuator carries it")
         return _pick("actuator", self.actuators, actuator)[0]
 
 
@@ -190,6 +178,23 @@ def _pick(what: str, having: dict[str, _T], name: str | None) -> tuple[str, _T]:
         names = ", ".join(having) or "none"
         raise KeyError(f"the robot has no {what} {found or ''}; it has: {names}")
     return found, having[found]
+
+
+def laser_band(description: RobotDescription) -> tuple[float, float]:
+    """Lowest and highest point above the floor that the robot's laser sees, m.
+
+    Of a scanner of its own both are the height of its plane.
+
+    Raises:
+        KeyError: the robot has no laser.
+        Failure: FRAME_UNKNOWN, its frame is none of the robot's.
+    """
+    _, laser = description.laser()
+    if laser.band is not None:
+        return laser.band
+    base_from_laser = description.kinematics().base_from_frame(laser.frame, {})
+    height = float(base_from_laser.position[2])
+    return height, height
 
 
 class Robot(Protocol):
@@ -240,4 +245,12 @@ def read_laser(robot: Robot, name: str | None = None) -> LaserScan:
     reading = robot.read(robot.description.laser(name)[0])
     if not isinstance(reading, LaserScan):
         raise TypeError(f"sensor {name!r} gave a {type(reading).__name__}, not a scan")
+    return reading
+
+
+def read_lidar(robot: Robot, name: str | None = None) -> PointCloud:
+    """Points of the named lidar, or of the robot's first one."""
+    reading = robot.read(robot.description.lidar(name)[0])
+    if not isinstance(reading, PointCloud):
+        raise TypeError(f"sensor {name!r} gave a {type(reading).__name__}, not points")
     return reading

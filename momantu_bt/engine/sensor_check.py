@@ -76,7 +76,7 @@ class SensorCheck:
     def _carrier(self, sensor: str, state: RobotState) -> Array:
         """Positions of the joints that carry a camera; of other sensors the base alone counts."""
         spec = self._description.sensors.get(sensor)
-        if not isinstance(spec, CameraSensor):
+        if not isinstance(spec, CameraSensor) or spec.carrier is None:
             return np.zeros(0)
         joints = self._description.actuators[spec.carrier].joints
         return np.array([state.position(name) for name in joints if name in state.names])

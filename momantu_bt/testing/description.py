@@ -14,6 +14,7 @@ from momantu_bt.robot import (
     LaserSensor,
     PlanningGroup,
     RobotDescription,
+    Working,
     WristWrench,
 )
 
@@ -27,6 +28,8 @@ def small_robot() -> RobotDescription:
     return RobotDescription(
         name="small",
         urdf=URDF,
+        height=1.2,
+        working=Working(stand_off=0.4, look_off=0.6, reach=(0.4, 0.6, 0.8)),
         footprint=((0.25, 0.2), (-0.25, 0.2), (-0.25, -0.2), (0.25, -0.2)),
         base=BaseLimits(linear=1.0, angular=1.5, linear_acceleration=1.0, angular_acceleration=3.0),
         actuators={

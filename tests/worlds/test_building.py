@@ -9,7 +9,6 @@ import pytest
 import sapien
 import trimesh
 from momantu_worlds.robots import fetch
-from momantu_worlds.robots.loading import Cuts, read_simulation
 from momantu_worlds.sapien.building import add_bodies
 from momantu_worlds.sapien.cells import convex_cells
 from momantu_worlds.sapien.meshes import body_mesh, collision_mesh, map_triangles, volume
@@ -18,6 +17,7 @@ from momantu_worlds.scenes.bodies import Body, Box, Cylinder, Geometry, Hull, Me
 from momantu_worlds.scenes.plain import plain_episode
 
 from momantu_bt.geometry import Transform, quaternion_from_rpy
+from momantu_bt.robot import Cuts
 
 FETCH = fetch()
 CORNERS = np.array([[x, y, z] for x in (0, 0.1) for y in (0, 0.2) for z in (0, 0.3)], dtype=float)
@@ -81,7 +81,8 @@ def test_contact_forces_add_up_to_the_weight() -> None:
 
 
 def test_cells_of_the_torso_fill_its_mesh_and_little_more() -> None:
-    cuts = read_simulation("fetch").convex_cells["torso_lift_link"]
+    assert FETCH.simulation is not None
+    cuts = FETCH.simulation.convex_cells["torso_lift_link"]
     folder = FETCH.mesh_directories[0] / "fetch_description" / "meshes"
     path = str(folder / "torso_lift_link_collision.STL")
     mesh = trimesh.load(path, force="mesh")

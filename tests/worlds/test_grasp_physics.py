@@ -8,13 +8,12 @@ from functools import cache
 import numpy as np
 import pytest
 from momantu_worlds.robots import fetch
-from momantu_worlds.robots.loading import read_simulation
-from momantu_worlds.sapien import simulator as simulator_module
 from momantu_worlds.sapien.simulator import Simulator
 from momantu_worlds.scenes.plain import CAN_HEIGHT, CAN_MASS, CAN_RADIUS, plain_episode
 
 from momantu_bt.geometry import Transform
 from momantu_bt.messages import BaseVelocity, GripperCommand, JointPositions
+from momantu_bt.robot import RobotDescription
 
 FETCH = fetch()
 ARM = FETCH.actuators["arm"].joints
@@ -28,12 +27,18 @@ def hand() -> Transform:
     return FETCH.kinematics().base_from_frame("gripper_link", LOW)
 
 
-def gripped(force: float, *, can_friction: float = 0.8, beside: float = 0.0) -> Simulator:
+def gripped(
+    force: float,
+    *,
+    can_friction: float = 0.8,
+    beside: float = 0.0,
+    robot: RobotDescription = FETCH,
+) -> Simulator:
     """The hand has closed on a can that stood on a post, `beside` m off the middle."""
     x, y, z = hand().position
     bottom = (x + 0.01, y + beside, z - CAN_HEIGHT / 2)
     episode = plain_episode(can_at=bottom, can_friction=can_friction, stand=True)
-    simulator = Simulator(FETCH, episode, 0, render=False, pose=LOW)
+    simulator = Simulator(robot, episode, 0, render=False, pose=LOW)
     for _ in range(25):
         simulator.robot.command("gripper", GripperCommand(0.0, force))
         simulator.step()
@@ -90,10 +95,11 @@ def test_the_pads_press_with_the_force_that_was_asked_for(force: float) -> None:
     assert np.mean(pads) == pytest.approx(force, rel=0.15)
 
 
-def test_without_friction_the_can_slips(monkeypatch: pytest.MonkeyPatch) -> None:
-    slippery = read_simulation("fetch").model_copy(update={"finger_friction": 0.02})
-    monkeypatch.setattr(simulator_module, "read_simulation", lambda name: slippery)
-    simulator = gripped(40.0, can_friction=0.02)
+def test_without_friction_the_can_slips() -> None:
+    assert FETCH.simulation is not None
+    slippery = FETCH.simulation.model_copy(update={"finger_friction": 0.02})
+    robot = FETCH.model_copy(update={"simulation": slippery})
+    simulator = gripped(40.0, can_friction=0.02, robot=robot)
     lift(simulator)
     assert simulator.truth.pose("can").position[2] < hand().position[2] + 0.05
 

@@ -12,10 +12,9 @@ import numpy as np
 import pytest
 import trimesh
 from momantu_worlds.robots import FOLDER, fetch
-from momantu_worlds.robots.loading import read_description, read_simulation
 
 from momantu_bt.robot import CAMERA_CARRIER, REQUIRED_POSES, ActuatorKind, CameraSensor
-from momantu_bt.world import WorldError
+from momantu_bt.robots import RobotFileError, read_robot
 
 FETCH = fetch()
 MOVING = [
@@ -97,7 +96,7 @@ def test_the_folded_arm_stays_near_the_base() -> None:
 
 def test_without_the_mesh_package_the_cure_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
-    with pytest.raises(WorldError, match=r"mani_skill.*make setup"):
+    with pytest.raises(RobotFileError, match=r"mani_skill.*make setup"):
         fetch()
 
 
@@ -106,7 +105,7 @@ def test_without_the_mesh_package_the_cure_is_named(monkeypatch: pytest.MonkeyPa
     [
         (("kind: base}", "kind: wheels}"), "actuators.base.kind"),
         (("grasp_offset: 0.0", "grasp_ofset: 0.0"), "grasp_ofset"),
-        (("name: fetch", "name: [fetch"), "cannot be read"),
+        (("name: fetch", "name: [fetch"), "not YAML"),
     ],
 )
 def test_a_broken_robot_file_is_named_with_the_place(
@@ -114,11 +113,10 @@ def test_a_broken_robot_file_is_named_with_the_place(
 ) -> None:
     text = (FOLDER / "fetch" / "robot.yaml").read_text().replace(*change)
     (tmp_path / "robot.yaml").write_text(text)
-    with pytest.raises(WorldError, match=words):
-        read_description(tmp_path)
+    with pytest.raises(RobotFileError, match=words):
+        read_robot(tmp_path)
 
 
-def test_a_robot_that_cannot_be_simulated_is_refused_with_those_that_can() -> None:
-    with pytest.raises(WorldError, match=r"'pr2'.*fetch"):
-        read_simulation("pr2")
-    assert read_simulation("fetch").finger_friction <= 2.0
+def test_it_can_be_simulated_with_a_friction_that_rubber_has() -> None:
+    assert FETCH.simulation is not None
+    assert 1.0 <= FETCH.simulation.finger_friction <= 2.0

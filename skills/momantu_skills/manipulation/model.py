@@ -118,8 +118,6 @@ class ArmModel:
         }
         self.group_index = np.array([self._index[name] for name in self.group.names])
         self.frame_ids = {link: int(self.pin.getFrameId(link)) for link in self.hulls}
-        fingers = description.actuators[description.end_effector.actuator].joints
-        self._fingers = [self._index[name] for name in fingers]
 
     def joints(self, state: RobotState) -> Array:
         """Joints of the planning group (n,) as measured, clipped into their limits."""
@@ -136,8 +134,8 @@ class ArmModel:
         for name, value in joints.items():
             if name in self._index:
                 q[self._index[name]] = value
-        for finger in self._fingers:
-            q[finger] = max(0.0, width) / len(self._fingers)
+        for finger, value in self.description.end_effector.positions(max(0.0, width)).items():
+            q[self._index[finger]] = value
         return q
 
     def link_poses(self, q: Array) -> dict[str, Array]:

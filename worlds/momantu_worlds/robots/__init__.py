@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from momantu_bt.robot import RobotDescription
-from momantu_worlds.robots.loading import read_description
+from momantu_bt.robots import read_robot
 
 FOLDER = Path(__file__).parent
 
@@ -16,4 +16,4 @@ def fetch() -> RobotDescription:
     Raises:
         WorldError: the mani_skill package, or its Fetch, is not installed.
     """
-    return read_description(FOLDER / "fetch")
+    return read_robot(FOLDER / "fetch")

@@ -9,7 +9,7 @@ import trimesh
 from numpy.typing import NDArray
 from trimesh import intersections
 
-from momantu_worlds.robots.loading import Cuts
+from momantu_bt.robot import Cuts
 
 CRUMB = 1e-5
 """m3; hulls below it are slivers along a cut."""

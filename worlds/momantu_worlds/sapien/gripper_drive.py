@@ -1,7 +1,9 @@
-"""The driver of a parallel gripper: an opening to go to, with a limited force."""
+"""The driver of a gripper: an opening to go to, with a limited force."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from itertools import pairwise
 from typing import Any
 
 from momantu_bt.messages import GripperCommand
@@ -10,31 +12,29 @@ from momantu_worlds.sapien.config import STEP, Physics
 
 
 class GripperDrive:
-    """Two coupled fingers, each pressing with at most the force that was asked for.
+    """Coupled fingers, each pressing with at most the force that was asked for.
 
-    The opening between the pads is twice one finger's travel.
+    fingers: SAPIEN's joints by name. speeds: their greatest, rad/s or m/s.
     """
 
     def __init__(
-        self, fingers: list[Any], effector: EndEffector, speed: float, physics: Physics
+        self,
+        fingers: Mapping[str, Any],
+        effector: EndEffector,
+        speeds: Mapping[str, float],
+        physics: Physics,
     ) -> None:
         self._fingers = fingers
         self._effector = effector
-        self._speed = speed
+        self._speed = _closing_speed(effector, speeds)
         self._physics = physics
-        self._goal = effector.max_width / 2
-        self._target = self._goal
+        self._goal = self._target = effector.max_width
         self._force = effector.max_force
         self._set_force(self._force)
 
-    @property
-    def travel(self) -> float:
-        """Where each finger is sent now, m."""
-        return self._target
-
     def place(self, width: float) -> None:
         """Start with an opening, m."""
-        self._goal = self._target = width / 2
+        self._goal = self._target = width
         self._send()
 
     def command(self, goal: object) -> None:
@@ -50,7 +50,7 @@ class GripperDrive:
             raise ValueError(f"an opening of {goal.width} m; the gripper opens 0 to {widest} m")
         if not 0.0 < goal.max_force <= strongest + 1e-9:
             raise ValueError(f"a force of {goal.max_force} N; the gripper has up to {strongest} N")
-        self._goal = goal.width / 2
+        self._goal = goal.width
         if goal.max_force != self._force:
             self._set_force(goal.max_force)
 
@@ -61,18 +61,27 @@ class GripperDrive:
             self._target += min(max(self._goal - self._target, -step), step)
             self._send()
 
-    def effort(self, travels: tuple[float, float]) -> float:
-        """Closing force of the drives at finger travels (m), N: positive when pressing inwards."""
-        push = sum(travels) / 2 - self._target
+    def effort(self, width: float) -> float:
+        """Closing force of each finger at an opening (m), N: positive when pressing inwards."""
+        push = (width - self._target) / len(self._fingers)
         return min(max(self._physics.finger_stiffness * push, -self._force), self._force)
 
     def _send(self) -> None:
-        for finger in self._fingers:
-            finger.set_drive_target(self._target)
+        for name, position in self._effector.positions(self._target).items():
+            self._fingers[name].set_drive_target(position)
 
     def _set_force(self, force: float) -> None:
         self._force = force
-        for finger in self._fingers:
+        for finger in self._fingers.values():
             finger.set_drive_property(
                 self._physics.finger_stiffness, self._physics.finger_damping, force
             )
+
+
+def _closing_speed(effector: EndEffector, speeds: Mapping[str, float]) -> float:
+    """The fastest change of the opening that no finger joint is too slow for, m/s."""
+    return min(
+        speeds[joint] * (wider - width) / abs(further - position)
+        for joint, rows in effector.opening.items()
+        for (width, position), (wider, further) in pairwise(rows)
+    )

@@ -9,8 +9,13 @@ import numpy as np
 
 from momantu_bt.geometry import Array, Pose2D
 from momantu_bt.messages import ActuatorGoal, RobotState, frozen
-from momantu_bt.robot import Actuator, ActuatorKind, RobotDescription, SensorReading
-from momantu_worlds.robots.loading import SimulationModel
+from momantu_bt.robot import (
+    Actuator,
+    ActuatorKind,
+    RobotDescription,
+    SensorReading,
+    SimulationModel,
+)
 from momantu_worlds.sapien.base_drive import BaseDrive
 from momantu_worlds.sapien.config import SimulatorConfig
 from momantu_worlds.sapien.encoders import Encoders, prismatic_joints
@@ -52,7 +57,6 @@ class SimulatedRobot:
         self._asked: dict[str, float] = {}
         self.listeners: list[Callable[[SensorReading], None]] = []
         self._state: RobotState | None = None
-        fingers = {j for a in description.actuators.values() for j in _fingers(a)}
         self._names = tuple(
             name
             for actuator in description.actuators.values()
@@ -60,11 +64,12 @@ class SimulatedRobot:
             for name in actuator.joints
         )
         self._columns = [model.index[name] for name in self._names]
-        self._fingers = [model.index[name] for name in model.index if name in fingers]
+        hand = description.end_effector
+        self._fingers = {name: model.index[name] for name in hand.opening}
         prismatic = prismatic_joints(description, self._names)
         self._encoders = Encoders(self._names, prismatic, seed, config.joints)
         self._odometry = Odometry(start, seed, config.odometry)
-        base = simulation.base_joints
+        base = simulation.base.joints
         self._base_columns = [model.index[n] for n in (base.x, base.y, base.yaw)]
         self._efforts = np.array([model.efforts.get(name, np.inf) for name in self._names])
         self._physics = config.physics
@@ -173,8 +178,9 @@ class SimulatedRobot:
         positions, velocities, efforts = self._encoders.joints(
             true[self._columns], speeds[self._columns], self._drive_efforts(true, speeds), stamp
         )
-        travels = (float(true[self._fingers[0]]), float(true[self._fingers[-1]]))
-        width, grip = self._encoders.gripper(sum(travels), self.gripper.effort(travels), stamp)
+        fingers = {name: float(true[i]) for name, i in self._fingers.items()}
+        opening = self._description.end_effector.width(fingers)
+        width, grip = self._encoders.gripper(opening, self.gripper.effort(opening), stamp)
         base = self._true_base(true)
         vx, vy, wz = (float(speeds[i]) for i in self._base_columns)
         forward = vx * np.cos(base.yaw) + vy * np.sin(base.yaw)
@@ -217,11 +223,11 @@ class SimulatedRobot:
 
     def _gripper_drive(self, config: SimulatorConfig) -> GripperDrive:
         effector = self._description.end_effector
-        names = self._description.actuators[effector.actuator].joints
+        limits = self._description.joint_limits
         return GripperDrive(
-            [self._model.joints[name] for name in names],
+            {name: self._model.joints[name] for name in effector.opening},
             effector,
-            self._description.joint_limits[names[0]].velocity,
+            {name: limits[name].velocity for name in effector.opening},
             config.physics,
         )
 
@@ -231,14 +237,11 @@ class SimulatedRobot:
         positions[self._base_columns] = (start.x, start.y, start.yaw)
         for name, value in pose.items():
             positions[self._model.index[name]] = value
-        width = self._description.end_effector.max_width
-        positions[self._fingers] = width / len(self._fingers)
+        effector = self._description.end_effector
+        for name, value in effector.positions(effector.max_width).items():
+            positions[self._fingers[name]] = value
         self._model.articulation.set_qpos(positions.astype(np.float32))
         self._model.articulation.set_qvel(np.zeros(len(positions), dtype=np.float32))
         for drive in self.joint_drives.values():
             drive.place(np.array([positions[self._model.index[n]] for n in drive.names]))
-        self.gripper.place(width)
-
-
-def _fingers(actuator: Actuator) -> tuple[str, ...]:
-    return actuator.joints if actuator.kind is ActuatorKind.GRIPPER else ()
+        self.gripper.place(effector.max_width)

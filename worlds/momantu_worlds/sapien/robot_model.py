@@ -11,8 +11,7 @@ import sapien
 from lxml import etree
 
 from momantu_bt.geometry import Array
-from momantu_bt.robot import ActuatorKind, RobotDescription
-from momantu_worlds.robots.loading import Cuts, SimulationModel
+from momantu_bt.robot import ActuatorKind, Cuts, RobotDescription, SimulationModel
 from momantu_worlds.sapien.cells import convex_cells
 from momantu_worlds.sapien.config import Physics
 
@@ -126,7 +125,7 @@ def _take_cells(builder: Any, name: str, cuts: Cuts) -> list[Any]:
 
 
 def _unwrap(joint: Any, simulation: SimulationModel) -> None:
-    base = simulation.base_joints
+    base = simulation.base.joints
     if joint.joint_type == "revolute":
         joint.joint_type = "revolute_unwrapped"
         joint.limits = [[-MANY_TURNS, MANY_TURNS]]
@@ -158,11 +157,11 @@ def _efforts(description: RobotDescription) -> dict[str, float]:
 def _set_drives(
     model: RobotModel, description: RobotDescription, simulation: SimulationModel, physics: Physics
 ) -> None:
-    base = simulation.base_joints
+    base = simulation.base.joints
     for name, most in (
-        (base.x, simulation.base_force),
-        (base.y, simulation.base_force),
-        (base.yaw, simulation.base_torque),
+        (base.x, simulation.base.force),
+        (base.y, simulation.base.force),
+        (base.yaw, simulation.base.torque),
     ):
         model.joints[name].set_drive_property(0.0, physics.base_damping, most)
         model.joints[name].set_friction(0.0)

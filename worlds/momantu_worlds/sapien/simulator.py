@@ -8,9 +8,14 @@ from typing import Any
 import sapien
 
 from momantu_bt.geometry import Transform
-from momantu_bt.robot import CameraSensor, LaserSensor, RobotDescription
-from momantu_bt.world import TICK
-from momantu_worlds.robots.loading import read_simulation
+from momantu_bt.robot import (
+    CameraSensor,
+    LaserSensor,
+    RobotDescription,
+    SimulationModel,
+    WristWrench,
+)
+from momantu_bt.world import TICK, WorldError
 from momantu_worlds.sapien.building import Addition, add_bodies, add_body, add_lights
 from momantu_worlds.sapien.camera import Camera
 from momantu_worlds.sapien.config import STEP, SUB_STEPS, Physics, SimulatorConfig
@@ -63,7 +68,7 @@ class Simulator:
         self._ticks = 0
         self.scene = _new_scene(self.config.physics, render)
         self._system = self.scene.physx_system
-        simulation = read_simulation(description.name)
+        simulation = _simulation_of(description)
         model = build_robot(
             self.scene, description, simulation, self.config.physics, visuals=render
         )
@@ -177,7 +182,7 @@ class Simulator:
                 where = _pose_source(link)
                 laser = Laser(where, name, spec, still, self._moving, seed, self.config.laser)
                 sensors.append((name, laser))
-            else:
+            elif isinstance(spec, WristWrench):
                 wrist = Wrench(model.articulation, link, name, spec, seed, self.config.wrench)
                 sensors.append((name, wrist))
         return sensors
@@ -185,6 +190,16 @@ class Simulator:
 
 def _pose_source(link: Any) -> Any:
     return lambda: transform_of(link.entity_pose)
+
+
+def _simulation_of(description: RobotDescription) -> SimulationModel:
+    if description.simulation is None:
+        where = description.source or f"the description of {description.name}"
+        raise WorldError(
+            f"the robot {description.name!r} cannot be simulated: {where} needs a section "
+            "`simulation` and, under `base`, a `drive`"
+        )
+    return description.simulation
 
 
 def _new_scene(physics: Physics, render: bool) -> Any:

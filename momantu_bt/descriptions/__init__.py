@@ -1,0 +1,1 @@
+"""Files that describe a robot or a world: YAML with quantities, every mistake told at its place."""

@@ -1,0 +1,118 @@
+"""What a model objects to in a file, in words that say what would have been right."""
+
+from __future__ import annotations
+
+import difflib
+from typing import Any, TypeVar
+
+from pydantic import BaseModel, ValidationError
+
+from momantu_bt.descriptions.reading import DescriptionError, Place, Problem, Reading
+
+Model = TypeVar("Model", bound=BaseModel)
+
+
+def checked(reading: Reading, model: type[Model], error: type[DescriptionError]) -> Model:
+    """The values that were read, as a model.
+
+    Raises:
+        DescriptionError: they are not what the model wants; all findings, of the class `error`.
+    """
+    try:
+        return model.model_validate(reading.plain)
+    except ValidationError as trouble:
+        found = _Findings(reading, model, error.what).problems(trouble)
+        raise error(reading.path, reading.text, found) from None
+
+
+class _Findings:
+    """Turns pydantic's findings into problems at their places."""
+
+    def __init__(self, reading: Reading, model: type[BaseModel], what: str) -> None:
+        self._reading, self._what = reading, what
+        self._schema: dict[str, Any] = model.model_json_schema()
+
+    def problems(self, error: ValidationError) -> list[Problem]:
+        """Every finding; a key that is missing because it is misspelt is reported once."""
+        findings = [(self._place(finding["loc"]), dict(finding)) for finding in error.errors()]
+        misspelt = {
+            (*place[:-1], self._nearest(str(place[-1]), place[:-1]))
+            for place, finding in findings
+            if finding["type"] == "extra_forbidden"
+        }
+        return [
+            self._problem(place, finding)
+            for place, finding in findings
+            if finding["type"] != "missing" or place not in misspelt
+        ]
+
+    def _place(self, location: tuple[str | int, ...]) -> Place:
+        """Where a finding is in the file: without the names of a union's members."""
+        place: list[str | int] = []
+        here: Any = self._reading.plain
+        for i, part in enumerate(location):
+            inside = isinstance(here, dict) and part in here
+            inside |= isinstance(here, list) and isinstance(part, int) and part < len(here)
+            if inside:
+                here = here[part]
+                place.append(part)
+            elif i == len(location) - 1 and isinstance(here, dict):
+                place.append(part)
+        return tuple(place)
+
+    def _problem(self, place: Place, finding: dict[str, Any]) -> Problem:
+        kind, name = finding["type"], str(place[-1]) if place else ""
+        at = self._reading.at
+        if kind == "extra_forbidden":
+            return Problem(*at(place, key=True), self._unknown_key(name, place))
+        if kind == "missing":
+            return Problem(*at(place[:-1]), f"{self._dotted(place[:-1])} needs a key {name!r}")
+        message = str(finding["msg"]).removeprefix("Value error, ")
+        if kind in ("literal_error", "enum"):
+            message = (
+                f"{finding['input']!r} is not possible here; {message[0].lower()}{message[1:]}"
+            )
+        return Problem(*at(place), f"{self._dotted(place)}: {message}")
+
+    def _dotted(self, place: Place) -> str:
+        return ".".join(str(part) for part in place) or f"the {self._what}"
+
+    def _unknown_key(self, name: str, place: Place) -> str:
+        """Says what would have been right beside an unknown key."""
+        near = self._nearest(name, place[:-1])
+        hint = f"did you mean {near!r}? Keys" if near else "keys"
+        known = ", ".join(self._known_keys(place[:-1]))
+        return f"unknown key {name!r} in {self._dotted(place[:-1])}; {hint}: {known}"
+
+    def _nearest(self, name: str, place: Place) -> str:
+        near = difflib.get_close_matches(name, self._known_keys(place), n=1)
+        return near[0] if near else ""
+
+    def _known_keys(self, place: Place) -> list[str]:
+        here, data = self._resolved(self._schema, self._reading.plain), self._reading.plain
+        for part in place:
+            data = _item(data, part)
+            inner = here.get("properties", {}).get(part)
+            inner = inner if inner is not None else here.get("additionalProperties")
+            inner = inner if isinstance(inner, dict) else here.get("items", {})
+            here = self._resolved(inner, data)
+        return list(here.get("properties", {}))
+
+    def _resolved(self, schema: dict[str, Any], data: Any) -> dict[str, Any]:
+        """What a schema stands for: a reference followed, of a union the member that is meant."""
+        if "$ref" in schema:
+            found: dict[str, Any] = self._schema["$defs"][schema["$ref"].rsplit("/", 1)[-1]]
+            return found
+        members = schema.get("anyOf") or schema.get("oneOf") or ()
+        mapping = schema.get("discriminator", {})
+        if mapping and isinstance(data, dict):
+            chosen = mapping.get("mapping", {}).get(data.get(mapping["propertyName"]))
+            members = [{"$ref": chosen}] if chosen is not None else ()
+        objects = [self._resolved(m, data) for m in members]
+        return next((m for m in objects if "properties" in m), schema)
+
+
+def _item(data: Any, part: str | int) -> Any:
+    if isinstance(data, dict):
+        return data.get(part)
+    return data[part] if isinstance(data, list) and isinstance(part, int) else None

@@ -1,0 +1,73 @@
+"""Quantities of description files: `15 cm`, `90 deg`, `0.4 kg`; bare numbers are SI already."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Mapping
+from typing import Annotated, TypeAlias
+
+from pydantic import BeforeValidator, Field
+
+LENGTH: Mapping[str, float] = {"m": 1.0, "cm": 0.01, "mm": 0.001}
+ANGLE: Mapping[str, float] = {"rad": 1.0, "deg": math.pi / 180.0}
+MASS: Mapping[str, float] = {"kg": 1.0, "g": 0.001}
+FORCE: Mapping[str, float] = {"N": 1.0}
+TIME: Mapping[str, float] = {"s": 1.0, "ms": 0.001, "min": 60.0}
+
+SPEED: Mapping[str, float] = {"m/s": 1.0, "cm/s": 0.01, "rad/s": 1.0, "deg/s": math.pi / 180.0}
+ACCELERATION: Mapping[str, float] = {"m/s2": 1.0, "rad/s2": 1.0, "deg/s2": math.pi / 180.0}
+
+_QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([A-Za-z°%][\w/°%]*)\s*")
+
+
+def unit_of(value: object) -> str | None:
+    """The unit that a value of a file is written with; None for a bare number."""
+    match = _QUANTITY.fullmatch(value) if isinstance(value, str) else None
+    return None if match is None else match[2]
+
+
+def reader(what: str, units: Mapping[str, float]) -> Callable[[object], object]:
+    """A function that turns a number, or a text with one of these units, into a number in SI."""
+    known = ", ".join(units)
+
+    def read(value: object) -> object:
+        if isinstance(value, bool) or not isinstance(value, int | float | str):
+            raise ValueError(f"expected {what} such as '2 {next(iter(units))}', found {value!r}")
+        if not isinstance(value, str):
+            return float(value)
+        match = _QUANTITY.fullmatch(value)
+        if match is None:
+            raise ValueError(f"{value!r} is not {what}; write a number and one of: {known}")
+        if match[2] not in units:
+            raise ValueError(f"{match[2]!r} is not a unit of {what}; units: {known}")
+        return float(match[1]) * units[match[2]]
+
+    return read
+
+
+Length: TypeAlias = Annotated[
+    float, BeforeValidator(reader("a length", LENGTH)), Field(allow_inf_nan=False)
+]
+Angle: TypeAlias = Annotated[
+    float, BeforeValidator(reader("an angle", ANGLE)), Field(allow_inf_nan=False)
+]
+Mass: TypeAlias = Annotated[float, BeforeValidator(reader("a mass", MASS)), Field(gt=0)]
+Force: TypeAlias = Annotated[float, BeforeValidator(reader("a force", FORCE)), Field(gt=0)]
+Time: TypeAlias = Annotated[float, BeforeValidator(reader("a time", TIME)), Field(ge=0)]
+Size: TypeAlias = Annotated[
+    float, BeforeValidator(reader("a length", LENGTH)), Field(gt=0, allow_inf_nan=False)
+]
+"""A length above zero."""
+Speed: TypeAlias = Annotated[float, BeforeValidator(reader("a speed", SPEED)), Field(gt=0)]
+"""m/s or rad/s."""
+Acceleration: TypeAlias = Annotated[
+    float, BeforeValidator(reader("an acceleration", ACCELERATION)), Field(gt=0)
+]
+"""m/s2 or rad/s2."""
+JointPosition: TypeAlias = Annotated[
+    float,
+    BeforeValidator(reader("a joint's position", {**ANGLE, **LENGTH})),
+    Field(allow_inf_nan=False),
+]
+"""rad of a joint that turns, m of one that slides."""

@@ -1,0 +1,261 @@
+"""The parts of a robot's description, as checked values. Quantities may carry their unit."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from enum import StrEnum
+from itertools import pairwise
+from typing import Annotated, Literal, Self, TypeAlias
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from momantu_bt.descriptions.quantities import (
+    Acceleration,
+    Angle,
+    Force,
+    JointPosition,
+    Length,
+    Size,
+    Speed,
+)
+
+Count: TypeAlias = Annotated[int, Field(gt=0, le=100_000)]
+Range: TypeAlias = Annotated[Length, Field(ge=0)]
+
+
+class Part(BaseModel):
+    """Immutable, without unknown keys; attribute docstrings describe its fields."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+
+class ActuatorKind(StrEnum):
+    """What goals an actuator takes: BaseVelocity, joint goals, or GripperCommand."""
+
+    BASE = "base"
+    JOINTS = "joints"
+    GRIPPER = "gripper"
+
+
+class Actuator(Part):
+    """A thing that can be commanded."""
+
+    kind: ActuatorKind
+    """What it takes: base (speeds), joints (trajectories) or gripper (an opening)."""
+    joints: tuple[str, ...] = ()
+    """Its joints, in the order of its trajectories."""
+
+
+class JointLimit(Part):
+    """Limits of one joint: rad or m, per second, per second squared."""
+
+    lower: JointPosition | None = None
+    """Least position; none: it turns for ever."""
+    upper: JointPosition | None = None
+    """Greatest position; none: it turns for ever."""
+    velocity: Speed
+    """Greatest speed."""
+    acceleration: Acceleration
+    """Greatest acceleration."""
+
+
+class CameraSensor(Part):
+    """An RGB-D camera."""
+
+    kind: Literal["camera"] = "camera"
+    frame: str
+    """Its optical frame: z forward, x right, y down."""
+    carrier: str | None = None
+    """The actuator that moves it; none: it is fixed to the base."""
+    width: Count = 640
+    """Columns of its picture."""
+    height: Count = 480
+    """Rows of its picture."""
+    horizontal_fov: Annotated[Angle, Field(gt=0, lt=3.1)]
+    """Angle between its picture's left and right border."""
+    min_depth: Size
+    """Nearest depth that it measures."""
+    max_depth: Size
+    """Farthest depth that it measures."""
+    depth_noise: Annotated[float, Field(ge=0)] | None = None
+    """1/m; sigma of depth z is this times z squared. None: what is usual for such cameras."""
+
+
+class LaserSensor(Part):
+    """A planar laser scanner, or a scan that is made from a lidar's points."""
+
+    kind: Literal["laser"] = "laser"
+    frame: str
+    """Beams lie in its x-y plane. Of a laser with a source: horizontal, fixed to the base."""
+    angle_min: Angle
+    """Direction of the first beam."""
+    angle_max: Angle
+    """Direction of the last beam."""
+    beams: Annotated[int, Field(ge=2, le=100_000)]
+    """How many beams, or sectors of a laser with a source."""
+    range_min: Range
+    """Nearest distance that it measures."""
+    range_max: Size
+    """Farthest distance that it measures."""
+    source: str | None = None
+    """The lidar that the scan is made from; none: a scanner of its own."""
+    band: tuple[Length, Length] | None = None
+    """With a source: lowest and highest point above the floor that counts."""
+
+    @model_validator(mode="after")
+    def _complete(self) -> Self:
+        if (self.source is None) != (self.band is None):
+            raise ValueError("a laser made from a lidar needs both `source` and `band`")
+        if self.band is not None and not self.band[0] < self.band[1]:
+            raise ValueError(f"the band {self.band} is empty; write [lowest, highest]")
+        if not self.angle_min < self.angle_max:
+            raise ValueError("angle_min must be less than angle_max")
+        return self
+
+
+class LidarSensor(Part):
+    """A scanner of several rings that turns all around its z axis."""
+
+    kind: Literal["lidar"] = "lidar"
+    frame: str
+    """z is the axis it turns about; rings count from x towards y."""
+    elevations: Annotated[tuple[Angle, ...], Field(min_length=1, max_length=256)]
+    """Angle of each ring above the frame's x-y plane."""
+    columns: Count
+    """Steps of a full turn."""
+    range_min: Range
+    """Nearest distance that it measures."""
+    range_max: Size
+    """Farthest distance that it measures."""
+
+
+class WristWrench(Part):
+    """A force-torque sensor at the wrist, or an estimate from joint efforts."""
+
+    kind: Literal["wrench"] = "wrench"
+    frame: str
+    """The link whose load is measured, and whose axes are used."""
+
+
+Sensor: TypeAlias = Annotated[
+    CameraSensor | LaserSensor | LidarSensor | WristWrench, Field(discriminator="kind")
+]
+
+
+class PlanningGroup(Part):
+    """Joints that are planned together, and the link they carry."""
+
+    joints: Annotated[tuple[str, ...], Field(min_length=1)]
+    """From the base outwards."""
+    tip: str
+    """The link that they carry."""
+
+
+Opening: TypeAlias = tuple[tuple[Range, JointPosition], ...]
+"""Rows (width, joint position) of one finger joint: from width 0 to the widest opening."""
+
+
+class EndEffector(Part):
+    """The gripper.
+
+    In its grasp frame x points out along the fingers, y is the closing direction, and the origin
+    lies between the pads.
+    """
+
+    actuator: str = "gripper"
+    """The actuator that opens and closes it."""
+    frame: str
+    """The link that the grasp frame is fixed to; it has the grasp frame's axes."""
+    grasp_offset: Length = 0.0
+    """Distance of the grasp frame's origin along that link's x."""
+    max_width: Size
+    """Widest opening between the pads."""
+    max_force: Force
+    """Greatest closing force."""
+    pad_length: Size
+    """The pads' length along x."""
+    pad_height: Size
+    """The pads' height along z."""
+    hand_clearance: Range
+    """How deep an object may reach behind the grasp frame's origin."""
+    touch_links: tuple[str, ...]
+    """Links that may touch what is grasped."""
+    opening: dict[str, Opening] = {}
+    """Where each finger joint stands at which width. Not given: n joints go 0..max_width/n."""
+
+    @model_validator(mode="after")
+    def _monotone(self) -> Self:
+        for joint, rows in self.opening.items():
+            widths = [width for width, _ in rows]
+            steps = [b[1] - a[1] for a, b in pairwise(rows)]
+            if len(rows) < 2 or widths[0] != 0.0 or abs(widths[-1] - self.max_width) > 1e-9:
+                raise ValueError(
+                    f"the opening of {joint} needs at least two rows [width, position], "
+                    f"from width 0 to max_width ({self.max_width:g} m)"
+                )
+            if any(b <= a for a, b in pairwise(widths)):
+                raise ValueError(f"the widths of {joint}'s opening must rise")
+            if not (all(step > 0 for step in steps) or all(step < 0 for step in steps)):
+                raise ValueError(f"the positions of {joint}'s opening must all rise, or all fall")
+        return self
+
+    def positions(self, width: float) -> dict[str, float]:
+        """Where each finger joint stands at an opening, m; beyond the table it goes on straight."""
+        return {
+            joint: _on_line([w for w, _ in rows], [p for _, p in rows], width)
+            for joint, rows in self.opening.items()
+        }
+
+    def width(self, positions: Mapping[str, float]) -> float:
+        """The opening at these positions of the finger joints: the mean of what each says, m.
+
+        Raises:
+            KeyError: a finger joint is missing in `positions`.
+            ValueError: the gripper has no finger joints.
+        """
+        if not self.opening:
+            raise ValueError("a gripper without joints has no opening that joints could tell")
+        told = [_inverse(rows, positions[joint]) for joint, rows in self.opening.items()]
+        return sum(told) / len(told)
+
+
+def _inverse(rows: Opening, position: float) -> float:
+    rising = rows if rows[0][1] < rows[-1][1] else rows[::-1]
+    return _on_line([p for _, p in rising], [w for w, _ in rising], position)
+
+
+def _on_line(xs: Sequence[float], ys: Sequence[float], x: float) -> float:
+    """The piecewise linear function through rising `xs`, its ends extended."""
+    piece = max(1, min(len(xs) - 1, sum(known <= x for known in xs)))
+    slope = (ys[piece] - ys[piece - 1]) / (xs[piece] - xs[piece - 1])
+    return ys[piece - 1] + slope * (x - xs[piece - 1])
+
+
+class BaseLimits(Part):
+    """How fast the base may go and change its speed."""
+
+    linear: Speed
+    """Greatest speed ahead, m/s."""
+    angular: Speed
+    """Greatest turning speed, rad/s."""
+    linear_acceleration: Acceleration
+    """m/s2."""
+    angular_acceleration: Acceleration
+    """rad/s2."""
+
+
+class Working(Part):
+    """Distances at which the robot works, from the centre of its base."""
+
+    stand_off: Size
+    """Nearest to a surface's edge that the robot stands."""
+    look_off: Size
+    """To a surface's edge from where the robot looks at it."""
+    reach: tuple[Size, Size, Size]
+    """Nearest, best and farthest distance of what is to be reached."""
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Self:
+        if not self.reach[0] <= self.reach[1] <= self.reach[2]:
+            raise ValueError("reach is [nearest, best, farthest]: each at least the one before")
+        return self

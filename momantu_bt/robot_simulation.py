@@ -1,0 +1,81 @@
+"""What a simulator must know of a robot beyond what skills may know."""
+
+from __future__ import annotations
+
+from typing import Annotated, TypeAlias
+
+from pydantic import Field
+
+from momantu_bt.descriptions.quantities import Force, Length
+from momantu_bt.robot_parts import Part
+
+Gain: TypeAlias = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+Strength: TypeAlias = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+
+
+class BaseJoints(Part):
+    """The virtual joints that carry the base: two slides and a hinge."""
+
+    x: str
+    """Slides along the map's x."""
+    y: str
+    """Slides along the map's y."""
+    yaw: str
+    """Turns about z."""
+
+
+class PlanarDrive(Part):
+    """A base on virtual joints, driven by velocity; it never goes sideways."""
+
+    joints: BaseJoints
+    """The joints that carry it."""
+    force: Force
+    """The most that its wheels push with, N."""
+    torque: Strength
+    """The most that they turn with, Nm."""
+
+
+class JointGains(Part):
+    """Gains of a joint's position drive; what is not given is the simulator's usual value."""
+
+    stiffness: Gain | None = None
+    """Nm/rad or N/m."""
+    damping: Gain | None = None
+    """Nm s/rad or N s/m."""
+    force: Strength | None = None
+    """Greatest torque or force, Nm or N; not given: the URDF's effort limit."""
+
+
+class Cuts(Part):
+    """Where a mesh is cut by planes across x, y and z of its own frame, m."""
+
+    x: tuple[Length, ...] = ()
+    """Planes across x."""
+    y: tuple[Length, ...] = ()
+    """Planes across y."""
+    z: tuple[Length, ...] = ()
+    """Planes across z."""
+
+
+class Contacts(Part):
+    """What touches what, and how."""
+
+    floor_links: tuple[str, ...] = ()
+    """Links that are not checked against the floor: the base and its wheels."""
+    no_collision_links: tuple[str, ...] = ()
+    """Links that nothing touches."""
+    finger_links: tuple[str, ...]
+    """Links that hold what is grasped."""
+    finger_friction: Annotated[float, Field(gt=0, le=2)]
+    """Friction of the pads."""
+    convex_cells: dict[str, Cuts] = {}
+    """Links whose collision mesh is cut, each cell a convex hull; others are one hull."""
+
+
+class SimulationModel(Contacts):
+    """All that a simulator must know of a robot beyond its description."""
+
+    base: PlanarDrive
+    """How the base is carried and driven."""
+    drives: dict[str, JointGains] = {}
+    """Gains by joint."""

@@ -1,0 +1,96 @@
+"""Where the meshes of a part lie, and a user's own meshes in their place."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+from lxml import etree
+
+from momantu_bt.robots.parts import LoadedPart
+
+MESHES = "MOMANTU_BT_MESHES"
+"""Environment variable: a folder with `<robot>/<part>/<link>.…`, used instead of a part's own."""
+ENDINGS = (".glb", ".dae", ".obj", ".stl")
+"""Kinds of mesh files, the first found is taken; upper case counts too."""
+
+
+def users_folder(robot: str, part: str, given: str | None, folder: Path) -> Path | None:
+    """The folder with a user's meshes for a part: of the environment, or of the robot file."""
+    root = os.environ.get(MESHES)
+    if root and (Path(root) / robot / part).is_dir():
+        return (Path(root) / robot / part).resolve()
+    return None if given is None else (folder / given).resolve()
+
+
+def replace_meshes(part: LoadedPart) -> Iterator[str]:
+    """Put the user's meshes in place; yields what is wrong. Before names are changed."""
+    folder = part.meshes
+    if folder is None:
+        return
+    if not folder.is_dir():
+        yield f"there is no folder {folder}"
+        return
+    found = False
+    for link in part.root.findall("link"):
+        name = str(link.get("name"))
+        for tag, place in (("visual", folder), ("collision", folder / "collision")):
+            mesh = _mesh_of(place, name)
+            if mesh is not None:
+                found = True
+                _give(link, tag, mesh)
+    if not found:
+        links = ", ".join(str(link.get("name")) for link in part.root.findall("link"))
+        yield (
+            f"no mesh in {folder} is called like a link ({', '.join(ENDINGS)}); "
+            f"links of {part.name}: {links}"
+        )
+
+
+def _mesh_of(folder: Path, link: str) -> Path | None:
+    for ending in ENDINGS:
+        for path in (folder / f"{link}{ending}", folder / f"{link}{ending.upper()}"):
+            if path.is_file():
+                return path
+    return None
+
+
+def _give(link: etree._Element, tag: str, mesh: Path) -> None:
+    """One mesh in the link's own frame instead of all that the link has of this kind."""
+    for element in link.findall(tag):
+        link.remove(element)
+    geometry = etree.SubElement(etree.SubElement(link, tag), "geometry")
+    etree.SubElement(geometry, "mesh", filename=str(mesh))
+
+
+def locate_meshes(part: LoadedPart, folder: Path, *, rewrite: bool) -> Iterator[str]:
+    """Look up every mesh; yields those that are missing. rewrite: make their paths absolute."""
+    for mesh in part.root.findall("link/*/geometry/mesh"):
+        name = str(mesh.get("filename", ""))
+        looked = list(dict.fromkeys(_candidates(name, part.path, folder)))
+        found = next((path for path in looked if path.is_file()), None)
+        if found is None:
+            places = ", ".join(str(path) for path in looked)
+            yield f"{part.where(mesh)}: the mesh {name!r} is missing; looked for {places}"
+        elif rewrite:
+            mesh.set("filename", str(found.resolve()))
+
+
+def _candidates(name: str, path: Path, folder: Path) -> Iterator[Path]:
+    plain = name.removeprefix("file://")
+    if not plain.startswith("package://"):
+        yield path.parent / plain
+        yield folder / plain
+        return
+    plain = plain.removeprefix("package://")
+    package, _, inside = plain.partition("/")
+    for root in (path.parent, folder):
+        yield root / plain
+    for parent in path.resolve().parents:
+        if parent.name == package:
+            yield parent / inside
+    spec = importlib.util.find_spec(package) if package.isidentifier() else None
+    if spec is not None and spec.submodule_search_locations:
+        yield Path(next(iter(spec.submodule_search_locations))) / inside

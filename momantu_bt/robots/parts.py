@@ -1,0 +1,112 @@
+"""Finding and reading the URDF of each part."""
+
+from __future__ import annotations
+
+import importlib.util
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from lxml import etree
+
+from momantu_bt.descriptions.reading import Place
+from momantu_bt.robots.errors import PartError
+from momantu_bt.robots.robot_file import PackageFile, PartSource
+
+MOST_BYTES = 20_000_000
+"""No robot's URDF is longer."""
+
+
+@dataclass(frozen=True, slots=True)
+class LoadedPart:
+    """One part's URDF.
+
+    path: the file that the robot file names. root: its `robot` element. files: everything it was
+    read from, by names that mean something elsewhere. meshes: the user's folder of meshes.
+    """
+
+    name: str
+    source: PartSource
+    path: Path
+    root: etree._Element
+    files: Mapping[str, Path]
+    meshes: Path | None
+
+    def where(self, element: etree._Element) -> str:
+        """The place of an element, for messages; of a xacro's result only the file is known."""
+        line = "" if self.source.xacro is not None else f":{element.sourceline}"
+        return f"{self.path.name}{line}"
+
+
+def load_part(name: str, source: PartSource, folder: Path, meshes: Path | None) -> LoadedPart:
+    """Read one part.
+
+    folder: of the robot file. meshes: the folder of meshes to use, if any.
+
+    Raises:
+        PartError: a file is missing, or is not a URDF.
+    """
+    kind = "urdf" if source.urdf is not None else "xacro"
+    place: Place = ("parts", name, kind)
+    given = source.urdf if source.urdf is not None else source.xacro
+    assert given is not None
+    path = _in_package(given, place) if isinstance(given, PackageFile) else folder / given
+    if not path.is_file():
+        near = ", ".join(sorted(p.name for p in folder.glob("*.*") if "urdf" in p.name.lower()))
+        beside = f"; URDF and xacro files there: {near}" if near else ""
+        raise PartError(place, f"there is no file {path}{beside}")
+    if path.stat().st_size > MOST_BYTES:
+        raise PartError(place, f"{path} has more than {MOST_BYTES} bytes")
+    if kind == "xacro":
+        from momantu_bt.robots.xacro_files import expand
+
+        text, included = expand(path, source.args, folder, place)
+    else:
+        text, included = path.read_bytes(), ()
+    files = {_shown(each, folder): each for each in (path, *included)}
+    return LoadedPart(name, source, path, _parsed(text, path, place), files, meshes)
+
+
+def _in_package(where: PackageFile, place: Place) -> Path:
+    """Locate a file inside an installed package without importing that package."""
+    spec = importlib.util.find_spec(where.package)
+    if spec is None or not spec.submodule_search_locations:
+        raise PartError(
+            place,
+            f"needs the files of the Python package {where.package!r}, which is not installed; "
+            "run `make setup`, or `pip install 'momantu-bt[all]'` for the robots that come with it",
+        )
+    found = Path(next(iter(spec.submodule_search_locations))) / where.file
+    if not found.is_file():
+        raise PartError(
+            place,
+            f"the Python package {where.package!r} is installed but has no {where.file}; "
+            "reinstall the version that constraints.txt names",
+        )
+    return found
+
+
+def _shown(path: Path, folder: Path) -> str:
+    """A file's name below the robot's folder, or its last parts."""
+    path = path.resolve()
+    folder = folder.resolve()
+    return path.relative_to(folder).as_posix() if path.is_relative_to(folder) else path.name
+
+
+def _parsed(text: bytes, path: Path, place: Place) -> etree._Element:
+    parser = etree.XMLParser(
+        resolve_entities=False, no_network=True, load_dtd=False, remove_comments=True
+    )
+    try:
+        root = etree.fromstring(text, parser)
+    except etree.XMLSyntaxError as error:
+        raise PartError(place, f"{path} is not XML: {error.msg}") from None
+    if root.tag != "robot":
+        raise PartError(place, f"{path} is not a URDF: its element is <{root.tag}>, not <robot>")
+    for tag in ("link", "joint"):
+        for element in root.findall(tag):
+            if not element.get("name"):
+                raise PartError(place, f"{path}:{element.sourceline}: a <{tag}> without a name")
+    if root.find("link") is None:
+        raise PartError(place, f"{path} has no <link>")
+    return root

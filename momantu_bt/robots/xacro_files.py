@@ -1,0 +1,104 @@
+"""Expanding xacro files, without ROS.
+
+A xacro file is a program: it evaluates Python expressions, reads files and the environment. The
+`xacro` package keeps expressions from Python's built-in functions, which is no wall against a
+file that was written to break through. Only files that one trusts may be expanded.
+"""
+
+from __future__ import annotations
+
+import difflib
+import importlib.util
+import sys
+import threading
+import xml.parsers.expat
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from types import ModuleType
+
+from momantu_bt.descriptions.reading import Place
+from momantu_bt.robots.errors import PartError
+
+_LOCK = threading.Lock()
+"""xacro keeps its state in module variables."""
+_INDEX = "ament_index_python"
+"""ROS's package index, which xacro asks for what `$(find …)` names."""
+
+
+def expand(
+    path: Path, args: Mapping[str, object], folder: Path, place: Place
+) -> tuple[bytes, tuple[Path, ...]]:
+    """The URDF that a xacro file gives, and the files that it includes.
+
+    folder: of the robot file; `$(find x)` is looked up beside it and among installed packages.
+
+    Raises:
+        PartError: xacro objects; with its words and the file.
+    """
+    import xacro
+
+    given = {name: _argument(value) for name, value in args.items()}
+    with _LOCK, _package_index(path, folder):
+        xacro.all_includes.clear()
+        try:
+            document = xacro.process_file(str(path), mappings=given)
+        except (xacro.XacroException, xml.parsers.expat.ExpatError, OSError) as error:
+            raise PartError(place, _said(path, str(error), xacro.filestack)) from None
+        except Exception as error:  # expressions of the file may raise anything
+            said = f"{type(error).__name__}: {error}"
+            raise PartError(place, _said(path, said, xacro.filestack)) from None
+        included = tuple(dict.fromkeys(Path(str(each)) for each in xacro.all_includes))
+    return document.toxml().encode(), included
+
+
+def _argument(value: object) -> str:
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def _said(path: Path, message: str, stack: list[str | None]) -> str:
+    inner = next((name for name in reversed(stack or []) if name), str(path))
+    within = "" if Path(inner) == path else f", included from {path.name}"
+    return f"xacro cannot expand {inner}{within}: {message.strip()}"
+
+
+@contextmanager
+def _package_index(path: Path, folder: Path) -> Iterator[None]:
+    """Stand in for ROS's package index while a file is expanded."""
+
+    def find(name: str) -> str:
+        return str(_package(name, path, folder))
+
+    index, packages = ModuleType(_INDEX), ModuleType(f"{_INDEX}.packages")
+    packages.get_package_share_directory = find  # type: ignore[attr-defined]
+    mine = {index.__name__: index, packages.__name__: packages}
+    before = {name: sys.modules.get(name) for name in mine}
+    sys.modules.update(mine)
+    try:
+        yield
+    finally:
+        for name, module in before.items():
+            if module is None:
+                del sys.modules[name]
+            else:
+                sys.modules[name] = module
+
+
+def _package(name: str, path: Path, folder: Path) -> Path:
+    """The folder that `$(find name)` means."""
+    parents = path.resolve().parents
+    for root in (folder.resolve(), folder.resolve().parent, *parents):
+        if root.name == name:
+            return root
+        if (root / name).is_dir():
+            return root / name
+    spec = importlib.util.find_spec(name) if name.isidentifier() else None
+    if spec is not None and spec.submodule_search_locations:
+        return Path(next(iter(spec.submodule_search_locations)))
+    beside = sorted(p.name for p in folder.iterdir() if p.is_dir())
+    near = difflib.get_close_matches(name, beside, n=1)
+    hint = f" (did you mean {near[0]!r}?)" if near else ""
+    raise LookupError(
+        f"$(find {name}) is neither a folder beside the robot file nor an installed "
+        f"package{hint}; put a folder of that name into {folder}"
+    )
