@@ -28,6 +28,10 @@ START_CLEAR = 0.55
 """m; around the start: the robot turns on the spot within 0.35 m, and must see a way out."""
 STAND_OFF = 0.55
 """m; from a table's edge to where a robot stands that reaches onto it."""
+WIDE = 0.4
+"""m; radius of a disc for which a coarse grid is fine enough: its doors are wide."""
+COARSE, FINE = 0.1, 0.05
+"""m; cells in which passages are looked for. A narrow door leaves a disc's centre a few cm."""
 SIDEWAYS = 0.3
 """m; how much wider than the table's side the zone before it is kept free, on either hand."""
 
@@ -160,7 +164,8 @@ def _passable(
     obstacles = [*wall_rectangles(world), *(footprint(p.piece, p.pose) for p in pieces)]
     obstacles += [Rectangle(table.pose, table.size) for table in tables.values()]
     unknown = world.unknown
-    grid = passages(obstacles, world.floor.center, world.floor.size, unknown.passage)
+    cell = COARSE if unknown.passage >= WIDE else FINE
+    grid = passages(obstacles, world.floor.center, world.floor.size, unknown.passage, cell)
     stops = [(start.x, start.y), *(door.at for door in world.doorways.values())]
     for name, table in tables.items():
         at = stand_pose(world.tables[name], table)

@@ -122,6 +122,51 @@ def cabinet(size: Size3, color: Color) -> tuple[Part, ...]:
     )
 
 
+def counter(size: Size3, color: Color) -> tuple[Part, ...]:
+    """A kitchen's worktop on closed cupboards, set back at the floor for the toes."""
+    depth, width, height = size
+    toe, top = 0.10, 0.04
+    body = depth - 0.04
+    front = (0.016, width / 2 - 0.01, height - top - toe - 0.02)
+    middle = (height - top + toe) / 2
+    return (
+        block((depth, width, top), (0, 0, height - top / 2), shade(color, 0.6)),
+        block((body, width, height - top - toe), (-0.02, 0, middle), color),
+        block(front, (depth / 2 - 0.032, width / 4, middle), shade(color, 1.1)),
+        block(front, (depth / 2 - 0.032, -width / 4, middle), shade(color, 1.1)),
+        block((body - 0.06, width, toe), (-0.05, 0, toe / 2), shade(color, 0.5)),
+    )
+
+
+def bed(size: Size3, color: Color) -> tuple[Part, ...]:
+    """A mattress in a frame down to the floor, with a headboard behind."""
+    depth, width, height = size
+    frame, mattress = 0.28, 0.20
+    sheet: Color = (0.86, 0.86, 0.88)
+    length = depth - BOARD
+    return (
+        block((length, width, frame), (BOARD / 2, 0, frame / 2), color),
+        block((length, width - 0.04, mattress), (BOARD / 2, 0, frame + mattress / 2), sheet),
+        block((BOARD, width, height), ((BOARD - depth) / 2, 0, height / 2), color),
+    )
+
+
+def pallet(size: Size3, color: Color) -> tuple[Part, ...]:
+    """Three runners with boards across."""
+    depth, width, height = size
+    deck = 0.25 * height
+    dark = shade(color, 0.8)
+    return (
+        block((depth, width, deck), (0, 0, height - deck / 2), color),
+        *(
+            block(
+                (depth, 0.1, height - deck), (0, y * (width / 2 - 0.05), (height - deck) / 2), dark
+            )
+            for y in (-1, 0, 1)
+        ),
+    )
+
+
 def plant(size: Size3, color: Color) -> tuple[Part, ...]:
     """A pot with a stem and a round of leaves above; the leaves are as wide as the size says."""
     depth, _, height = size
@@ -159,6 +204,9 @@ CATALOGUE: Mapping[str, tuple[Maker, Size3, Color]] = MappingProxyType(
         "shelf": (shelf, (0.35, 1.60, 1.90), (0.62, 0.52, 0.42)),
         "crate": (crate, (0.45, 0.55, 0.50), (0.70, 0.55, 0.36)),
         "cabinet": (cabinet, (0.45, 1.20, 0.90), (0.55, 0.56, 0.58)),
+        "counter": (counter, (0.60, 1.80, 0.88), (0.80, 0.79, 0.76)),
+        "bed": (bed, (2.00, 1.40, 0.90), (0.52, 0.38, 0.26)),
+        "pallet": (pallet, (0.80, 1.20, 0.15), (0.74, 0.60, 0.42)),
         "plant": (plant, (0.50, 0.50, 1.30), (0.22, 0.45, 0.22)),
         "figure": (figure, (0.24, 0.50, 1.75), (0.35, 0.42, 0.62)),
     }

@@ -18,6 +18,9 @@ Profile: TypeAlias = Sequence[tuple[float, float]]
 SEGMENTS = 28
 """Faces around; at 35 mm radius each is 8 mm wide, below what the depth camera resolves."""
 
+FLAT = 0.0015
+"""m; how far a flat side may lie within the round one that it stands for."""
+
 
 def lathe(profile: Profile, segments: int = SEGMENTS) -> Mesh:
     """The surface that a profile sweeps around z.
@@ -39,6 +42,28 @@ def lathe(profile: Profile, segments: int = SEGMENTS) -> Mesh:
         if r0 > 0:
             triangles.append(np.stack([low, low_next, low_next + segments], axis=1))
     return Mesh(np.concatenate(vertices), np.concatenate(triangles).astype(np.int32))
+
+
+def panel(radius: float, low: float, high: float, angle: float) -> Mesh:
+    """A piece of an upright cylinder's surface, `angle` rad wide around +x, between two heights."""
+    count = max(2, math.ceil(SEGMENTS * angle / (2 * math.pi)))
+    turns = np.linspace(-angle / 2, angle / 2, count + 1)
+    ring = np.stack([radius * np.cos(turns), radius * np.sin(turns), np.zeros(count + 1)], axis=1)
+    below = np.arange(count)
+    above = below + count + 1
+    triangles = np.concatenate(
+        [
+            np.stack([below, below + 1, above + 1], axis=1),
+            np.stack([below, above + 1, above], axis=1),
+        ]
+    )
+    vertices = np.concatenate([ring + np.array([0.0, 0.0, z]) for z in (low, high)])
+    return Mesh(vertices, triangles.astype(np.int32))
+
+
+def sectors(radius: float) -> int:
+    """Pieces around a wall of that radius whose flat sides lie within FLAT of the round ones."""
+    return max(8, math.ceil(math.pi / math.acos(1.0 - FLAT / radius)))
 
 
 def shell_pieces(outer: Profile, inner: Profile, pieces: int) -> tuple[Hull, ...]:

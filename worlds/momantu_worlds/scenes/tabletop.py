@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from momantu_bt.geometry import Array, Pose2D
 from momantu_bt.world import seeded
 from momantu_worlds.scenes.floor import STAND_OFF
+from momantu_worlds.scenes.generator import COLORS, draw_look, draw_thing
 from momantu_worlds.scenes.layout import PlacedTable, PlacedThing
 from momantu_worlds.scenes.objects import ObjectKind, Thing
 from momantu_worlds.scenes.tag36h11 import picture_edge
@@ -96,13 +97,15 @@ def place_things(
         here: list[PlacedThing] = []
         for i in range(wanted):
             kind = world.distractors.kinds[int(draw.integers(len(world.distractors.kinds)))]
-            thing = draw_thing(world, kind, draw)
+            name = f"{table}_{kind}_{i}"
+            paint = seeded(seed, "paint", name) if world.distractors.patterns else None
+            thing = draw_distractor(world, kind, draw, paint)
             half = np.array(tables[table].size) / 2 - thing.reach - RIM
             for _ in range(TRIES):
                 x, y = draw.uniform(-half, half)
                 yaw = float(draw.uniform(-math.pi, math.pi))
                 at = Pose2D(float(x), float(y), yaw)
-                candidate = PlacedThing(f"{table}_{kind}_{i}", thing, table, at)
+                candidate = PlacedThing(name, thing, table, at)
                 if _fine(world, tables, table, [*here, candidate], item_at, tag_at):
                     here.append(candidate)
                     break
@@ -110,40 +113,22 @@ def place_things(
     return tuple(placed)
 
 
-def draw_thing(world: WorldFile, kind: ObjectKind, draw: np.random.Generator) -> Thing:
-    """A thing of some usual size, weight and colour; a can is never like the item."""
-    color = _COLORS[int(draw.integers(len(_COLORS)))]
-    if kind == "can":
-        size = _other_can(world, draw)
-        mass = (
-            world.item.mass
-            * (size[0] ** 2 * size[2])
-            / (4 * world.item.radius**2 * world.item.height)
-        )
-        return Thing(kind, size, mass, world.item.color if draw.random() < 0.5 else color)
-    if kind == "box":
-        x, y, z = (float(draw.uniform(*span)) for span in ((0.05, 0.1), (0.06, 0.16), (0.06, 0.2)))
-        return Thing(kind, (x, y, z), 250.0 * x * y * z + 0.05, color)
-    radii, heights, masses = _ROUND[kind]
-    radius, height = float(draw.uniform(*radii)), float(draw.uniform(*heights))
-    return Thing(kind, (2 * radius, 2 * radius, height), float(draw.uniform(*masses)), color)
+def draw_distractor(
+    world: WorldFile,
+    kind: ObjectKind,
+    draw: np.random.Generator,
+    paint: np.random.Generator | None,
+) -> Thing:
+    """A thing of some usual size, weight and look; a can is never like the item."""
+    if kind != "can":
+        return draw_thing(kind, draw, paint)
+    color = COLORS[int(draw.integers(len(COLORS)))]
+    size, item = _other_can(world, draw), world.item
+    mass = item.mass * (size[0] ** 2 * size[2]) / (4 * item.radius**2 * item.height)
+    color = item.color if draw.random() < 0.5 else color
+    look = None if paint is None else draw_look(kind, color, paint)
+    return Thing(kind, size, mass, color, look)
 
-
-_COLORS = (
-    (0.16, 0.42, 0.62),
-    (0.20, 0.50, 0.30),
-    (0.85, 0.70, 0.20),
-    (0.80, 0.78, 0.74),
-    (0.55, 0.25, 0.45),
-    (0.30, 0.22, 0.18),
-)
-
-_ROUND = {
-    "bottle": ((0.030, 0.038), (0.20, 0.26), (0.3, 0.6)),
-    "mug": ((0.038, 0.045), (0.085, 0.100), (0.25, 0.40)),
-    "bowl": ((0.060, 0.080), (0.050, 0.070), (0.20, 0.40)),
-}
-"""kind -> ranges of radius (m), height (m) and mass (kg)."""
 
 OTHER_SIZE = 0.22
 """relative; another can differs from the item by more than 20 % in radius or height."""

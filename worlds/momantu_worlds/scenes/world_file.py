@@ -21,7 +21,18 @@ Name: TypeAlias = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$")]
 Friction: TypeAlias = Annotated[float, Field(gt=0, le=1)]
 Count: TypeAlias = Annotated[int, Field(ge=0, le=50)]
 FurnitureKind: TypeAlias = Literal[
-    "table", "desk", "chair", "sofa", "shelf", "crate", "cabinet", "plant", "figure"
+    "table",
+    "desk",
+    "counter",
+    "chair",
+    "sofa",
+    "bed",
+    "shelf",
+    "crate",
+    "pallet",
+    "cabinet",
+    "plant",
+    "figure",
 ]
 
 
@@ -96,7 +107,7 @@ class Piece(_Part):
 class Table(_Part):
     """A piece of furniture that matters: its top is a surface of the site."""
 
-    kind: Literal["table", "desk"]
+    kind: Literal["table", "desk", "counter"]
     at: PlanarPose
     size: tuple[Size, Size, Size]
     color: Rgb | None = None
@@ -138,12 +149,16 @@ class Tag(_Part):
 
 
 class Distractors(_Part):
-    """Loose things on the tables, 0 to `most` on each. Gaps are between surfaces."""
+    """Loose things on the tables, 0 to `most` on each. Gaps are between surfaces.
+
+    patterns: they are painted in many ways, not each kind in one.
+    """
 
     most: Annotated[int, Field(ge=0, le=8)]
     gap: Size
     gap_to_item: Size
     kinds: tuple[ObjectKind, ...] = OBJECT_KINDS
+    patterns: bool = False
 
 
 class Start(_Part):
