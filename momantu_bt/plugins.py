@@ -18,6 +18,8 @@ ROBOTS = "momantu_bt.robots"
 WORLDS = "momantu_bt.worlds"
 TREES = "momantu_bt.trees"
 COMMANDS = "momantu_bt.commands"
+WORLD_FILES = "momantu_bt.world_files"
+"""Functions that give a world from the path of its file, by the file's ending."""
 
 _WHAT = {
     SKILLS: "skill",
@@ -57,18 +59,23 @@ def _installed(find: Callable[..., Iterable[EntryPoint]], group: str) -> _Found:
 
 
 def load(group: str, name: str) -> Any:
-    """Import one plug-in by name and check it.
+    """Import one plug-in by name and check it; of a robot or a world, read the file at a path.
 
     Raises:
         PluginError: there is none of that name (with the nearest ones), it cannot be imported,
             or it is not what a plug-in of this group has to be.
         PluginClash: two packages give this name different things.
     """
+    from momantu_bt.plugin_files import by_path, from_file, near_file
+
+    if by_path(group, name):
+        return from_file(group, name)
     having = _installed(entry_points, group)
     what = _WHAT.get(group, "plug-in")
     if name not in having:
         near = difflib.get_close_matches(name, having, n=1)
-        hint = f" (did you mean {near[0]!r}?)" if near else ""
+        meant = near_file(group, name) or (f"did you mean {near[0]!r}?" if near else "")
+        hint = f" ({meant})" if meant else ""
         names = ", ".join(having) or "none"
         raise PluginError(f"no {what} is called {name!r}{hint}; installed: {names}")
     entry, *others = having[name]

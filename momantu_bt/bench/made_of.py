@@ -16,11 +16,12 @@ from contextlib import suppress
 from functools import cache
 from importlib import metadata
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol, runtime_checkable
 
 import momantu_bt
 from momantu_bt import plugins
 from momantu_bt.engine.build import skills_in
+from momantu_bt.plugin_files import by_path
 from momantu_bt.record.versions import LIBRARIES
 from momantu_bt.tree.check import NO_WORLD
 from momantu_bt.tree.model import Document
@@ -64,11 +65,36 @@ def made_of(
             found[f"the file {os.path.relpath(file, folder)}"] = _digest(text.encode())
     found["the world"] = world
     found["the robot"] = robot or "none"
+    if by_path(plugins.WORLDS, world):
+        found |= _digests("world", _files_of_world(registry.worlds[world]))
+        found["the world"] = registry.worlds[world].name
+    if robot is not None and by_path(plugins.ROBOTS, robot):
+        description = registry.description(robot)
+        found |= _digests("robot", description.files)
+        found["the robot"] = description.name
     found["the values"] = json.dumps(dict(values or {}), sort_keys=True, default=str)
     found["the time limit"] = f"{max_time:g} s"
     if not referee:
         found["the referee"] = "none"
     return found
+
+
+@runtime_checkable
+class FiledWorld(Protocol):
+    """A world entry that is made from files."""
+
+    def files(self) -> Iterable[Path]:
+        """The world file, and all files that it names."""
+        ...
+
+
+def _files_of_world(entry: Any) -> dict[str, Path]:
+    files = tuple(entry.files()) if isinstance(entry, FiledWorld) else ()
+    return {os.path.relpath(file, files[0].parent): file for file in files}
+
+
+def _digests(what: str, files: Mapping[str, Path]) -> dict[str, str]:
+    return {f"the {what}'s file {name}": _digest(path.read_bytes()) for name, path in files.items()}
 
 
 def foreign(made: Mapping[str, str]) -> tuple[str, ...]:

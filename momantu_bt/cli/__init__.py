@@ -118,6 +118,7 @@ def _never() -> None:
 
 def _explain(error: Exception) -> int:
     """Say what went wrong in one place, without a stack trace, and choose the exit code."""
+    from momantu_bt.descriptions.reading import DescriptionError
     from momantu_bt.tree.lookup import TreeNotFound
     from momantu_bt.tree.problems import TreeError
 
@@ -126,7 +127,7 @@ def _explain(error: Exception) -> int:
 
         report(error.problems, error.source)
         return EXIT_WRONG_INPUT
-    if isinstance(error, TreeNotFound | plugins.PluginError):
+    if isinstance(error, TreeNotFound | plugins.PluginError | DescriptionError):
         return _say(str(error), EXIT_WRONG_INPUT)
     if isinstance(error, WorldError):
         return _say(str(error), EXIT_NO_WORLD)

@@ -52,13 +52,18 @@ def plan_of(tree: str, seeds: Sequence[int], how: HowToRun) -> tuple[Plan, Docum
     """
     from momantu_bt.bench.made_of import made_of
     from momantu_bt.bench.plan import Plan, Wanted
+    from momantu_bt.plugin_files import absolute
+    from momantu_bt.plugins import ROBOTS, WORLDS
     from momantu_bt.tree.load import load
     from momantu_bt.tree.lookup import find
     from momantu_bt.tree.registry import Registry
 
     registry = Registry.installed()
     place = str(find(tree))
-    told: dict[str, Any] = {"world": how.world, "robot": how.robot}
+    told: dict[str, Any] = {
+        "world": absolute(WORLDS, how.world),
+        "robot": absolute(ROBOTS, how.robot),
+    }
     document = load(place, registry, values=how.values, **told).document
     _check_world(document, how.world, registry)
     told |= {"max_time": how.max_time, "referee": how.referee}

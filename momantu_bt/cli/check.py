@@ -26,7 +26,7 @@ def check(
     world: Annotated[
         str | None, typer.Option(help="Check against this world; `none` is without one.")
     ] = None,
-    robot: Annotated[str | None, typer.Option(help="Check against this robot.")] = None,
+    robot: Annotated[str | None, typer.Option(help="Check against it: a name or file.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,
     as_sarif: Annotated[
         bool, typer.Option("--sarif", help="Print SARIF 2.1.0, for editors and code reviews.")

@@ -11,7 +11,9 @@ Seeds: TypeAlias = Annotated[str, typer.Option(help="0:500, 3,5,7 or 0:10,20:30.
 Jobs: TypeAlias = Annotated[
     int | None, typer.Option(min=1, help="Episodes at a time; else one per core.")
 ]
-Robot: TypeAlias = Annotated[str | None, typer.Option(help="A robot's name; else the world's own.")]
+Robot: TypeAlias = Annotated[
+    str | None, typer.Option(help="A robot's name or file; else the world's own.")
+]
 Values: TypeAlias = Annotated[Path | None, typer.Option(help="A YAML file of values.")]
 MaxTime: TypeAlias = Annotated[
     float, typer.Option(min=0.05, help="Simulated seconds after which an episode fails.")

@@ -37,7 +37,7 @@ def list_all(
 
 @robots.command("show", help="Show a robot's actuators, sensors and named poses.")
 def show_one(
-    name: Annotated[str, typer.Argument(help="The robot's name.")],
+    name: Annotated[str, typer.Argument(help="The robot's name, or its file.")],
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,
 ) -> None:
     """Show one robot."""

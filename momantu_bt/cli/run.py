@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from momantu_bt.cli.options import Robot
+
 if TYPE_CHECKING:
     from momantu_bt.cli.breakpoints import Breakpoints
     from momantu_bt.cli.terminal import Terminal
@@ -27,9 +29,9 @@ VIEW_PORT = 8080
 def run(
     tree: Annotated[str, typer.Argument(help="A tree file, or the name of a bundled tree.")],
     world: Annotated[
-        str | None, typer.Option(help="A world's name, or none; else the tree's own.")
+        str | None, typer.Option(help="A world's name or file, or none; else the tree's own.")
     ] = None,
-    robot: Annotated[str | None, typer.Option(help="A robot's name; else the world's own.")] = None,
+    robot: Robot = None,
     seed: Annotated[int, typer.Option(min=0, help="Varies the episode; same seed, same run.")] = 0,
     set_: Annotated[
         list[str] | None, typer.Option("--set", help="key=value: a value of the tree's board.")
@@ -81,6 +83,7 @@ def run(
       momantu-bt run bring_object
       momantu-bt run trees/bring_object.yaml --seed 3 --video run.mp4 --report run.json
       momantu-bt run bring_object --set "tag_edge=150 mm" --view
+      momantu-bt run bring_object --robot my_robot/robot.yaml
       momantu-bt run bring_object --fault camera.dead@navigate:for=10s
     """
     from momantu_bt.cli.terminal import Terminal, is_interactive

@@ -25,7 +25,7 @@ def schema(
     world: Annotated[
         str | None, typer.Option(help="Complete this world's places and surfaces.")
     ] = None,
-    robot: Annotated[str | None, typer.Option(help="Complete this robot's named poses.")] = None,
+    robot: Annotated[str | None, typer.Option(help="Complete the poses of a name or file.")] = None,
 ) -> int:
     """Print a JSON Schema of tree files, made from the installed skills.
 

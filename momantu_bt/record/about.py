@@ -57,6 +57,9 @@ def files_of(document: Document, options: Options, run: Executor) -> Iterator[di
     if isinstance(run.world, WorldTexts):
         for name, text in run.world.texts().items():
             yield {"name": name, "kind": "world", "text": text}
+    if run.world is not None:
+        for name, text in run.world.robot.description.texts().items():
+            yield {"name": name, "kind": "robot", "text": text}
 
 
 def nodes_data(run: Executor) -> dict[str, Any]:

@@ -67,7 +67,7 @@ RUN = record(
 FILE = record(
     {
         "name": TEXT,
-        "kind": {"enum": ["tree", "values", "substitution", "site", "world"]},
+        "kind": {"enum": ["tree", "values", "substitution", "site", "world", "robot"]},
         "text": TEXT,
     }
 )

@@ -3,7 +3,7 @@
 Light: no simulator, no planner. See docs/robots.md for the format.
 """
 
-from momantu_bt.robots.errors import RobotFileError
+from momantu_bt.robots.errors import RobotFileError, RobotNotInstalled
 from momantu_bt.robots.reader import read_robot
 
-__all__ = ["RobotFileError", "read_robot"]
+__all__ = ["RobotFileError", "RobotNotInstalled", "read_robot"]

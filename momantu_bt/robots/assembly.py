@@ -65,7 +65,9 @@ def assemble(robot: RobotFile, folder: Path) -> Assembled:
             add_namespace(part.root, part.source.namespace)
     root = etree.Element("robot", name=robot.name)
     _raise(list(_Joining(robot, parts, root).join()))
-    path = keep_urdf(robot.name, etree.tostring(root, pretty_print=True, encoding="utf-8"))
+    etree.cleanup_namespaces(root)
+    etree.indent(root)
+    path = keep_urdf(robot.name, etree.tostring(root, encoding="utf-8"))
     return Assembled(root, path, (), files, joints)
 
 
@@ -314,7 +316,7 @@ def _near(name: str, known: Mapping[str, object] | list[str]) -> str:
 
 
 def _numbers(values: object) -> str:
-    return " ".join(f"{float(value):.12g}" for value in np.asarray(values))
+    return " ".join(repr(round(float(value), 12) + 0.0) for value in np.asarray(values))
 
 
 def _rpy(pose: Transform) -> tuple[float, float, float]:

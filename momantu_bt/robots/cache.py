@@ -8,6 +8,8 @@ import tempfile
 from functools import cache
 from pathlib import Path
 
+from momantu_bt.vulkan.places import cache_folder
+
 DIGITS = 16
 
 
@@ -17,7 +19,7 @@ def keep_urdf(name: str, text: bytes) -> Path:
     for folder in (_users_folder, _passing_folder):
         try:
             path = folder() / file
-            if not path.is_file():
+            if not path.is_file() or path.read_bytes() != text:
                 _write_whole(path, text)
         except OSError:
             continue
@@ -26,15 +28,19 @@ def keep_urdf(name: str, text: bytes) -> Path:
 
 
 def _users_folder() -> Path:
-    root = os.environ.get("XDG_CACHE_HOME")
-    folder = (Path(root) if root else Path.home() / ".cache") / "momantu_bt" / "robots"
+    folder = cache_folder() / "robots"
     folder.mkdir(parents=True, exist_ok=True)
     return folder
 
 
-@cache
 def _passing_folder() -> Path:
-    return Path(tempfile.mkdtemp(prefix="momantu_bt-"))
+    return Path(_temporary().name)
+
+
+@cache
+def _temporary() -> tempfile.TemporaryDirectory[str]:
+    """Removed when the process ends."""
+    return tempfile.TemporaryDirectory(prefix="momantu_bt-")
 
 
 def _write_whole(path: Path, text: bytes) -> None:

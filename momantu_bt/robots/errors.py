@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from momantu_bt.descriptions.reading import DescriptionError, Place
+from momantu_bt.world import WorldError
 
 
 class RobotFileError(DescriptionError):
     """A robot file, or a file that it names, is wrong; every problem with line and caret."""
 
     what = "robot"
+
+
+class RobotNotInstalled(WorldError):
+    """The robot file is right, but names a Python package that is not installed."""
 
 
 class PartError(Exception):

@@ -10,7 +10,7 @@ from pathlib import Path
 from lxml import etree
 
 from momantu_bt.descriptions.reading import Place
-from momantu_bt.robots.errors import PartError
+from momantu_bt.robots.errors import PartError, RobotNotInstalled
 from momantu_bt.robots.robot_file import PackageFile, PartSource
 
 MOST_BYTES = 20_000_000
@@ -45,6 +45,7 @@ def load_part(name: str, source: PartSource, folder: Path, meshes: Path | None) 
 
     Raises:
         PartError: a file is missing, or is not a URDF.
+        RobotNotInstalled: it is in a Python package that is not installed.
     """
     kind = "urdf" if source.urdf is not None else "xacro"
     place: Place = ("parts", name, kind)
@@ -71,10 +72,9 @@ def _in_package(where: PackageFile, place: Place) -> Path:
     """Locate a file inside an installed package without importing that package."""
     spec = importlib.util.find_spec(where.package)
     if spec is None or not spec.submodule_search_locations:
-        raise PartError(
-            place,
-            f"needs the files of the Python package {where.package!r}, which is not installed; "
-            "run `make setup`, or `pip install 'momantu-bt[all]'` for the robots that come with it",
+        raise RobotNotInstalled(
+            f"{place[1]} needs the files of the Python package {where.package!r}, which is not "
+            "installed; run `make setup`, or `pip install 'momantu-bt[all]'`"
         )
     found = Path(next(iter(spec.submodule_search_locations))) / where.file
     if not found.is_file():

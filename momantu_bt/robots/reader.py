@@ -22,21 +22,22 @@ def read_robot(path: Path) -> RobotDescription:
     path: a folder with `robot.yaml`, or a robot file.
 
     Raises:
+        RobotNotInstalled: its files are in a Python package that is not installed.
         RobotFileError: the file, or one that it names, is missing or wrong; every problem is told
             with line and column.
     """
-    file = (path / FILE if path.is_dir() else path).absolute()
+    file = path / FILE if path.is_dir() else path
     text = read_text(file, RobotFileError)
     reading = Reading(file, text, RobotFileError)
     robot = checked(reading, RobotFile, RobotFileError)
     try:
-        assembled = assemble(robot, file.parent)
+        assembled = assemble(robot, file.absolute().parent)
     except ExceptionGroup as group:
         troubles = [e for e in group.exceptions if isinstance(e, PartError)]
         reading.refuse((trouble.place, trouble.message) for trouble in troubles)
         raise
     reading.refuse(findings(robot, assembled.root, reading.plain))
-    return _description(robot, file, assembled)
+    return _description(robot, file.absolute(), assembled)
 
 
 def _description(robot: RobotFile, file: Path, assembled: Assembled) -> RobotDescription:

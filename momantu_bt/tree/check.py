@@ -6,7 +6,10 @@ from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
 
+from momantu_bt.descriptions.reading import DescriptionError
 from momantu_bt.messages import RobotState
+from momantu_bt.plugin_files import near_file
+from momantu_bt.plugins import ROBOTS, WORLDS, PluginError
 from momantu_bt.tree.catalogue import ScriptText
 from momantu_bt.tree.check_codes import check_handlers
 from momantu_bt.tree.check_guards import check_guards
@@ -104,13 +107,16 @@ def _look_up_world(context: Context, name: str, place: Place) -> str | None:
     """Sets the context's site; returns the robot that the world is meant for."""
     worlds = context.registry.worlds
     if name not in worlds:
-        hint = valid_names(name, worlds, "worlds")
+        hint = near_file(WORLDS, name) or valid_names(name, worlds, "worlds")
         context.problems.error("unknown-world", place, f"no world is called {name!r}", hint)
         return None
     try:
         entry = worlds[name]
         context.site = entry.site()
         return entry.default_robot
+    except (PluginError, DescriptionError) as error:
+        context.problems.error("broken-world", place, str(error))
+        return None
     except Exception as error:  # a plug-in's code, which may raise anything
         message = f"the world {name!r} cannot be read: {type(error).__name__}: {error}"
         context.problems.error("broken-world", place, message)
@@ -120,11 +126,13 @@ def _look_up_world(context: Context, name: str, place: Place) -> str | None:
 def _look_up_robot(context: Context, name: str) -> None:
     robots, place = context.registry.robots, _start(context.document)
     if name not in robots:
-        hint = valid_names(name, robots, "robots")
+        hint = near_file(ROBOTS, name) or valid_names(name, robots, "robots")
         context.problems.error("unknown-robot", place, f"no robot is called {name!r}", hint)
         return
     try:
         context.description = context.registry.description(name)
+    except (PluginError, DescriptionError) as error:
+        context.problems.error("broken-robot", place, str(error))
     except WorldError as error:
         # its files are not installed, as without the extra [worlds]; trees are checked all the same
         message = f"poses and actuators of {name!r} are not checked: {error}"

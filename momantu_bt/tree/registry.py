@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from momantu_bt import plugins
+from momantu_bt.plugin_files import by_path
 from momantu_bt.robot import RobotDescription
 from momantu_bt.skill import Skill
 from momantu_bt.world import Site, WorldEntry
@@ -15,6 +16,8 @@ from momantu_bt.world import Site, WorldEntry
 class Plugins(Mapping[str, Any]):
     """The plug-ins of one entry point group; each is imported and checked when it is asked for.
 
+    Robots and worlds are had by the paths of their files, too.
+
     Looking one up raises PluginError when it is broken, KeyError when there is none.
     """
 
@@ -22,7 +25,7 @@ class Plugins(Mapping[str, Any]):
         self._group = group
 
     def __getitem__(self, name: str) -> Any:
-        if name not in plugins.installed(self._group):
+        if name not in self:
             raise KeyError(name)
         return plugins.load(self._group, name)
 
@@ -33,7 +36,8 @@ class Plugins(Mapping[str, Any]):
         return len(plugins.installed(self._group))
 
     def __contains__(self, name: object) -> bool:
-        return name in plugins.installed(self._group)
+        named_by_file = isinstance(name, str) and by_path(self._group, name)
+        return named_by_file or name in plugins.installed(self._group)
 
 
 @dataclass(frozen=True, slots=True)

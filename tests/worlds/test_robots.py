@@ -14,7 +14,7 @@ import trimesh
 from momantu_worlds.robots import FOLDER, fetch
 
 from momantu_bt.robot import CAMERA_CARRIER, REQUIRED_POSES, ActuatorKind, CameraSensor
-from momantu_bt.robots import RobotFileError, read_robot
+from momantu_bt.robots import RobotFileError, RobotNotInstalled, read_robot
 
 FETCH = fetch()
 MOVING = [
@@ -96,7 +96,7 @@ def test_the_folded_arm_stays_near_the_base() -> None:
 
 def test_without_the_mesh_package_the_cure_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
-    with pytest.raises(RobotFileError, match=r"mani_skill.*make setup"):
+    with pytest.raises(RobotNotInstalled, match=r"mani_skill.*make setup"):
         fetch()
 
 
