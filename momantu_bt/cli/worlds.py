@@ -7,10 +7,14 @@ from typing import Annotated
 
 import typer
 
+from momantu_bt.cli.help import help_of
 from momantu_bt.cli.listing import listing
+from momantu_bt.cli.naming import world_of
+from momantu_bt.cli.worlds_check import check
+from momantu_bt.cli.worlds_preview import preview
 from momantu_bt.messages import plain
-from momantu_bt.plugins import WORLDS, load
-from momantu_bt.world import WorldEntry
+from momantu_bt.plugins import WORLDS
+from momantu_bt.world import AboutWorld, WorldEntry
 
 worlds = typer.Typer(rich_markup_mode=None, invoke_without_command=True)
 
@@ -33,14 +37,15 @@ def list_all(
     listing(WORLDS, _about, as_json)
 
 
-@worlds.command("show", help="Show a world's places, surfaces and objects.")
+@worlds.command("show", help="Show a world: what a tree can name, what varies, the goal.")
 def show_one(
-    name: Annotated[str, typer.Argument(help="The world's name, as in trees.")],
+    name: Annotated[str, typer.Argument(help="The world's name, or its file.")],
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,
 ) -> None:
     """Show one world."""
-    entry: WorldEntry = load(WORLDS, name)
+    entry = world_of(name)
     site = entry.site()
+    more = entry.about() if isinstance(entry, AboutWorld) else {}
     if as_json:
         about = {
             "name": name,
@@ -48,6 +53,7 @@ def show_one(
             "places": plain(site.places),
             "surfaces": plain(site.surfaces),
             "objects": plain(site.objects),
+            "about": {section: dict(lines) for section, lines in more.items()},
         }
         typer.echo(json.dumps(about, indent=2))
         return
@@ -59,7 +65,18 @@ def show_one(
     typer.echo("\nPlaces")
     for place_name, pose in site.places.items():
         typer.echo(f"  {place_name}: x {pose.x:g} m, y {pose.y:g} m, yaw {pose.yaw:g} rad")
-    typer.echo(f"\nObjects   {', '.join(site.objects) or 'none'}")
+    typer.echo("\nObjects that the robot is told of")
+    for object_name, told in site.objects.items():
+        sizes = ", ".join(f"{k} {v:g} m" for k, v in plain(told).items() if isinstance(v, float))
+        typer.echo(f"  {object_name}: {told.category}{', ' if sizes else ''}{sizes}")
+    for section, lines in more.items():
+        typer.echo(f"\n{section}")
+        for what, words in lines.items():
+            typer.echo(f"  {what}: {words}")
+
+
+worlds.command("check", help=help_of(check))(check)
+worlds.command("preview", help=help_of(preview))(preview)
 
 
 def _about(entry: WorldEntry) -> str:

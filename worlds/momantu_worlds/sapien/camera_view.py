@@ -16,12 +16,14 @@ from momantu_worlds.sapien.poses import pose_of
 class ViewCamera:
     """Takes pictures of a scene from anywhere."""
 
-    def __init__(self, scene: Any, width: int, height: int, horizontal_fov: float) -> None:
-        """width, height in px; horizontal_fov in rad."""
+    def __init__(
+        self, scene: Any, width: int, height: int, horizontal_fov: float, *, far: float = FAR
+    ) -> None:
+        """width, height in px; horizontal_fov in rad; far: m, beyond which nothing is seen."""
         self._scene = scene
         self._camera = sapien.render.RenderCameraComponent(width, height)
         self._camera.set_fovx(horizontal_fov, True)
-        self._camera.near, self._camera.far = NEAR, FAR
+        self._camera.near, self._camera.far = NEAR, far
         self._entity = sapien.Entity()
         self._entity.add_component(self._camera)
         scene.add_entity(self._entity)
@@ -32,3 +34,7 @@ class ViewCamera:
         self._scene.update_render()
         self._camera.take_picture()
         return np.asarray(self._camera.get_picture("Color")[..., :3])
+
+    def met(self) -> NDArray[np.bool_]:
+        """Where (h, w) the picture taken last shows something, and not what lies beyond all."""
+        return np.asarray(self._camera.get_picture("Position")[..., 2] < 0.0)

@@ -71,6 +71,20 @@ def draw_episode(name: str, seed: int) -> Episode:
     return build(world, layout, site_of(world, layout.believed_start, *map_files(name)))
 
 
+def sketch(name: str, seed: int) -> Episode:
+    """As `draw_episode`, for who needs no map: its site has none.
+
+    Raises:
+        WorldError: the world file is missing or wrong, or leaves no room for the robot.
+    """
+    from momantu_worlds.scenes.building import build
+    from momantu_worlds.scenes.variation import vary
+
+    world = load_world(name)
+    layout = vary(world, seed)
+    return build(world, layout, site_of(world, layout.believed_start, None, None))
+
+
 def keep(name: str) -> None:
     """Draw a world's maps anew, and write its nominal site beside them.
 

@@ -27,7 +27,9 @@ KEPT = ("start", "start_sigma", "places", "surfaces", "objects")
 """Fields of a site that its short form holds; name and maps follow from where it lies."""
 
 
-def site_of(world: WorldFile, start: Pose2D, map_file: Path, overhang_file: Path) -> Site:
+def site_of(
+    world: WorldFile, start: Pose2D, map_file: Path | None, overhang_file: Path | None
+) -> Site:
     """The site: nominal tables, places and object classes, and a rough start pose."""
     surfaces = {
         name: Surface(table.pose, table.size[:2], table.size[2], table.sides)

@@ -1,0 +1,57 @@
+"""`momantu-bt worlds check`: all that makes a world unusable, told before a run."""
+
+from __future__ import annotations
+
+import json
+from typing import Annotated
+
+import typer
+
+from momantu_bt.bench.seeds import SeedsError, parse_seeds
+from momantu_bt.cli.naming import robot_of, world_of
+from momantu_bt.findings import findings_json, findings_text
+from momantu_bt.world import CheckableWorld, WorldError
+
+EXIT_WRONG_INPUT = 2
+MOST_SEEDS = 1000
+"""Episodes of one check; more of them find nothing new."""
+
+
+def check(
+    world: Annotated[str, typer.Argument(help="The world's name, or its file.")],
+    robot: Annotated[
+        str | None, typer.Option(help="A robot's name or file; else the world's own.")
+    ] = None,
+    seeds: Annotated[str, typer.Option(help="Episodes to look at: 0:20, 3,5,7.")] = "0:20",
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,
+) -> int:
+    """Find whatever makes a world unusable.
+
+    Looked for, without a simulator: overlaps, tables and places that the robot does not get to,
+    narrow doors, tags that nobody can see, starts in collision, things that do not stand, goals
+    that are met already or never can be.
+
+    Exit code 0: nothing is wrong; 1: something is, and every finding is printed with its place,
+    the seeds and a cure; 2: the world file or the arguments are wrong.
+
+    Examples:
+      momantu-bt worlds check four_rooms
+      momantu-bt worlds check my_flat.yaml --robot fetch --seeds 0:50
+      momantu-bt worlds check my_flat.yaml --json
+    """
+    try:
+        episodes = parse_seeds(seeds)
+        if len(episodes) > MOST_SEEDS:
+            raise SeedsError(f"--seeds {seeds} are more than {MOST_SEEDS} seeds")
+        entry = world_of(world)
+        if not isinstance(entry, CheckableWorld):
+            raise WorldError(f"the world {world!r} cannot check itself")
+        findings = entry.check(robot_of(robot or entry.default_robot), episodes)
+    except (SeedsError, WorldError) as error:
+        typer.echo(f"momantu-bt: {error}", err=True)
+        return EXIT_WRONG_INPUT
+    if as_json:
+        typer.echo(json.dumps(findings_json(world, findings), indent=2))
+    else:
+        typer.echo(findings_text(world, findings))
+    return 1 if findings else 0

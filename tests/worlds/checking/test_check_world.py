@@ -1,0 +1,63 @@
+"""A whole world checked: findings of several episodes are one, at their place in the file."""
+
+from dataclasses import replace
+
+import pytest
+from momantu_worlds.checking.run import check_world
+from momantu_worlds.robots import fetch
+from momantu_worlds.scenes.bodies import Episode
+from momantu_worlds.scenes.loading import sketch, world_path
+
+from momantu_bt.geometry import Pose2D
+from momantu_bt.world import WorldError
+
+PATH = world_path("four_rooms")
+LINES = PATH.read_text(encoding="utf-8").splitlines()
+
+
+def test_four_rooms_has_one_crate_that_reaches_into_a_wall() -> None:
+    findings = check_world(PATH, lambda seed: sketch("four_rooms", seed), fetch(), range(3))
+    (finding,) = findings
+    assert (finding.severity, finding.code, finding.file) == ("warning", "overlap", PATH)
+    assert "crate_corridor overlaps wall_corridor_north_west by 3.8 cm" in finding.message
+    assert LINES[finding.line - 1].startswith("  crate_corridor:")
+    assert finding.seeds == (1, 2)
+
+
+def test_the_worst_episode_words_a_finding_and_one_that_cannot_be_is_told() -> None:
+    drawn = sketch("four_rooms", 0)
+    wall = drawn.body("wall_outer_west").map_from_body.position
+
+    def draw(seed: int) -> Episode:
+        if seed == 2:
+            raise WorldError("no free place to start")
+        return replace(drawn, start=Pose2D(float(wall[0]) + (0.1, 0.2)[seed], 0.9, 0.0))
+
+    found = {finding.code: finding for finding in check_world(PATH, draw, fetch(), range(3))}
+    start = found["start-in-collision"]
+    assert start.seeds == (0, 1)
+    assert LINES[start.line - 1].startswith("  at: [-4.70")
+    depth = 0.075 + 0.29 - 0.1
+    assert f"{100 * depth:.0f} cm inside wall_outer_west" in start.message
+    assert found["no-episode"].seeds == (2,)
+    assert "no free place to start" in found["no-episode"].message
+
+
+@pytest.mark.parametrize(
+    ("name", "line"),
+    [
+        ("table_a", "  table_a:"),
+        ("can", "item:"),
+        ("tag", "tag:"),
+        ("wall_outer_west", "    - {name: outer_west"),
+        ("entrance", "  entrance:"),
+        ("extra_plant_0", "unknown:"),
+        ("table_a_mug_1", "distractors:"),
+    ],
+)
+def test_where_a_body_comes_from(name: str, line: str) -> None:
+    from momantu_worlds.checking.where import Where
+
+    where = Where(PATH)
+    number, _ = where.at(where.body(name))
+    assert LINES[number - 1].startswith(line)

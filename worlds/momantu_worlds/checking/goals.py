@@ -1,0 +1,176 @@
+"""Whether what the referee demands is still to be done, and can be."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from momantu_bt.geometry import Array, Transform
+from momantu_worlds.checking.convex import Convex, solids_of
+from momantu_worlds.checking.remark import Remark
+from momantu_worlds.checking.scenario import Scenario
+from momantu_worlds.scenes.bodies import Body, Goal
+from momantu_worlds.scenes.solids import FLUSH
+from momantu_worlds.scenes.standing import Top
+
+STEP = 0.05
+"""m between the spots that are tried for what is brought."""
+
+
+FAR = 2.0
+"""m; from where something is, along x and along y: farther off no arm reaches it."""
+
+
+def goals(scenario: Scenario) -> Iterator[Remark]:
+    """The goal is not met at first, and the item can be reached, held and set down."""
+    goal = scenario.episode.goal
+    if goal is None:
+        return
+    item = scenario.episode.body(goal.item)
+    yield from _item(scenario, item)
+    if _met(scenario, goal, item):
+        yield Remark(
+            "error",
+            "goal-met",
+            ("goal",),
+            (),
+            f"{goal.item} stands on {goal.support} beside {goal.marker} before anything is done",
+            "begin with the item elsewhere, or demand less `goal.distance`",
+        )
+    spots = _spots(scenario, goal, item)
+    if len(spots) == 0:
+        yield Remark(
+            "error",
+            "goal-no-room",
+            ("goal",),
+            (),
+            f"no free spot for {goal.item} on {goal.support} within {goal.max_distance:g} m of "
+            f"{goal.marker}",
+            "move the tag further in, or make room beside it",
+        )
+    elif (far := _farness(scenario, spots)) > scenario.robot.reach[2]:
+        yield Remark(
+            "error",
+            "goal-out-of-reach",
+            ("goal",),
+            (),
+            f"every free spot for {goal.item} beside {goal.marker} is {_meters(far)} from where "
+            f"{scenario.robot.name} gets; its arm reaches {scenario.robot.reach[2]:g} m",
+            "move the tag nearer to the edge",
+            far,
+        )
+
+
+def _item(scenario: Scenario, item: Body) -> Iterator[Remark]:
+    points = np.concatenate([solid.vertices for solid in scenario.solids[item.name]])
+    place, robot = scenario.place(item.name), scenario.robot
+    width = _width(points[:, :2])
+    if width > robot.max_width:
+        yield Remark(
+            "error",
+            "item-too-wide",
+            place,
+            (item.name,),
+            f"{item.name} is {100 * width:.1f} cm wide; {robot.name}'s hand opens "
+            f"{100 * robot.max_width:.1f} cm",
+            "make it narrower, or choose another robot",
+            width,
+        )
+    middle = (points.min(axis=0) + points.max(axis=0))[None, :2] / 2
+    if (far := _farness(scenario, middle)) > robot.reach[2]:
+        yield Remark(
+            "error",
+            "item-out-of-reach",
+            place,
+            (item.name,),
+            f"{item.name} is {_meters(far)} from where {robot.name} gets; its arm reaches "
+            f"{robot.reach[2]:g} m",
+            "move it nearer to an edge",
+            far,
+        )
+
+
+def _width(points: Array) -> float:
+    """The least extent of points (n, 2) in any of 90 directions."""
+    turns = np.arange(90) * (math.pi / 90)
+    along = points @ np.stack([np.cos(turns), np.sin(turns)])
+    return float((along.max(axis=0) - along.min(axis=0)).min())
+
+
+def _met(scenario: Scenario, goal: Goal, item: Body) -> bool:
+    support, marker = scenario.episode.body(goal.support), scenario.episode.body(goal.marker)
+    top, foot = Top(support), _foot(scenario, item)
+    beside = math.dist(foot.position[:2], marker.map_from_body.position[:2])
+    return (
+        top.margin(support.map_from_body, foot) > 0.0
+        and abs(top.height_above(support.map_from_body, foot)) <= FLUSH
+        and beside <= goal.max_distance
+    )
+
+
+def _foot(scenario: Scenario, item: Body) -> Transform:
+    """Below the middle of the item, at its lowest point."""
+    points = np.concatenate([solid.vertices for solid in scenario.solids[item.name]])
+    low, high = points.min(axis=0), points.max(axis=0)
+    return Transform((*(low + high)[:2] / 2, low[2]))
+
+
+def _spots(scenario: Scenario, goal: Goal, item: Body) -> Array:
+    """Places (n, 2) in the map where the item could stand whole on the support, beside the marker.
+
+    They keep FLUSH from everything.
+    """
+    map_from_top, size = scenario.surfaces[goal.support]
+    marker = scenario.episode.body(goal.marker).map_from_body.position
+    foot = _foot(scenario, item)
+    points = np.concatenate([solid.vertices for solid in scenario.solids[item.name]])
+    radius = float(np.hypot(*(points[:, :2] - foot.position[:2]).T).max())
+    steps = np.arange(-goal.max_distance, goal.max_distance + 1e-9, STEP)
+    beside = _beside(scenario, item, marker, goal.max_distance + radius)
+    spots = []
+    for dx in steps:
+        for dy in steps:
+            at = (float(marker[0] + dx), float(marker[1] + dy), float(map_from_top.position[2]))
+            own = map_from_top.inverse().apply(at)
+            inside = bool((np.abs(own[:2]) <= np.array(size) / 2 - radius).all())
+            if inside and math.hypot(dx, dy) <= goal.max_distance:
+                moved = Transform(np.array(at) - foot.position + (0.0, 0.0, FLUSH))
+                if _free(beside, replace(item, map_from_body=moved @ item.map_from_body)):
+                    spots.append(at[:2])
+    return np.array(spots).reshape(-1, 2)
+
+
+def _beside(scenario: Scenario, item: Body, marker: Array, radius: float) -> list[Convex]:
+    """All solids but the item's own that come within `radius` m of the marker on the floor plan."""
+    return [
+        solid
+        for name, solids in scenario.solids.items()
+        if name != item.name
+        for solid in solids
+        if (solid.box[0][:2] <= marker[:2] + radius).all()
+        and (solid.box[1][:2] >= marker[:2] - radius).all()
+    ]
+
+
+def _free(solids: list[Convex], item: Body) -> bool:
+    """Whether the item as it is put there overlaps none of the solids."""
+    return not any(
+        own.near(solid, 0.0) and own.depth(solid) > 0.0
+        for own in solids_of(item)
+        for solid in solids
+    )
+
+
+def _farness(scenario: Scenario, spots: Array) -> float:
+    """How far the nearest of some spots (n, 2) is from where the robot gets, m; inf: too far."""
+    stands = scenario.stands_near(spots.mean(axis=0), FAR)
+    if len(stands) == 0:
+        return math.inf
+    return min(float(np.hypot(*(stands - spot).T).min()) for spot in spots)
+
+
+def _meters(far: float) -> str:
+    return f"{far:.2f} m" if far < FAR else f"more than {FAR:g} m"

@@ -1,0 +1,123 @@
+"""What of a robot decides whether it can work in a world."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from momantu_bt.failure import Failure
+from momantu_bt.frames import KinematicTree
+from momantu_bt.geometry import Array, Pose2D
+from momantu_bt.robot import RobotDescription
+from momantu_bt.world import seeded
+
+SAMPLES = 2000
+"""Random postures of the arm by which its reach is known."""
+FREE_TURN = math.pi
+"""rad; how far a joint that turns for ever is turned for them, either way."""
+EYES = ("look_around", "ready")
+"""Named poses in which the camera looks at things."""
+
+
+@dataclass(frozen=True, eq=False)
+class Measures:
+    """A robot as a world meets it.
+
+    footprint: (n, 2) corners of the base in its frame. half_width: from the middle to the nearest
+    edge, m. height: below which everything is in its way, m. reach: (nearest, best, farthest) m
+    from the middle of the base. eyes: heights of the camera, m. hand: (n, 2) where the grasp
+    frame gets: distance from the base's middle along the floor, and height, m. max_width: of what
+    the hand can hold, m.
+    """
+
+    name: str
+    footprint: Array
+    half_width: float
+    height: float
+    reach: tuple[float, float, float]
+    eyes: tuple[float, ...]
+    hand: Array
+    max_width: float
+
+    def outline(self, pose: Pose2D) -> Array:
+        """Corners (n, 2) of the base as it stands somewhere."""
+        points = np.column_stack([self.footprint, np.zeros(len(self.footprint))])
+        return pose.transform().apply(points)[:, :2]
+
+    def works_at(self, height: float) -> bool:
+        """Whether the hand gets to things that stand on a surface of this height, before the base.
+
+        A posture counts when the hand is at most `GRASP` above it and beyond the base's front.
+        """
+        front = float(self.footprint[:, 0].max()) + FRONT
+        out, up = self.hand[:, 0], self.hand[:, 1]
+        good = (out >= front) & (up >= height + GRASP[0]) & (up <= height + GRASP[1])
+        return int(good.sum()) >= ENOUGH
+
+
+GRASP = (0.03, 0.20)
+"""m above a surface: where a hand grasps what stands on it."""
+FRONT = 0.10
+"""m before the base's front: a surface's edge is no nearer, and things stand behind it."""
+ENOUGH = 3
+"""Postures out of `SAMPLES` that must reach: fewer are accidents at the end of the arm's reach."""
+
+
+def measured(description: RobotDescription) -> Measures:
+    """The measures of a robot; self-collision is not looked at."""
+    kinematics = description.kinematics()
+    footprint = np.array(description.footprint, dtype=np.float64)
+    return Measures(
+        name=description.name,
+        footprint=footprint,
+        half_width=_inner_radius(footprint),
+        height=description.height,
+        reach=description.working.reach,
+        eyes=_eyes(description, kinematics),
+        hand=_hand(description, kinematics),
+        max_width=description.end_effector.max_width,
+    )
+
+
+def _inner_radius(corners: Array) -> float:
+    """Distance from the origin to the nearest edge of a polygon around it."""
+    edges = np.roll(corners, -1, axis=0) - corners
+    along = np.clip(-(corners * edges).sum(axis=1) / (edges**2).sum(axis=1), 0.0, 1.0)
+    nearest = corners + along[:, None] * edges
+    return float(np.hypot(nearest[:, 0], nearest[:, 1]).min())
+
+
+def _eyes(description: RobotDescription, kinematics: KinematicTree) -> tuple[float, ...]:
+    try:
+        frame = description.camera()[1].frame
+    except KeyError:
+        return ()
+    heights = []
+    for name in EYES:
+        pose = description.named_poses.get(name)
+        if pose is not None:
+            try:
+                heights.append(float(kinematics.base_from_frame(frame, pose).position[2]))
+            except Failure:  # the camera is on a frame that the robot lacks: another check's word
+                return ()
+    return tuple(dict.fromkeys(heights))
+
+
+def _hand(description: RobotDescription, kinematics: KinematicTree) -> Array:
+    """(n, 2) distance and height of the grasp frame in random postures of the joints below it."""
+    effector = description.end_effector
+    draw = seeded("reach of", description.name)
+    matrices = np.broadcast_to(np.eye(4), (SAMPLES, 4, 4))
+    for joint in kinematics.chain(effector.frame):
+        limits = description.joint_limits.get(joint.name)
+        if limits is None or joint.kind == "fixed":
+            matrices = matrices @ joint.transform(0.0)
+            continue
+        low = -FREE_TURN if limits.lower is None else limits.lower
+        high = FREE_TURN if limits.upper is None else limits.upper
+        positions = draw.uniform(low, high, SAMPLES)
+        matrices = matrices @ np.stack([joint.transform(float(p)) for p in positions])
+    tip = matrices @ np.array([effector.grasp_offset, 0.0, 0.0, 1.0])
+    return np.column_stack([np.hypot(tip[:, 0], tip[:, 1]), tip[:, 2]])

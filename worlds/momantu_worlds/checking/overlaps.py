@@ -1,0 +1,86 @@
+"""Bodies that overlap each other or the floor."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
+
+import numpy as np
+
+from momantu_worlds.checking.remark import Remark
+from momantu_worlds.checking.scenario import WALL, Scenario
+from momantu_worlds.scenes.bodies import Body
+
+TOUCHING = 0.005
+"""m; bodies that overlap less deep only touch."""
+
+
+def overlaps(scenario: Scenario) -> Iterator[Remark]:
+    """Every two bodies that overlap, unless both are walls, and every body in the floor."""
+    bodies = [body for body in scenario.bodies if scenario.solids[body.name]]
+    for body in bodies:
+        yield from _in_floor(scenario, body)
+    for first, second in _near(scenario, bodies):
+        if first.category == second.category == WALL:
+            continue
+        depth = _depth(scenario, first.name, second.name)
+        if depth > TOUCHING:
+            yield _overlap(scenario, first, second, depth)
+
+
+def _near(scenario: Scenario, bodies: list[Body]) -> Iterator[tuple[Body, Body]]:
+    """Pairs whose boxes overlap."""
+    boxes = [[solid.box for solid in scenario.solids[body.name]] for body in bodies]
+    low = np.array([np.min([b[0] for b in own], axis=0) for own in boxes]).reshape(-1, 3)
+    high = np.array([np.max([b[1] for b in own], axis=0) for own in boxes]).reshape(-1, 3)
+    for i, j in combinations(range(len(bodies)), 2):
+        if (high[i] - TOUCHING > low[j]).all() and (high[j] - TOUCHING > low[i]).all():
+            yield bodies[i], bodies[j]
+
+
+def _depth(scenario: Scenario, first: str, second: str) -> float:
+    """How deep two bodies overlap at the worst of their parts, m."""
+    return max(
+        (
+            ours.depth(theirs)
+            for ours in scenario.solids[first]
+            for theirs in scenario.solids[second]
+            if ours.near(theirs, TOUCHING)
+        ),
+        default=0.0,
+    )
+
+
+def _overlap(scenario: Scenario, first: Body, second: Body, depth: float) -> Remark:
+    """The blame is on what is loose, else on what is no wall, else on the later one."""
+    blamed, other = (first, second) if second.category == WALL else (second, first)
+    if blamed.static and not other.static:
+        blamed, other = other, blamed
+    loose = not (first.static and second.static)
+    return Remark(
+        severity="error" if loose else "warning",
+        code="overlap",
+        place=scenario.place(blamed.name),
+        about=(blamed.name, other.name),
+        message=f"{blamed.name} overlaps {other.name} by {100 * depth:.1f} cm",
+        cure=(
+            "physics would push them apart with force; move one of them"
+            if loose
+            else "move one of them, or make it smaller"
+        ),
+        amount=depth,
+    )
+
+
+def _in_floor(scenario: Scenario, body: Body) -> Iterator[Remark]:
+    depth = -min(float(solid.box[0][2]) for solid in scenario.solids[body.name])
+    if depth > TOUCHING and body.category != WALL:
+        yield Remark(
+            severity="warning" if body.static else "error",
+            code="in-floor",
+            place=scenario.place(body.name),
+            about=(body.name,),
+            message=f"{body.name} reaches {100 * depth:.1f} cm into the floor",
+            cure="the floor is at height 0; lift it",
+            amount=depth,
+        )

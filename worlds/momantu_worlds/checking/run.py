@@ -1,0 +1,85 @@
+"""All checks of a world, in the episodes of some seeds, put together."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from pathlib import Path
+
+from momantu_bt.findings import Finding, in_order
+from momantu_bt.robot import RobotDescription
+from momantu_bt.world import WorldError
+from momantu_worlds.checking.access import doorways, places, start, surfaces
+from momantu_worlds.checking.goals import goals
+from momantu_worlds.checking.measures import Measures, measured
+from momantu_worlds.checking.overlaps import overlaps
+from momantu_worlds.checking.remark import Place, Remark
+from momantu_worlds.checking.scenario import Scenario
+from momantu_worlds.checking.tags import tags
+from momantu_worlds.checking.upright import upright
+from momantu_worlds.checking.where import Where
+from momantu_worlds.scenes.bodies import Episode
+
+CHECKS: tuple[Callable[[Scenario], Iterable[Remark]], ...] = (
+    overlaps,
+    start,
+    places,
+    doorways,
+    surfaces,
+    tags,
+    upright,
+    goals,
+)
+
+
+def check_world(
+    path: Path,
+    draw: Callable[[int], Episode],
+    description: RobotDescription,
+    seeds: Sequence[int],
+) -> list[Finding]:
+    """Everything that is wrong with a world for a robot.
+
+    path: the world file. draw: gives the episode of a seed.
+
+    Raises:
+        WorldError: the world file cannot be read.
+    """
+    where, robot = Where(path), measured(description)
+    remarks = [
+        (seed, remark) for seed in seeds for remark in _of_seed(draw, seed, robot, where.body)
+    ]
+    return in_order(_together(remarks, where))
+
+
+def _of_seed(
+    draw: Callable[[int], Episode], seed: int, robot: Measures, place: Callable[[str], Place]
+) -> Iterator[Remark]:
+    try:
+        episode = draw(seed)
+    except WorldError as error:
+        cure = "make room in the world, or let less of it vary"
+        yield Remark("error", "no-episode", (), (), str(error), cure)
+        return
+    scenario = Scenario(episode, robot, place)
+    for check in CHECKS:
+        yield from check(scenario)
+
+
+def _together(remarks: Iterable[tuple[int, Remark]], where: Where) -> Iterator[Finding]:
+    """One finding for what is alike in several episodes, in the words of the worst."""
+    alike: dict[tuple[str, Place, tuple[str, ...]], list[tuple[int, Remark]]] = {}
+    for seed, remark in remarks:
+        alike.setdefault((remark.code, remark.place, remark.about), []).append((seed, remark))
+    for each in alike.values():
+        worst = max((remark for _, remark in each), key=lambda remark: remark.amount)
+        line, column = where.at(worst.place)
+        yield Finding(
+            severity=worst.severity,
+            code=worst.code,
+            message=worst.message,
+            cure=worst.cure,
+            file=where.path,
+            line=line,
+            column=column,
+            seeds=tuple(seed for seed, _ in each),
+        )

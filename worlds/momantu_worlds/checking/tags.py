@@ -1,0 +1,110 @@
+"""Whether every tag can be seen from somewhere that the robot gets to."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterator
+
+import numpy as np
+
+from momantu_bt.geometry import Array
+from momantu_worlds.checking.remark import Remark
+from momantu_worlds.checking.scenario import Scenario
+from momantu_worlds.scenes.bodies import Body, Picture
+
+RINGS = (0.4, 0.7, 1.0, 1.4, 1.9, 2.5)
+"""m from the tag along the floor: how far off it is looked for. Farther off few cameras read it."""
+RING = 0.15
+"""m; half the width of a ring."""
+SECTORS = 24
+"""Directions around the tag in which it is looked for."""
+SLANT = math.radians(75)
+"""rad from straight before the tag, beyond which its squares are too flat to be read."""
+PAPER = 0.001
+"""m before the tag: where its points must be seen, so that its own carrier does not hide them."""
+INSIDE = 0.95
+"""How far out on the paper the points lie that must all be seen."""
+GRID = np.array([(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)]) / 2
+"""Of those points, for a paper with edges of 1."""
+
+
+def tags(scenario: Scenario) -> Iterator[Remark]:
+    """Every tag is seen whole from one of the spots that the robot gets to."""
+    for body in scenario.bodies:
+        if body.category == "tag" and scenario.robot.eyes:
+            hidden = _hidden(scenario, body)
+            if hidden is not None:
+                why, cure = hidden
+                yield Remark(
+                    severity="error",
+                    code="tag-unseen",
+                    place=scenario.place(body.name),
+                    about=(body.name,),
+                    message=f"nobody can see {body.name}: {why}",
+                    cure=cure,
+                )
+
+
+def _hidden(scenario: Scenario, tag: Body) -> tuple[str, str] | None:
+    """Why a tag is not seen, and what to do; None when it is."""
+    points, normal = _points(tag)
+    within = [
+        name
+        for name, solids in scenario.solids.items()
+        if name != tag.name and any(solid.inside(points).any() for solid in solids)
+    ]
+    if within:
+        return f"it is inside {within[0]}", f"move it out of {within[0]}"
+    middle = points.mean(axis=0)
+    stands = scenario.stands_near(middle, RINGS[-1] + RING)
+    if len(stands) == 0:
+        near = f" within {RINGS[-1]:g} m of it"
+        return f"{scenario.robot.name} gets nowhere{near}", "move it to where the robot gets"
+    before, blockers = False, Counter[str]()
+    for ring in RINGS:
+        eyes = _eyes(scenario, stands, middle, ring)
+        rays = eyes - middle
+        facing = rays @ normal >= math.cos(SLANT) * np.linalg.norm(rays, axis=1)
+        if facing.any():
+            before = True
+            if _seen(scenario, eyes[facing], points, tag.name, blockers):
+                return None
+    if not before:
+        return "it looks where the robot never is", "turn it, or hang it the other way round"
+    blocker = min(blockers, key=lambda name: (-blockers[name], name))
+    return f"{blocker} hides it", f"move the tag or {blocker}"
+
+
+def _points(tag: Body) -> tuple[Array, Array]:
+    """Points (9, 3) just before a tag's paper, and the direction it looks in, map."""
+    part = next(part for part in tag.parts if isinstance(part.geometry, Picture))
+    assert isinstance(part.geometry, Picture)
+    map_from_paper = tag.map_from_body @ part.body_from_part
+    flat = INSIDE * GRID * part.geometry.size
+    own = np.column_stack([flat, np.full(len(flat), PAPER)])
+    return map_from_paper.apply(own), map_from_paper.rotation[:, 2]
+
+
+def _eyes(scenario: Scenario, stands: Array, middle: Array, ring: float) -> Array:
+    """Where a camera may be (n, 3): one spot of each sector of a ring, at each of its heights."""
+    offsets = stands - middle[:2]
+    off = np.abs(np.hypot(offsets[:, 0], offsets[:, 1]) - ring)
+    around = np.flatnonzero(off <= RING)
+    turns = np.arctan2(offsets[around, 1], offsets[around, 0])
+    sectors = np.floor((turns + math.pi) / (2 * math.pi) * SECTORS).astype(int)
+    order = np.lexsort((off[around], sectors))
+    _, first = np.unique(sectors[order], return_index=True)
+    spots = stands[around[order[first]]]
+    return np.concatenate(
+        [np.column_stack([spots, np.full(len(spots), eye)]) for eye in scenario.robot.eyes]
+    )
+
+
+def _seen(scenario: Scenario, eyes: Array, points: Array, tag: str, blockers: Counter[str]) -> bool:
+    """Whether one of the eyes has a line to all points; counts what is in the way."""
+    origins = np.repeat(eyes, len(points), axis=0)
+    rays = np.tile(points, (len(eyes), 1)) - origins
+    at, which = scenario.hit(origins, rays, frozenset({tag}))
+    blockers.update(name for name in which if name)
+    return bool(np.isinf(at).reshape(len(eyes), len(points)).all(axis=1).any())

@@ -1,0 +1,86 @@
+"""Whether what is loose stands on something."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import cv2
+import numpy as np
+
+from momantu_bt.geometry import Array
+from momantu_worlds.checking.remark import Remark
+from momantu_worlds.checking.scenario import Scenario
+from momantu_worlds.scenes.bodies import Body
+from momantu_worlds.scenes.solids import FLUSH
+
+FROM_ABOVE = 0.002
+"""m above a body's lowest points: where it is begun to look for what carries them."""
+FALL = 3.0
+"""m; how far below a body it is looked for something that carries it."""
+TIPPING = 0.003
+"""m; how far beyond what carries it the middle of a body may be."""
+
+
+def upright(scenario: Scenario) -> Iterator[Remark]:
+    """Every loose body is carried from below, under its middle."""
+    for body in scenario.bodies:
+        if body.static or not scenario.solids[body.name]:
+            continue
+        points = _lowest(scenario, body)
+        fall, below = _falls(scenario, body, points)
+        carried = points[fall <= FLUSH]
+        if len(carried) == 0:
+            nearest = int(fall.argmin())
+            yield _remark(
+                scenario,
+                body,
+                "in-the-air",
+                f"{body.name} begins {100 * float(fall[nearest]):.1f} cm above {below[nearest]}",
+                "it would fall when the episode begins; set it down on something",
+                float(fall[nearest]),
+            )
+        elif (beyond := _beyond(carried, _middle(scenario, body))) > TIPPING:
+            under = below[int(fall.argmin())]
+            yield _remark(
+                scenario,
+                body,
+                "over-the-edge",
+                f"the middle of {body.name} is {100 * beyond:.1f} cm beyond the edge of {under}",
+                "it would tip over; move it onto what carries it",
+                beyond,
+            )
+
+
+def _lowest(scenario: Scenario, body: Body) -> Array:
+    """Points (n, 3) at the bottom of a body."""
+    points = np.concatenate([solid.vertices for solid in scenario.solids[body.name]])
+    return np.asarray(points[points[:, 2] <= points[:, 2].min() + FLUSH])
+
+
+def _falls(scenario: Scenario, body: Body, points: Array) -> tuple[Array, list[str]]:
+    """How far below each point something is, m, and what."""
+    origins = points + np.array([0.0, 0.0, FROM_ABOVE])
+    rays = np.tile((0.0, 0.0, -FALL), (len(points), 1))
+    at, which = scenario.hit(origins, rays, frozenset({body.name}))
+    above_floor = origins[:, 2]
+    deep = np.where(np.isinf(at), np.inf, at * FALL)
+    names = [w if d <= z else "the floor" for w, d, z in zip(which, deep, above_floor, strict=True)]
+    return np.minimum(deep, above_floor) - FROM_ABOVE, names
+
+
+def _middle(scenario: Scenario, body: Body) -> Array:
+    """The middle (2,) of a body on the floor plan."""
+    points = np.concatenate([solid.vertices for solid in scenario.solids[body.name]])
+    return np.asarray((points.min(axis=0) + points.max(axis=0))[:2] / 2)
+
+
+def _beyond(carried: Array, middle: Array) -> float:
+    """How far a point lies outside the hull of the points that carry, m; at most 0 inside."""
+    hull = cv2.convexHull((carried[:, :2] - middle).astype(np.float32))
+    return -float(cv2.pointPolygonTest(hull, (0.0, 0.0), True))
+
+
+def _remark(
+    scenario: Scenario, body: Body, code: str, message: str, cure: str, amount: float
+) -> Remark:
+    return Remark("error", code, scenario.place(body.name), (body.name,), message, cure, amount)

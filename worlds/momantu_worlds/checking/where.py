@@ -1,0 +1,59 @@
+"""Where in a world file something of an episode comes from."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from momantu_bt.descriptions.reading import DescriptionError, Reading, read_text
+from momantu_worlds.checking.remark import Place
+
+SECTIONS = ("tables", "furniture", "objects", "tags", "bodies", "doors", "doorways", "rooms")
+"""Parts of a world file whose keys are names of what they describe."""
+NAMED = ("item", "tag")
+"""Parts of a world file that say their name themselves."""
+WALL = "wall_"
+"""How the names of walls' bodies begin."""
+
+
+class Where:
+    """A world file's places."""
+
+    def __init__(self, path: Path) -> None:
+        """Raises WorldError when the file cannot be read."""
+        self.path = path
+        self._reading = Reading(path, read_text(path, DescriptionError), DescriptionError)
+
+    def at(self, place: Place) -> tuple[int, int]:
+        """Line and column, from 1, of a place or of the nearest thing around it."""
+        return self._reading.at(place, key=True)
+
+    def body(self, name: str) -> Place:
+        """What describes a body or a doorway; what an episode adds follows from its rules."""
+        world = self._reading.plain
+        for section in SECTIONS:
+            if name in _mapping(world, section):
+                return (section, name)
+        for section in NAMED:
+            if _mapping(world, section).get("name") == name:
+                return (section,)
+        if name.startswith(WALL):
+            return _wall(world, name.removeprefix(WALL))
+        if name.startswith("extra_"):
+            return ("unknown",)
+        return ("distractors",) if "distractors" in world else ()
+
+
+def _wall(world: dict[str, Any], name: str) -> Place:
+    """A wall piece by its name, or the room that a wall's name begins with."""
+    pieces = _mapping(world, "walls").get("pieces") or []
+    for number, piece in enumerate(pieces):
+        if isinstance(piece, dict) and piece.get("name") == name:
+            return ("walls", "pieces", number)
+    rooms = [room for room in _mapping(world, "rooms") if f"{name}_".startswith(f"{room}_")]
+    return ("rooms", max(rooms, key=len)) if rooms else ("walls",)
+
+
+def _mapping(world: dict[str, Any], section: str) -> dict[str, Any]:
+    found = world.get(section)
+    return found if isinstance(found, dict) else {}

@@ -1,0 +1,185 @@
+"""The plan of an episode: all that stands in it from above, with names."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import cv2
+import numpy as np
+from PIL import Image
+
+from momantu_bt.geometry import Array, Pose2D, Transform
+from momantu_worlds.checking.ground import Ground
+from momantu_worlds.checking.scenario import Scenario
+from momantu_worlds.preview.canvas import Canvas, Rgb, rgb
+from momantu_worlds.scenes.bodies import Body, Mesh, Part, Picture
+from momantu_worlds.scenes.solids import outline
+
+PAPER: Rgb = (226, 224, 219)
+WAY: Rgb = (251, 250, 246)
+WALL: Rgb = (72, 74, 80)
+INK: Rgb = (40, 42, 48)
+FAINT: Rgb = (122, 120, 114)
+RED: Rgb = (190, 32, 24)
+BLUE: Rgb = (24, 92, 176)
+GREEN: Rgb = (20, 120, 80)
+MARGIN = 0.4
+"""m of floor that is drawn around everything."""
+BIG = 0.12
+"""m; narrower loose bodies get no outline of their own colour, which would be all there is."""
+ARROW = 0.28
+"""m; length of the mark that tells which way a place looks."""
+
+
+def draw_plan(scenario: Scenario, width: int) -> Image.Image:
+    """The plan, its longer side up. width: px."""
+    low, high = extent(scenario)
+    canvas = Canvas(low, high, width, PAPER)
+    _ways(canvas, scenario, scenario.ground)
+    _bodies(canvas, scenario)
+    _surfaces(canvas, scenario)
+    _doors(canvas, scenario)
+    _places(canvas, scenario)
+    _start(canvas, scenario)
+    _names(canvas, scenario)
+    _scale(canvas, low)
+    return canvas.picture()
+
+
+def extent(scenario: Scenario) -> tuple[Array, Array]:
+    """Corners of what is drawn: everything but the floor that is empty around it."""
+    points = [scenario.robot.outline(scenario.episode.start)]
+    points += [_shape(body, part) for body in scenario.bodies for part in body.parts]
+    points += [np.array([(p.x, p.y)]) for p in scenario.episode.site.places.values()]
+    everything = np.concatenate(points)
+    return everything.min(axis=0) - MARGIN, everything.max(axis=0) + MARGIN
+
+
+def _ways(canvas: Canvas, scenario: Scenario, ground: Ground) -> None:
+    """The floor that the robot's base can cover, lighter than the rest."""
+    radius = math.ceil(scenario.robot.half_width / ground.cell)
+    disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * radius + 1, 2 * radius + 1))
+    covered = cv2.dilate(scenario.reached.astype(np.uint8) * 255, disc)
+    rows, columns = covered.shape
+    extent = (columns * ground.cell, rows * ground.cell)
+    canvas.mask(Image.fromarray(covered), WAY, ground.low, extent)
+
+
+def _bodies(canvas: Canvas, scenario: Scenario) -> None:
+    """Every part of every body, the highest last."""
+    for body, part, _ in sorted(_parts(scenario), key=lambda entry: entry[2]):
+        if isinstance(part.geometry, Picture):
+            canvas.polygon(_shape(body, part), (20, 20, 20), (255, 255, 255), 1)
+        elif body.category == "wall":
+            canvas.polygon(_shape(body, part), WALL, WALL, 1)
+        else:
+            color = rgb(part.color)
+            canvas.polygon(_shape(body, part), color, rgb(part.color, 0.55), 1)
+
+
+def _parts(scenario: Scenario) -> Iterator[tuple[Body, Part, float]]:
+    """Parts that are to be seen, and how high they reach, m."""
+    for body in scenario.bodies:
+        for part in body.parts:
+            if part.visual:
+                yield body, part, float(_points(body, part)[:, 2].max())
+
+
+def _points(body: Body, part: Part) -> Array:
+    """Points (n, 3) around a part in the map."""
+    geometry = part.geometry
+    if isinstance(geometry, Picture):
+        corners = np.array([(1, 1, 0), (-1, 1, 0), (-1, -1, 0), (1, -1, 0)]) / 2
+        own = corners * (*geometry.size, 0.0)
+    elif isinstance(geometry, Mesh):
+        own = geometry.vertices
+    else:
+        own = outline(part)
+    return (body.map_from_body @ part.body_from_part).apply(own)
+
+
+def _shape(body: Body, part: Part) -> Array:
+    """The outline (n, 2) of a part as it is seen from above."""
+    points = _points(body, part)[:, :2].astype(np.float32)
+    return np.asarray(cv2.convexHull(points)[:, 0], dtype=np.float64)
+
+
+def _surfaces(canvas: Canvas, scenario: Scenario) -> None:
+    """Tops that have a name, and ticks at the sides to stand at; the preferred one is longer."""
+    for name, (map_from_top, size) in scenario.surfaces.items():
+        half = np.array(size) / 2
+        own = np.array([(1, 1), (-1, 1), (-1, -1), (1, -1)]) * half
+        canvas.polygon(_flat(map_from_top, own), None, GREEN, 2.5)
+        for rank, side in enumerate(scenario.episode.site.surfaces[name].sides):
+            cos, sin = math.cos(side), math.sin(side)
+            edge = half[0] if abs(cos) > abs(sin) else half[1]
+            ends = np.array([(edge, 0.0), (edge + (0.3 if rank == 0 else 0.15), 0.0)])
+            turned = ends @ np.array([(cos, sin), (-sin, cos)])
+            canvas.line(_flat(map_from_top, turned), GREEN, 2.5)
+
+
+def _flat(map_from_own: Transform, points: Array) -> Array:
+    """Points (n, 2) of a level frame in the map."""
+    return map_from_own.apply(np.column_stack([points, np.zeros(len(points))]))[:, :2]
+
+
+def _doors(canvas: Canvas, scenario: Scenario) -> None:
+    for name, gap in scenario.episode.doorways.items():
+        canvas.dot(gap.at, 3, FAINT)
+        canvas.text(name, gap.at, FAINT, 11, above=10, always=False)
+
+
+def _places(canvas: Canvas, scenario: Scenario) -> None:
+    for name, pose in scenario.episode.site.places.items():
+        tip = pose @ Pose2D(ARROW, 0.0, 0.0)
+        canvas.line(np.array([(pose.x, pose.y), (tip.x, tip.y)]), BLUE, 2)
+        canvas.dot((pose.x, pose.y), 4, BLUE)
+        canvas.text(name, (pose.x, pose.y), BLUE, 13, above=-14)
+
+
+def _start(canvas: Canvas, scenario: Scenario) -> None:
+    """The base as it stands at first, and where it believes to stand."""
+    robot, true, told = scenario.robot, scenario.episode.start, scenario.episode.site.start
+    canvas.polygon(robot.outline(told), None, (150, 180, 220), 1.5)
+    canvas.polygon(robot.outline(true), (120, 170, 235), BLUE, 2)
+    front = true @ Pose2D(float(robot.footprint[:, 0].max()), 0.0, 0.0)
+    canvas.line(np.array([(true.x, true.y), (front.x, front.y)]), BLUE, 3)
+    canvas.text(f"{robot.name} starts here", (true.x, true.y), BLUE, 13, above=26)
+
+
+def _names(canvas: Canvas, scenario: Scenario) -> None:
+    """Names of surfaces and of what the goal is about first, then of all that there is room for."""
+    goal = scenario.episode.goal
+    wanted = set() if goal is None else {goal.item, goal.marker}
+    for body in scenario.bodies:
+        if body.name in wanted:
+            color = RED if goal is not None and body.name == goal.item else INK
+            canvas.dot(body.map_from_body.position, 4, color)
+            canvas.text(body.name, body.map_from_body.position, color, 15, above=14)
+    for name, (map_from_top, size) in scenario.surfaces.items():
+        height = float(map_from_top.position[2])
+        x, y, _ = map_from_top.position
+        below = canvas.scale * math.hypot(*size) / 2
+        canvas.text(name, (x, y), GREEN, 15, above=-below)
+        canvas.text(f"{height:.2f} m high", (x, y), GREEN, 12, above=-below - 15)
+    for body in scenario.bodies:
+        named = body.name in wanted or body.name in scenario.surfaces
+        if body.static and body.category not in ("wall", "tag") and not named:
+            canvas.text(body.name, _middle(body), INK, 11, always=False)
+
+
+def _middle(body: Body) -> Array:
+    points = np.concatenate([_shape(body, part) for part in body.parts])
+    return np.asarray((points.min(axis=0) + points.max(axis=0)) / 2)
+
+
+def _scale(canvas: Canvas, low: Array) -> None:
+    """A bar of a metre in the lower left corner, and the map's axes."""
+    x, y = float(low[0]) + 0.15, float(low[1]) + 0.15
+    canvas.line(np.array([(x, y), (x + 1.0, y)]), INK, 3)
+    canvas.text("1 m", (x + 0.5, y), INK, 12, above=10)
+    canvas.line(np.array([(0.0, 0.0), (0.5, 0.0)]), RED, 2)
+    canvas.line(np.array([(0.0, 0.0), (0.0, 0.5)]), GREEN, 2)
+    canvas.text("x", (0.58, 0.0), RED, 12)
+    canvas.text("y", (0.0, 0.6), GREEN, 12)

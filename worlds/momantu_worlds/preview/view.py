@@ -1,0 +1,121 @@
+"""A view of an episode from above a corner of its rooms; there is no roof to look through."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from momantu_bt.geometry import Array, Transform
+from momantu_bt.robot import RobotDescription
+from momantu_worlds.display.chase import looking
+from momantu_worlds.sapien.camera_view import ViewCamera
+from momantu_worlds.sapien.simulator import Simulator
+from momantu_worlds.scenes.bodies import Body, Box, Episode, Part, SunLight
+
+FIELD = math.radians(35)
+"""rad; horizontal field of view: narrow, so that far rooms are not tiny."""
+ELEVATION = math.radians(56)
+"""rad above the horizon from which it looks: steep enough to see over the near walls."""
+AZIMUTH = math.radians(-76)
+"""rad; the side from which it looks, from the x axis: nearly from the map's south."""
+SMOOTH = 2
+"""It is rendered so many times greater, then made smaller: its edges are smooth then."""
+AIR = 1.03
+"""How much more than the rooms is in the picture."""
+CUT = 1.3
+"""m; walls are cut at this height, so that they hide little of the rooms behind them."""
+AMBIENT = 0.7
+"""Light from everywhere; an episode's own light is for the robot's camera, not for a picture."""
+SUN = SunLight((0.35, 0.55, -1.0), (0.75, 0.75, 0.72))
+"""One sun from behind the eye gives every face its own shade."""
+UPRIGHT = 0.999
+"""Cosine of the tilt up to which a box of a wall counts as upright."""
+PAPER = (238, 238, 236)
+"""RGB of where nothing is."""
+
+
+def draw_view(
+    episode: Episode, description: RobotDescription, low: Array, high: Array, width: int
+) -> Image.Image:
+    """The view. low, high: corners (3,) of what must be in it, map, m. width: px.
+
+    Raises:
+        WorldError: the robot cannot be simulated, or nothing renders.
+    """
+    corners = np.array(np.meshgrid(*zip(low, high, strict=True))).reshape(3, -1).T
+    turn = looking(_towards(), np.zeros(3)).rotation
+    eye, aspect = _eye(corners, turn)
+    height = round(width * aspect)
+    simulator = Simulator(description, _model(episode), episode.seed)
+    try:
+        camera = ViewCamera(
+            simulator.scene, SMOOTH * width, SMOOTH * height, FIELD, far=_far(corners, eye)
+        )
+        picture: NDArray[np.uint8] = camera.take(Transform.from_rotation(turn, eye)).copy()
+        picture[~camera.met()] = PAPER
+    finally:
+        simulator.close()
+    return Image.fromarray(picture).resize((width, height), Image.Resampling.LANCZOS)
+
+
+def _model(episode: Episode) -> Episode:
+    """The episode as a model of it would be built: with low walls, in even light."""
+    bodies = tuple(_cut(body) if body.category == "wall" else body for body in episode.bodies)
+    ambient = (AMBIENT, AMBIENT, AMBIENT)
+    return replace(episode, bodies=bodies, ambient=ambient, suns=(SUN,), lamps=())
+
+
+def _cut(wall: Body) -> Body:
+    """A wall no higher than `CUT`; what is not an upright box stays as it is."""
+    return replace(wall, parts=tuple(_cut_part(wall, part) for part in wall.parts))
+
+
+def _cut_part(wall: Body, part: Part) -> Part:
+    at = wall.map_from_body @ part.body_from_part
+    box = part.geometry
+    if not isinstance(box, Box) or at.rotation[2, 2] < UPRIGHT:
+        return part
+    bottom = float(at.position[2]) - box.size[2] / 2
+    over = bottom + box.size[2] - CUT
+    if over <= 0 or bottom >= CUT:
+        return part
+    shape = Box((box.size[0], box.size[1], box.size[2] - over))
+    return replace(
+        part, geometry=shape, body_from_part=part.body_from_part @ Transform((0, 0, -over / 2))
+    )
+
+
+def _towards() -> Array:
+    """Unit vector (3,) from what is looked at to the eye."""
+    flat = math.cos(ELEVATION)
+    return np.array([flat * math.cos(AZIMUTH), flat * math.sin(AZIMUTH), math.sin(ELEVATION)])
+
+
+def _eye(corners: Array, turn: Array) -> tuple[Array, float]:
+    """Where the camera must be so that all corners (n, 3) just fit, and height by width.
+
+    In the camera's frame x is ahead, y to the left, z up. The middle of what is seen shifts with
+    the distance; a few rounds settle both.
+    """
+    tangent = math.tan(FIELD / 2) / AIR
+    own = corners @ turn
+    at = own.mean(axis=0)
+    at[0] = own[:, 0].min() - 1.0
+    span = np.zeros(2)
+    for _ in range(50):
+        depth = own[:, 0] - at[0]
+        left, up = (own[:, 1] - at[1]) / depth, (own[:, 2] - at[2]) / depth
+        middle = float(depth.mean())
+        at[1] += middle * (left.max() + left.min()) / 2
+        at[2] += middle * (up.max() + up.min()) / 2
+        span = np.array([left.max() - left.min(), up.max() - up.min()]) / 2
+        at[0] -= middle * (span[0] / tangent - 1.0)
+    return turn @ at, float(span[1] / span[0])
+
+
+def _far(corners: Array, eye: Array) -> float:
+    return 1.2 * float(np.linalg.norm(corners - eye, axis=1).max())

@@ -1,0 +1,84 @@
+"""What `momantu-bt worlds show` tells of a world file beside its site, in the file's own words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from momantu_bt.descriptions.reading import DescriptionError, Reading, read_text
+
+VARIES = ("shift", "turn", "lift", "belief_shift", "belief_turn")
+"""Keys that say how far something is moved, wherever they stand."""
+SECTIONS = ("unknown", "light", "distractors")
+"""Parts of a world file that are about nothing but what an episode draws."""
+MOST = 60
+"""Lines of a section; the file itself has the rest."""
+
+
+def about(path: Path) -> dict[str, dict[str, str]]:
+    """Tags, loose things, what an episode varies, the goal; sections without a line are left out.
+
+    Raises:
+        WorldError: the file cannot be read.
+    """
+    world = Reading(path, read_text(path, DescriptionError), DescriptionError).plain
+    sections = {
+        "Tags": dict(_named(world, "tag", "tags")),
+        "Loose things": dict(_named(world, "item", "objects")),
+        "What an episode varies": dict(_varying(world)),
+        "Goal": {key: _words(value) for key, value in _part(world, "goal").items()},
+    }
+    return {title: dict(list(lines.items())[:MOST]) for title, lines in sections.items() if lines}
+
+
+def _named(world: dict[str, Any], one: str, many: str) -> Iterator[tuple[str, str]]:
+    single = _part(world, one)
+    if single:
+        yield str(single.get("name", one)), _words({k: v for k, v in single.items() if k != "name"})
+    for name, note in _part(world, many).items():
+        yield name, _words(note)
+
+
+def _varying(world: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    for section, part in world.items():
+        if section in SECTIONS:
+            if isinstance(part, dict):
+                yield section, _words(part)
+            continue
+        for name, note in _notes(section, part):
+            words = {key: note[key] for key in VARIES if key in note}
+            if words:
+                yield name, _words(words)
+    moving = [
+        name for name, note in _notes("furniture", _part(world, "furniture")) if "moves" in note
+    ]
+    if moving:
+        yield "furniture that may be moved", ", ".join(moving)
+
+
+def _notes(section: str, part: Any) -> Iterator[tuple[str, dict[str, Any]]]:
+    """A part of the file itself, and those within it that have names."""
+    if isinstance(part, dict):
+        yield section, part
+        yield from ((name, note) for name, note in part.items() if isinstance(note, dict))
+
+
+def _part(world: dict[str, Any], name: str) -> Mapping[str, Any]:
+    found = world.get(name)
+    return found if isinstance(found, dict) else {}
+
+
+def _words(value: Any) -> str:
+    """A value as it stands in the file, on one line."""
+    if isinstance(value, dict):
+        return ", ".join(f"{key} {_inner(inner)}" for key, inner in value.items())
+    return _inner(value)
+
+
+def _inner(value: Any) -> str:
+    if isinstance(value, dict):
+        return f"({_words(value)})"
+    if isinstance(value, list):
+        return f"[{', '.join(_inner(each) for each in value)}]"
+    return f"{value:g}" if isinstance(value, float) else str(value)
