@@ -42,6 +42,7 @@ from momantu_bt.robot_simulation import (
 )
 
 __all__ = [
+    "ARM",
     "CAMERA_CARRIER",
     "REQUIRED_POSES",
     "WATCHDOG",
@@ -75,6 +76,9 @@ SensorReading: TypeAlias = CameraImage | LaserScan | PointCloud | WrenchReading
 
 CAMERA_CARRIER = "camera_carrier"
 """In a skill's `uses`: whichever actuator carries the camera (a head, or the arm)."""
+
+ARM = "arm"
+"""The actuator that carries the hand, and the planning group of its joints: robots name them so."""
 
 REQUIRED_POSES = ("home", "ready", "carry", "look_around")
 """Named poses that every robot has."""
@@ -147,6 +151,12 @@ class RobotDescription(Part):
         cameras = {k: s for k, s in self.sensors.items() if isinstance(s, CameraSensor)}
         return _pick("camera", cameras, name)
 
+    @property
+    def eye_in_hand(self) -> bool:
+        """Whether the arm carries the first camera: looking is then moving the arm."""
+        cameras = (s for s in self.sensors.values() if isinstance(s, CameraSensor))
+        return next((camera.carrier == ARM for camera in cameras), False)
+
     def laser(self, name: str | None = None) -> tuple[str, LaserSensor]:
         """Name and description of a laser: the named one, or the first; KeyError if none."""
         lasers = {k: s for k, s in self.sensors.items() if isinstance(s, LaserSensor)}
@@ -157,16 +167,16 @@ class RobotDescription(Part):
         lidars = {k: s for k, s in self.sensors.items() if isinstance(s, LidarSensor)}
         return _pick("lidar", lidars, name)
 
-    def resolve_use(self, use: str) -> str:
+    def resolve_use(self, use: str) -> str | None:
         """The actuator that an entry of a skill's `uses` means on this robot.
+
+        None: its camera is fixed, and nothing carries it.
 
         Raises:
             KeyError: the robot has no such actuator, with those it has.
         """
         actuator = self.camera()[1].carrier if use == CAMERA_CARRIER else use
-        if actuator is None:
-            raise KeyError("the robot's camera is fixed: no actuator carries it")
-        return _pick("actuator", self.actuators, actuator)[0]
+        return None if actuator is None else _pick("actuator", self.actuators, actuator)[0]
 
 
 _T = TypeVar("_T")

@@ -39,8 +39,8 @@ class Actuators:
         Raises:
             KeyError: this robot lacks one of them, with the actuators it has.
         """
-        resolve = self.robot.description.resolve_use
-        return Lease(self, owner, frozenset(resolve(use) for use in sorted(uses)))
+        resolved = map(self.robot.description.resolve_use, sorted(uses))
+        return Lease(self, owner, frozenset(name for name in resolved if name is not None))
 
     def owner(self, actuator: str) -> str | None:
         """Name of the node that owns an actuator, if any."""

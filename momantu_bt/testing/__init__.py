@@ -9,6 +9,7 @@ from momantu_bt.testing.check import assert_skill, check_skill
 from momantu_bt.testing.clock import ManualClock
 from momantu_bt.testing.description import small_robot
 from momantu_bt.testing.example_world import ExampleWorld
+from momantu_bt.testing.eye_in_hand import eye_in_hand_robot
 from momantu_bt.testing.finding import Finding
 from momantu_bt.testing.robot import ScriptedRobot
 from momantu_bt.testing.skill_run import SkillResult, run_skill
@@ -23,6 +24,7 @@ __all__ = [
     "SkillResult",
     "assert_skill",
     "check_skill",
+    "eye_in_hand_robot",
     "run_skill",
     "scripted_site",
     "small_robot",

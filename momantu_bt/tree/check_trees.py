@@ -151,14 +151,15 @@ def _uses(context: Context, node: Node, of_node: dict[int, Uses], of_tree: dict[
     signature = context.signature(node)
     used: Uses = {}
     if signature is not None and signature.skill is not None:
-        used = {_resolved(context, use): node for use in sorted(signature.skill.uses)}
+        resolved = (_resolved(context, use) for use in sorted(signature.skill.uses))
+        used = {name: node for name in resolved if name is not None}
     handlers = (handler.node for handler in node.handlers if handler.node is not None)
     for below in (*node.children, *handlers):
         used = {**of_node[id(below)], **used}
     return used
 
 
-def _resolved(context: Context, use: str) -> str:
+def _resolved(context: Context, use: str) -> str | None:
     if context.description is None:
         return use
     try:

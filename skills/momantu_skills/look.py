@@ -10,7 +10,7 @@ from momantu_bt.failure import FailureValue
 from momantu_bt.frames import ODOM
 from momantu_bt.geometry import Array, Pose
 from momantu_bt.robot import CAMERA_CARRIER, Robot
-from momantu_bt.skill import Failure, In, Run, Skill
+from momantu_bt.skill import Failure, In, Needs, Run, Skill
 
 AHEAD = 3.0
 """m before the base, at the camera's own height."""
@@ -33,6 +33,7 @@ class Look(Skill):
         "OUT_OF_VIEW": "the camera's carrier cannot turn that far, or is stuck",
     }
     uses = {CAMERA_CARRIER}
+    planning_scene: Any = Needs()
     one_of = (("at", "surface", "direction"),)
 
     @classmethod

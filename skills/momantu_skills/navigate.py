@@ -10,8 +10,8 @@ from momantu_bt.claim import BaseAt, BaseNear, Claim
 from momantu_bt.failure import FailureValue
 from momantu_bt.frames import ODOM
 from momantu_bt.geometry import Pose, Pose2D
-from momantu_bt.robot import CAMERA_CARRIER, Robot
-from momantu_bt.service import Localization, PlanningScene
+from momantu_bt.robot import CAMERA_CARRIER, Robot, Working
+from momantu_bt.service import Localization
 from momantu_bt.skill import Failure, In, Needs, Run, Skill
 
 if TYPE_CHECKING:
@@ -44,12 +44,13 @@ class Navigate(Skill):
         "PATH_BLOCKED": "what the sensors see closes the way",
         "NO_PROGRESS": "the base got no nearer for too long",
         "NOT_LOCALIZED": "the robot does not know well enough where it is",
+        "ARM_STUCK": "the arm that carries the camera is stretched out and does not fold",
     }
     uses: ClassVar = {"base", CAMERA_CARRIER}
     one_of: ClassVar = (("in_front_of", "goal", "within_reach_of"),)
 
     localization: Localization = Needs()
-    planning_scene: PlanningScene = Needs()
+    planning_scene: Any = Needs()
 
     @classmethod
     def rehearsal(cls, seed: int) -> Mapping[str, Any]:
@@ -69,8 +70,12 @@ class Navigate(Skill):
 
         self._check()
         config = self._config()
+        if robot.description.eye_in_hand:
+            from momantu_skills.manipulation.tucking import take_in
+
+            yield from take_in(self, robot, self.planning_scene)
         vehicle = Vehicle(self, robot, self.localization, self.planning_scene, config)
-        destination = self._going = self._destination(vehicle, config)
+        destination = self._going = self._destination(vehicle, robot.description.working)
         mppi = Mppi(robot.description.base, config, self.random)
         yield from travel(vehicle, mppi, destination, recovery=self.recovery)
 
@@ -85,7 +90,9 @@ class Navigate(Skill):
         if failure is None and self.within_reach_of is not None:
             target = self.within_reach_of
             x, y, _ = self.frames.lookup(ODOM, target.frame).apply(target.position)
-            return BaseNear((float(x), float(y)), self._config().reach[2] + self.tolerance)
+            return BaseNear(
+                (float(x), float(y)), robot.description.working.reach[2] + self.tolerance
+            )
         if failure is None or (failure.code in self.failures and self.within_reach_of is None):
             distance, turn = SURVEY
             stand, angle = self._going.chosen, self.angle_tolerance
@@ -119,14 +126,14 @@ class Navigate(Skill):
                 "BAD_GOAL", f"no place {self.in_front_of!r}; places: {', '.join(known) or 'none'}"
             )
 
-    def _destination(self, vehicle: Vehicle, config: NavigationConfig) -> Destination:
+    def _destination(self, vehicle: Vehicle, working: Working) -> Destination:
         from momantu_skills.navigation.goals import Stand, before_surface, within_reach
         from momantu_skills.navigation.trip import Destination
 
         tolerance = (self.tolerance, self.angle_tolerance)
         surfaces = self.site.surfaces
         if self.in_front_of is not None and self.in_front_of in surfaces:
-            stands = before_surface(surfaces[self.in_front_of], config)
+            stands = before_surface(surfaces[self.in_front_of], working)
             return Destination(lambda: stands, tolerance, side=self.side)
         target = self.within_reach_of
         if target is not None:
@@ -137,7 +144,7 @@ class Navigate(Skill):
                 if frame != "map":
                     there = self.frames.lookup("map", frame).apply(there)
                 point = (float(there[0]), float(there[1]))
-                return within_reach(point, surfaces.values(), vehicle.pose(), config)
+                return within_reach(point, surfaces.values(), vehicle.pose(), working)
 
             return Destination(reachable, tolerance, side=self.side, in_odom=True)
         pose = self.goal if self.goal is not None else self.site.places[str(self.in_front_of)]

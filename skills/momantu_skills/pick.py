@@ -9,7 +9,7 @@ from momantu_bt.claim import Claim, Holding, ObjectAt
 from momantu_bt.failure import Failure, FailureValue
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.messages import DetectedObject, ObjectClass
-from momantu_bt.robot import CAMERA_CARRIER, Robot
+from momantu_bt.robot import ARM, CAMERA_CARRIER, Robot
 from momantu_bt.skill import Compute, In, Needs, Run, Skill, compute
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ class Pick(Skill):
         "HAND_FULL": "the hand holds something already",
         "ARM_STUCK": "the arm or the gripper does not follow its commands",
     }
-    uses = {"arm", "gripper", CAMERA_CARRIER}
+    uses = {ARM, "gripper", CAMERA_CARRIER}
     planning_scene: Any = Needs()
 
     def run(self, robot: Robot) -> Run:
@@ -131,15 +131,13 @@ class Pick(Skill):
         from momantu_skills.manipulation.hand import bump, open_hand, rested_force
 
         effector = arm.robot.description.end_effector
-        opened = GripperCommand(effector.max_width, arm.hand.force)
+        opened = GripperCommand(effector.max_width, arm.force)
         for trajectory in plan.transit:
             for phase in arm.follow(trajectory, "reaching"):
                 arm.robot.command(effector.actuator, opened)
                 yield phase
         yield from self._gripper_or_stuck(
-            open_hand(
-                arm.robot, self.clock, effector.max_width, arm.hand.force, arm.hand.close_time
-            )
+            open_hand(arm.robot, self.clock, effector.max_width, arm.force, arm.hand.close_time)
         )
         rest = yield from rested_force(arm.robot, self.frames, "feeling", 3)
         watch = bump(self.frames, rest, BUMP)
@@ -157,7 +155,7 @@ class Pick(Skill):
         rest = yield from rested_force(arm.robot, self.frames, "feeling")
         squeezed = max(0.0, plan.grasp.width - SQUEEZE)
         width = yield from move_gripper(
-            arm.robot, self.clock, squeezed, hand.force, hand.close_time, "closing"
+            arm.robot, self.clock, squeezed, arm.force, hand.close_time, "closing"
         )
         self.planning_scene.touched()
         effort = arm.state.gripper_effort
@@ -231,7 +229,7 @@ class Pick(Skill):
 
         effector, hand = arm.robot.description.end_effector, arm.hand
         yield from self._gripper_or_stuck(
-            open_hand(arm.robot, self.clock, effector.max_width, hand.force, hand.close_time)
+            open_hand(arm.robot, self.clock, effector.max_width, arm.force, hand.close_time)
         )
         self.planning_scene.touched()
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,7 +11,7 @@ from momantu_bt.claim import Claim, Holding, SetDown
 from momantu_bt.failure import Failure, FailureValue
 from momantu_bt.geometry import Array, Pose, Transform
 from momantu_bt.messages import SupportPlane
-from momantu_bt.robot import CAMERA_CARRIER, Robot
+from momantu_bt.robot import ARM, CAMERA_CARRIER, Robot
 from momantu_bt.service import HeldObject
 from momantu_bt.skill import In, Needs, Run, Skill, compute
 
@@ -39,7 +40,7 @@ class Place(Skill):
         "TOPPLED": "it was set down and does not stand upright",
         "ARM_STUCK": "the arm or the gripper does not follow its commands",
     }
-    uses = {"arm", "gripper", CAMERA_CARRIER}
+    uses = {ARM, "gripper", CAMERA_CARRIER}
     planning_scene: Any = Needs()
 
     def __init__(self) -> None:
@@ -88,12 +89,15 @@ class Place(Skill):
         check_fresh(self.spots[0], "free spot", now, last, arm.hand)
         return held
 
-    def _look(self, arm: Arm, point: Array) -> Run:
-        """Take a picture of what stands around a point, as well as the camera can be turned."""
+    def _look(self, arm: Arm, point: Array, around: Sequence[Array] = ()) -> Run:
+        """Take a picture of what stands around a point, as well as the camera can be turned.
+
+        around: corners (n, 3) in odom of solids that an arm that carries the camera avoids.
+        """
         from momantu_skills.perception.looking import look_at
 
         try:
-            yield from look_at(self, arm.robot, point)
+            yield from look_at(self, arm.robot, point, around=around)
         except Failure as failure:
             if failure.code != "OUT_OF_VIEW":
                 raise
@@ -139,7 +143,7 @@ class Place(Skill):
         width = min(arm.open_width, arm.state.gripper_width + hand.margin)
         self.planning_scene.touched()
         try:
-            yield from open_hand(arm.robot, self.clock, width, hand.force, hand.close_time)
+            yield from open_hand(arm.robot, self.clock, width, arm.force, hand.close_time)
         except Failure as failure:
             raise Failure("ARM_STUCK", failure.value.message, **failure.value.data) from None
         self.planning_scene.released()
@@ -154,9 +158,10 @@ class Place(Skill):
     def _look_again(self, arm: Arm, plan: PlacePlan, held: HeldObject) -> Run:
         """It must stand upright where it was set down."""
         from momantu_skills.manipulation.looks import standing
+        from momantu_skills.manipulation.solids import object_corners
 
         pose = plan.odom_from_object
-        yield from self._look(arm, pose.position)
+        yield from self._look(arm, pose.position, [pose.apply(object_corners(held.object))])
         bottom = float(pose.position[2] - held.object.size[2] / 2)
         seen = standing(arm.scene.points, pose, held.object, bottom)
         what, where = held.object.category, np.round(pose.position, 3).tolist()

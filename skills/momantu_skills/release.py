@@ -6,7 +6,7 @@ from typing import Any
 
 from momantu_bt.claim import Claim, GripperOpen, Holding
 from momantu_bt.failure import FailureValue
-from momantu_bt.robot import Robot
+from momantu_bt.robot import ARM, Robot
 from momantu_bt.skill import In, Needs, Run, Skill
 
 OPEN = 0.01
@@ -27,7 +27,7 @@ class Release(Skill):
         "GRIPPER_STUCK": "the gripper does not open",
         "ARM_STUCK": "the arm does not follow on its way back",
     }
-    uses = {"gripper", "arm"}
+    uses = {"gripper", ARM}
     planning_scene: Any = Needs()
 
     def run(self, robot: Robot) -> Run:
@@ -38,8 +38,9 @@ class Release(Skill):
 
         config = HandConfig()
         holding = self.planning_scene.held is not None
-        width = robot.description.end_effector.max_width
-        yield from open_hand(robot, self.clock, width, config.force, config.close_time)
+        effector = robot.description.end_effector
+        force = min(config.force, effector.max_force)
+        yield from open_hand(robot, self.clock, effector.max_width, force, config.close_time)
         if holding:
             self.planning_scene.released()
         if self.back > 0.0:

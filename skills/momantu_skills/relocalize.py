@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from momantu_bt.claim import Claim
 from momantu_bt.failure import FailureValue
 from momantu_bt.messages import BaseVelocity
-from momantu_bt.robot import Robot
+from momantu_bt.robot import CAMERA_CARRIER, Robot
 from momantu_bt.service import Localization
 from momantu_bt.skill import Failure, In, Needs, Run, Skill
 
@@ -41,15 +41,23 @@ class Relocalize(Skill):
 
     everywhere: bool = In(False, doc="start with the whole map at once")
 
-    failures: ClassVar = {"NOT_LOCALIZED": "no place on the map fits what the laser sees"}
-    uses: ClassVar = {"base"}
+    failures: ClassVar = {
+        "NOT_LOCALIZED": "no place on the map fits what the laser sees",
+        "ARM_STUCK": "the arm that carries the camera is stretched out and does not fold",
+    }
+    uses: ClassVar = {"base", CAMERA_CARRIER}
 
     localization: Localization = Needs()
+    planning_scene: Any = Needs()
 
     def run(self, robot: Robot) -> Run:
         """Local first, then global; each is judged at rest."""
         from momantu_skills.navigation.confidence import QUALITY, is_localized, sigmas
 
+        if robot.description.eye_in_hand:
+            from momantu_skills.manipulation.tucking import take_in
+
+            yield from take_in(self, robot, self.planning_scene)
         for stage in (1,) if self.everywhere else (0, 1):
             if stage == 0:
                 self.localization.reset(self.localization.map_from_base, *WIDEN)

@@ -8,7 +8,7 @@ from typing import Any
 from momantu_bt.claim import Claim, JointsAt
 from momantu_bt.failure import Failure, FailureValue
 from momantu_bt.messages import JointPositions
-from momantu_bt.robot import CAMERA_CARRIER, Robot
+from momantu_bt.robot import ARM, CAMERA_CARRIER, Robot
 from momantu_bt.skill import In, Needs, Run, Skill, compute
 
 THINKING = 0.2
@@ -33,7 +33,7 @@ class ResetPose(Skill):
         "START_IN_COLLISION": "the arm touches something and no small motion frees it",
         "ARM_STUCK": "the arm does not follow its trajectory",
     }
-    uses = {"arm", CAMERA_CARRIER}
+    uses = {ARM, CAMERA_CARRIER}
     planning_scene: Any = Needs()
 
     def run(self, robot: Robot) -> Run:
@@ -43,10 +43,7 @@ class ResetPose(Skill):
         wanted = self._wanted(robot)
         arm = Arm(self, robot, self.planning_scene)
         yield from arm.settle()
-        goal = arm.joints.copy()
-        for i, name in enumerate(arm.group.names):
-            goal[i] = wanted.get(name, goal[i])
-        goal = arm.group.nearest_turn(goal, arm.joints)
+        goal = arm.posed(wanted)
         if abs(goal - arm.joints).max() > CLOSE:
             self.planning_scene.observe(robot)
             trajectories = yield from compute(
@@ -63,8 +60,8 @@ class ResetPose(Skill):
         wanted = robot.description.named_poses.get(self.pose)
         if wanted is None or (failure is not None and failure.code not in self.failures):
             return None
-        carrier = robot.description.resolve_use(CAMERA_CARRIER)
-        actuators = [robot.description.actuators[name] for name in dict.fromkeys(("arm", carrier))]
+        carriers = dict.fromkeys((ARM, robot.description.resolve_use(CAMERA_CARRIER)))
+        actuators = [robot.description.actuators[name] for name in carriers if name is not None]
         names = tuple(j for actuator in actuators for j in actuator.joints if j in wanted)
         return JointsAt(names, tuple(wanted[name] for name in names), REACHED)
 
@@ -81,18 +78,23 @@ class ResetPose(Skill):
             )
         return poses[self.pose]
 
-    def _camera_goal(self, robot: Robot, wanted: dict[str, float]) -> JointPositions | None:
-        """Where the pose wants the camera's joints, unless the arm itself carries the camera."""
+    def _head(self, robot: Robot) -> str | None:
+        """What carries the camera, unless that is the arm itself, or nothing."""
         carrier = robot.description.resolve_use(CAMERA_CARRIER)
-        if carrier == "arm":
+        return None if carrier == ARM else carrier
+
+    def _camera_goal(self, robot: Robot, wanted: dict[str, float]) -> JointPositions | None:
+        """Where the pose wants the camera's joints, where they are not the arm's."""
+        carrier = self._head(robot)
+        if carrier is None:
             return None
         names = tuple(j for j in robot.description.actuators[carrier].joints if j in wanted)
         return JointPositions(names, tuple(wanted[n] for n in names)) if names else None
 
     def _turn_camera(self, robot: Robot, wanted: dict[str, float]) -> None:
-        goal = self._camera_goal(robot, wanted)
-        if goal is not None:
-            robot.command(robot.description.resolve_use(CAMERA_CARRIER), goal)
+        goal, head = self._camera_goal(robot, wanted), self._head(robot)
+        if goal is not None and head is not None:
+            robot.command(head, goal)
 
     def _finish_camera(self, robot: Robot, wanted: dict[str, float]) -> Run:
         """Wait until the camera has arrived, at most as long as its slowest joint may take."""

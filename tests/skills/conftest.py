@@ -25,7 +25,13 @@ from momantu_bt.messages import (
 )
 from momantu_bt.robot import Robot
 from momantu_bt.service import HeldObject, ServiceContext
-from momantu_bt.testing import ScriptedRobot, ScriptedWorld, scripted_site, small_robot
+from momantu_bt.testing import (
+    ScriptedRobot,
+    ScriptedWorld,
+    eye_in_hand_robot,
+    scripted_site,
+    small_robot,
+)
 from momantu_bt.testing.painting import Block, Painter, Round, Solid
 from momantu_bt.world import Surface, seeded
 
@@ -375,3 +381,13 @@ def scene_of() -> Callable[[ScriptedRobot], PlanningSceneService]:
         return service
 
     return build
+
+
+@pytest.fixture
+def stretched_out() -> ScriptedRobot:
+    """A robot whose arm is stretched out with the camera that it carries, and does not move."""
+    description = eye_in_hand_robot()
+    joints = zip(description.groups["arm"].joints, (0.0, 2.0, 3.14, 0.0, 0.0, 0.0), strict=True)
+    robot = ScriptedRobot(description, joints=dict(joints), readings={"camera": Painter([])})
+    robot.frozen.add("arm")
+    return robot

@@ -12,7 +12,7 @@ from momantu_skills.navigation.service import LocalizationService
 from momantu_bt.claim import BaseAt, BaseNear
 from momantu_bt.geometry import Pose, Pose2D, Transform, wrap_angle
 from momantu_bt.messages import BaseVelocity
-from momantu_bt.testing import ScriptedWorld
+from momantu_bt.testing import ScriptedRobot, ScriptedWorld
 from momantu_bt.testing.skill_run import SkillResult, run_skill
 
 Drive = Callable[..., SkillResult]
@@ -262,3 +262,19 @@ def test_no_progress_would_be_a_false_alarm_on_the_stand(flat: Any, drive: Drive
 def test_without_a_stand_nothing_is_claimed(flat: Any, drive: Drive) -> None:
     assert drive(flat(), in_front_of="dusk").claim() is None
     assert drive(flat(), goal=Pose2D(3.9, 0.2, 0.0), recovery=False).claim() is None
+
+
+def test_it_does_not_drive_with_an_arm_stretched_out_that_does_not_fold(
+    stretched_out: ScriptedRobot, scene_of: Any
+) -> None:
+    scene = scene_of(stretched_out)
+    services = {"localization": object(), "planning_scene": scene}
+    result = run_skill(
+        Navigate,
+        robot=stretched_out,
+        inputs={"in_front_of": "table_a"},
+        services=services,
+        frames=scene.frames,
+    )
+    assert result.code == "ARM_STUCK", result.explain()
+    assert all(actuator != "base" for _, actuator, goal in stretched_out.commands if goal)

@@ -9,14 +9,14 @@ from momantu_skills.relocalize import Relocalize
 
 from momantu_bt.claim import BaseAt
 from momantu_bt.geometry import Pose2D
+from momantu_bt.testing import ScriptedRobot
 from momantu_bt.testing.skill_run import SkillResult, run_skill
 
 
 def _run(world: Any, **inputs: Any) -> tuple[SkillResult, LocalizationService]:
     service = LocalizationService()
-    result = run_skill(
-        Relocalize, world=world, services={"localization": service}, inputs=inputs, max_time=60.0
-    )
+    services = {"localization": service, "planning_scene": object()}
+    result = run_skill(Relocalize, world=world, services=services, inputs=inputs, max_time=60.0)
     return result, service
 
 
@@ -86,3 +86,15 @@ def test_the_base_is_claimed_to_be_where_it_is_believed_to_be(flat: Any) -> None
     assert isinstance(claim, BaseAt)
     assert claim.map_from_base == service.map_from_base
     assert claim.map_from_base.distance_to(world.robot.truth) < claim.tolerance
+
+
+def test_it_does_not_drive_with_an_arm_stretched_out_that_does_not_fold(
+    stretched_out: ScriptedRobot, scene_of: Any
+) -> None:
+    scene = scene_of(stretched_out)
+    services = {"localization": object(), "planning_scene": scene}
+    result = run_skill(
+        Relocalize, robot=stretched_out, inputs={}, services=services, frames=scene.frames
+    )
+    assert result.code == "ARM_STUCK", result.explain()
+    assert all(actuator != "base" for _, actuator, goal in stretched_out.commands if goal)

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Mapping, Sequence
 
 import numpy as np
 
 from momantu_bt.failure import Failure
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.messages import JointTrajectory, RobotState
-from momantu_bt.robot import Robot
+from momantu_bt.robot import ARM, Robot
 from momantu_bt.service import HeldObject
 from momantu_bt.skill import Skill
 from momantu_skills.manipulation.collision import CollisionWorld, Obstacle
@@ -28,10 +28,10 @@ SETTLE_TICKS = 20
 """Ticks to wait for a stop at most: 1 s, longer than any braking."""
 LEAN_PENALTY = 2.0
 """s per rad: turning what is held upside down on the way costs about as much."""
+BLIND_PENALTY = 6.0
+"""s: a camera below the hand cannot look down past what the hand holds upright."""
 AROUND = 0.08
 """m beyond half the widest opening, from between the pads, where what is grasped may be."""
-ACTUATOR = "arm"
-"""The actuator that carries the hand, and the planning group of the same name."""
 
 
 class Arm:
@@ -53,6 +53,11 @@ class Arm:
     def joints(self) -> Array:
         """The arm's joints (n,) of now, within their limits."""
         return self.scene.model.joints(self.robot.state())
+
+    @property
+    def force(self) -> float:
+        """The gripper's closing force, N: as configured, or as much as it has."""
+        return min(self.hand.force, self.scene.model.description.end_effector.max_force)
 
     @property
     def open_width(self) -> float:
@@ -78,6 +83,21 @@ class Arm:
         joints = np.array([pose.get(name, 0.0) for name in self.group.names])
         tip_from_object = self.scene.model.tip_from_grasp @ grasp_from_object
         return LEAN_PENALTY * _lean(self.group.tip_matrix(joints)[:3, :3], tip_from_object)
+
+    def blind_penalty(self, object_from_grasp: Transform) -> float:
+        """Seconds a grasp may cost more than one that leaves a camera on the hand below it."""
+        camera = self.scene.model.grasp_from_camera
+        if camera is None:
+            return 0.0
+        above = float((object_from_grasp @ camera).position[2] - object_from_grasp.position[2])
+        return BLIND_PENALTY if above < 0.0 else 0.0
+
+    def posed(self, pose: Mapping[str, float]) -> Array:
+        """Joints (n,) of a named pose, turned the short way; those that it leaves out stay."""
+        now = self.joints
+        names = zip(self.group.names, now, strict=True)
+        goal = np.array([pose.get(name, position) for name, position in names])
+        return self.group.nearest_turn(goal, now)
 
     def turned(self, path: Array, reference: Array) -> Array:
         """A path (k, n) or joints (n,) with endless joints turned as one to meet `reference`."""
@@ -138,7 +158,7 @@ class Arm:
         self, trajectory: JointTrajectory, phase: str, until: Watch | None = None
     ) -> Generator[str, None, bool]:
         """See `motion.follow`."""
-        return follow(self.robot, self.skill.clock, ACTUATOR, trajectory, phase, until)
+        return follow(self.robot, self.skill.clock, ARM, trajectory, phase, until)
 
     def settle(self) -> Generator[str, None, None]:
         """Wait until the arm stands still: whoever had it before may have been cut off."""

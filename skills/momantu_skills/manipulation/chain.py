@@ -176,3 +176,76 @@ def trace(  # type: ignore[no-untyped-def]
             return path, i
         path[i] = q
     return path, len(targets)
+
+
+@njit(cache=True)
+def poses(origins, axes, slides, tip, postures):  # type: ignore[no-untyped-def]
+    """base_from_tip (m, 4, 4) at joints (m, n)."""
+    found = np.zeros((len(postures), 4, 4))
+    for i in range(len(postures)):
+        r, p, _ = forward(origins, axes, slides, tip, postures[i])
+        found[i, :3, :3] = r
+        found[i, :3, 3] = p
+        found[i, 3, 3] = 1.0
+    return found
+
+
+@njit(cache=True)
+def _off_ray(r, p, ray, target):  # type: ignore[no-untyped-def]
+    """Rotation vector (3,) in base from the tip's ray to the target, the angle, the line's way."""
+    way = target - p
+    length = max(1e-9, np.sqrt(way[0] ** 2 + way[1] ** 2 + way[2] ** 2))
+    way = way / length
+    a = r @ ray
+    cross = np.array(
+        [
+            a[1] * way[2] - a[2] * way[1],
+            a[2] * way[0] - a[0] * way[2],
+            a[0] * way[1] - a[1] * way[0],
+        ]
+    )
+    sine = np.sqrt(cross[0] ** 2 + cross[1] ** 2 + cross[2] ** 2)
+    angle = np.arctan2(sine, a[0] * way[0] + a[1] * way[1] + a[2] * way[2])
+    if sine > 1e-9:
+        cross *= angle / sine
+    return cross, angle, way, length
+
+
+@njit(cache=True)
+def point(  # type: ignore[no-untyped-def]
+    origins, axes, slides, tip, lower, upper, weights, starts, ray, target, rounds, near
+):
+    """Turn the tip's `ray` (3,) towards `target` (3,) from each of starts (m, n).
+
+    Damped least squares on the angle between ray and line of sight: two conditions, so that all
+    other freedom of the joints is left as it is. Joints (m, n) and the angles left over (m,).
+    """
+    found, left = starts.copy(), np.empty(len(starts))
+    for k in range(len(starts)):
+        q = starts[k].copy()
+        for _ in range(rounds):
+            r, p, jacobian = forward(origins, axes, slides, tip, q)
+            e, angle, way, length = _off_ray(r, p, ray, target)
+            left[k] = angle
+            if angle < near:
+                break
+            turning = np.empty((3, len(q)))
+            for i in range(len(q)):
+                v, w = jacobian[:3, i], jacobian[3:, i]
+                along = w[0] * way[0] + w[1] * way[1] + w[2] * way[2]
+                turning[0, i] = w[0] - along * way[0] + (way[1] * v[2] - way[2] * v[1]) / length
+                turning[1, i] = w[1] - along * way[1] + (way[2] * v[0] - way[0] * v[2]) / length
+                turning[2, i] = w[2] - along * way[2] + (way[0] * v[1] - way[1] * v[0]) / length
+            weighted = turning * weights
+            system = weighted @ turning.T
+            for i in range(3):
+                system[i, i] += DAMPING
+            step = weighted.T @ np.linalg.solve(system, e)
+            largest = np.max(np.abs(step))
+            if largest > LONGEST_STEP:
+                step *= LONGEST_STEP / largest
+            q = np.minimum(np.maximum(q + step, lower), upper)
+        found[k] = q
+        r, p, _ = forward(origins, axes, slides, tip, q)
+        _, left[k], _, _ = _off_ray(r, p, ray, target)
+    return found, left

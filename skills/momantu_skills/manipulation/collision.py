@@ -236,14 +236,10 @@ class CollisionWorld:
 
     def _attach(self, attached: Attached) -> int:
         model = self.body.model
-        tip = model.description.groups["arm"].tip
-        frame = model.pin.frames[int(model.pin.getFrameId(tip))]
+        tip = model.frame_ids[model.description.end_effector.frame]
+        frame = model.pin.frames[tip]
         shape = pin.GeometryObject(
-            "held",
-            frame.parentJoint,
-            int(model.pin.getFrameId(tip)),
-            frame.placement,
-            convex(attached.corners),
+            "held", frame.parentJoint, tip, frame.placement, convex(attached.corners)
         )
         return int(self._geometry.addGeometryObject(shape))
 

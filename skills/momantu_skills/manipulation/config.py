@@ -11,8 +11,8 @@ class SceneConfig:
 
     voxel: float = 0.02
     """m; edge of the octree's cells: finer than any gap the arm goes through."""
-    reach: float = 1.3
-    """m; points farther from the base than this cannot be met by the arm."""
+    beyond_reach: float = 0.35
+    """m beyond what the robot reaches at which elbow, hand or load may still meet something."""
     pixel_stride: int = 4
     """Every n-th pixel in each direction: 7 mm apart at 1 m, denser than the voxels."""
     points_per_voxel: int = 2
@@ -24,8 +24,6 @@ class SceneConfig:
     camera's mounting error, and the lag between joints and picture."""
     surface_band: float = 0.015
     """m; points this near a support surface's height belong to it."""
-    footprint_height: float = 1.2
-    """m; what reaches above this does not widen the footprint."""
     width_tolerance: float = 0.012
     """m; change of the gripper's opening at which the held object is believed gone."""
     least_effort: float = 3.0
@@ -62,6 +60,25 @@ class PlanningConfig:
     """s between points of a timed trajectory."""
     tilt: float = 1.05
     """rad; how far a held object may lean while it is moved, where that is possible: 60 degrees."""
+
+
+@dataclass(frozen=True)
+class GazeConfig:
+    """What makes a good view from a camera that the arm carries."""
+
+    distances: tuple[float, float] = (0.45, 0.9)
+    """m between camera and point: nearer shows little of a table, farther measures it worse."""
+    distance_penalty: float = 6.0
+    """s per m nearer or farther."""
+    elevations: tuple[float, float] = (0.45, 1.1)
+    """rad by which the view goes down: flatter, things hide each other; steeper, they lose their
+    sides."""
+    elevation_penalty: float = 5.0
+    """s per rad flatter or steeper."""
+    roll_penalty: float = 1.5
+    """s for a picture that lies on its side: it is wider than high, and so are tables."""
+    tilt_slack: float = 0.1
+    """rad by which what leans already may lean more."""
 
 
 @dataclass(frozen=True)

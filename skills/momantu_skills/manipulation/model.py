@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 import pinocchio as pin
@@ -19,7 +19,7 @@ from momantu_skills.manipulation.hulls import link_hulls
 from momantu_skills.manipulation.urdf import base_urdf
 
 PACE = 1.5
-"""rad/s; joints are scaled so that a scaled radian takes 1 / PACE seconds on each of them."""
+"""rad/s; speed of a usual arm's joints, to which those of a group are compared."""
 JUMP = 0.25
 """rad between two solved poses of a straight line, 1 cm apart; more is another arm posture."""
 NEAR, TURN = 5e-4, 3e-3
@@ -44,9 +44,14 @@ class Group:
     tip: Array
 
     @property
+    def pace(self) -> float:
+        """rad/s; a scaled radian takes 1 / pace seconds on each joint. Less on a slow arm."""
+        return min(PACE, float(np.median(self.velocity)))
+
+    @property
     def scale(self) -> Array:
         """Scaled radians per radian or metre, (n,)."""
-        return PACE / self.velocity
+        return self.pace / self.velocity
 
     @property
     def endless(self) -> NDArray[np.bool_]:
@@ -85,13 +90,26 @@ class Group:
         )
         return path[:reached], int(reached)
 
+    def poses(self, postures: Array) -> Array:
+        """base_from_tip (m, 4, 4) at each of joints (m, n)."""
+        return np.asarray(chain.poses(self.origins, self.axes, self.slides, self.tip, postures))
+
+    def point(
+        self, starts: Array, ray: Array, target: Array, rounds: int = 12
+    ) -> tuple[Array, Array]:
+        """Turn a ray (3,) of the tip towards a point (3,) in base, from joints (m, n).
+
+        Returns joints (m, n) within the limits, moved little, and the angles left (m,), rad.
+        """
+        return chain.point(*self._kernel(), starts, ray, target, rounds, TURN)  # type: ignore[call-arg,no-any-return]
+
     def nearest_turn(self, q: Array, reference: Array) -> Array:
         """The same posture with endless joints (.., n) within half a turn of `reference` (n,)."""
         turns = np.round((q - reference) / (2 * np.pi)) * (2 * np.pi)
         return np.where(self.endless, q - turns, q)
 
     def _kernel(self) -> tuple[object, ...]:
-        weights = (self.velocity / PACE) ** 2
+        weights = (self.velocity / self.pace) ** 2
         return (
             self.origins,
             self.axes,
@@ -111,13 +129,16 @@ class ArmModel:
         self.urdf = base_urdf(description)
         self.pin: pin.Model = pin.buildModelFromXML(self.urdf.text)
         self.hulls = link_hulls(self.urdf.parts)
-        self.group = _chain_of(description, group)
+        effector = description.end_effector
+        self.group = _chain_of(description, description.groups[group].joints, effector.frame)
         self._index = {
             name: int(self.pin.joints[self.pin.getJointId(name)].idx_q)
             for name in list(self.pin.names)[1:]
         }
         self.group_index = np.array([self._index[name] for name in self.group.names])
-        self.frame_ids = {link: int(self.pin.getFrameId(link)) for link in self.hulls}
+        self.frame_ids = {
+            link: int(self.pin.getFrameId(link)) for link in (*self.hulls, effector.frame)
+        }
 
     def joints(self, state: RobotState) -> Array:
         """Joints of the planning group (n,) as measured, clipped into their limits."""
@@ -139,7 +160,7 @@ class ArmModel:
         return q
 
     def link_poses(self, q: Array) -> dict[str, Array]:
-        """base_from_link (4, 4) of every link that has a hull, at all joints (nq,)."""
+        """base_from_link (4, 4) of the tip and every link with a hull, at all joints (nq,)."""
         data = self._data
         pin.framesForwardKinematics(self.pin, data, q)
         return {link: np.array(data.oMf[i].homogeneous) for link, i in self.frame_ids.items()}
@@ -153,9 +174,59 @@ class ArmModel:
 
     @property
     def tip_from_grasp(self) -> Transform:
-        """The grasp frame in the planning group's tip link."""
+        """The grasp frame in the tip, the link that the end effector names as its frame."""
         effector = self.description.end_effector
         return Transform((effector.grasp_offset, 0.0, 0.0))
+
+    @cached_property
+    def palm(self) -> Array:
+        """Corners (n, 3) of the hand without its fingers, in the grasp frame, m.
+
+        Those of the links that may touch what is grasped and do not move against the tip.
+        """
+        effector = self.description.end_effector
+        tip = self.pin.frames[self.frame_ids[effector.frame]]
+        corners = []
+        for link in effector.touch_links:
+            frame = self.pin.frames[self.frame_ids[link]] if link in self.hulls else None
+            if frame is None or frame.parentJoint != tip.parentJoint:
+                continue
+            place = tip.placement.actInv(frame.placement).homogeneous
+            own = self.hulls[link]
+            corners.append(own if link == effector.frame else own @ place[:3, :3].T + place[:3, 3])
+        found = np.vstack(corners) if corners else np.zeros((1, 3))
+        return np.asarray(found - (effector.grasp_offset, 0.0, 0.0))
+
+    @cached_property
+    def grasp_from_camera(self) -> Transform | None:
+        """The first camera in the grasp frame, where it is fixed to the hand, else None."""
+        if not self.description.eye_in_hand or self.eye.names != self.group.names:
+            return None
+        joints = np.zeros(len(self.group.names))
+        tip, camera = self.group.tip_pose(joints), self.eye.tip_pose(joints)
+        return (tip @ self.tip_from_grasp).inverse() @ camera
+
+    @cached_property
+    def beyond_eye(self) -> frozenset[str]:
+        """Links with hulls that move with the first camera, or against it alone."""
+        frame = self.pin.frames[self.pin.getFrameId(self.description.camera()[1].frame)]
+        below = set(self.pin.subtrees[int(frame.parentJoint)])
+        return frozenset(
+            link
+            for link in self.hulls
+            if int(self.pin.frames[self.frame_ids[link]].parentJoint) in below
+        )
+
+    @cached_property
+    def eye(self) -> Group:
+        """The group's joints that move the first camera, with the camera's frame as the tip.
+
+        Raises ValueError where the arm does not carry it.
+        """
+        description = self.description
+        if not description.eye_in_hand:
+            raise ValueError(f"the arm of {description.name} carries no camera")
+        return _chain_of(description, self.group.names, description.camera()[1].frame)
 
 
 def arm_model(description: RobotDescription) -> ArmModel:
@@ -180,15 +251,14 @@ def _cached(key: _Key) -> ArmModel:
     return ArmModel(key.description)
 
 
-def _chain_of(description: RobotDescription, name: str) -> Group:
-    """Read the joints of a group from the URDF; joints that do not belong to it merge into it."""
-    group = description.groups[name]
+def _chain_of(description: RobotDescription, names: Sequence[str], tip: str) -> Group:
+    """Those of joints `names` that lead to a link; others on the way stand at 0."""
     joints: list[Joint] = []
     origins: list[Array] = []
     after = np.eye(4)
-    for joint in description.kinematics().chain(group.tip):
+    for joint in description.kinematics().chain(tip):
         after = after @ joint.parent_from_joint.matrix
-        if joint.name in group.joints:
+        if joint.name in names:
             joints.append(joint)
             origins.append(after)
             after = np.eye(4)

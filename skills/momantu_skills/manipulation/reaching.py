@@ -87,8 +87,7 @@ def reachable(arm: Arm, thing: DetectedObject, lift: float) -> list[Reach]:
         Failure: NO_GRASP, with how many grasps failed at which step.
     """
     effector = arm.scene.model.description.end_effector
-    palm = arm.scene.model.hulls[effector.frame] - (effector.grasp_offset, 0.0, 0.0)
-    grasps = grasps_for(thing, effector, palm)
+    grasps = grasps_for(thing, effector, arm.scene.model.palm)
     if not grasps:
         raise Failure(
             "NO_GRASP",
@@ -131,6 +130,7 @@ def _postures(
         solved = group.nearest_turn(found[i][good[i]], start)
         costs = np.max(np.abs(solved - start) / group.velocity, axis=1)
         costs += grasp.penalty + arm.carry_penalty(grasp.object_from_grasp.inverse())
+        costs += arm.blind_penalty(grasp.object_from_grasp)
         order = np.argsort(costs, kind="stable")[:POSTURES]
         ranked += [(float(costs[j]), i, solved[j]) for j in order]
     ranked.sort(key=lambda item: (item[0], item[1]))

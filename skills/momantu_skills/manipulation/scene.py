@@ -86,7 +86,8 @@ class Scene:
         """Points (n, 3) in odom of the picture, without the robot, within its reach."""
         optical = points_from_depth(image.depth, image.intrinsics, self.config.pixel_stride)
         base_points = (odom_from_base.inverse() @ odom_from_camera).apply(optical)
-        base_points = base_points[np.linalg.norm(base_points[:, :2], axis=1) < self.config.reach]
+        reach = self.model.description.working.reach[2] + self.config.beyond_reach
+        base_points = base_points[np.linalg.norm(base_points[:, :2], axis=1) < reach]
         own = self.is_robot(base_points, robot.state(), held)
         return odom_from_base.apply(base_points[~own])
 
@@ -145,14 +146,15 @@ class Scene:
         """See `PlanningScene.footprint`."""
         poses = self.model.link_poses(self.model.configuration(state))
         corners = [
-            self.model.hulls[link] @ pose[:3, :3].T + pose[:3, 3] for link, pose in poses.items()
+            hull @ poses[link][:3, :3].T + poses[link][:3, 3]
+            for link, hull in self.model.hulls.items()
         ]
         if held is not None:
             tip = poses[self.model.description.end_effector.frame]
             corners.append(self.held_corners(held) @ tip[:3, :3].T + tip[:3, 3])
         outline = np.array([(x, y, 0.0) for x, y in self.model.description.footprint])
         everything = np.vstack([*corners, outline])
-        return floor_outline(everything[everything[:, 2] < self.config.footprint_height])
+        return floor_outline(everything[everything[:, 2] < self.model.description.height])
 
     def is_robot(
         self, points: Array, state: RobotState, held: HeldObject | None
@@ -165,6 +167,12 @@ class Scene:
             mask = LinkMask({"held": self.held_corners(held)}, self.config.robot_padding)
             own |= mask.covers(points, {"held": tip})
         return own
+
+    def hides(self, points: Array, joints: Array) -> bool:
+        """Whether a link covers one of points (n, 3), base frame, with the arm at joints (n,)."""
+        posed = dict(zip(self.model.group.names, joints, strict=True))
+        poses = self.model.link_poses(self.model.posture(posed, 0.0))
+        return bool(self._mask.covers(points, poses).any())
 
     def held_corners(self, held: HeldObject, padding: float = 0.0) -> Array:
         """Corners (n, 3) of what is held, in the tip's frame, m."""

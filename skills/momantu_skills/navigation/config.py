@@ -59,9 +59,8 @@ class NavigationConfig:
     nearness. near_speed: speed allowed where only `margin` is left; full speed at `far_clearance`.
     laser_reach, depth_reach: how far hits are kept. known_reach: hits this near to the map's own
     obstacles are the map's. depth_every: metres of driving between two looks at the depth picture.
-    obstacle_heights: lowest and highest point above the floor that is in the base's way.
-    stand_off: nearest base centre to a surface's edge. look_off: stand-off of `in_front_of`.
-    reach: (nearest, best, farthest) distance of base centre to what is to be reached.
+    lowest_obstacle: height above the floor that stands in the base's way and is no floor; all
+    between it and the robot's own height does.
     patience: time without getting nearer before recovery. blocked_patience: time that something
     may stand in the way. attempts: recoveries and approaches before giving up.
     """
@@ -76,10 +75,7 @@ class NavigationConfig:
     depth_reach: float = 3.0
     known_reach: float = 0.08
     depth_every: float = 1.3
-    obstacle_heights: tuple[float, float] = (0.06, 1.2)
-    stand_off: float = 0.42
-    look_off: float = 0.60
-    reach: tuple[float, float, float] = (0.50, 0.70, 0.95)
+    lowest_obstacle: float = 0.06
     patience: float = 6.0
     blocked_patience: float = 3.0
     attempts: int = 4

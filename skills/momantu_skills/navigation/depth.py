@@ -7,6 +7,7 @@ import numpy as np
 from momantu_bt.frames import FrameBuffer
 from momantu_bt.geometry import Array
 from momantu_bt.messages import CameraImage, RobotState
+from momantu_bt.robot import RobotDescription
 from momantu_bt.service import PlanningScene
 from momantu_skills.navigation.config import NavigationConfig
 
@@ -21,7 +22,7 @@ LONGEST_ROBOT = 1.5
 def obstacles_and_floor(
     image: CameraImage,
     frames: FrameBuffer,
-    base_frame: str,
+    description: RobotDescription,
     state: RobotState,
     scene: PlanningScene,
     config: NavigationConfig,
@@ -31,14 +32,14 @@ def obstacles_and_floor(
     The base frame's origin lies on the floor. The robot itself and what it holds are left out.
     """
     points = _points(image)
-    points = frames.lookup(base_frame, image.frame, image.stamp).apply(points)
+    points = frames.lookup(description.base_frame, image.frame, image.stamp).apply(points)
     distance = np.hypot(points[:, 0], points[:, 1])
     points, distance = (
         points[distance < config.depth_reach],
         distance[distance < config.depth_reach],
     )
     doubt = TILT_DOUBT * distance
-    low, high = config.obstacle_heights
+    low, high = config.lowest_obstacle, description.height
     in_way = (points[:, 2] > low + doubt) & (points[:, 2] < high)
     bare = np.abs(points[:, 2]) < 0.5 * low + doubt
     near = in_way & (distance < LONGEST_ROBOT)

@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from momantu_bt.geometry import Pose2D, wrap_angle
+from momantu_bt.robot import Working
 from momantu_bt.world import Surface
-from momantu_skills.navigation.config import NavigationConfig
 
 LATERAL = (0.0, 0.4, -0.4)
 """m along the edge: the middle first, then from either side of it."""
@@ -35,7 +35,7 @@ class Stand:
     cost: float
 
 
-def before_surface(surface: Surface, config: NavigationConfig) -> list[Stand]:
+def before_surface(surface: Surface, working: Working) -> list[Stand]:
     """Stands from which a surface can be looked over, best first, facing its middle (map)."""
     stands = []
     variant = 0
@@ -45,7 +45,7 @@ def before_surface(surface: Surface, config: NavigationConfig) -> list[Stand]:
             if abs(lateral) > half:
                 continue
             for back in BACK:
-                off = edge + config.look_off + back
+                off = edge + working.look_off + back
                 pose = surface.map_from_surface @ _facing(angle, off, lateral)
                 turned = math.atan2(-lateral, off)
                 pose = Pose2D(pose.x, pose.y, wrap_angle(pose.yaw - turned))
@@ -58,7 +58,7 @@ def within_reach(
     target: tuple[float, float],
     surfaces: Iterable[Surface],
     base: Pose2D,
-    config: NavigationConfig,
+    working: Working,
 ) -> list[Stand]:
     """Stands from which a point (x, y) can be reached, best first; all in the map.
 
@@ -70,14 +70,14 @@ def within_reach(
         here = surface.map_from_surface.inverse() @ Pose2D(*target)
         beyond = max(abs(here.x) - surface.size[0] / 2, abs(here.y) - surface.size[1] / 2)
         if beyond < ON_SURFACE:
-            stands = list(_square_stands(surface, here, base, config))
+            stands = list(_square_stands(surface, here, base, working))
             break
     if not stands:
         for k in range(RING):
             yaw = wrap_angle(2.0 * math.pi * k / RING)
             pose = Pose2D(
-                target[0] - config.reach[1] * math.cos(yaw),
-                target[1] - config.reach[1] * math.sin(yaw),
+                target[0] - working.reach[1] * math.cos(yaw),
+                target[1] - working.reach[1] * math.sin(yaw),
                 yaw,
             )
             stands.append(Stand(pose, k, pose.distance_to(base)))
@@ -85,14 +85,14 @@ def within_reach(
 
 
 def _square_stands(
-    surface: Surface, target: Pose2D, base: Pose2D, config: NavigationConfig
+    surface: Surface, target: Pose2D, base: Pose2D, working: Working
 ) -> Iterable[Stand]:
-    nearest, best, farthest = config.reach
+    nearest, best, farthest = working.reach
     for number, angle in enumerate(surface.sides):
         edge, _ = _edge(surface, angle)
         c, s = math.cos(angle), math.sin(angle)
         out, along = c * target.x + s * target.y, -s * target.x + c * target.y
-        closest = max(edge - out + config.stand_off, nearest)
+        closest = max(edge - out + working.stand_off, nearest)
         ahead = surface.map_from_surface.inverse() @ base
         straight = -s * ahead.x + c * ahead.y - along
         shifts = (*SHIFTS, straight) if abs(straight) <= STRAIGHT else SHIFTS

@@ -9,7 +9,7 @@ import numpy as np
 from momantu_bt.frames import MAP, ODOM
 from momantu_bt.geometry import Array, Pose2D, Transform
 from momantu_bt.messages import BaseVelocity, JointPositions
-from momantu_bt.robot import CAMERA_CARRIER, Robot, read_camera, read_laser
+from momantu_bt.robot import CAMERA_CARRIER, CameraSensor, Robot, read_camera, read_laser
 from momantu_bt.service import Localization, PlanningScene
 from momantu_bt.skill import Run, Skill
 from momantu_skills.navigation.config import NavigationConfig
@@ -22,8 +22,6 @@ from momantu_skills.navigation.scans import Rays
 
 GAZE = (2.0, 0.0, 0.1)
 """Where the camera looks while driving, base frame, m: two metres ahead, at the floor."""
-HEAD_JOINTS = 3
-"""A camera on more joints than this is carried by an arm, which stays where it is."""
 POSTURE_CHANGE = 0.02
 """rad (or m) by which a joint must move before the footprint is asked for anew."""
 OUTLINE_CHANGE = 0.01
@@ -66,6 +64,9 @@ class Vehicle:
         self._outline = outline
         self._posture: Array | None = None
         self._base_from_laser: Transform | None = None
+        self._sees = any(isinstance(s, CameraSensor) for s in description.sensors.values())
+        resolved = description.resolve_use(CAMERA_CARRIER) if self._sees else None
+        self._head = None if description.eye_in_hand else resolved
         self._gaze = self._gaze_goal()
         self._looked: Pose2D | None = None
         self._hits = np.zeros((0, 2))
@@ -122,7 +123,7 @@ class Vehicle:
         self.half_width = half_width(outline)
 
     def _look_due(self, pose: Pose2D) -> bool:
-        if self._gaze is None:
+        if not self._sees:
             return False
         if self._looked is None:
             return True
@@ -134,20 +135,17 @@ class Vehicle:
         image = read_camera(self._robot)
         state = self._robot.state()
         obstacles, floor = obstacles_and_floor(
-            image, self._frames, self._base_frame, state, self._scene, self.config
+            image, self._frames, self._robot.description, state, self._scene, self.config
         )
         self.costmap.see_depth(_moved(pose, obstacles), _moved(pose, floor))
         self._looked = pose
 
     def _gaze_goal(self) -> JointPositions | None:
+        """Where a head looks while driving; an arm, or a camera that is fixed, stays as it is."""
         description = self._robot.description
-        try:
-            carrier = description.resolve_use(CAMERA_CARRIER)
-        except KeyError:
+        if self._head is None:
             return None
-        joints = description.actuators[carrier].joints
-        if not 0 < len(joints) <= HEAD_JOINTS:
-            return None
+        joints = description.actuators[self._head].joints
         from momantu_skills.perception.aiming import aim
 
         aimed = aim(
@@ -175,9 +173,8 @@ class Vehicle:
         slot = self._slot()
         while self._slot() == slot:
             self._robot.command("base", goal)
-            if self._gaze is not None:
-                carrier = self._robot.description.resolve_use(CAMERA_CARRIER)
-                self._robot.command(carrier, self._gaze)
+            if self._gaze is not None and self._head is not None:
+                self._robot.command(self._head, self._gaze)
             yield phase
 
     def _slot(self) -> int:

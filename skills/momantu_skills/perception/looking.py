@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from momantu_bt.failure import Failure
 from momantu_bt.frames import ODOM
+from momantu_bt.geometry import Array
 from momantu_bt.messages import JointPositions, RobotState
 from momantu_bt.robot import CAMERA_CARRIER, Robot, RobotDescription
 from momantu_bt.skill import Run, Skill
-from momantu_skills.perception.aiming import aim
+from momantu_skills.perception.aiming import aim, view_error
 
 WITHIN = 0.10
 """rad off the optical axis that still counts as looking at a point: a tenth of most views."""
@@ -22,24 +24,51 @@ STILL = 0.02
 """rad/s and m/s below which a picture is not blurred, above the noise of reported speeds."""
 PATIENCE = 1.5
 """s beyond twice the fastest travel after which the camera counts as stuck."""
-HEAD_JOINTS = 3
-"""A carrier of more joints is an arm: its way must be planned, which pointing does not do."""
 
 
-def look_at(skill: Skill, robot: Robot, point_odom: ArrayLike, *, within: float = WITHIN) -> Run:
-    """Point the robot's first camera at `point_odom` (3,), m, and wait until joints and base rest.
+def look_at(
+    skill: Skill,
+    robot: Robot,
+    point_odom: ArrayLike,
+    *,
+    within: float = WITHIN,
+    around: Sequence[Array] = (),
+) -> Run:
+    """Bring `point_odom` (3,), m, into the middle of the first camera's view, and let it rest.
 
-    The calling skill declares CAMERA_CARRIER in `uses` and OUT_OF_VIEW in `failures`. Usage:
-    `yield from look_at(self, robot, point)`. within: rad off the axis that is good enough; pi
-    takes whatever the limits allow.
+    A head is turned; an arm that carries the camera goes where the camera sees the point, past
+    what the hand holds; a fixed camera sees it or not. The calling skill declares CAMERA_CARRIER
+    in `uses`, needs the planning scene, and has OUT_OF_VIEW among its `failures`. Usage:
+    `yield from look_at(self, robot, point)`. within: rad off the axis that is good enough.
+    around: corners (n, 3) in odom of solids that an arm keeps away from beside what is known.
 
     Raises:
         Failure: OUT_OF_VIEW when the limits forbid it, when the camera does not get there in
-            time, or when it is carried by an arm.
+            time, or when its arm finds no way.
     """
+    point = np.asarray(point_odom, dtype=np.float64)
+    carrier = robot.description.resolve_use(CAMERA_CARRIER)
+    if robot.description.eye_in_hand:
+        yield from _reach_out(skill, robot, point, within, around)
+    elif carrier is not None:
+        yield from _turn(skill, robot, carrier, point, within)
+    else:
+        yield from _wait(skill, robot, point, within)
+
+
+def _reach_out(
+    skill: Skill, robot: Robot, point: Array, within: float, around: Sequence[Array]
+) -> Run:
+    """Move the arm; the planner is loaded here, for robots with a head need none to look."""
+    from momantu_skills.manipulation.gazing import gaze
+
+    yield from gaze(skill, robot, skill.services["planning_scene"], point, within, around)
+
+
+def _turn(skill: Skill, robot: Robot, carrier: str, point: Array, within: float) -> Run:
+    """Turn what carries the camera, a joint or two that meet nothing on their way."""
     description = robot.description
-    carrier = description.resolve_use(CAMERA_CARRIER)
-    goal = _goal(skill, robot, carrier, np.asarray(point_odom, dtype=np.float64), within)
+    goal = _goal(skill, robot, carrier, point, within)
     deadline = skill.clock.now() + 2.0 * _travel(description, robot.state(), goal) + PATIENCE
     while not (_arrived(robot.state(), goal) and _still(robot.state(), goal)):
         if skill.clock.now() > deadline:
@@ -55,18 +84,27 @@ def look_at(skill: Skill, robot: Robot, point_odom: ArrayLike, *, within: float 
         yield "look"
 
 
+def _wait(skill: Skill, robot: Robot, point_odom: Array, within: float) -> Run:
+    """A fixed camera sees the point or not, once the base rests."""
+    deadline = skill.clock.now() + PATIENCE
+    while not _base_still(robot.state()) and skill.clock.now() < deadline:
+        yield "look"
+    frame = robot.description.camera()[1].frame
+    off = float(np.hypot(*view_error(skill.frames.lookup(frame, ODOM).apply(point_odom))))
+    if off > within:
+        raise Failure(
+            "OUT_OF_VIEW",
+            f"the camera is fixed, and the point lies {math.degrees(off):.0f} degrees off its "
+            "axis; turn the robot towards it",
+            off_axis=off,
+        )
+
+
 def _goal(
-    skill: Skill, robot: Robot, carrier: str, point_odom: np.ndarray, within: float
+    skill: Skill, robot: Robot, carrier: str, point_odom: Array, within: float
 ) -> JointPositions:
     description = robot.description
     joints = description.actuators[carrier].joints
-    if len(joints) > HEAD_JOINTS:
-        raise Failure(
-            "OUT_OF_VIEW",
-            f"the camera is carried by {carrier}, an arm of {len(joints)} joints; give it a named "
-            "pose that looks there (reset_pose), for pointing does not plan around obstacles",
-            carrier=carrier,
-        )
     point_base = skill.frames.lookup(description.base_frame, ODOM).apply(point_odom)
     aimed = aim(
         skill.frames.kinematics,
@@ -104,5 +142,8 @@ def _arrived(state: RobotState, goal: JointPositions) -> bool:
 
 def _still(state: RobotState, goal: JointPositions) -> bool:
     speeds = (float(state.velocities[state.names.index(name)]) for name in goal.names)
-    base = (state.linear, state.angular)
-    return all(abs(speed) <= STILL for speed in (*speeds, *base))
+    return _base_still(state) and all(abs(speed) <= STILL for speed in speeds)
+
+
+def _base_still(state: RobotState) -> bool:
+    return abs(state.linear) <= STILL and abs(state.angular) <= STILL

@@ -78,10 +78,14 @@ def glance(
 
 
 def looks_over(skill: Skill, robot: Robot, corners: Array, at_least: int) -> list[Array]:
-    """Points (3,) in odom to look at so that a surface of these corners (k, 3) is seen whole."""
+    """Points (3,) in odom to look at so that a surface of these corners (k, 3) is seen whole.
+
+    From where the camera is, or, where an arm will carry it elsewhere, from above the base.
+    """
     sensor = robot.description.camera()[1]
-    camera = skill.frames.lookup(ODOM, sensor.frame).position
-    return sweep(corners, camera, sensor, at_least)
+    moved = robot.description.eye_in_hand
+    viewpoint = robot.description.base_frame if moved else sensor.frame
+    return sweep(corners, skill.frames.lookup(ODOM, viewpoint).position, sensor, at_least)
 
 
 def around(skill: Skill, robot: Robot) -> list[Array]:

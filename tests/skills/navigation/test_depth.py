@@ -45,7 +45,7 @@ def _seen(box: tuple[float, float, float]) -> tuple[np.ndarray, np.ndarray]:
     return obstacles_and_floor(
         _picture(robot, box),
         frames,
-        robot.description.base_frame,
+        robot.description,
         robot.state(),
         _Scene(),  # type: ignore[arg-type]
         NavigationConfig(),

@@ -5,13 +5,13 @@ import math
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from momantu_skills.navigation.config import NavigationConfig
 from momantu_skills.navigation.goals import before_surface, within_reach
 
 from momantu_bt.geometry import Pose2D, wrap_angle
+from momantu_bt.robot import Working
 from momantu_bt.world import Surface
 
-CONFIG = NavigationConfig()
+WORKING = Working(stand_off=0.42, look_off=0.60, reach=(0.50, 0.70, 0.95))
 POSES = st.builds(Pose2D, st.floats(-5, 5), st.floats(-5, 5), st.floats(-math.pi, math.pi))
 SURFACES = st.builds(
     Surface,
@@ -29,15 +29,15 @@ def _outside(surface: Surface, pose: Pose2D) -> float:
 
 @given(SURFACES)
 def test_stands_before_a_surface_look_at_its_middle_from_outside(surface: Surface) -> None:
-    for stand in before_surface(surface, CONFIG):
+    for stand in before_surface(surface, WORKING):
         middle = stand.pose.inverse() @ surface.map_from_surface
         assert abs(math.atan2(middle.y, middle.x)) < 1e-6
-        assert _outside(surface, stand.pose) >= CONFIG.look_off - 1e-9
+        assert _outside(surface, stand.pose) >= WORKING.look_off - 1e-9
 
 
 @given(SURFACES)
 def test_the_first_stand_is_the_preferred_side(surface: Surface) -> None:
-    first = min(before_surface(surface, CONFIG), key=lambda stand: stand.cost)
+    first = min(before_surface(surface, WORKING), key=lambda stand: stand.cost)
     here = surface.map_from_surface.inverse() @ first.pose
     assert abs(wrap_angle(math.atan2(here.y, here.x) - surface.sides[0])) < 1e-6
 
@@ -47,21 +47,21 @@ def test_stands_within_reach_are_square_and_near(
     surface: Surface, u: float, v: float, base: Pose2D
 ) -> None:
     spot = surface.map_from_surface @ Pose2D(u * surface.size[0], v * surface.size[1], 0.0)
-    stands = within_reach((spot.x, spot.y), [surface], base, CONFIG)
+    stands = within_reach((spot.x, spot.y), [surface], base, WORKING)
     assert [s.cost for s in stands] == sorted(s.cost for s in stands)
     for stand in stands:
-        assert stand.pose.distance_to(spot) <= CONFIG.reach[2] + 1e-9
+        assert stand.pose.distance_to(spot) <= WORKING.reach[2] + 1e-9
         square = (surface.map_from_surface.inverse() @ stand.pose).yaw
         if _outside(surface, stand.pose) > 0:
             assert abs(math.sin(2 * square)) < 1e-6 or len(stands) == 16
-            assert _outside(surface, stand.pose) > CONFIG.stand_off - 1e-6 or len(stands) == 16
+            assert _outside(surface, stand.pose) > WORKING.stand_off - 1e-6 or len(stands) == 16
 
 
 @given(POSES, POSES)
 def test_a_point_in_the_open_is_faced_from_all_round(spot: Pose2D, base: Pose2D) -> None:
-    stands = within_reach((spot.x, spot.y), [], base, CONFIG)
+    stands = within_reach((spot.x, spot.y), [], base, WORKING)
     assert len({stand.variant for stand in stands}) == len(stands) == 16
     for stand in stands:
         seen = stand.pose.inverse() @ spot
-        assert seen.x == pytest.approx(CONFIG.reach[1], abs=1e-9)
+        assert seen.x == pytest.approx(WORKING.reach[1], abs=1e-9)
         assert seen.y == pytest.approx(0.0, abs=1e-9)

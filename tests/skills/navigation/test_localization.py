@@ -179,7 +179,7 @@ def test_thinning_counts_what_is_near_no_more_than_what_is_far() -> None:
 
 
 def test_unknown_parameters_are_named() -> None:
-    assert configured(NavigationConfig, {"reach": [0.4, 0.5, 0.6]}, "navigate").reach[1] == 0.5
+    assert configured(LocalizationConfig, {"particles": [4, 6]}, "localization").particles == (4, 6)
     with pytest.raises(ValueError, match="navigate has no parameter sped; parameters: period"):
         configured(NavigationConfig, {"sped": 1.0}, "navigate")
 
