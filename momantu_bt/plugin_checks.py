@@ -6,6 +6,7 @@ import keyword
 import re
 from collections.abc import Callable, Mapping
 from importlib import import_module
+from inspect import getattr_static
 from typing import Any
 
 from momantu_bt.failure import CODE
@@ -108,8 +109,17 @@ def _robot(name: str, plugin: Any) -> str | None:
 
 def _world(name: str, plugin: Any) -> str | None:
     parts = ("name", "default_robot", "site", "open")
-    lacking = [part for part in parts if not hasattr(plugin, part)]
+    lacking = [part for part in parts if not _has(plugin, part)]
     return f"{plugin!r} has no {' and no '.join(lacking)}" if lacking else None
+
+
+def _has(plugin: Any, part: str) -> bool:
+    """Whether it has an attribute, without asking for its value: that may read a file."""
+    try:
+        getattr_static(plugin, part)
+    except AttributeError:
+        return False
+    return True
 
 
 def _command(name: str, plugin: Any) -> str | None:

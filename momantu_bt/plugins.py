@@ -26,6 +26,7 @@ _WHAT = {
     SERVICES: "service",
     ROBOTS: "robot",
     WORLDS: "world",
+    WORLD_FILES: "reader of world files",
     TREES: "tree",
     COMMANDS: "verb",
 }

@@ -23,8 +23,8 @@ from momantu_bt import plugins
 from momantu_bt.engine.build import skills_in
 from momantu_bt.plugin_files import by_path
 from momantu_bt.record.versions import LIBRARIES
-from momantu_bt.tree.check import NO_WORLD
 from momantu_bt.tree.model import Document
+from momantu_bt.tree.named_world import NO_WORLD, world_of
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.settings import Given
 
@@ -54,7 +54,7 @@ def made_of(
     Files count by their names relative to the main one and by their texts, so that another
     machine finds the same.
     """
-    world = world or document.world or NO_WORLD
+    world = world_of(document, world) or NO_WORLD
     if robot is None and world != NO_WORLD:
         robot = registry.worlds[world].default_robot
     found = _of_machine(_packages(document, world, robot))

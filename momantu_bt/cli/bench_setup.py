@@ -97,13 +97,13 @@ def check_faults(faults: Sequence[str], document: Document, how: HowToRun) -> No
     from momantu_bt.engine.build import skills_in
     from momantu_bt.faults.spec import parse_fault
     from momantu_bt.faults.stage import plan
-    from momantu_bt.tree.check import NO_WORLD
+    from momantu_bt.tree.named_world import world_of
     from momantu_bt.tree.registry import Registry
     from momantu_bt.tree.substitution import Substitution
 
     having = Registry.installed().skills
     skills = {name: having[name] for name in skills_in(document)}
-    with_world = (how.world or document.world or NO_WORLD) != NO_WORLD
+    with_world = world_of(document, how.world) is not None
     wanted = [parse_fault(text) for text in faults]
     plan(wanted, document, skills, Substitution(), with_world=with_world)
 
@@ -111,10 +111,10 @@ def check_faults(faults: Sequence[str], document: Document, how: HowToRun) -> No
 def _check_world(document: Document, world: str | None, registry: Any) -> None:
     from momantu_bt.engine.build import skills_in
     from momantu_bt.engine.launch import LaunchError
-    from momantu_bt.tree.check import NO_WORLD
+    from momantu_bt.tree.named_world import world_of
 
     skills = skills_in(document)
-    if skills and (world or document.world or NO_WORLD) == NO_WORLD:
+    if skills and world_of(document, world) is None:
         raise LaunchError(
             f"{document.main} needs a world for {', '.join(skills)}; worlds: "
             f"{', '.join(registry.worlds) or 'none'}; give one with --world"

@@ -11,9 +11,9 @@ import typer
 from momantu_bt.drawing.boxes import pictures
 from momantu_bt.drawing.difference import difference
 from momantu_bt.drawing.wires import Wire, wire_lines, wires
-from momantu_bt.tree.check import NO_WORLD
 from momantu_bt.tree.load import load
 from momantu_bt.tree.model import Document
+from momantu_bt.tree.named_world import world_of
 from momantu_bt.tree.printing import lines, value_text
 from momantu_bt.tree.registry import Registry
 
@@ -81,7 +81,7 @@ def _picture(kind: str, document: Document, registry: Registry, with_wires: bool
 
 
 def _words(document: Document, found: list[Wire], world: str | None) -> Iterator[str]:
-    yield f"{document.file}: {document.main}" + _where(world or document.world)
+    yield f"{document.file}: {document.main}" + _where(world_of(document, world))
     for name, value in document.values.items():
         yield f"{INDENT}{name} = {value_text(value)}"
     names = [document.main, *(name for name in document.trees if name != document.main)]
@@ -99,7 +99,7 @@ def _words(document: Document, found: list[Wire], world: str | None) -> Iterator
 
 
 def _where(world: str | None) -> str:
-    return "" if world in (None, NO_WORLD) else f" in {world}"
+    return "" if world is None else f" in {world}"
 
 
 def _write(text: str, output: Path | None) -> None:

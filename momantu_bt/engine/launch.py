@@ -29,8 +29,9 @@ from momantu_bt.record.report import ERROR, Report
 from momantu_bt.robot import Robot, RobotDescription
 from momantu_bt.service import Service
 from momantu_bt.skill import Skill
-from momantu_bt.tree.check import NO_WORLD, ROBOT_KEY
+from momantu_bt.tree.check import ROBOT_KEY
 from momantu_bt.tree.model import Document
+from momantu_bt.tree.named_world import world_of
 from momantu_bt.tree.problems import valid_names
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.substitution import Substitution
@@ -142,7 +143,7 @@ def _recorder(options: Options, stack: ExitStack) -> Recorder | None:
 def _planned(
     document: Document, options: Options, kinds: Mapping[str, type[Skill]]
 ) -> tuple[Planned, ...]:
-    with_world = (options.world or document.world or NO_WORLD) != NO_WORLD
+    with_world = world_of(document, options.world) is not None
     return plan(options.faults, document, kinds, options.substitution, with_world=with_world)
 
 
@@ -163,8 +164,8 @@ def _open(
     registry: Registry,
     kinds: Mapping[str, type[Skill]],
 ) -> World | None:
-    name = options.world or document.world
-    if name is None or name == NO_WORLD:
+    name = world_of(document, options.world)
+    if name is None:
         if kinds:
             raise LaunchError(
                 f"{document.main} needs a world for {', '.join(kinds)}; worlds: "

@@ -25,14 +25,13 @@ from momantu_bt.tree.check_trees import (
 )
 from momantu_bt.tree.keys import Key, literal_type
 from momantu_bt.tree.model import Document, Literal, Node, Place, Reference, Scope, Tree
+from momantu_bt.tree.named_world import world_of
 from momantu_bt.tree.problems import Problem, Problems, TooManyProblems, valid_names
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.script import parse
 from momantu_bt.tree.signatures import Context
 from momantu_bt.world import WorldError
 
-NO_WORLD = "none"
-"""As a world's name: run without one."""
 ROBOT_KEY = "robot"
 """`$@robot.…`: what every run publishes of its robot."""
 
@@ -94,8 +93,8 @@ def _check(context: Context, world: str | None, robot: str | None) -> None:
 
 def _look_up(context: Context, world: str | None, robot: str | None) -> None:
     """The world's site and the robot's description; reports where there are none."""
-    name = world or context.document.world
-    if name is not None and name != NO_WORLD:
+    name = world_of(context.document, world)
+    if name is not None:
         place = context.document.world_place if world is None else None
         default = _look_up_world(context, name, place or _start(context.document))
         robot = robot or default
@@ -188,4 +187,4 @@ def _written_by(context: Context, node: Node) -> Iterator[tuple[Scope, str, bool
             yield scope, variable.key.removeprefix("@"), variable.key not in needed
 
 
-__all__ = ["NO_WORLD", "ROBOT_KEY", "check"]
+__all__ = ["ROBOT_KEY", "check"]

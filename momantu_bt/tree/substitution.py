@@ -10,10 +10,11 @@ from typing import Any
 
 from momantu_bt.failure import ENGINE_CODES
 from momantu_bt.tree.catalogue import BUILT_IN, SUBTREE
-from momantu_bt.tree.check import NO_WORLD, ROBOT_KEY
+from momantu_bt.tree.check import ROBOT_KEY
 from momantu_bt.tree.files import read_text
 from momantu_bt.tree.key_reads import references
 from momantu_bt.tree.model import Document, Literal, Node, Reference, Scope
+from momantu_bt.tree.named_world import world_of
 from momantu_bt.tree.problems import Problems, TreeError, errors, valid_names
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.rules import Rule, RuleFile, Status, read_rules
@@ -80,7 +81,7 @@ def load_substitution(
     context = Context(document, registry, problems)
     results = _match(context, found.rules)
     _check_used(context, found.rules)
-    without_world = (world or document.world or NO_WORLD) == NO_WORLD
+    without_world = world_of(document, world) is None
     _check_values(context, found, results, without_world)
     if errors(problems.sorted()):
         raise TreeError(problems.sorted(), source)

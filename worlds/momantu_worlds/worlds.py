@@ -1,9 +1,10 @@
-"""The worlds that this package brings; cheap to import, the simulator comes with `open`."""
+"""Worlds that are described by world files; cheap to import, the simulator comes with `open`."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from momantu_bt.world import Site
@@ -12,21 +13,41 @@ if TYPE_CHECKING:
     from momantu_bt.findings import Finding
     from momantu_bt.robot import RobotDescription
     from momantu_bt.world import World
-    from momantu_worlds.scenes.bodies import Episode
 
 
 @dataclass(frozen=True, slots=True)
-class WorldFile:
-    """An entry of `momantu_bt.worlds` that is described by a world file of its name."""
+class WorldOfFile:
+    """A world that is described by a file: an entry of `momantu_bt.worlds`, or a user's own."""
 
-    name: str
-    default_robot: str = "fetch"
+    path: Path
+
+    @property
+    def name(self) -> str:
+        """The world's name; raises as `site`."""
+        return self.site().name
+
+    @property
+    def default_robot(self) -> str:
+        """The robot that it is meant for; raises as `site`."""
+        from momantu_worlds.scenes.loading import nominal
+
+        return nominal(self.path).robot
 
     def site(self) -> Site:
-        """The nominal site, read from the world file alone."""
-        from momantu_worlds.scenes.loading import nominal_site
+        """The nominal site, without maps.
 
-        return nominal_site(self.name)
+        Raises:
+            WorldError: the world file cannot be read, or is wrong.
+        """
+        from momantu_worlds.scenes.loading import nominal
+
+        return nominal(self.path).site
+
+    def files(self) -> tuple[Path, ...]:
+        """The world file and all files that it names; raises as `site`."""
+        from momantu_worlds.scenes.loading import load_world
+
+        return load_world(self.path).files()
 
     def open(self, description: RobotDescription, seed: int, *, referee: bool = True) -> World:
         """Draw the episode of `seed` and build it in SAPIEN.
@@ -34,35 +55,46 @@ class WorldFile:
         Raises:
             WorldError: the world file is wrong, the robot cannot be simulated, or nothing renders.
         """
+        from momantu_bt.robot import laser_band
         from momantu_worlds.sapien.world import SapienWorld
-        from momantu_worlds.scenes.loading import draw_episode
+        from momantu_worlds.scenes.loading import draw_episode, load_world
+        from momantu_worlds.scenes.maps import with_maps
 
-        episode = draw_episode(self.name, seed)
-        return SapienWorld(self.name, description, episode, seed, referee=referee)
+        world, episode = load_world(self.path), draw_episode(self.path, seed)
+        site = with_maps(episode.site, world, laser_band(description), description.height)
+        episode = replace(episode, site=site)
+        return SapienWorld(self.path, description, episode, seed, referee=referee)
 
     def about(self) -> Mapping[str, Mapping[str, str]]:
         """Tags, loose things, what varies and the goal, in words."""
         from momantu_worlds.scenes.about import about
-        from momantu_worlds.scenes.loading import world_path
 
-        return about(world_path(self.name))
+        return about(self.path)
 
     def check(self, description: RobotDescription, seeds: Sequence[int]) -> Sequence[Finding]:
         """All that is wrong for this robot in the episodes of these seeds; raises WorldError."""
         from momantu_worlds.checking.run import check_world
-        from momantu_worlds.scenes.loading import sketch, world_path
+        from momantu_worlds.scenes.loading import draw_episode
 
-        def draw(seed: int) -> Episode:
-            return sketch(self.name, seed)
-
-        return check_world(world_path(self.name), draw, description, seeds)
+        return check_world(
+            self.path, lambda seed: draw_episode(self.path, seed), description, seeds
+        )
 
     def preview(self, description: RobotDescription, seed: int, *, view: bool = True) -> bytes:
         """A PNG of an episode; raises WorldError."""
         from momantu_worlds.preview.page import page
-        from momantu_worlds.scenes.loading import sketch
+        from momantu_worlds.scenes.loading import draw_episode
 
-        return page(sketch(self.name, seed), description, view=view)
+        return page(draw_episode(self.path, seed), description, view=view)
 
 
-four_rooms = WorldFile("four_rooms")
+def world_from_file(path: Path) -> WorldOfFile:
+    """The world that a file describes; nothing is read yet."""
+    return WorldOfFile(path)
+
+
+def _bundled(name: str) -> WorldOfFile:
+    return WorldOfFile(Path(__file__).parent / "scenes" / f"{name}.yaml")
+
+
+four_rooms = _bundled("four_rooms")

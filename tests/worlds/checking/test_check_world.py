@@ -6,7 +6,7 @@ import pytest
 from momantu_worlds.checking.run import check_world
 from momantu_worlds.robots import fetch
 from momantu_worlds.scenes.bodies import Episode
-from momantu_worlds.scenes.loading import sketch, world_path
+from momantu_worlds.scenes.loading import draw_episode, world_path
 
 from momantu_bt.geometry import Pose2D
 from momantu_bt.world import WorldError
@@ -16,7 +16,7 @@ LINES = PATH.read_text(encoding="utf-8").splitlines()
 
 
 def test_four_rooms_has_one_crate_that_reaches_into_a_wall() -> None:
-    findings = check_world(PATH, lambda seed: sketch("four_rooms", seed), fetch(), range(3))
+    findings = check_world(PATH, lambda seed: draw_episode("four_rooms", seed), fetch(), range(3))
     (finding,) = findings
     assert (finding.severity, finding.code, finding.file) == ("warning", "overlap", PATH)
     assert "crate_corridor overlaps wall_corridor_north_west by 3.8 cm" in finding.message
@@ -25,7 +25,7 @@ def test_four_rooms_has_one_crate_that_reaches_into_a_wall() -> None:
 
 
 def test_the_worst_episode_words_a_finding_and_one_that_cannot_be_is_told() -> None:
-    drawn = sketch("four_rooms", 0)
+    drawn = draw_episode("four_rooms", 0)
     wall = drawn.body("wall_outer_west").map_from_body.position
 
     def draw(seed: int) -> Episode:

@@ -1,91 +1,134 @@
-"""The site that is kept beside the map is the one that the world file gives."""
+"""What is kept of a world is what its file gives, until the file changes."""
 
-import shutil
-import subprocess
-import sys
+import dataclasses
 
 import pytest
-from momantu_worlds.scenes import loading
-from momantu_worlds.scenes.loading import FOLDER, map_files, site_from_file, world_path
-from momantu_worlds.scenes.sites import kept_site, save_site
+from momantu_worlds.robots import fetch
+from momantu_worlds.scenes import kept, loading
+from momantu_worlds.scenes.loading import load_world, nominal, nominal_site, world_path
+from momantu_worlds.scenes.maps import with_maps
+from momantu_worlds.scenes.sites import kept_nominal
 
+from momantu_bt.robot import laser_band
+from momantu_bt.vulkan.places import CACHE_VARIABLE
 from momantu_bt.world import WorldError
 
-NAME = "four_rooms"
-KEPT = FOLDER / NAME / "site.json"
+PATH = world_path("four_rooms")
+FETCH = fetch()
 
 
-def test_the_kept_site_is_the_one_of_the_world_file():
-    kept = kept_site(NAME, world_path(NAME), KEPT, map_files(NAME))
-    assert kept == site_from_file(NAME), "run python -m momantu_worlds.scenes four_rooms"
-
-
-def test_a_site_survives_being_kept(tmp_path):
-    site = site_from_file(NAME)
-    save_site(site, world_path(NAME), tmp_path / "site.json")
-    assert kept_site(NAME, world_path(NAME), tmp_path / "site.json", map_files(NAME)) == site
+@pytest.fixture(autouse=True)
+def cache(tmp_path, monkeypatch):
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path / "cache"))
+    return tmp_path / "cache"
 
 
 @pytest.fixture
-def elsewhere(tmp_path, monkeypatch):
-    """A copy of the world in a folder of its own, with one wall moved."""
-    shutil.copytree(FOLDER / NAME, tmp_path / NAME)
-    text = world_path(NAME).read_text(encoding="utf-8")
-    changed = text.replace("center: [-8.428, -1.584]", "center: [-8.428, -1.384]")
-    changed = changed.replace("home: [-4.70, -3.44, 180 deg]", "home: [-5.00, -3.44, 180 deg]")
-    (tmp_path / f"{NAME}.yaml").write_text(changed, encoding="utf-8")
-    monkeypatch.setattr(loading, "FOLDER", tmp_path)
-    loading.load_world.cache_clear()
-    yield tmp_path
-    loading.load_world.cache_clear()
+def copy(tmp_path):
+    """A copy of the world that may be changed."""
+    path = tmp_path / "rooms.yaml"
+    path.write_bytes(PATH.read_bytes())
+    return path
 
 
-def test_a_changed_world_file_is_read_anew(elsewhere):
-    assert loading.nominal_site(NAME).places["home"].x == -5.0
+def change(path, before, after):
+    text = path.read_text(encoding="utf-8")
+    assert text.count(before) == 1
+    path.write_text(text.replace(before, after), encoding="utf-8")
 
 
-def test_an_episode_of_a_changed_world_file_has_new_maps(elsewhere):
-    before = (elsewhere / NAME / "map.pgm").read_bytes()
-    site = loading.draw_episode(NAME, 0).site
-    assert site.map_file.parent == elsewhere / NAME
-    assert (elsewhere / NAME / "map.pgm").read_bytes() != before
-    kept = kept_site(NAME, elsewhere / f"{NAME}.yaml", elsewhere / NAME / "site.json", (None, None))
-    assert kept is not None
-    assert not [path for path in (elsewhere / NAME).iterdir() if path.name.startswith(".")]
+def test_the_site_survives_being_kept():
+    first = nominal(PATH)
+    assert kept_nominal(PATH.read_bytes()) == first
+    assert first.site == nominal_site(load_world("four_rooms"))
+    assert first.robot == "fetch"
 
 
-def test_maps_that_cannot_be_drawn_anew_are_a_world_error(elsewhere, monkeypatch):
-    def refuse(*_):
-        raise PermissionError(13, "Permission denied")
-
-    monkeypatch.setattr(loading, "save_site", refuse)
-    with pytest.raises(WorldError, match=r"four_rooms.yaml was changed, but its maps cannot"):
-        loading.draw_episode(NAME, 0)
+def test_a_kept_site_spares_reading_the_file(monkeypatch):
+    first = nominal(PATH)
+    monkeypatch.setattr(loading, "load_world", None)
+    assert nominal(PATH) == first
 
 
-@pytest.mark.parametrize("text", ["", "{", "{}", "[]", '{"made_from": "other"}'])
-def test_a_broken_short_form_is_as_good_as_none(tmp_path, text):
-    (tmp_path / "site.json").write_text(text, encoding="utf-8")
-    assert kept_site(NAME, world_path(NAME), tmp_path / "site.json", map_files(NAME)) is None
-    assert kept_site(NAME, world_path(NAME), tmp_path / "none.json", map_files(NAME)) is None
+def test_a_changed_file_gives_another_site(copy):
+    nominal(copy)
+    change(copy, "home: [-4.70, -3.44, 180 deg]", "home: [-5.00, -3.44, 180 deg]")
+    assert nominal(copy).site.places["home"].x == -5.0
 
 
-def test_asking_for_the_site_loads_nothing_heavy():
-    code = (
-        "import sys\n"
-        "from momantu_worlds.worlds import four_rooms\n"
-        "assert four_rooms.site().surfaces\n"
-        "heavy = {'sapien', 'cv2', 'torch', 'av', 'trimesh', 'viser', 'ruamel', 'pydantic'}\n"
-        "print(sorted(heavy & set(sys.modules)))\n"
+@pytest.mark.parametrize("damage", ["", "{", "[]", '{"robot": "fetch"}', '{"site": {}}'])
+def test_a_damaged_short_form_is_read_anew(cache, damage):
+    first = nominal(PATH)
+    (file,) = (cache / "sites").iterdir()
+    file.write_text(damage)
+    assert nominal(PATH) == first
+
+
+def test_where_no_cache_can_be_written_a_passing_folder_serves(tmp_path, monkeypatch):
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path / "file"))
+    assert "table_a" in nominal(PATH).site.surfaces
+    assert all(file.is_file() for file in maps(PATH))
+
+
+def maps(path, height=FETCH.height):
+    world = load_world(path)
+    site = with_maps(nominal_site(world), world, laser_band(FETCH), height)
+    return site.map_file, site.overhang_file
+
+
+def test_maps_are_drawn_once_for_one_file_and_robot():
+    first = maps(PATH)
+    stamps = [file.stat().st_mtime_ns for file in first]
+    assert maps(PATH) == first
+    assert [file.stat().st_mtime_ns for file in first] == stamps
+
+
+def test_another_robot_or_a_changed_file_has_maps_of_its_own(copy):
+    first = maps(copy)
+    assert maps(copy, height=0.4)[1] != first[1]
+    change(copy, "center: [-8.428, -1.584]", "center: [-8.428, -1.384]")
+    assert (
+        maps(copy)[0].with_suffix(".pgm").read_bytes() != first[0].with_suffix(".pgm").read_bytes()
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "[]"
 
 
-def test_the_site_names_where_to_stand_and_what_to_look_for():
-    site = site_from_file(NAME)
-    assert set(site.surfaces) == {"table_a", "table_b"}
-    assert site.surfaces["table_b"].height == pytest.approx(0.5)
-    assert site.objects["can"].diameter == pytest.approx(0.07)
-    assert site.start_sigma[0] == pytest.approx(0.15)
-    assert all(path.is_file() for path in (site.map_file, site.overhang_file))
+def test_a_half_written_map_is_drawn_again():
+    first = maps(PATH)
+    whole = first[0].read_bytes()
+    first[0].unlink()
+    assert maps(PATH) == first
+    assert first[0].read_bytes() == whole
+
+
+def test_a_map_that_the_file_names_is_taken(copy):
+    own = copy.parent / "own.yaml"
+    change(copy, "  resolution: 5 cm", "  resolution: 5 cm\n  map: own.yaml")
+    with pytest.raises(WorldError, match=r"no file 'own.yaml'"):
+        load_world(copy)
+    own.write_text("image: own.pgm\n")
+    assert maps(copy) == (own, None)
+
+
+def test_a_missing_world_file_is_a_world_error(tmp_path):
+    with pytest.raises(WorldError, match="cannot be read"):
+        nominal(tmp_path / "none.yaml")
+
+
+def test_files_are_written_whole_or_not_at_all(tmp_path, monkeypatch):
+    file = tmp_path / "a.txt"
+    kept.put(file, b"one")
+
+    def fails(self, target):
+        raise OSError("no")
+
+    monkeypatch.setattr(type(file), "replace", fails)
+    with pytest.raises(OSError, match="no"):
+        kept.put(file, b"two")
+    assert file.read_bytes() == b"one"
+    assert list(tmp_path.iterdir()) == [file]
+
+
+def test_the_site_holds_no_truth():
+    names = {field.name for field in dataclasses.fields(nominal(PATH).site)}
+    assert names.isdisjoint({"bodies", "goal", "item", "seed"})

@@ -5,16 +5,10 @@ from functools import cache
 from itertools import combinations
 
 import pytest
-from momantu_worlds.scenes.floor import (
-    START_CLEAR,
-    around,
-    footprint,
-    stand_pose,
-    stand_zone,
-    wall_rectangles,
-)
+from momantu_worlds.scenes.floor import around, stand_pose, stand_zone
 from momantu_worlds.scenes.layout import Layout
 from momantu_worlds.scenes.loading import draw_episode, load_world
+from momantu_worlds.scenes.obstacles import footprint, wall_rectangles
 from momantu_worlds.scenes.plane_geometry import Rectangle, gap, passages
 from momantu_worlds.scenes.tabletop import Disc, SetDown, free_spots, lane, seen_share, tag_points
 from momantu_worlds.scenes.tabletop import outline_points as body_points
@@ -47,13 +41,14 @@ def between(a: Disc, b: Disc) -> float:
 
 
 def item_disc(drawn: Layout) -> Disc:
-    return Disc(drawn.item_at.x, drawn.item_at.y, WORLD.item.radius, WORLD.item.height)
+    at = drawn.object("can").at
+    return Disc(at.x, at.y, WORLD.item.radius, WORLD.item.height)
 
 
 def obstacles(drawn: Layout) -> list[Rectangle]:
     return [
         *wall_rectangles(WORLD),
-        *(footprint(p.piece, p.pose) for p in drawn.pieces),
+        *(footprint(WORLD, p.piece, p.pose) for p in drawn.pieces),
         *(Rectangle(t.pose, t.size) for t in drawn.tables.values()),
     ]
 
@@ -64,16 +59,16 @@ def test_a_seed_gives_the_same_layout_again(seed):
 
 
 def test_seeds_differ():
-    assert len({(layout(s).item_at.x, layout(s).start.yaw) for s in SEEDS}) == len(SEEDS)
+    assert len({(layout(s).object("can").at.x, layout(s).start.yaw) for s in SEEDS}) == len(SEEDS)
 
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_tables_stay_within_their_shift_turn_and_lift(seed):
     for name, placed in layout(seed).tables.items():
-        told = WORLD.tables[name]
-        assert abs(placed.pose.x - told.pose.x) <= 0.10 + ROUNDING
-        assert abs(placed.pose.y - told.pose.y) <= 0.10 + ROUNDING
-        assert abs(wrap_angle(placed.pose.yaw - told.pose.yaw)) <= math.radians(5) + ROUNDING
+        told, nominal = WORLD.tables[name], Pose2D(*WORLD.tables[name].at)
+        assert abs(placed.pose.x - nominal.x) <= 0.10 + ROUNDING
+        assert abs(placed.pose.y - nominal.y) <= 0.10 + ROUNDING
+        assert abs(wrap_angle(placed.pose.yaw - nominal.yaw)) <= math.radians(5) + ROUNDING
         assert abs(placed.height - told.size[2]) <= 0.03 + ROUNDING
 
 
@@ -82,8 +77,8 @@ def test_item_and_tag_stay_whole_on_their_tables(seed):
     drawn = layout(seed)
     corner = picture_edge(WORLD.tag.edge) / math.sqrt(2)
     for told, at, radius in (
-        (WORLD.item, drawn.item_at, WORLD.item.radius),
-        (WORLD.tag, drawn.tag_at, corner),
+        (WORLD.item, drawn.object("can").at, WORLD.item.radius),
+        (WORLD.tag, drawn.tag("tag").at, corner),
     ):
         half_x, half_y = (edge / 2 for edge in WORLD.tables[told.on].size[:2])
         assert abs(at.x) + radius <= half_x + ROUNDING
@@ -128,13 +123,14 @@ def test_the_item_is_seen_and_a_hand_gets_to_it(seed):
 def test_the_tag_is_seen_whole_and_a_spot_remains_beside_it(seed):
     drawn, side = layout(seed), WORLD.tables["table_b"].sides[0]
     here, corner = discs(drawn, "table_b"), picture_edge(WORLD.tag.edge) / math.sqrt(2)
-    tag = Disc(drawn.tag_at.x, drawn.tag_at.y, corner, 0.0)
+    tag_at = drawn.tag("tag").at
+    tag = Disc(tag_at.x, tag_at.y, corner, 0.0)
     assert all(between(tag, disc) >= 0 for disc in here)
     table = drawn.tables["table_b"]
-    assert seen_share(tag_points(drawn.tag_at, corner), here, table, side, tag) == 1.0
+    assert seen_share(tag_points(tag_at, corner), here, table, side, tag) == 1.0
     item = WORLD.item
     wanted = SetDown(item.radius, item.height, WORLD.goal.distance, side)
-    assert free_spots(wanted, table, here, drawn.tag_at)
+    assert free_spots(wanted, table, here, tag_at)
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -142,7 +138,7 @@ def test_the_start_is_near_free_and_told_roughly(seed):
     drawn, told = layout(seed), WORLD.start
     assert abs(drawn.start.x - told.at[0]) <= 0.5
     assert abs(drawn.start.y - told.at[1]) <= 0.5
-    assert all(gap(around(drawn.start, START_CLEAR), o) > 0 for o in obstacles(drawn))
+    assert all(gap(around(drawn.start, told.clear), o) > 0 for o in obstacles(drawn))
     assert drawn.believed_start.distance_to(drawn.start) <= 0.3 + ROUNDING
     turned = wrap_angle(drawn.believed_start.yaw - drawn.start.yaw)
     assert abs(turned) <= math.radians(15) + ROUNDING
@@ -162,11 +158,11 @@ def test_furniture_moves_a_little_and_extras_keep_out_of_the_way(seed):
     extras = [p for p in drawn.pieces if not p.known]
     assert WORLD.unknown.extra.least <= len(extras) <= WORLD.unknown.extra.most
     for extra in extras:
-        own = footprint(extra.piece, extra.pose)
+        own = footprint(WORLD, extra.piece, extra.pose)
         others = [o for o in obstacles(drawn) if o.pose != extra.pose]
         assert all(gap(own, other) >= 0.15 for other in others)
-        for name, table in drawn.tables.items():
-            assert gap(own, stand_zone(WORLD.tables[name], table, WORLD.unknown.stand)) > 0
+        for table in drawn.tables.values():
+            assert gap(own, stand_zone(table, WORLD.unknown.stand)) > 0
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -175,8 +171,8 @@ def test_a_disc_still_gets_everywhere(seed):
     floor = WORLD.floor
     grid = passages(obstacles(drawn), floor.center, floor.size, 0.45, cell=0.05)
     stops = [(drawn.start.x, drawn.start.y), *(d.at for d in WORLD.doorways.values())]
-    for name, table in drawn.tables.items():
-        stand = stand_pose(WORLD.tables[name], table)
+    for table in drawn.tables.values():
+        stand = stand_pose(table)
         stops.append((stand.x, stand.y))
     assert grid.connects(stops)
 

@@ -45,9 +45,14 @@ CASES = [
     ("    kind: desk\n", "    kind: throne\n", "throne", ["'throne' is not possible", "'desk'"]),
     ("  id: 1 ", "  id: 400 ", "id: 400", ["tag.id", "less than 30"]),
     ("moved: {least: 2, most: 5}", "moved: {least: 6, most: 5}", "{least: 6", ["more than most"]),
-    ("  beside: tag", "  beside: flag", "flag\n", ["there is no 'flag'; the tag is 'tag'"]),
-    ("  item: can\n", "  item: mug\n", "mug\n", ["there is no item 'mug'; it is 'can'"]),
-    ("  robot_height: 1.5 m ", "  robot_height: 010x ", "010x", ["'x' is not a unit of a length"]),
+    (
+        "  beside: tag",
+        "  beside: flag",
+        "flag\n",
+        ["there is no tag or body 'flag'", "tag, table_a"],
+    ),
+    ("  item: can\n", "  item: mug\n", "mug\n", ["there is no object 'mug'", "objects: can"]),
+    ("  edge: 150 mm ", "  edge: 010x ", "010x", ["'x' is not a unit of a length"]),
     ("  chair_a: {", "  table_a: {", "{kind: chair, at: [-1.20", ["'table_a' is a table already"]),
 ]
 

@@ -37,7 +37,7 @@ def goals(scenario: Scenario) -> Iterator[Remark]:
             "goal-met",
             ("goal",),
             (),
-            f"{goal.item} stands on {goal.support} beside {goal.marker} before anything is done",
+            f"{goal.item} stands {_where(goal)} before anything is done",
             "begin with the item elsewhere, or demand less `goal.distance`",
         )
     spots = _spots(scenario, goal, item)
@@ -47,8 +47,7 @@ def goals(scenario: Scenario) -> Iterator[Remark]:
             "goal-no-room",
             ("goal",),
             (),
-            f"no free spot for {goal.item} on {goal.support} within {goal.max_distance:g} m of "
-            f"{goal.marker}",
+            f"there is no free spot for {goal.item} {_where(goal)}",
             "move the tag further in, or make room beside it",
         )
     elif (far := _farness(scenario, spots)) > scenario.robot.reach[2]:
@@ -57,11 +56,17 @@ def goals(scenario: Scenario) -> Iterator[Remark]:
             "goal-out-of-reach",
             ("goal",),
             (),
-            f"every free spot for {goal.item} beside {goal.marker} is {_meters(far)} from where "
+            f"every free spot for {goal.item} {_where(goal)} is {_meters(far)} from where "
             f"{scenario.robot.name} gets; its arm reaches {scenario.robot.reach[2]:g} m",
             "move the tag nearer to the edge",
             far,
         )
+
+
+def _where(goal: Goal) -> str:
+    """Where the item is to go, in words."""
+    beside = "" if goal.marker is None else f" within {goal.max_distance:g} m of {goal.marker}"
+    return f"on {goal.support}{beside}"
 
 
 def _item(scenario: Scenario, item: Body) -> Iterator[Remark]:
@@ -101,9 +106,12 @@ def _width(points: Array) -> float:
 
 
 def _met(scenario: Scenario, goal: Goal, item: Body) -> bool:
-    support, marker = scenario.episode.body(goal.support), scenario.episode.body(goal.marker)
+    support = scenario.episode.body(goal.support)
     top, foot = Top(support), _foot(scenario, item)
-    beside = math.dist(foot.position[:2], marker.map_from_body.position[:2])
+    beside = 0.0
+    if goal.marker is not None:
+        marker = scenario.episode.body(goal.marker).map_from_body.position
+        beside = math.dist(foot.position[:2], marker[:2])
     return (
         top.margin(support.map_from_body, foot) > 0.0
         and abs(top.height_above(support.map_from_body, foot)) <= FLUSH
@@ -121,22 +129,26 @@ def _foot(scenario: Scenario, item: Body) -> Transform:
 def _spots(scenario: Scenario, goal: Goal, item: Body) -> Array:
     """Places (n, 2) in the map where the item could stand whole on the support, beside the marker.
 
+    Without a marker: anywhere on it.
     They keep FLUSH from everything.
     """
     map_from_top, size = scenario.surfaces[goal.support]
-    marker = scenario.episode.body(goal.marker).map_from_body.position
+    marker, within = map_from_top.position, math.hypot(*size) / 2
+    if goal.marker is not None:
+        marker = scenario.episode.body(goal.marker).map_from_body.position
+        within = goal.max_distance
     foot = _foot(scenario, item)
     points = np.concatenate([solid.vertices for solid in scenario.solids[item.name]])
     radius = float(np.hypot(*(points[:, :2] - foot.position[:2]).T).max())
-    steps = np.arange(-goal.max_distance, goal.max_distance + 1e-9, STEP)
-    beside = _beside(scenario, item, marker, goal.max_distance + radius)
+    steps = np.arange(-within, within + 1e-9, STEP)
+    beside = _beside(scenario, item, marker, within + radius)
     spots = []
     for dx in steps:
         for dy in steps:
             at = (float(marker[0] + dx), float(marker[1] + dy), float(map_from_top.position[2]))
             own = map_from_top.inverse().apply(at)
             inside = bool((np.abs(own[:2]) <= np.array(size) / 2 - radius).all())
-            if inside and math.hypot(dx, dy) <= goal.max_distance:
+            if inside and math.hypot(dx, dy) <= within:
                 moved = Transform(np.array(at) - foot.position + (0.0, 0.0, FLUSH))
                 if _free(beside, replace(item, map_from_body=moved @ item.map_from_body)):
                     spots.append(at[:2])

@@ -17,7 +17,7 @@ from momantu_worlds.sapien.moving import MovingBody
 from momantu_worlds.sapien.poses import pose_of
 from momantu_worlds.sapien.robot_model import FLOOR_BIT
 from momantu_worlds.sapien.truth import Truth
-from momantu_worlds.scenes.bodies import Body, Box, Cylinder, Episode, Hull, Part
+from momantu_worlds.scenes.bodies import Body, Box, Cylinder, Episode, Hull, Part, Sphere
 
 FLOOR = "floor"
 """Category of bodies that the robot's base rolls on, and the name of the plane at z = 0."""
@@ -137,12 +137,16 @@ def _collision_shape(part: Part, material: Any) -> Any:
         return physx.PhysxCollisionShapeCylinder(
             radius=geometry.radius, half_length=geometry.height / 2, material=material
         )
+    if isinstance(geometry, Sphere):
+        return physx.PhysxCollisionShapeSphere(radius=geometry.radius, material=material)
     if isinstance(geometry, Hull):
         vertices = np.asarray(geometry.vertices, dtype=np.float32)
         return physx.PhysxCollisionShapeConvexMesh(
             vertices=vertices, scale=[1, 1, 1], material=material
         )
-    raise TypeError(f"a {type(geometry).__name__} cannot collide; use Box, Cylinder or Hull")
+    raise TypeError(
+        f"a {type(geometry).__name__} cannot collide; use Box, Cylinder, Sphere or Hull"
+    )
 
 
 def _sapien_pose(part: Part) -> Transform:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array
 from momantu_worlds.sapien.meshes import collision_mesh
-from momantu_worlds.scenes.bodies import Box, Cylinder, Hull, Mesh, Part, Picture
+from momantu_worlds.scenes.bodies import Box, Cylinder, Hull, Mesh, Part, Picture, Sphere
 
 GAMMA = 2.2
 """Colours are given as a screen shows them; the shader computes with light."""
@@ -24,6 +24,8 @@ def render_shape(part: Part) -> Any:
         return sapien.render.RenderShapeBox(half, _plain(part))
     if isinstance(geometry, Cylinder):
         return sapien.render.RenderShapeCylinder(geometry.radius, geometry.height / 2, _plain(part))
+    if isinstance(geometry, Sphere):
+        return sapien.render.RenderShapeSphere(geometry.radius, _plain(part))
     if isinstance(geometry, Picture):
         return _picture(geometry)
     if isinstance(geometry, Mesh):
@@ -68,14 +70,18 @@ def _picture(picture: Picture) -> Any:
 
 
 def _mesh(mesh: Mesh, part: Part) -> Any:
-    """A mesh in the part's colour; vertices that triangles share are shaded smoothly."""
+    """A mesh in its texture or the part's colour; shared vertices are shaded smoothly."""
     vertices = np.asarray(mesh.vertices, dtype=np.float64)
+    uv, material = np.zeros((len(vertices), 2)), _plain(part)
+    if mesh.uv is not None and mesh.texture is not None:
+        # a mesh's v counts from its picture's last row, the renderer's from the first
+        uv, material = np.array([0.0, 1.0]) + mesh.uv * (1.0, -1.0), _textured(mesh.texture)
     return sapien.render.RenderShapeTriangleMesh(
         vertices.astype(np.float32),
         np.asarray(mesh.triangles).astype(np.uint32),
         _smooth_normals(vertices, np.asarray(mesh.triangles)).astype(np.float32),
-        np.zeros((len(vertices), 2), dtype=np.float32),
-        _plain(part),
+        uv.astype(np.float32),
+        material,
     )
 
 

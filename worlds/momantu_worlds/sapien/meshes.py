@@ -9,10 +9,12 @@ import numpy as np
 import trimesh
 
 from momantu_bt.geometry import Array
-from momantu_worlds.scenes.bodies import Body, Box, Cylinder, Geometry, Hull, Part
+from momantu_worlds.scenes.bodies import Body, Box, Cylinder, Geometry, Hull, Part, Sphere
 
 CYLINDER_SIDES = 24
 """Sides of the prism that stands for a cylinder: 0.9 % of the radius off at most."""
+SPHERE_LEVEL = 2
+"""Times that an icosahedron is refined to stand for a ball: 2 % of the radius off at most."""
 
 
 def collision_mesh(geometry: Geometry) -> Any:
@@ -27,6 +29,8 @@ def collision_mesh(geometry: Geometry) -> Any:
         return trimesh.creation.cylinder(
             radius=geometry.radius, height=geometry.height, sections=CYLINDER_SIDES
         )
+    if isinstance(geometry, Sphere):
+        return trimesh.creation.icosphere(subdivisions=SPHERE_LEVEL, radius=geometry.radius)
     if isinstance(geometry, Hull):
         return trimesh.convex.convex_hull(np.asarray(geometry.vertices))
     raise TypeError(f"a {type(geometry).__name__} has no collision shape")
@@ -38,6 +42,8 @@ def volume(geometry: Geometry) -> float:
         return math.prod(geometry.size)
     if isinstance(geometry, Cylinder):
         return math.pi * geometry.radius**2 * geometry.height
+    if isinstance(geometry, Sphere):
+        return 4.0 / 3.0 * math.pi * geometry.radius**3
     return float(collision_mesh(geometry).volume)
 
 

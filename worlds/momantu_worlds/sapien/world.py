@@ -17,7 +17,6 @@ from momantu_worlds.sapien.simulator import Simulator
 from momantu_worlds.scenes.bodies import Episode
 from momantu_worlds.scenes.hand import hand_of
 from momantu_worlds.scenes.judge import ClaimJudge
-from momantu_worlds.scenes.loading import world_path
 from momantu_worlds.scenes.referee import Referee
 
 
@@ -26,14 +25,15 @@ class SapienWorld:
 
     def __init__(
         self,
-        name: str,
+        path: Path,
         description: RobotDescription,
         episode: Episode,
         seed: int,
         *,
         referee: bool = True,
     ) -> None:
-        self._name, self._episode = name, episode
+        """path: of the world file that the episode was drawn from."""
+        self._path, self._episode = path, episode
         self.simulator = Simulator(description, episode, seed)
         wanted = referee and episode.goal is not None
         self._referee = (
@@ -44,7 +44,7 @@ class SapienWorld:
     @property
     def name(self) -> str:
         """The world's name."""
-        return self._name
+        return self._episode.name
 
     @property
     def site(self) -> Site:
@@ -98,8 +98,7 @@ class SapienWorld:
 
     def texts(self) -> Mapping[str, str]:
         """The world file, by its name."""
-        path = world_path(self._name)
-        return {path.name: path.read_text(encoding="utf-8")}
+        return {self._path.name: self._path.read_text(encoding="utf-8", errors="replace")}
 
     def close(self) -> None:
         """Free the scene; safe to call twice."""

@@ -37,15 +37,25 @@ class Cylinder:
     height: float
 
 
+@dataclass(frozen=True, slots=True)
+class Sphere:
+    """A ball around the part's origin, m."""
+
+    radius: float
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Mesh:
     """A triangle mesh to look at; vertices that faces share are shaded smoothly.
 
-    vertices: (n, 3) m. triangles: (m, 3), counter-clockwise seen from outside.
+    vertices: (n, 3) m. triangles: (m, 3), counter-clockwise seen from outside. texture: a picture
+    (h, w, 3) uint8 instead of the part's colour, with uv (n, 2), whose v = 0 is its last row.
     """
 
     vertices: Array
     triangles: NDArray[np.int32]
+    uv: Array | None = None
+    texture: NDArray[np.uint8] | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -66,7 +76,7 @@ class Picture:
     pixels: NDArray[np.uint8]
 
 
-Geometry: TypeAlias = Box | Cylinder | Mesh | Hull | Picture
+Geometry: TypeAlias = Box | Cylinder | Sphere | Mesh | Hull | Picture
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,12 +91,21 @@ class Part:
 
 
 @dataclass(frozen=True, slots=True)
+class BodyTop:
+    """A level top of a body: the frame in its middle, z up, and its extent along x and y, m."""
+
+    body_from_top: Transform
+    size: tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
 class Body:
     """A rigid body.
 
     name: unique in the episode. category: "can", "bottle", "table", "wall" … static: it never
     moves. mass: kg, ignored when static; its density is uniform over the colliding parts.
-    friction: coefficient, static and dynamic alike.
+    friction: coefficient, static and dynamic alike. top: on which things stand; without it, the
+    upper faces of its boxes are.
     """
 
     name: str
@@ -96,6 +115,7 @@ class Body:
     static: bool = True
     mass: float = 0.0
     friction: float = 0.6
+    top: BodyTop | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,7 +138,8 @@ class PointLight:
 class Goal:
     """What the referee demands: `item` stands on `support` beside `marker` (names of bodies).
 
-    max_tilt: rad from upright. max_distance: m between item and marker, along the floor.
+    marker: None where it does not matter beside what. max_tilt: rad from upright. max_distance: m
+    between item and marker, along the floor.
     still_for: s without moving. min_gripper_distance: m from the item. max_others_tilt: rad and
     max_others_shift: m that any other loose body may have moved. max_force: N of any contact
     of the robot with anything but the item.
@@ -126,7 +147,7 @@ class Goal:
 
     item: str
     support: str
-    marker: str
+    marker: str | None
     max_tilt: float
     max_distance: float
     still_for: float

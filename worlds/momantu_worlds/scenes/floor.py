@@ -9,14 +9,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 
 import numpy as np
 
 from momantu_bt.geometry import Pose2D
 from momantu_bt.world import WorldError, seeded
 from momantu_worlds.scenes.layout import PlacedPiece, PlacedTable
+from momantu_worlds.scenes.obstacles import floor_extent, footprint, standing_rectangles
 from momantu_worlds.scenes.plane_geometry import Rectangle, clear_of, passages
-from momantu_worlds.scenes.world_file import Piece, Table, WorldFile
+from momantu_worlds.scenes.surfaces import board_surface, carriers, nominal_surfaces
+from momantu_worlds.scenes.world_episode import Unknown
+from momantu_worlds.scenes.world_file import WorldFile
+from momantu_worlds.scenes.world_furniture import Piece
 
 TRIES = 60
 """Draws for one thing before it is left out (an extra) or stays where the map has it."""
@@ -24,8 +29,6 @@ MOVED_GAP = 0.03
 """m; what a moved piece keeps from everything else."""
 EXTRA_GAP = 0.15
 """m; what an extra piece keeps from everything else."""
-START_CLEAR = 0.55
-"""m; around the start: the robot turns on the spot within 0.35 m, and must see a way out."""
 STAND_OFF = 0.55
 """m; from a table's edge to where a robot stands that reaches onto it."""
 WIDE = 0.4
@@ -34,97 +37,140 @@ COARSE, FINE = 0.1, 0.05
 """m; cells in which passages are looked for. A narrow door leaves a disc's centre a few cm."""
 SIDEWAYS = 0.3
 """m; how much wider than the table's side the zone before it is kept free, on either hand."""
+UNVARIED = Unknown()
+"""Of a world that says nothing about the unknown: nothing is moved, nothing is added."""
 
 
-def place_tables(world: WorldFile, seed: int) -> dict[str, PlacedTable]:
-    """Tables shifted, turned and lifted."""
+def place_tables(
+    world: WorldFile, seed: int
+) -> tuple[dict[str, PlacedTable], dict[str, PlacedPiece]]:
+    """Surfaces shifted, turned and lifted, and the shelves whose boards are among them."""
+    shelves = {name: _shelf(world, seed, name) for name in carriers(world)}
     placed = {}
-    for name, table in world.tables.items():
-        draw = seeded(seed, "table", name)
-        x, y = draw.uniform(-table.shift, table.shift, 2)
-        turn = float(draw.uniform(-table.turn, table.turn))
-        lift = float(draw.uniform(-table.lift, table.lift))
-        pose = Pose2D(table.pose.x + float(x), table.pose.y + float(y), table.pose.yaw + turn)
-        placed[name] = PlacedTable(pose, table.size[2] + lift, table.size[:2])
-    return placed
+    for name, nominal in nominal_surfaces(world).items():
+        table = world.tables.get(name)
+        if table is None:
+            placed[name] = nominal
+        elif table.board_of is not None:
+            shelf = shelves[table.board_of]
+            placed[name] = board_surface(shelf.piece, table, shelf.pose)
+        else:
+            draw = seeded(seed, "table", name)
+            pose = _shifted(draw, nominal.pose, table.shift, table.turn)
+            lift = float(draw.uniform(-table.lift, table.lift))
+            placed[name] = replace(nominal, pose=pose, height=nominal.height + lift)
+    return placed, shelves
+
+
+def _shelf(world: WorldFile, seed: int, name: str) -> PlacedPiece:
+    piece = world.furniture[name]
+    draw = seeded(seed, "table", name)
+    return PlacedPiece(name, piece, _shifted(draw, piece.pose, piece.shift, piece.turn), True)
+
+
+def _shifted(draw: np.random.Generator, pose: Pose2D, shift: float, turn: float) -> Pose2D:
+    x, y = draw.uniform(-shift, shift, 2)
+    yaw = float(draw.uniform(-turn, turn))
+    return Pose2D(pose.x + float(x), pose.y + float(y), pose.yaw + yaw)
 
 
 def place_start(world: WorldFile, seed: int) -> tuple[Pose2D, Pose2D]:
     """Where the robot truly stands, and what it is told."""
     draw = seeded(seed, "start")
     nominal = Pose2D(*world.start.at)
-    fixed = [*wall_rectangles(world), *(footprint(p, p.pose) for p in world.furniture.values())]
-    fixed += [Rectangle(t.pose, t.size[:2]) for t in world.tables.values()]
+    fixed = [*standing_rectangles(world)]
+    fixed += [footprint(world, p, p.pose) for p in world.furniture.values()]
+    fixed += [Rectangle(t.pose, t.size) for t in nominal_surfaces(world).values()]
+    turn = world.start.turn
     for _ in range(TRIES):
         x, y = draw.uniform(-world.start.shift, world.start.shift, 2)
-        start = Pose2D(
-            nominal.x + float(x), nominal.y + float(y), float(draw.uniform(-math.pi, math.pi))
-        )
-        if clear_of(around(start, START_CLEAR), fixed, 0.0):
+        yaw = float(draw.uniform(-math.pi, math.pi))
+        if turn is not None:
+            yaw = nominal.yaw + turn * yaw / math.pi
+        start = Pose2D(nominal.x + float(x), nominal.y + float(y), yaw)
+        if clear_of(around(start, world.start.clear), fixed, 0.0):
             break
     else:
-        raise WorldError(f"no free place to start within {world.start.shift} m of {nominal}")
+        raise WorldError(
+            f"the world {world.name!r} has no free place to start within {world.start.shift:g} m "
+            f"of ({nominal.x:g}, {nominal.y:g}), where {world.start.clear:g} m around it are free; "
+            "move start.at, or make start.clear smaller"
+        )
     away = float(draw.uniform(0.0, world.start.belief_shift))
     where = float(draw.uniform(-math.pi, math.pi))
-    turn = float(draw.uniform(-world.start.belief_turn, world.start.belief_turn))
+    off = float(draw.uniform(-world.start.belief_turn, world.start.belief_turn))
     x, y = start.x + away * math.cos(where), start.y + away * math.sin(where)
-    return start, Pose2D(x, y, start.yaw + turn)
+    return start, Pose2D(x, y, start.yaw + off)
 
 
 def place_furniture(
-    world: WorldFile, seed: int, tables: Mapping[str, PlacedTable], start: Pose2D
+    world: WorldFile,
+    seed: int,
+    tables: Mapping[str, PlacedTable],
+    shelves: Mapping[str, PlacedPiece],
+    start: Pose2D,
 ) -> tuple[PlacedPiece, ...]:
-    """Known furniture, some of it moved, and extra pieces.
+    """Known furniture, some of it moved, and extra pieces. shelves: those that stand already.
 
     Raises:
         WorldError: even with nothing moved and nothing extra the robot could not do its work.
     """
     known = {name: PlacedPiece(name, p, p.pose, True) for name, p in world.furniture.items()}
+    known |= shelves
+    room = _Room(world, world.unknown or UNVARIED, tables, start)
     placed = dict(known)
-    for change in (*_moves(world, seed), *_extras(world, seed)):
+    for change in (*_own_shifts(world, seed), *_moves(world, seed), *_extras(world, seed)):
         for piece in change:
-            others = [footprint(p.piece, p.pose) for n, p in placed.items() if n != piece.name]
+            others = [room.footprint(p) for n, p in placed.items() if n != piece.name]
             then = {**placed, piece.name: piece}
-            if _fits(world, piece, others, tables, start) and _passable(
-                world, then.values(), tables, start
-            ):
+            if room.fits(piece, others) and room.passable(then.values()):
                 placed = then
                 break
-    if placed == known and not _passable(world, known.values(), tables, start):
+    promised = world.unknown is not None
+    if promised and placed == known and not room.passable(known.values()):
         raise WorldError(
-            f"in the world {world.name!r} a disc of {world.unknown.passage} m does not get from "
-            "the start to both tables and through every doorway; move the furniture apart"
+            f"in the world {world.name!r} a disc of {room.unknown.passage} m does not get from "
+            "the start to every table and through every doorway; move the furniture apart"
         )
     return tuple(placed.values())
 
 
+def _own_shifts(world: WorldFile, seed: int) -> Iterator[Iterator[PlacedPiece]]:
+    """Pieces that every episode shifts."""
+    shelves = carriers(world)
+    for name, piece in world.furniture.items():
+        if (piece.shift or piece.turn) and name not in shelves:
+            draw = seeded(seed, "shifted", name)
+            yield _elsewhere(name, piece, draw, piece.shift, piece.turn)
+
+
 def _moves(world: WorldFile, seed: int) -> Iterator[Iterator[PlacedPiece]]:
+    unknown = world.unknown or UNVARIED
     draw = seeded(seed, "moved")
     names = [name for name, piece in world.furniture.items() if piece.moves]
-    wanted = int(draw.integers(world.unknown.moved.least, world.unknown.moved.most + 1))
+    wanted = int(draw.integers(unknown.moved.least, unknown.moved.most + 1))
     for name in draw.permutation(names)[:wanted].tolist():
-        yield _elsewhere(world, seed, name)
+        own = seeded(seed, "moved", name)
+        yield _elsewhere(name, world.furniture[name], own, unknown.shift, unknown.turn)
 
 
-def _elsewhere(world: WorldFile, seed: int, name: str) -> Iterator[PlacedPiece]:
-    draw, unknown = seeded(seed, "moved", name), world.unknown
-    piece = world.furniture[name]
+def _elsewhere(
+    name: str, piece: Piece, draw: np.random.Generator, shift: float, turn: float
+) -> Iterator[PlacedPiece]:
+    """Draws of where a piece may stand."""
     for _ in range(TRIES):
-        x, y = draw.uniform(-unknown.shift, unknown.shift, 2)
-        turn = float(draw.uniform(-unknown.turn, unknown.turn))
-        pose = Pose2D(piece.pose.x + float(x), piece.pose.y + float(y), piece.pose.yaw + turn)
-        yield PlacedPiece(name, piece, pose, True)
+        yield PlacedPiece(name, piece, _shifted(draw, piece.pose, shift, turn), True)
 
 
 def _extras(world: WorldFile, seed: int) -> Iterator[Iterator[PlacedPiece]]:
-    unknown = world.unknown
+    unknown = world.unknown or UNVARIED
     wanted = int(seeded(seed, "extra").integers(unknown.extra.least, unknown.extra.most + 1))
     for i in range(wanted if unknown.areas else 0):
-        yield _anywhere(world, seed, i)
+        yield _anywhere(unknown, seed, i)
 
 
-def _anywhere(world: WorldFile, seed: int, number: int) -> Iterator[PlacedPiece]:
-    draw, unknown = seeded(seed, "extra", number), world.unknown
+def _anywhere(unknown: Unknown, seed: int, number: int) -> Iterator[PlacedPiece]:
+    draw = seeded(seed, "extra", number)
     kind = unknown.kinds[int(draw.integers(len(unknown.kinds)))]
     for _ in range(TRIES):
         x0, y0, x1, y1 = unknown.areas[int(draw.integers(len(unknown.areas)))]
@@ -134,48 +180,49 @@ def _anywhere(world: WorldFile, seed: int, number: int) -> Iterator[PlacedPiece]
         yield PlacedPiece(f"extra_{kind}_{number}", piece, pose, False)
 
 
-def _fits(
-    world: WorldFile,
-    placed: PlacedPiece,
-    others: list[Rectangle],
-    tables: Mapping[str, PlacedTable],
-    start: Pose2D,
-) -> bool:
-    own = footprint(placed.piece, placed.pose)
-    least = MOVED_GAP if placed.known else EXTRA_GAP
-    doors = [(np.array(door.at), door.clear) for door in world.doorways.values()]
-    zones = [around(start, START_CLEAR)]
-    zones += [stand_zone(world.tables[n], t, world.unknown.stand) for n, t in tables.items()]
-    return (
-        clear_of(own, zones, 0.0 if placed.known else EXTRA_GAP)
-        and all(float(own.distance(at)) >= radius for at, radius in doors)
-        and clear_of(own, wall_rectangles(world), least)
-        and clear_of(own, (Rectangle(t.pose, t.size) for t in tables.values()), least)
-        and clear_of(own, others, least)
-    )
+class _Room:
+    """What a piece must leave free: doorways, the start, the floor before tables, ways through."""
 
+    def __init__(
+        self,
+        world: WorldFile,
+        unknown: Unknown,
+        tables: Mapping[str, PlacedTable],
+        start: Pose2D,
+    ) -> None:
+        self.unknown = unknown
+        self._world = world
+        self._standing = standing_rectangles(world)
+        self._tops = [Rectangle(table.pose, table.size) for table in tables.values()]
+        doors = world.all_doorways.values()
+        self._doors = [(np.array(door.at), door.clear) for door in doors]
+        self._zones = [around(start, world.start.clear)]
+        self._zones += [stand_zone(table, unknown.stand) for table in tables.values()]
+        self._stops = [(start.x, start.y), *(door.at for door in doors)]
+        self._stops += [(at.x, at.y) for at in map(stand_pose, tables.values())]
 
-def _passable(
-    world: WorldFile,
-    pieces: Iterable[PlacedPiece],
-    tables: Mapping[str, PlacedTable],
-    start: Pose2D,
-) -> bool:
-    obstacles = [*wall_rectangles(world), *(footprint(p.piece, p.pose) for p in pieces)]
-    obstacles += [Rectangle(table.pose, table.size) for table in tables.values()]
-    unknown = world.unknown
-    cell = COARSE if unknown.passage >= WIDE else FINE
-    grid = passages(obstacles, world.floor.center, world.floor.size, unknown.passage, cell)
-    stops = [(start.x, start.y), *(door.at for door in world.doorways.values())]
-    for name, table in tables.items():
-        at = stand_pose(world.tables[name], table)
-        stops.append((at.x, at.y))
-    return grid.connects(stops)
+    def footprint(self, placed: PlacedPiece) -> Rectangle:
+        """The floor that a piece takes up."""
+        return footprint(self._world, placed.piece, placed.pose)
 
+    def fits(self, placed: PlacedPiece, others: list[Rectangle]) -> bool:
+        """Whether a piece keeps its distance from everything."""
+        own = self.footprint(placed)
+        least = MOVED_GAP if placed.known else EXTRA_GAP
+        return (
+            clear_of(own, self._zones, 0.0 if placed.known else EXTRA_GAP)
+            and all(float(own.distance(at)) >= radius for at, radius in self._doors)
+            and clear_of(own, self._standing, least)
+            and clear_of(own, self._tops, least)
+            and clear_of(own, others, least)
+        )
 
-def footprint(piece: Piece, pose: Pose2D) -> Rectangle:
-    """The floor that a piece takes up."""
-    return Rectangle(pose, piece.extent[:2])
+    def passable(self, pieces: Iterable[PlacedPiece]) -> bool:
+        """Whether a disc still gets from the start everywhere."""
+        obstacles = [*self._standing, *map(self.footprint, pieces), *self._tops]
+        cell = COARSE if self.unknown.passage >= WIDE else FINE
+        center, size = floor_extent(self._world)
+        return passages(obstacles, center, size, self.unknown.passage, cell).connects(self._stops)
 
 
 def around(pose: Pose2D, radius: float) -> Rectangle:
@@ -183,18 +230,9 @@ def around(pose: Pose2D, radius: float) -> Rectangle:
     return Rectangle(pose, (2 * radius, 2 * radius))
 
 
-def wall_rectangles(world: WorldFile) -> list[Rectangle]:
-    """The floor that the walls take up."""
-    walls = world.walls
-    return [
-        Rectangle(walls.map_from_piece(piece), (piece.length, walls.thickness))
-        for piece in walls.pieces
-    ]
-
-
-def side_pose(table: Table, placed: PlacedTable, side: int, away: float) -> Pose2D:
+def side_pose(placed: PlacedTable, side: int, away: float) -> Pose2D:
     """A pose `away` m before the middle of a side's edge, facing the table."""
-    angle = table.sides[side]
+    angle = placed.sides[side]
     half_x, half_y = placed.size[0] / 2, placed.size[1] / 2
     along = half_x if abs(math.cos(angle)) > abs(math.sin(angle)) else half_y
     reach = along + away
@@ -202,13 +240,13 @@ def side_pose(table: Table, placed: PlacedTable, side: int, away: float) -> Pose
     return placed.pose @ own
 
 
-def stand_pose(table: Table, placed: PlacedTable) -> Pose2D:
+def stand_pose(placed: PlacedTable) -> Pose2D:
     """Where a robot stands before the middle of the preferred side."""
-    return side_pose(table, placed, 0, STAND_OFF)
+    return side_pose(placed, 0, STAND_OFF)
 
 
-def stand_zone(table: Table, placed: PlacedTable, depth: float) -> Rectangle:
+def stand_zone(placed: PlacedTable, depth: float) -> Rectangle:
     """The floor before the preferred side that is kept free."""
-    along_x = abs(math.cos(table.sides[0])) > abs(math.sin(table.sides[0]))
+    along_x = abs(math.cos(placed.sides[0])) > abs(math.sin(placed.sides[0]))
     width = placed.size[1] if along_x else placed.size[0]
-    return Rectangle(side_pose(table, placed, 0, depth / 2), (depth, width + 2 * SIDEWAYS))
+    return Rectangle(side_pose(placed, 0, depth / 2), (depth, width + 2 * SIDEWAYS))

@@ -6,7 +6,7 @@ Every kind stands on z = 0 around its own origin and shows its front to +x. `siz
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from itertools import product
 from types import MappingProxyType
 from typing import TypeAlias
@@ -84,20 +84,37 @@ def sofa(size: Size3, color: Color) -> tuple[Part, ...]:
 
 def shelf(size: Size3, color: Color) -> tuple[Part, ...]:
     """Sides, a back and boards about every 0.38 m, open to the front."""
-    depth, width, height = size
+    height = size[2]
     boards = max(2, round(height / 0.38) + 1)
     gap = (height - BOARD) / (boards - 1)
+    middles = (BOARD / 2 + i * gap for i in range(boards))
+    return (*_shelf_frame(size, color), *(_board(size, middle, color) for middle in middles))
+
+
+def shelf_with(size: Size3, color: Color | None, tops: Iterable[float]) -> tuple[Part, ...]:
+    """As `shelf`, with boards whose tops are at these heights, m."""
+    frame = _shelf_frame(size, color or CATALOGUE["shelf"][2])
+    return (*frame, *(shelf_board(size, top, color) for top in tops))
+
+
+def shelf_board(size: Size3, top: float, color: Color | None) -> Part:
+    """One board of a shelf, its top at a height, m."""
+    return _board(size, top - BOARD / 2, color or CATALOGUE["shelf"][2])
+
+
+def _shelf_frame(size: Size3, color: Color) -> tuple[Part, ...]:
+    depth, width, height = size
     inner = width - 2 * BOARD
-    dark = shade(color, 0.8)
     return (
         block((depth, BOARD, height), (0, (width - BOARD) / 2, height / 2), color),
         block((depth, BOARD, height), (0, (BOARD - width) / 2, height / 2), color),
-        block((0.01, inner, height), (0.005 - depth / 2, 0, height / 2), dark),
-        *(
-            block((depth - 0.01, inner, BOARD), (0.005, 0, BOARD / 2 + i * gap), color)
-            for i in range(boards)
-        ),
+        block((0.01, inner, height), (0.005 - depth / 2, 0, height / 2), shade(color, 0.8)),
     )
+
+
+def _board(size: Size3, middle: float, color: Color) -> Part:
+    depth, width, _ = size
+    return block((depth - 0.01, width - 2 * BOARD, BOARD), (0.005, 0, middle), color)
 
 
 def crate(size: Size3, color: Color) -> tuple[Part, ...]:

@@ -2,22 +2,32 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 from momantu_bt.geometry import Pose2D, Transform
 from momantu_worlds.scenes.bodies import Color, PointLight, SunLight
 from momantu_worlds.scenes.objects import Thing
-from momantu_worlds.scenes.world_file import Piece
+from momantu_worlds.scenes.world_furniture import Piece
+from momantu_worlds.scenes.world_objects import TagNote
+
+FRICTION = 0.6
+"""Of painted wood and of most things on it; within the 0.4-0.8 that tables of physics give."""
 
 
 @dataclass(frozen=True, slots=True)
 class PlacedTable:
-    """A table as it truly stands: on the floor plan, with the height and extent of its top, m."""
+    """A surface as it truly is: on the floor plan, with the height and extent of its top, m.
+
+    sides: directions in its own frame to stand at, preferred first. above: free height over it, m.
+    """
 
     pose: Pose2D
     height: float
     size: tuple[float, float]
+    sides: tuple[float, ...] = (0.0,)
+    above: float = math.inf
 
     @property
     def map_from_top(self) -> Transform:
@@ -32,6 +42,17 @@ class PlacedThing:
     name: str
     thing: Thing
     table: str
+    at: Pose2D
+    friction: float = FRICTION
+
+
+@dataclass(frozen=True, slots=True)
+class PlacedTag:
+    """A tag: lying at `at` in the frame of a table, or hung in the map."""
+
+    name: str
+    note: TagNote
+    table: str | None
     at: Pose2D
 
 
@@ -50,23 +71,32 @@ class Lighting:
     """Light of one episode."""
 
     ambient: Color
-    sun: SunLight
+    suns: tuple[SunLight, ...]
     lamps: tuple[PointLight, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """One episode's arrangement. item_at and tag_at are in their tables' own frames.
+    """One episode's arrangement.
 
+    tables: every surface by name. objects: what the file names; things: what else is loose.
     start: where the base truly stands. believed_start: what the robot is told.
     """
 
     seed: int
     tables: Mapping[str, PlacedTable]
-    item_at: Pose2D
-    tag_at: Pose2D
+    objects: tuple[PlacedThing, ...]
+    tags: tuple[PlacedTag, ...]
     things: tuple[PlacedThing, ...]
     pieces: tuple[PlacedPiece, ...]
     start: Pose2D
     believed_start: Pose2D
     light: Lighting
+
+    def object(self, name: str) -> PlacedThing:
+        """One of the objects; KeyError when there is none of that name."""
+        return {placed.name: placed for placed in self.objects}[name]
+
+    def tag(self, name: str) -> PlacedTag:
+        """One of the tags; KeyError when there is none of that name."""
+        return {placed.name: placed for placed in self.tags}[name]

@@ -1,17 +1,17 @@
-"""Worlds by name: their sites and their episodes; needs neither a simulator nor a map.
+"""Worlds by their files: their sites and their episodes; needs neither a simulator nor a map.
 
 What reads and checks world files is imported when it is needed: a nominal site rarely is.
 """
 
 from __future__ import annotations
 
-from functools import cache
+from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from momantu_bt.geometry import Pose2D
 from momantu_bt.world import Site, WorldError
-from momantu_worlds.scenes.sites import kept_site, save_site, site_of
+from momantu_worlds.scenes.sites import Nominal, keep, kept_nominal, site_of
 
 if TYPE_CHECKING:
     from momantu_worlds.scenes.bodies import Episode
@@ -21,58 +21,50 @@ FOLDER = Path(__file__).parent
 
 
 def world_path(name: str) -> Path:
-    """Where the world file of a name lies."""
+    """Where the world file of a bundled world lies."""
     return FOLDER / f"{name}.yaml"
 
 
-def map_files(name: str) -> tuple[Path, Path]:
-    """Where the map and the overhang layer of a world are kept."""
-    return FOLDER / name / "map.yaml", FOLDER / name / "overhang.yaml"
-
-
-@cache
-def load_world(name: str) -> WorldFile:
-    """The world as its file has it.
+def load_world(world: str | Path) -> WorldFile:
+    """A bundled world by its name, or a world by its file.
 
     Raises:
         WorldError: there is no such file, or it is wrong.
     """
-    from momantu_worlds.scenes.world_reader import read_world
+    from momantu_worlds.scenes.world_reader import world_text
 
-    return read_world(world_path(name))
-
-
-def nominal_site(name: str) -> Site:
-    """What the robot is told, with the start where the file has it; raises as `load_world`."""
-    kept = _kept(name)
-    return kept if kept is not None else site_from_file(name)
+    path = world_path(world) if isinstance(world, str) else world
+    return _parsed(path, world_text(path))
 
 
-def site_from_file(name: str) -> Site:
-    """As `nominal_site`, from the world file itself."""
-    world = load_world(name)
-    return site_of(world, Pose2D(*world.start.at), *map_files(name))
+@lru_cache(maxsize=16)
+def _parsed(path: Path, text: str) -> WorldFile:
+    from momantu_worlds.scenes.world_reader import parse_world
+
+    return parse_world(text, path)
 
 
-def draw_episode(name: str, seed: int) -> Episode:
-    """The episode of a seed; the same in every process. Maps of a changed file are drawn anew.
-
-    Raises:
-        WorldError: the world file is missing or wrong, leaves no room for the robot, or was
-            changed where maps cannot be written.
-    """
-    from momantu_worlds.scenes.building import build
-    from momantu_worlds.scenes.variation import vary
-
-    world = load_world(name)
-    if _kept(name) is None:
-        keep(name)
-    layout = vary(world, seed)
-    return build(world, layout, site_of(world, layout.believed_start, *map_files(name)))
+def nominal(path: Path) -> Nominal:
+    """The site with the start where the file has it, and the robot; raises as `load_world`."""
+    try:
+        text = path.read_bytes()
+    except OSError as error:
+        raise WorldError(f"the world file {path} cannot be read: {error.strerror}") from error
+    having = kept_nominal(text)
+    if having is None:
+        world = load_world(path)
+        having = Nominal(nominal_site(world), world.robot)
+        keep(having, text)
+    return having
 
 
-def sketch(name: str, seed: int) -> Episode:
-    """As `draw_episode`, for who needs no map: its site has none.
+def nominal_site(world: WorldFile) -> Site:
+    """The site with the start where the file has it, without maps."""
+    return site_of(world, Pose2D(*world.start.at))
+
+
+def draw_episode(world: str | Path, seed: int) -> Episode:
+    """The episode of a seed, its site without maps; the same in every process.
 
     Raises:
         WorldError: the world file is missing or wrong, or leaves no room for the robot.
@@ -80,36 +72,6 @@ def sketch(name: str, seed: int) -> Episode:
     from momantu_worlds.scenes.building import build
     from momantu_worlds.scenes.variation import vary
 
-    world = load_world(name)
-    layout = vary(world, seed)
-    return build(world, layout, site_of(world, layout.believed_start, None, None))
-
-
-def keep(name: str) -> None:
-    """Draw a world's maps anew, and write its nominal site beside them.
-
-    Raises:
-        WorldError: as `load_world`, or nothing can be written there.
-    """
-    from momantu_worlds.scenes.floor_plan import draw_plans, save_plan
-
-    plans = draw_plans(load_world(name))
-    try:
-        (FOLDER / name).mkdir(exist_ok=True)
-        for plan, file in zip(plans, map_files(name), strict=True):
-            save_plan(plan, file)
-        save_site(site_from_file(name), world_path(name), _kept_path(name))
-    except OSError as error:
-        raise WorldError(
-            f"{world_path(name)} was changed, but its maps cannot be drawn anew: {error}; make "
-            f"{FOLDER / name} writable, or undo the change"
-        ) from error
-
-
-def _kept_path(name: str) -> Path:
-    return FOLDER / name / "site.json"
-
-
-def _kept(name: str) -> Site | None:
-    """The nominal site from its short form; None unless made from the world file as it is."""
-    return kept_site(name, world_path(name), _kept_path(name), map_files(name))
+    loaded = load_world(world)
+    layout = vary(loaded, seed)
+    return build(loaded, layout, site_of(loaded, layout.believed_start))

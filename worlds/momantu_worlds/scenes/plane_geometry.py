@@ -71,6 +71,57 @@ def clear_of(rectangle: Rectangle, others: Iterable[Rectangle], least: float) ->
     return True
 
 
+def convex_outline(points: Array) -> Array:
+    """Corners (k, 2) of the convex hull of points (n, 2), counter-clockwise.
+
+    Andrew's monotone chain (1979).
+    """
+    ordered = np.unique(points, axis=0).tolist()
+    if len(ordered) < 3:
+        return np.array(ordered)
+    lower, upper = _chain(ordered), _chain(ordered[::-1])
+    return np.array(lower[:-1] + upper[:-1])
+
+
+def _chain(points: list[list[float]]) -> list[list[float]]:
+    chain: list[list[float]] = []
+    for x, y in points:
+        while len(chain) > 1:
+            (ax, ay), (bx, by) = chain[-2], chain[-1]
+            if (bx - ax) * (y - ay) - (by - ay) * (x - ax) > 0:
+                break
+            chain.pop()
+        chain.append([x, y])
+    return chain
+
+
+def slab_outline(points: Array, low: float, high: float) -> Array:
+    """Corners (k, 2), from above, of what the convex hull of points (n, 3) has between two heights.
+
+    The hull reaches in between them.
+    """
+    z = points[:, 2]
+    found = [points[(z >= low) & (z <= high), :2]]
+    for height in {low, high}:
+        below, above = points[z < height], points[z > height]
+        if len(below) and len(above):
+            share = (height - below[:, None, 2]) / (above[None, :, 2] - below[:, None, 2])
+            cut = below[:, None, :2] + share[..., None] * (above[None, :, :2] - below[:, None, :2])
+            found.append(cut.reshape(-1, 2))
+    return convex_outline(np.concatenate(found))
+
+
+def in_outline(points: Array, corners: Array) -> NDArray[np.bool_]:
+    """Which of points (..., 2) lie within a simple polygon (n, 2): the even-odd rule."""
+    inside = np.zeros(points.shape[:-1], dtype=np.bool_)
+    x, y = points[..., 0], points[..., 1]
+    for (ax, ay), (bx, by) in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        if ay != by:
+            crosses = (ay > y) != (by > y)
+            inside ^= crosses & (x < ax + (y - ay) * (bx - ax) / (by - ay))
+    return inside
+
+
 @dataclass(frozen=True, slots=True)
 class Passages:
     """Which cells of a floor plan a disc's centre may be in, and which of them hang together.

@@ -120,10 +120,13 @@ class Referee:
         goal, truth = self._goal, self._truth
         pose = truth.pose(goal.item)
         support = truth.pose(goal.support)
-        to_marker = truth.pose(goal.marker).position - pose.position
+        away = 0.0
+        if goal.marker is not None:
+            to_marker = truth.pose(goal.marker).position - pose.position
+            away = float(np.hypot(to_marker[0], to_marker[1]))
         return {
             "tilt": tilt(pose),
-            "distance": float(np.hypot(to_marker[0], to_marker[1])),
+            "distance": away,
             "margin": self._support.margin(support, pose) - self._item.radius,
             "gap": self._support.height_above(support, pose),
             "still": self._now - self._rest_since,

@@ -1,46 +1,52 @@
 """What the robot is told: the site that follows from a world file, and its short form on disk.
 
 Reading and checking a world file takes a seventh of a second, and every check of a tree asks for
-the site. So the nominal site is kept beside the map, with the digest of the world file that it was
-made from; a file that was changed since is read anew.
+the site. So the nominal site is kept, under the digest of the world file that it was made from.
 """
 
 from __future__ import annotations
 
-import hashlib
 import json
-import os
+from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from momantu_bt.geometry import Pose2D
 from momantu_bt.messages import ObjectClass, plain
 from momantu_bt.world import Site, Surface
+from momantu_worlds.scenes import kept
 
 if TYPE_CHECKING:
     from momantu_worlds.scenes.world_file import WorldFile
 
 SIGMAS = 2.0
 """The farthest a rough start may be off counts as this many standard deviations."""
-KEPT = ("start", "start_sigma", "places", "surfaces", "objects")
-"""Fields of a site that its short form holds; name and maps follow from where it lies."""
+FIELDS = ("name", "start", "start_sigma", "places", "surfaces", "objects", "services")
+"""Fields of a site that its short form holds: all but maps, which depend on the robot."""
 
 
-def site_of(
-    world: WorldFile, start: Pose2D, map_file: Path | None, overhang_file: Path | None
-) -> Site:
-    """The site: nominal tables, places and object classes, and a rough start pose."""
+@dataclass(frozen=True, slots=True)
+class Nominal:
+    """What is asked of a world before it is opened. robot: the one it is meant for."""
+
+    site: Site
+    robot: str
+
+
+def site_of(world: WorldFile, start: Pose2D) -> Site:
+    """The site: nominal surfaces, places and object classes, and a rough start pose."""
+    from momantu_worlds.scenes.surfaces import nominal_surfaces
+
     surfaces = {
-        name: Surface(table.pose, table.size[:2], table.size[2], table.sides)
-        for name, table in world.tables.items()
+        name: Surface(top.pose, top.size, top.height, top.sides)
+        for name, top in nominal_surfaces(world).items()
     }
     notes = world.site
     begin = world.start
     return Site(
         name=world.name,
-        map_file=map_file,
-        overhang_file=overhang_file,
         start=start,
         start_sigma=(begin.belief_shift / SIGMAS, begin.belief_turn / SIGMAS),
         places=MappingProxyType({name: Pose2D(*pose) for name, pose in notes.places.items()}),
@@ -48,35 +54,32 @@ def site_of(
         objects=MappingProxyType(
             {name: ObjectClass(**sizes.model_dump()) for name, sizes in notes.objects.items()}
         ),
+        services=MappingProxyType(notes.services),
     )
 
 
-def digest(world_file: Path) -> str:
-    """Names the content of a world file; raises OSError when it cannot be read."""
-    return hashlib.blake2b(world_file.read_bytes(), digest_size=16).hexdigest()
+def keep(nominal: Nominal, text: bytes) -> None:
+    """Write the short form for a world file of this text, if it can be written."""
+    data = {name: plain(getattr(nominal.site, name)) for name in FIELDS}
+    with suppress(OSError):
+        content = json.dumps({"robot": nominal.robot, "site": data}, indent=1) + "\n"
+        kept.put(_place(text), content.encode())
 
 
-def put(file: Path, content: bytes) -> None:
-    """Write a file whole or not at all, whoever else writes or reads it."""
-    part = file.with_name(f".{file.name}.{os.getpid()}")
-    part.write_bytes(content)
-    part.replace(file)
-
-
-def save_site(site: Site, world_file: Path, kept: Path) -> None:
-    """Write a site's short form."""
-    data = {"made_from": digest(world_file)} | {name: plain(getattr(site, name)) for name in KEPT}
-    put(kept, (json.dumps(data, indent=1) + "\n").encode())
-
-
-def kept_site(name: str, world_file: Path, kept: Path, maps: tuple[Path, Path]) -> Site | None:
-    """The site from its short form; None when there is none of just this world file."""
+def kept_nominal(text: bytes) -> Nominal | None:
+    """What was kept for a world file of this text; None when nothing was, or it is damaged."""
     try:
-        data = json.loads(kept.read_text(encoding="utf-8"))
-        if data["made_from"] != digest(world_file):
-            return None
-    except (OSError, ValueError, KeyError, TypeError):
+        data = json.loads(_place(text).read_text(encoding="utf-8"))
+        return Nominal(_read(data["site"]), data["robot"])
+    except (OSError, ValueError, KeyError, TypeError, IndexError):
         return None
+
+
+def _place(text: bytes) -> Path:
+    return kept.folder("sites") / f"{kept.digest([text])}.json"
+
+
+def _read(data: dict[str, Any]) -> Site:
     surfaces = {
         surface: Surface(
             Pose2D(**entry["map_from_surface"]),
@@ -87,12 +90,11 @@ def kept_site(name: str, world_file: Path, kept: Path, maps: tuple[Path, Path]) 
         for surface, entry in data["surfaces"].items()
     }
     return Site(
-        name=name,
-        map_file=maps[0],
-        overhang_file=maps[1],
+        name=data["name"],
         start=Pose2D(**data["start"]),
         start_sigma=(data["start_sigma"][0], data["start_sigma"][1]),
         places=MappingProxyType({place: Pose2D(**at) for place, at in data["places"].items()}),
         surfaces=MappingProxyType(surfaces),
         objects=MappingProxyType({o: ObjectClass(**e) for o, e in data["objects"].items()}),
+        services=MappingProxyType(data["services"]),
     )

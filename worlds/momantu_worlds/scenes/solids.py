@@ -15,12 +15,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array, Transform
-from momantu_worlds.scenes.bodies import Body, Box, Cylinder, Hull, Part
+from momantu_worlds.scenes.bodies import Body, BodyTop, Box, Cylinder, Hull, Part, Sphere
 
 CORNERS = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) / 2
 """Of a box with edges of 1."""
 SIDES = 32
 """Of the prism that stands for a cylinder."""
+BALL = np.array(
+    [
+        (math.cos(turn) * math.cos(rise), math.sin(turn) * math.cos(rise), math.sin(rise))
+        for turn in np.arange(16) * (math.pi / 8)
+        for rise in np.arange(-4, 5) * (math.pi / 8)
+    ]
+)
+"""(144, 3) points around a ball of radius 1, its poles and its equator among them."""
 DIRECTIONS = np.stack(
     [np.cos(np.arange(180) * math.pi / 90), np.sin(np.arange(180) * math.pi / 90)]
 )
@@ -46,6 +54,8 @@ class Solid:
         if isinstance(geometry, Cylinder):
             near = np.hypot(own[:, 0], own[:, 1]) <= geometry.radius
             return np.asarray(near & (np.abs(own[:, 2]) <= geometry.height / 2))
+        if isinstance(geometry, Sphere):
+            return np.asarray(np.linalg.norm(own, axis=1) <= geometry.radius)
         around = outline(self.part)
         return np.asarray(((own >= around.min(axis=0)) & (own <= around.max(axis=0))).all(axis=1))
 
@@ -140,18 +150,14 @@ class Scene:
 
     @cached_property
     def tops(self) -> tuple[Top, ...]:
-        """Upper faces of the boxes of all that stands still."""
+        """Tops of all that stands still: those that are told, or else upper faces of boxes."""
         return tuple(self._tops())
 
     def _tops(self) -> Iterator[Top]:
         for name, body in self._bodies.items():
-            if not body.static:
-                continue
-            for part in body.parts:
-                if part.collision and isinstance(part.geometry, Box):
-                    x, y, z = part.geometry.size
-                    top = self._pose(name) @ part.body_from_part @ Transform((0.0, 0.0, z / 2))
-                    yield Top(name, top, np.array([x, y]) / 2)
+            if body.static:
+                for top in (body.top,) if body.top is not None else box_tops(body):
+                    yield Top(name, self._pose(name) @ top.body_from_top, np.array(top.size) / 2)
 
     def below(self, thing: Standing) -> tuple[str, float]:
         """What is highest below a body, and how far its lowest point is above that, m."""
@@ -162,6 +168,14 @@ class Scene:
         )
         height, name = max(under, default=(0.0, FLOOR))
         return name, thing.lowest - height
+
+
+def box_tops(body: Body) -> Iterator[BodyTop]:
+    """Upper faces of the boxes of a body."""
+    for part in body.parts:
+        if part.collision and isinstance(part.geometry, Box):
+            x, y, z = part.geometry.size
+            yield BodyTop(part.body_from_part @ Transform((0.0, 0.0, z / 2)), (x, y))
 
 
 def _solids(body: Body, map_from_body: Transform) -> Iterable[Solid]:
@@ -181,6 +195,8 @@ def outline(part: Part) -> Array:
         x, y = geometry.radius * np.cos(turns), geometry.radius * np.sin(turns)
         half = np.full(SIDES, geometry.height / 2)
         return np.concatenate([np.stack([x, y, z], axis=1) for z in (-half, half)])
+    if isinstance(geometry, Sphere):
+        return geometry.radius * BALL
     if isinstance(geometry, Hull):
         return np.asarray(geometry.vertices)
     raise TypeError(f"a {type(geometry).__name__} has no collision shape")

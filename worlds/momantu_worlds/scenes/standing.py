@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 
 from momantu_bt.geometry import Transform
-from momantu_worlds.scenes.bodies import Body, Box, Cylinder
+from momantu_worlds.scenes.bodies import Body, Cylinder
+from momantu_worlds.scenes.solids import box_tops
 
 
 class Upright:
@@ -29,15 +30,14 @@ class Upright:
 
 
 class Top:
-    """The highest box of a table is its top."""
+    """A body's top: the one that is told, or else its highest box's."""
 
     def __init__(self, body: Body) -> None:
-        boxes = [(p.body_from_part, p.geometry) for p in body.parts if isinstance(p.geometry, Box)]
-        if not boxes:
+        tops = (body.top,) if body.top is not None else tuple(box_tops(body))
+        if not tops:
             raise ValueError(f"the support {body.name!r} has no box to stand on")
-        at, box = max(boxes, key=lambda pair: pair[0].position[2] + pair[1].size[2] / 2)
-        self._body_from_surface = at @ Transform((0.0, 0.0, box.size[2] / 2))
-        self.size = box.size[:2]
+        top = max(tops, key=lambda top: float(top.body_from_top.position[2]))
+        self._body_from_surface, self.size = top.body_from_top, top.size
 
     def surface(self, map_from_body: Transform) -> Transform:
         """Frame of the surface, z up, its origin in the middle, in the map."""

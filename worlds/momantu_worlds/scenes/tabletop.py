@@ -9,8 +9,9 @@ remains a spot for the item with the same lane.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,15 +20,20 @@ from momantu_bt.geometry import Array, Pose2D
 from momantu_bt.world import seeded
 from momantu_worlds.scenes.floor import STAND_OFF
 from momantu_worlds.scenes.generator import COLORS, draw_look, draw_thing
-from momantu_worlds.scenes.layout import PlacedTable, PlacedThing
+from momantu_worlds.scenes.layout import PlacedTable, PlacedTag, PlacedThing
 from momantu_worlds.scenes.objects import ObjectKind, Thing
 from momantu_worlds.scenes.tag36h11 import picture_edge
 from momantu_worlds.scenes.world_file import WorldFile
+from momantu_worlds.scenes.world_objects import ObjectNote, TagNote
 
 TRIES = 80
 """Draws for one thing before it is left out."""
 RIM = 0.02
 """m; what everything keeps from the table's edge."""
+APART = 0.01
+"""m; least gap between two named objects."""
+AIR = 0.03
+"""m; what is left between a thing and the board above it."""
 LANE = 0.07
 """m; half the width of a hand's way to the item: half of Fetch's open gripper, 0.13 m, and air."""
 LANE_LENGTH = 0.35
@@ -58,55 +64,127 @@ class Disc:
     height: float
 
 
-def place_item(world: WorldFile, seed: int) -> Pose2D:
-    """The item in its table's frame, kept whole on the top."""
-    item = world.item
-    return _on_top(world, seed, item.name, item.on, item.at, item.shift, item.radius + RIM)
-
-
-def place_tag(world: WorldFile, seed: int) -> Pose2D:
-    """The tag in its table's frame, its white margin kept whole on the top."""
-    tag = world.tag
-    corner = picture_edge(tag.edge) / math.sqrt(2.0)
-    return _on_top(world, seed, tag.name, tag.on, tag.at, tag.shift, corner)
-
-
-def _on_top(
+def place_objects(
     world: WorldFile,
     seed: int,
+    tables: Mapping[str, PlacedTable],
+    tags: Sequence[PlacedTag],
+) -> tuple[PlacedThing, ...]:
+    """The item and all named objects, each whole on its top; those of the file first come first."""
+    placed: list[PlacedThing] = []
+    if world.item is not None:
+        item = world.item
+        size = (2 * item.radius, 2 * item.radius, item.height)
+        thing = Thing(item.kind, size, item.mass, item.color)
+        spot = Spot(item.name, item.on, item.at, item.shift, item.radius + RIM)
+        at = next(_on_top(tables, seed, spot))
+        placed.append(PlacedThing(item.name, thing, item.on, at, item.friction))
+    for name, note in world.objects.items():
+        placed.append(_placed_object(world, seed, tables, name, note, placed, tags))
+    return tuple(placed)
+
+
+def _placed_object(
+    world: WorldFile,
+    seed: int,
+    tables: Mapping[str, PlacedTable],
     name: str,
-    table: str,
-    at: tuple[float, float],
-    shift: float,
-    margin: float,
-) -> Pose2D:
-    draw = seeded(seed, "on top", name)
-    half = np.array(world.tables[table].size[:2]) / 2 - margin
-    x, y = np.clip(np.array(at) + draw.uniform(-shift, shift, 2), -half, half)
-    return Pose2D(float(x), float(y), float(draw.uniform(-math.pi, math.pi)))
+    note: ObjectNote,
+    before: Sequence[PlacedThing],
+    tags: Sequence[PlacedTag],
+) -> PlacedThing:
+    """An object where nothing else stands yet; at its last draw when that is nowhere."""
+    table = note.tops[int(seeded(seed, "which top", name).integers(len(note.tops)))]
+    thing = _thing_of(note, seed, name)
+    taken = [disc_of(other) for other in before if other.table == table]
+    taken += [tag_disc(tag) for tag in tags if tag.table == table]
+    spot = Spot(name, table, note.at, note.shift, thing.reach + RIM, note.yaw, note.turn)
+    for at in islice(_on_top(tables, seed, spot), TRIES):
+        own = Disc(at.x, at.y, thing.reach, thing.height)
+        if all(_gap(own, other) >= APART for other in taken):
+            break
+    return PlacedThing(name, thing, table, at, note.friction)
+
+
+def _thing_of(note: ObjectNote, seed: int, name: str) -> Thing:
+    """What the file says of an object, and of the rest what its kind usually is."""
+    draw, paint = seeded(seed, "object", name), seeded(seed, "paint", name)
+    thing = draw_thing(note.kind, draw, paint, size=note.extent, color=note.color)
+    return thing if note.mass is None else replace(thing, mass=note.mass)
+
+
+def place_tags(
+    world: WorldFile, seed: int, tables: Mapping[str, PlacedTable]
+) -> tuple[PlacedTag, ...]:
+    """Every tag: on its table, its white margin kept whole on the top, or where it is hung."""
+    placed = []
+    for name, note in world.all_tags.items():
+        if note.on is None or note.at is None:
+            placed.append(PlacedTag(name, note, None, Pose2D(0.0, 0.0)))
+            continue
+        spot = Spot(name, note.on, note.at, note.shift, tag_corner(note), note.yaw, note.turn)
+        placed.append(PlacedTag(name, note, note.on, next(_on_top(tables, seed, spot))))
+    return tuple(placed)
+
+
+@dataclass(frozen=True, slots=True)
+class Spot:
+    """Where something may lie on a top: at a point of it and around, or anywhere (`at` None).
+
+    margin: what its middle keeps from the edges, m. yaw, turn: how it is turned, rad.
+    """
+
+    name: str
+    table: str
+    at: tuple[float, float] | None
+    shift: float
+    margin: float
+    yaw: float = 0.0
+    turn: float = math.pi
+
+
+def _on_top(tables: Mapping[str, PlacedTable], seed: int, spot: Spot) -> Iterator[Pose2D]:
+    """Draws of a place in the table's own frame, without end."""
+    draw = seeded(seed, "on top", spot.name)
+    half = np.maximum(np.array(tables[spot.table].size) / 2 - spot.margin, 0.0)
+    while True:
+        if spot.at is None:
+            x, y = draw.uniform(-half, half)
+        else:
+            shift = draw.uniform(-spot.shift, spot.shift, 2)
+            x, y = np.clip(np.array(spot.at) + shift, -half, half)
+        yield Pose2D(float(x), float(y), spot.yaw + float(draw.uniform(-spot.turn, spot.turn)))
 
 
 def place_things(
-    world: WorldFile, seed: int, tables: dict[str, PlacedTable], item_at: Pose2D, tag_at: Pose2D
+    world: WorldFile,
+    seed: int,
+    tables: Mapping[str, PlacedTable],
+    objects: Sequence[PlacedThing],
+    tags: Sequence[PlacedTag],
 ) -> tuple[PlacedThing, ...]:
     """0 to `most` loose things on each table, all of them leaving the job possible."""
+    rule = world.distractors
+    if rule is None:
+        return ()
     placed: list[PlacedThing] = []
-    for table in tables:
+    for table in tables if rule.on is None else rule.on:
+        crowd = _Crowd(world, tables[table], table, objects, tags)
         draw = seeded(seed, "things", table)
-        wanted = int(draw.integers(world.distractors.most + 1))
+        wanted = int(draw.integers(rule.most + 1))
         here: list[PlacedThing] = []
         for i in range(wanted):
-            kind = world.distractors.kinds[int(draw.integers(len(world.distractors.kinds)))]
+            kind = rule.kinds[int(draw.integers(len(rule.kinds)))]
             name = f"{table}_{kind}_{i}"
-            paint = seeded(seed, "paint", name) if world.distractors.patterns else None
-            thing = draw_distractor(world, kind, draw, paint)
+            paint = seeded(seed, "paint", name) if rule.patterns else None
+            thing = draw_distractor(kind, draw, paint, crowd.sought)
             half = np.array(tables[table].size) / 2 - thing.reach - RIM
-            for _ in range(TRIES):
+            for _ in range(TRIES if (half > 0).all() else 0):
                 x, y = draw.uniform(-half, half)
                 yaw = float(draw.uniform(-math.pi, math.pi))
                 at = Pose2D(float(x), float(y), yaw)
                 candidate = PlacedThing(name, thing, table, at)
-                if _fine(world, tables, table, [*here, candidate], item_at, tag_at):
+                if crowd.takes([*here, candidate]):
                     here.append(candidate)
                     break
         placed += here
@@ -114,18 +192,18 @@ def place_things(
 
 
 def draw_distractor(
-    world: WorldFile,
     kind: ObjectKind,
     draw: np.random.Generator,
     paint: np.random.Generator | None,
+    sought: Thing | None,
 ) -> Thing:
-    """A thing of some usual size, weight and look; a can is never like the item."""
-    if kind != "can":
+    """A thing of some usual size, weight and look; a can is never like one that is sought."""
+    if kind != "can" or sought is None or sought.kind != "can":
         return draw_thing(kind, draw, paint)
     color = COLORS[int(draw.integers(len(COLORS)))]
-    size, item = _other_can(world, draw), world.item
-    mass = item.mass * (size[0] ** 2 * size[2]) / (4 * item.radius**2 * item.height)
-    color = item.color if draw.random() < 0.5 else color
+    size = _other_can(sought, draw)
+    mass = sought.mass * (size[0] ** 2 * size[2]) / (sought.size[0] ** 2 * sought.size[2])
+    color = sought.color if draw.random() < 0.5 else color
     look = None if paint is None else draw_look(kind, color, paint)
     return Thing(kind, size, mass, color, look)
 
@@ -134,48 +212,96 @@ OTHER_SIZE = 0.22
 """relative; another can differs from the item by more than 20 % in radius or height."""
 
 
-def _other_can(world: WorldFile, draw: np.random.Generator) -> tuple[float, float, float]:
+def _other_can(sought: Thing, draw: np.random.Generator) -> tuple[float, float, float]:
     factors = draw.uniform(0.85, 1.15, 2)
     larger = bool(draw.random() < 0.5)
     factor = draw.uniform(1 + OTHER_SIZE, 1.38) if larger else draw.uniform(0.68, 1 - OTHER_SIZE)
     factors[int(draw.integers(2))] = factor
-    edge = 2 * world.item.radius * float(factors[0])
-    return edge, edge, world.item.height * float(factors[1])
+    edge = sought.size[0] * float(factors[0])
+    return edge, edge, sought.height * float(factors[1])
 
 
-def _fine(
-    world: WorldFile,
-    tables: dict[str, PlacedTable],
-    table: str,
-    things: Sequence[PlacedThing],
-    item_at: Pose2D,
-    tag_at: Pose2D,
-) -> bool:
-    discs = [Disc(t.at.x, t.at.y, t.thing.reach, t.thing.height) for t in things]
-    last, others = discs[-1], discs[:-1]
-    rule = world.distractors
-    if any(_gap(last, other) < rule.gap for other in others):
-        return False
-    side = world.tables[table].sides[0]
-    placed = tables[table]
-    if table == world.item.on:
-        item = Disc(item_at.x, item_at.y, world.item.radius, world.item.height)
-        if _gap(last, item) < rule.gap_to_item or not lane(item, discs, side):
+class _Crowd:
+    """What stands on one table already, and what loose things there must leave possible."""
+
+    def __init__(
+        self,
+        world: WorldFile,
+        table: PlacedTable,
+        name: str,
+        objects: Sequence[PlacedThing],
+        tags: Sequence[PlacedTag],
+    ) -> None:
+        assert world.distractors is not None
+        self._rule, self._table, self._goal, self._name = world.distractors, table, world.goal, name
+        item = next((o for o in objects if o.name == world.sought), None)
+        self._item = item
+        self._objects = [disc_of(o) for o in objects if o.table == name and o is not item]
+        self._tags = [tag for tag in tags if tag.table == name]
+
+    @property
+    def sought(self) -> Thing | None:
+        """What is to be brought."""
+        return None if self._item is None else self._item.thing
+
+    def takes(self, things: Sequence[PlacedThing]) -> bool:
+        """Whether the last of some things may stand where it does."""
+        discs = [disc_of(thing) for thing in things]
+        last, others = discs[-1], discs[:-1]
+        if last.height > self._table.above - AIR:
             return False
-        if seen_share(outline_points(item), discs, placed, side, item) < ITEM_SEEN:
+        if any(_gap(last, other) < self._rule.gap for other in (*others, *self._objects)):
             return False
-    if table == world.tag.on:
-        corner = picture_edge(world.tag.edge) / math.sqrt(2.0)
-        tag = Disc(tag_at.x, tag_at.y, corner, 0.0)
-        if (
-            _gap(last, tag) < 0
-            or seen_share(tag_points(tag_at, corner), discs, placed, side, tag) < 1
-        ):
-            return False
-    if table != world.goal.on:
-        return True
-    wanted = SetDown(world.item.radius, world.item.height, world.goal.distance, side)
-    return bool(free_spots(wanted, placed, discs, tag_at))
+        around = [*discs, *self._objects]
+        return (
+            self._leaves_item(last, around)
+            and all(self._leaves_tag(tag, last, around) for tag in self._tags)
+            and self._leaves_spot(around)
+        )
+
+    def _leaves_item(self, last: Disc, discs: Sequence[Disc]) -> bool:
+        if self._item is None or self._item.table != self._name:
+            return True
+        item, side = disc_of(self._item), self._table.sides[0]
+        return (
+            _gap(last, item) >= self._rule.gap_to_item
+            and lane(item, discs, side)
+            and seen_share(outline_points(item), discs, self._table, side, item) >= ITEM_SEEN
+        )
+
+    def _leaves_tag(self, tag: PlacedTag, last: Disc, discs: Sequence[Disc]) -> bool:
+        disc, side = tag_disc(tag), self._table.sides[0]
+        return (
+            _gap(last, disc) >= 0
+            and seen_share(tag_points(tag.at, disc.radius), discs, self._table, side, disc) == 1
+        )
+
+    def _leaves_spot(self, discs: Sequence[Disc]) -> bool:
+        """Whether the item can still be set down where it is to go."""
+        goal, item = self._goal, self._item
+        if goal is None or item is None or goal.on != self._name:
+            return True
+        marker = next((tag.at for tag in self._tags if tag.name == goal.beside), None)
+        if marker is None:
+            return True
+        radius = item.thing.reach
+        wanted = SetDown(radius, item.thing.height, goal.distance, self._table.sides[0])
+        return bool(free_spots(wanted, self._table, discs, marker))
+
+
+def disc_of(placed: PlacedThing) -> Disc:
+    """The upright cylinder around a thing."""
+    return Disc(placed.at.x, placed.at.y, placed.thing.reach, placed.thing.height)
+
+
+def tag_corner(note: TagNote) -> float:
+    """From the middle of a tag's picture to its corner, m."""
+    return picture_edge(note.edge) / math.sqrt(2.0)
+
+
+def tag_disc(tag: PlacedTag) -> Disc:
+    """The disc around the picture of a tag that lies."""
+    return Disc(tag.at.x, tag.at.y, tag_corner(tag.note), 0.0)
 
 
 def _gap(a: Disc, b: Disc) -> float:

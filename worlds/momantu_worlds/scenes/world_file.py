@@ -1,260 +1,115 @@
-"""The parts of a world file, as checked values."""
+"""A whole world file, as checked values."""
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self, TypeAlias
+from functools import cached_property
+from pathlib import Path
+from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, PrivateAttr
 
 from momantu_bt.geometry import Pose2D
-from momantu_worlds.scenes.furniture import Size3, usual_size
-from momantu_worlds.scenes.objects import OBJECT_KINDS, ObjectKind
-from momantu_worlds.scenes.tag36h11 import CODES
-from momantu_worlds.scenes.units import Angle, Force, Length, Mass, Size, Time
+from momantu_worlds.scenes.wall_runs import RoomWalls, WallRun, given_runs
+from momantu_worlds.scenes.world_bodies import BodyNote
+from momantu_worlds.scenes.world_building import (
+    MOST_DOORS,
+    MOST_ROOMS,
+    Door,
+    Doorway,
+    Floor,
+    Room,
+    Walls,
+)
+from momantu_worlds.scenes.world_episode import Light, Start, Unknown
+from momantu_worlds.scenes.world_furniture import Piece, Table
+from momantu_worlds.scenes.world_objects import Distractors, Item, ObjectNote, Tag, TagNote
+from momantu_worlds.scenes.world_site import GoalDemand, SiteNotes
+from momantu_worlds.scenes.world_values import Name, Part
 
-Channel: TypeAlias = Annotated[float, Field(ge=0, le=1)]
-Rgb: TypeAlias = tuple[Channel, Channel, Channel]
-Point: TypeAlias = tuple[Length, Length]
-PlanarPose: TypeAlias = tuple[Length, Length, Angle]
-Range: TypeAlias = tuple[float, float]
-Name: TypeAlias = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$")]
-Friction: TypeAlias = Annotated[float, Field(gt=0, le=1)]
-Count: TypeAlias = Annotated[int, Field(ge=0, le=50)]
-FurnitureKind: TypeAlias = Literal[
-    "table",
-    "desk",
-    "counter",
-    "chair",
-    "sofa",
-    "bed",
-    "shelf",
-    "crate",
-    "pallet",
-    "cabinet",
-    "plant",
-    "figure",
-]
+MOST_PIECES, MOST_TABLES, MOST_OBJECTS, MOST_TAGS, MOST_BODIES = 1000, 100, 200, 100, 2000
 
 
-def pose2d(pose: tuple[float, float, float]) -> Pose2D:
-    """A pose of the file as the value that everything else uses."""
-    return Pose2D(*pose)
-
-
-class _Part(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-
-class Floor(_Part):
-    """The slab that everything stands on."""
-
-    center: Point
-    size: tuple[Size, Size]
-    color: Rgb
-    friction: Friction = 0.8
-
-
-class WallPiece(_Part):
-    """One straight wall by the middle of its axis; yaw of its length."""
-
-    name: Name
-    length: Size
-    center: Point
-    yaw: Angle
-
-
-class Walls(_Part):
-    """All walls, in a frame whose origin lies at `origin` of the map."""
-
-    origin: Point = (0.0, 0.0)
-    thickness: Size
-    height: Size
-    color: Rgb
-    pieces: tuple[WallPiece, ...]
-
-    def map_from_piece(self, piece: WallPiece) -> Pose2D:
-        """Where a piece's middle lies in the map, x along its length."""
-        return Pose2D(piece.center[0] + self.origin[0], piece.center[1] + self.origin[1], piece.yaw)
-
-
-class Doorway(_Part):
-    """A gap to drive through: its middle, and the radius around it that is kept free."""
-
-    at: Point
-    clear: Size
-
-
-class Piece(_Part):
-    """One piece of furniture."""
-
-    kind: FurnitureKind
-    at: PlanarPose
-    size: tuple[Size, Size, Size] | None = None
-    color: Rgb | None = None
-    moves: bool = False
-
-    @property
-    def pose(self) -> Pose2D:
-        """Where it stands by the file."""
-        return pose2d(self.at)
-
-    @property
-    def extent(self) -> Size3:
-        """(depth, width, height), m."""
-        return self.size or usual_size(self.kind)
-
-
-class Table(_Part):
-    """A piece of furniture that matters: its top is a surface of the site."""
-
-    kind: Literal["table", "desk", "counter"]
-    at: PlanarPose
-    size: tuple[Size, Size, Size]
-    color: Rgb | None = None
-    shift: Annotated[Length, Field(ge=0)] = 0.0
-    turn: Annotated[Angle, Field(ge=0)] = 0.0
-    lift: Annotated[Length, Field(ge=0)] = 0.0
-    sides: Annotated[tuple[Angle, ...], Field(min_length=1)]
-
-    @property
-    def pose(self) -> Pose2D:
-        """Where it stands by the file."""
-        return pose2d(self.at)
-
-
-class Item(_Part):
-    """What is brought: an upright can on a table."""
-
-    name: Name
-    kind: Literal["can"]
-    on: Name
-    at: Point
-    shift: Annotated[Length, Field(ge=0)] = 0.0
-    radius: Size
-    height: Size
-    mass: Mass
-    friction: Friction
-    color: Rgb
-
-
-class Tag(_Part):
-    """An AprilTag of the family 36h11, flat on a table; edge of its black square."""
-
-    name: Name
-    id: Annotated[int, Field(ge=0, lt=len(CODES))]
-    edge: Size
-    on: Name
-    at: Point
-    shift: Annotated[Length, Field(ge=0)] = 0.0
-
-
-class Distractors(_Part):
-    """Loose things on the tables, 0 to `most` on each. Gaps are between surfaces.
-
-    patterns: they are painted in many ways, not each kind in one.
-    """
-
-    most: Annotated[int, Field(ge=0, le=8)]
-    gap: Size
-    gap_to_item: Size
-    kinds: tuple[ObjectKind, ...] = OBJECT_KINDS
-    patterns: bool = False
-
-
-class Start(_Part):
-    """Where the robot stands at first, how far an episode shifts that, what it is told."""
-
-    at: PlanarPose
-    shift: Annotated[Length, Field(ge=0)] = 0.0
-    belief_shift: Annotated[Length, Field(ge=0)] = 0.0
-    belief_turn: Annotated[Angle, Field(ge=0)] = 0.0
-
-
-class Between(_Part):
-    """An inclusive range of counts."""
-
-    least: Count
-    most: Count
-
-    @model_validator(mode="after")
-    def _ordered(self) -> Self:
-        if self.least > self.most:
-            raise ValueError(f"least ({self.least}) is more than most ({self.most})")
-        return self
-
-
-class Unknown(_Part):
-    """What the map does not know: pieces moved, and extra pieces in some areas."""
-
-    shift: Annotated[Length, Field(ge=0)]
-    turn: Annotated[Angle, Field(ge=0)]
-    moved: Between
-    extra: Between
-    kinds: Annotated[tuple[FurnitureKind, ...], Field(min_length=1)]
-    passage: Size
-    stand: Size
-    areas: tuple[tuple[Length, Length, Length, Length], ...] = ()
-
-
-class Light(_Part):
-    """Ranges of brightness, and where lamps hang."""
-
-    ambient: Range
-    sun: Range
-    lamp: Range
-    lamps: tuple[Point, ...] = ()
-
-
-class GoalDemand(_Part):
-    """What the referee wants."""
-
-    item: Name
-    on: Name
-    beside: Name
-    tilt: Angle
-    distance: Size
-    still: Time
-    gripper: Size
-    others_tilt: Angle
-    others_shift: Size
-    force: Force
-
-
-class ObjectSizes(_Part):
-    """What the robot is told of a class of objects."""
-
-    category: Name
-    diameter: Size | None = None
-    height: Size | None = None
-    width: Size | None = None
-    depth: Size | None = None
-
-
-class SiteNotes(_Part):
-    """What a person would tell the robot, beside what follows from the file."""
-
-    resolution: Size
-    laser_height: Size
-    robot_height: Size
-    places: dict[Name, PlanarPose]
-    objects: dict[Name, ObjectSizes]
-
-
-class WorldFile(_Part):
-    """A whole world file."""
+class WorldFile(Part):
+    """A whole world file. Everything but its version, its name and the start may be missing."""
 
     momantu_world: Literal[1]
     name: Name
-    floor: Floor
-    walls: Walls
-    doorways: dict[Name, Doorway] = {}
-    tables: dict[Name, Table]
-    item: Item
-    tag: Tag
-    distractors: Distractors
-    furniture: dict[Name, Piece] = {}
+    robot: Annotated[str, Field(min_length=1, max_length=500)] = "fetch"
+    floor: Floor = Floor()
+    walls: Walls = Walls()
+    rooms: Annotated[dict[Name, Room], Field(max_length=MOST_ROOMS)] = {}
+    doors: Annotated[dict[Name, Door], Field(max_length=MOST_DOORS)] = {}
+    doorways: Annotated[dict[Name, Doorway], Field(max_length=MOST_DOORS)] = {}
+    tables: Annotated[dict[Name, Table], Field(max_length=MOST_TABLES)] = {}
+    item: Item | None = None
+    tag: Tag | None = None
+    objects: Annotated[dict[Name, ObjectNote], Field(max_length=MOST_OBJECTS)] = {}
+    tags: Annotated[dict[Name, TagNote], Field(max_length=MOST_TAGS)] = {}
+    distractors: Distractors | None = None
+    furniture: Annotated[dict[Name, Piece], Field(max_length=MOST_PIECES)] = {}
+    bodies: Annotated[dict[Name, BodyNote], Field(max_length=MOST_BODIES)] = {}
     start: Start
-    unknown: Unknown
-    light: Light
-    goal: GoalDemand
-    site: SiteNotes
+    unknown: Unknown | None = None
+    light: Light = Light()
+    goal: GoalDemand | None = None
+    site: SiteNotes = SiteNotes()
+
+    _file: Path = PrivateAttr(default=Path())
+
+    def located(self, file: Path) -> WorldFile:
+        """The same world, with the file that it was read from."""
+        self._file = file
+        return self
+
+    @property
+    def file(self) -> Path:
+        """Where it was read from."""
+        return self._file
+
+    def beside(self, name: str) -> Path:
+        """A file that the world file names: relative to where it lies."""
+        return self._file.parent / name
+
+    def mesh_files(self) -> tuple[Path, ...]:
+        """Every mesh file that it names, once."""
+        uses = [table.mesh for table in self.tables.values()]
+        uses += [piece.mesh for piece in self.furniture.values()]
+        uses += [part.mesh for body in self.bodies.values() for part in body.parts]
+        return tuple(dict.fromkeys(self.beside(use.file) for use in uses if use is not None))
+
+    def files(self) -> tuple[Path, ...]:
+        """The world file itself and all that it names: meshes, a map of its own."""
+        maps = () if self.site.map is None else (self.beside(self.site.map),)
+        return (self._file, *self.mesh_files(), *maps)
+
+    @property
+    def sought(self) -> str | None:
+        """The object that is to be brought: the goal's, or the item."""
+        if self.goal is not None:
+            return self.goal.item
+        return None if self.item is None else self.item.name
+
+    @cached_property
+    def room_walls(self) -> RoomWalls:
+        """The walls that follow from the rooms."""
+        return RoomWalls(self.walls, self.rooms, self.doors)
+
+    @cached_property
+    def wall_runs(self) -> tuple[WallRun, ...]:
+        """Every wall: those given piece by piece, then those of the rooms."""
+        return (*given_runs(self.walls), *self.room_walls.runs())
+
+    @cached_property
+    def door_leaves(self) -> tuple[tuple[str, Door, Pose2D], ...]:
+        """Closed doors, and where the middle of each leaf is."""
+        return tuple(self.room_walls.leaves())
+
+    @cached_property
+    def all_doorways(self) -> dict[str, Doorway]:
+        """Gaps to drive through: those that are given, then the open doors."""
+        return {**self.doorways, **self.room_walls.doorways()}
+
+    @cached_property
+    def all_tags(self) -> dict[str, TagNote]:
+        """Every tag by its name; the one that `tag` describes comes first."""
+        return {**({} if self.tag is None else {self.tag.name: self.tag}), **self.tags}

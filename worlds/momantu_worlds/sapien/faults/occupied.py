@@ -49,7 +49,7 @@ class Occupied:
         stage, goal = self._stage, self._stage.goal
         top = table_top(stage, goal.support)
         wanted = SetDown(self._item.radius, self._item.height, goal.max_distance, top.side)
-        top_from_marker = top.map_from_top.inverse() @ stage.simulator.truth.pose(goal.marker)
+        top_from_marker = top.map_from_top.inverse() @ stage.simulator.truth.pose(stage.marker.name)
         row = BoxRow(
             wanted,
             top.placed,

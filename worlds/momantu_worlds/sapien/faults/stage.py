@@ -66,6 +66,8 @@ class Stage:
     @property
     def marker(self) -> Body:
         """The tag beside which it goes; FaultError when the goal has no picture as its marker."""
+        if self.goal.marker is None:
+            raise FaultError(f"the goal of {self.episode.name!r} names no marker")
         body = self.episode.body(self.goal.marker)
         if not any(isinstance(part.geometry, Picture) for part in body.parts):
             raise FaultError(f"the goal's marker {body.name!r} is no picture that could be covered")

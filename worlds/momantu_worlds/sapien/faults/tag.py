@@ -34,10 +34,10 @@ class Overlaid:
     def begin(self) -> None:
         """Lay it down; FaultError while something is in the way."""
         stage = self._stage
-        body = self._cover(stage.simulator.truth.pose(stage.goal.marker))
+        body = self._cover(stage.simulator.truth.pose(stage.marker.name))
         prism, top = body_prism(body, body.map_from_body), table_top(stage, stage.goal.support)
         if prism is not None and not clear_on(stage, prism, top, 0.0):
-            raise FaultError(f"{self._fault.name}: something stands on {stage.goal.marker} now")
+            raise FaultError(f"{self._fault.name}: something stands on {stage.marker.name} now")
         self._added = stage.add(body)
 
     def end(self) -> None:

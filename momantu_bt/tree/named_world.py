@@ -1,0 +1,26 @@
+"""The world that a run of a tree takes place in: the one asked for, or the tree's own."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from momantu_bt.plugin_files import by_path
+from momantu_bt.plugins import WORLDS
+from momantu_bt.tree.model import Document
+
+NO_WORLD = "none"
+"""As a world's name: run without one."""
+
+
+def world_of(document: Document, asked: str | None) -> str | None:
+    """A name or a path; None without a world.
+
+    asked: instead of the tree's own, a path of it seen from the working directory. A path that the
+    tree has itself is seen from the tree's file.
+    """
+    if asked is not None:
+        return None if asked == NO_WORLD else asked
+    own = document.world
+    if own is None or own == NO_WORLD:
+        return None
+    return str(Path(document.file).parent / own) if by_path(WORLDS, own) else own

@@ -1,0 +1,65 @@
+"""Values that all parts of a world file are written with."""
+
+from __future__ import annotations
+
+from typing import Annotated, TypeAlias
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
+
+from momantu_bt.descriptions.quantities import ANGLE, LENGTH, Angle, Length, Size, reader
+from momantu_bt.geometry import Pose2D, Transform
+
+Channel: TypeAlias = Annotated[float, Field(ge=0, le=1)]
+Rgb: TypeAlias = tuple[Channel, Channel, Channel]
+Point: TypeAlias = tuple[Length, Length]
+Point3: TypeAlias = tuple[Length, Length, Length]
+Size3D: TypeAlias = tuple[Size, Size, Size]
+PlanarPose: TypeAlias = tuple[Length, Length, Angle]
+Range: TypeAlias = tuple[float, float]
+Name: TypeAlias = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$", max_length=60)]
+Friction: TypeAlias = Annotated[float, Field(gt=0, le=1)]
+Count: TypeAlias = Annotated[int, Field(ge=0, le=50)]
+Sides: TypeAlias = Annotated[tuple[Angle, ...], Field(min_length=1, max_length=8)]
+"""Directions in a top's own frame from which it is approached; the first is preferred."""
+NotNegative: TypeAlias = Annotated[Length, Field(ge=0)]
+"""m."""
+Turn: TypeAlias = Annotated[Angle, Field(ge=0)]
+"""rad."""
+
+_POSE = "expected [x, y, z], [x, y, z, yaw] or [x, y, z, roll, pitch, yaw]"
+_length, _angle = reader("a length", LENGTH), reader("an angle", ANGLE)
+
+
+def _six(value: object) -> object:
+    """A pose with all its six numbers."""
+    if not isinstance(value, list | tuple) or len(value) not in (3, 4, 6):
+        raise ValueError(f"{_POSE}, found {value!r}")
+    turns: list[object] = [_angle(v) for v in value[3:]]
+    if len(turns) < 3:
+        turns = [0.0, 0.0, *(turns or [0.0])]
+    return (*(_length(v) for v in value[:3]), *turns)
+
+
+_Finite: TypeAlias = Annotated[float, Field(allow_inf_nan=False)]
+Pose3D: TypeAlias = Annotated[
+    tuple[_Finite, _Finite, _Finite, _Finite, _Finite, _Finite],
+    BeforeValidator(_six),
+    WithJsonSchema({"type": "array", "minItems": 3, "maxItems": 6, "description": _POSE}),
+]
+"""x, y, z (m), roll, pitch, yaw (rad, about fixed axes in this order)."""
+
+
+class Part(BaseModel):
+    """A part of a world file: unknown keys are mistakes, and nothing changes it."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+def pose2d(pose: tuple[float, float, float]) -> Pose2D:
+    """A pose of the file as the value that everything else uses."""
+    return Pose2D(*pose)
+
+
+def transform(pose: tuple[float, float, float, float, float, float]) -> Transform:
+    """A pose of the file in space as the value that everything else uses."""
+    return Transform.from_rpy(pose[:3], pose[3:])
