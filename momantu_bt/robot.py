@@ -37,6 +37,7 @@ from momantu_bt.robot_simulation import (
     BaseJoints,
     Cuts,
     JointGains,
+    Linkage,
     PlanarDrive,
     SimulationModel,
 )
@@ -57,6 +58,7 @@ __all__ = [
     "JointLimit",
     "LaserSensor",
     "LidarSensor",
+    "Linkage",
     "PlanarDrive",
     "PlanningGroup",
     "Robot",

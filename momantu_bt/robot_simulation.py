@@ -6,7 +6,7 @@ from typing import Annotated, TypeAlias
 
 from pydantic import Field
 
-from momantu_bt.descriptions.quantities import Force, Length
+from momantu_bt.descriptions.quantities import Angle, Force, Length
 from momantu_bt.robot_parts import Part
 
 Gain: TypeAlias = Annotated[float, Field(ge=0, allow_inf_nan=False)]
@@ -44,6 +44,25 @@ class JointGains(Part):
     """Nm s/rad or N s/m."""
     force: Strength | None = None
     """Greatest torque or force, Nm or N; not given: the URDF's effort limit."""
+    armature: Gain = 0.0
+    """Inertia of the geared motor as the joint feels it, kg m2 or kg."""
+
+
+class Linkage(Part):
+    """A finger joint without a motor of its own.
+
+    It takes the travel of another joint's motor that is left when that joint is stopped, as in
+    hands whose fingers wrap around what they grasp.
+    """
+
+    motor: str
+    """The finger joint whose motor moves it."""
+    ratio: Strength
+    """How far it turns per travel of the motor that the other joint does not take."""
+    share: Strength
+    """Its torque, as a share of the other joint's."""
+    preload: Annotated[Angle, Field(ge=0)] = 0.0
+    """Travel of the motor that its spring holds before it gives way."""
 
 
 class Cuts(Part):
@@ -70,6 +89,8 @@ class Contacts(Part):
     """Friction of the pads."""
     convex_cells: dict[str, Cuts] = {}
     """Links whose collision mesh is cut, each cell a convex hull; others are one hull."""
+    linkages: dict[str, Linkage] = {}
+    """Finger joints that another finger joint's motor moves too."""
 
 
 class SimulationModel(Contacts):

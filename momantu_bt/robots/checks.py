@@ -225,6 +225,12 @@ class _Checks:
             yield from self._every(getattr(contacts, key), self._links, "link", ("simulation", key))
         for link in contacts.convex_cells:
             yield from self._in(link, self._links, "link", ("simulation", "convex_cells", link))
+        hand = self._robot.actuators.get(self._robot.end_effector.actuator)
+        fingers = () if hand is None else hand.joints
+        for joint, linkage in contacts.linkages.items():
+            place: Place = ("simulation", "linkages", joint)
+            yield from self._in(joint, self._moving, "moving joint", place)
+            yield from self._in(linkage.motor, fingers, "finger joint", (*place, "motor"))
 
 
 def _near(name: str, known: Collection[str]) -> str:

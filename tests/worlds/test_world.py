@@ -182,6 +182,6 @@ def test_seeds_differ_and_repeat() -> None:
 
 
 def test_a_robot_without_a_simulation_model_is_refused() -> None:
-    stranger: RobotDescription = FETCH.model_copy(update={"name": "stranger"})
-    with pytest.raises(WorldError, match=r"'stranger'.*fetch"):
+    stranger: RobotDescription = FETCH.model_copy(update={"name": "stranger", "simulation": None})
+    with pytest.raises(WorldError, match=r"'stranger' cannot be simulated.*`simulation`"):
         four_rooms.open(stranger, 0)

@@ -12,9 +12,8 @@ import trimesh
 from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array
-from momantu_worlds.sapien.looks import GAMMA
+from momantu_worlds.sapien.looks import GAMMA, drawn_vertices
 from momantu_worlds.sapien.meshes import collision_mesh
-from momantu_worlds.sapien.poses import transform_of
 from momantu_worlds.scenes.bodies import Body, Mesh, Part, Picture
 
 Rgb: TypeAlias = tuple[int, int, int]
@@ -81,10 +80,7 @@ def _part_mesh(part: Part) -> ColoredMesh:
 
 def _render_meshes(look: Any) -> Iterator[ColoredMesh]:
     for shape in look.render_shapes:
-        link_from_shape = transform_of(shape.local_pose)
-        scale = np.asarray(getattr(shape, "scale", (1.0, 1.0, 1.0)))
-        for part in getattr(shape, "parts", ()):
-            vertices = link_from_shape.apply(np.asarray(part.vertices) * scale)
+        for part, vertices in zip(shape.parts, drawn_vertices(shape), strict=True):
             # the shader's colours are of light, a browser's of a screen
             light = [float(channel) ** (1 / GAMMA) for channel in part.material.base_color[:3]]
             yield ColoredMesh(vertices, np.asarray(part.triangles), _rgb(light))

@@ -17,3 +17,8 @@ def fetch() -> RobotDescription:
         WorldError: the mani_skill package, or its Fetch, is not installed.
     """
     return read_robot(FOLDER / "fetch")
+
+
+def kinova_jackal() -> RobotDescription:
+    """Clearpath's Jackal with a Kinova j2n6s300, built of primitives."""
+    return read_robot(FOLDER / "kinova_jackal")

@@ -11,11 +11,11 @@ import numpy as np
 import sapien
 
 from momantu_bt.geometry import Array, Transform, quaternion_from_axis_angle
+from momantu_worlds.sapien.collision_filter import FLOOR_BIT
 from momantu_worlds.sapien.looks import render_shape
 from momantu_worlds.sapien.meshes import body_mesh, map_triangles, volume
 from momantu_worlds.sapien.moving import MovingBody
 from momantu_worlds.sapien.poses import pose_of
-from momantu_worlds.sapien.robot_model import FLOOR_BIT
 from momantu_worlds.sapien.truth import Truth
 from momantu_worlds.scenes.bodies import Body, Box, Cylinder, Episode, Hull, Part, Sphere
 

@@ -106,6 +106,16 @@ class LaserErrors:
 
 
 @dataclass(frozen=True)
+class LidarErrors:
+    """Errors of a lidar; 1-sigma."""
+
+    range_noise: float = 0.01
+    """m; makers' "3 cm" is three of them."""
+    drop_out: float = 0.005
+    """share of rays that return nothing: dark and shiny things."""
+
+
+@dataclass(frozen=True)
 class WrenchErrors:
     """Errors of the wrist's force and torque; 1-sigma."""
 
@@ -128,4 +138,5 @@ class SimulatorConfig:
     odometry: OdometryErrors = field(default_factory=OdometryErrors)
     camera: CameraErrors = field(default_factory=CameraErrors)
     laser: LaserErrors = field(default_factory=LaserErrors)
+    lidar: LidarErrors = field(default_factory=LidarErrors)
     wrench: WrenchErrors = field(default_factory=WrenchErrors)

@@ -10,6 +10,7 @@ import sapien
 
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.robot import CameraSensor
+from momantu_worlds.sapien.looks import drawn_vertices
 from momantu_worlds.sapien.poses import transform_of
 
 
@@ -53,11 +54,7 @@ class Culling:
 def _sphere(body: Any) -> tuple[Array, float]:
     """Center (3,) in the entity's frame and radius of a sphere around everything drawn, m."""
     points = np.concatenate(
-        [
-            transform_of(shape.local_pose).apply(part.vertices * shape.scale)
-            for shape in body.render_shapes
-            for part in shape.parts
-        ]
+        [vertices for shape in body.render_shapes for vertices in drawn_vertices(shape)]
     )
     center = (points.min(axis=0) + points.max(axis=0)) / 2
     return center, float(np.linalg.norm(points - center, axis=1).max())

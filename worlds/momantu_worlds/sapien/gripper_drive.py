@@ -4,31 +4,33 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from itertools import pairwise
-from typing import Any
 
+from momantu_bt.geometry import Array
 from momantu_bt.messages import GripperCommand
 from momantu_bt.robot import EndEffector
-from momantu_worlds.sapien.config import STEP, Physics
+from momantu_worlds.sapien.config import STEP
+from momantu_worlds.sapien.fingers import Finger, Tips
 
 
 class GripperDrive:
-    """Coupled fingers, each pressing with at most the force that was asked for.
+    """Coupled fingers that close with at most the force that was asked for.
 
-    fingers: SAPIEN's joints by name. speeds: their greatest, rad/s or m/s.
+    The force is what each side presses with: of the fingers' torques half goes to either.
+    speeds: greatest of each finger joint, rad/s or m/s.
     """
 
     def __init__(
         self,
-        fingers: Mapping[str, Any],
+        fingers: Mapping[str, Finger],
+        tips: Tips,
         effector: EndEffector,
         speeds: Mapping[str, float],
-        physics: Physics,
     ) -> None:
-        self._fingers = fingers
+        self._fingers, self._tips = fingers, tips
         self._effector = effector
         self._speed = _closing_speed(effector, speeds)
-        self._physics = physics
         self._goal = self._target = effector.max_width
+        self._targets = effector.positions(self._target)
         self._force = effector.max_force
         self._set_force(self._force)
 
@@ -54,28 +56,35 @@ class GripperDrive:
         if goal.max_force != self._force:
             self._set_force(goal.max_force)
 
-    def apply(self) -> None:
-        """Move the target on by one physics step, at the fingers' speed."""
+    def apply(self, positions: Array) -> None:
+        """Move the target on by one physics step; positions: of all joints now (dof,)."""
         if self._target != self._goal:
             step = self._speed * STEP
             self._target += min(max(self._goal - self._target, -step), step)
             self._send()
+        self._tips.follow(self._targets, positions)
 
-    def effort(self, width: float) -> float:
-        """Closing force of each finger at an opening (m), N: positive when pressing inwards."""
-        push = (width - self._target) / len(self._fingers)
-        return min(max(self._physics.finger_stiffness * push, -self._force), self._force)
+    def effort(self, positions: Mapping[str, float]) -> float:
+        """Closing force of each side at these finger positions, N: positive pressing inwards."""
+        sides = len(self._fingers) / 2
+        push = 0.0
+        for name, finger in self._fingers.items():
+            way = finger.closing * (self._targets[name] - positions[name])
+            push += sides * finger.gains.stiffness * way / finger.lever
+        return min(max(push / len(self._fingers), -self._force), self._force)
 
     def _send(self) -> None:
-        for name, position in self._effector.positions(self._target).items():
-            self._fingers[name].set_drive_target(position)
+        self._targets = self._effector.positions(self._target)
+        for name, position in self._targets.items():
+            self._fingers[name].joint.set_drive_target(position)
 
     def _set_force(self, force: float) -> None:
         self._force = force
-        for finger in self._fingers.values():
-            finger.set_drive_property(
-                self._physics.finger_stiffness, self._physics.finger_damping, force
-            )
+        sides = len(self._fingers) / 2
+        torques = {name: force * finger.lever / sides for name, finger in self._fingers.items()}
+        for name, finger in self._fingers.items():
+            finger.gains.give(finger.joint, torques[name])
+        self._tips.press(torques)
 
 
 def _closing_speed(effector: EndEffector, speeds: Mapping[str, float]) -> float:

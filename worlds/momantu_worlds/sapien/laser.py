@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from embreex import rtcore_scene
-from embreex.mesh_construction import TriangleMesh
 
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.messages import LaserScan, frozen
@@ -14,12 +12,13 @@ from momantu_bt.robot import LaserSensor
 from momantu_bt.world import seeded
 from momantu_worlds.sapien.config import LaserErrors
 from momantu_worlds.sapien.moving import MovingBody
+from momantu_worlds.sapien.rays import Triangles
 
 
 class Laser:
     """A planar scanner that looks through its own robot's cover.
 
-    still: vertices (k, 3, 3) of the triangles of all that never moves, in the map.
+    still: all that never moves, in the map.
     """
 
     def __init__(
@@ -27,7 +26,7 @@ class Laser:
         map_from_laser: Callable[[], Transform],
         name: str,
         sensor: LaserSensor,
-        still: Array,
+        still: Triangles,
         moving: list[MovingBody],
         seed: int,
         errors: LaserErrors,
@@ -35,8 +34,7 @@ class Laser:
         self._map_from_laser = map_from_laser
         self._name, self._sensor = name, sensor
         self._moving, self._seed, self._errors = moving, seed, errors
-        self._scene = rtcore_scene.EmbreeScene()
-        self._mesh = TriangleMesh(self._scene, still.astype(np.float32))
+        self._still = still
         angles = np.linspace(sensor.angle_min, sensor.angle_max, sensor.beams)
         self._beams = np.stack([np.cos(angles), np.sin(angles), np.zeros_like(angles)], axis=1)
 
@@ -63,12 +61,7 @@ class Laser:
         """Distances (beams,) without errors, m; infinite where nothing is hit."""
         pose = self._map_from_laser()
         directions = self._beams @ pose.rotation.T
-        origins = np.repeat(pose.position[None], len(directions), axis=0)
-        hit = self._scene.run(
-            origins.astype(np.float32), directions.astype(np.float32), query="DISTANCE"
-        )
-        ranges = np.asarray(hit, dtype=np.float64)
-        ranges[ranges > 1e6] = np.inf
+        ranges = self._still.distances(pose.position, directions)
         for body in self._moving:
             segments = body.cut(pose.position, self._sensor.range_max)
             if len(segments):

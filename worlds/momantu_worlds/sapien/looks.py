@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array
 from momantu_worlds.sapien.meshes import collision_mesh
+from momantu_worlds.sapien.poses import transform_of
 from momantu_worlds.scenes.bodies import Box, Cylinder, Hull, Mesh, Part, Picture, Sphere
 
 GAMMA = 2.2
@@ -34,6 +35,27 @@ def render_shape(part: Part) -> Any:
         hull = collision_mesh(geometry)
         return _mesh(Mesh(hull.vertices, hull.faces), part)
     raise TypeError(f"a {type(geometry).__name__} cannot be shown")
+
+
+def drawn_vertices(shape: Any) -> list[Array]:
+    """Vertices (n, 3) of each part of a render shape, in the frame it is attached to, m.
+
+    SAPIEN keeps boxes, cylinders and spheres as unit shapes.
+    """
+    from_shape = transform_of(shape.local_pose)
+    scale = _scale(shape)
+    return [from_shape.apply(np.asarray(part.vertices) * scale) for part in shape.parts]
+
+
+def _scale(shape: Any) -> Array:
+    render = sapien.render
+    if isinstance(shape, render.RenderShapeBox):
+        return np.asarray(shape.half_size, dtype=np.float64)
+    if isinstance(shape, render.RenderShapeCylinder):
+        return np.array([shape.half_length, shape.radius, shape.radius])
+    if isinstance(shape, render.RenderShapeSphere):
+        return np.full(3, float(shape.radius))
+    return np.asarray(getattr(shape, "scale", (1.0, 1.0, 1.0)))
 
 
 def _plain(part: Part) -> Any:

@@ -18,6 +18,14 @@ class MovingBody:
         self._entity, self._mesh = entity, mesh
         self._radius = float(np.linalg.norm(mesh.vertices, axis=1).max())
 
+    def ball(self) -> tuple[Array, float]:
+        """Centre (3,) in the map and radius of a ball around the body, m."""
+        return np.asarray(self._entity.pose.p, dtype=np.float64), self._radius
+
+    def triangles(self) -> Array:
+        """Its triangles (k, 3, 3) in the map, where it is now."""
+        return transform_of(self._entity.pose).apply(self._mesh.triangles)
+
     def cut(self, origin: Array, reach: float) -> Array:
         """Segments (k, 2, 2) in the map where the plane z = origin[2] cuts the body.
 

@@ -19,6 +19,7 @@ from momantu_bt.robot import (
 from momantu_worlds.sapien.base_drive import BaseDrive
 from momantu_worlds.sapien.config import SimulatorConfig
 from momantu_worlds.sapien.encoders import Encoders, prismatic_joints
+from momantu_worlds.sapien.fingers import Tips
 from momantu_worlds.sapien.gripper_drive import GripperDrive
 from momantu_worlds.sapien.joint_drive import JointDrive
 from momantu_worlds.sapien.odometry import Odometry
@@ -71,8 +72,10 @@ class SimulatedRobot:
         self._odometry = Odometry(start, seed, config.odometry)
         base = simulation.base.joints
         self._base_columns = [model.index[n] for n in (base.x, base.y, base.yaw)]
-        self._efforts = np.array([model.efforts.get(name, np.inf) for name in self._names])
-        self._physics = config.physics
+        gains = [model.gains[name] for name in self._names]
+        self._stiffness = np.array([each.stiffness for each in gains])
+        self._damping = np.array([each.damping for each in gains])
+        self._efforts = np.array([each.force for each in gains])
         slides = model.joints[base.x], model.joints[base.y]
         self.base = BaseDrive(*slides, model.joints[base.yaw], description.base)
         self.joint_drives = {
@@ -84,7 +87,7 @@ class SimulatedRobot:
             (drive, [model.index[name] for name in drive.names])
             for drive in self.joint_drives.values()
         ]
-        self.gripper = self._gripper_drive(config)
+        self.gripper = self._gripper_drive(simulation)
         self._place(start, pose)
 
     @property
@@ -157,11 +160,11 @@ class SimulatedRobot:
 
     def apply(self, index: int) -> None:
         """Set every drive's target for physics step `index` of this tick."""
-        yaw = float(self._model.articulation.get_qpos()[self._base_columns[2]])
-        self.base.apply(yaw)
+        positions = self._model.articulation.get_qpos()
+        self.base.apply(float(positions[self._base_columns[2]]))
         for drive in self.joint_drives.values():
             drive.apply(index)
-        self.gripper.apply()
+        self.gripper.apply(positions)
 
     def end_tick(self) -> None:
         """Let odometry take in the tick's motion; the clock stands at its end already."""
@@ -180,7 +183,7 @@ class SimulatedRobot:
         )
         fingers = {name: float(true[i]) for name, i in self._fingers.items()}
         opening = self._description.end_effector.width(fingers)
-        width, grip = self._encoders.gripper(opening, self.gripper.effort(opening), stamp)
+        width, grip = self._encoders.gripper(opening, self.gripper.effort(fingers), stamp)
         base = self._true_base(true)
         vx, vy, wz = (float(speeds[i]) for i in self._base_columns)
         forward = vx * np.cos(base.yaw) + vy * np.sin(base.yaw)
@@ -203,8 +206,8 @@ class SimulatedRobot:
         drives = self.joint_drives.values()
         target = np.concatenate([d.position for d in drives])
         speed = np.concatenate([d.velocity for d in drives])
-        push = self._physics.arm_stiffness * (target - true[self._columns])
-        push += self._physics.arm_damping * (speed - speeds[self._columns])
+        push = self._stiffness * (target - true[self._columns])
+        push += self._damping * (speed - speeds[self._columns])
         return np.clip(push, -self._efforts, self._efforts)
 
     def _true_base(self, positions: Array) -> Pose2D:
@@ -221,15 +224,12 @@ class SimulatedRobot:
             self._efforts[places],
         )
 
-    def _gripper_drive(self, config: SimulatorConfig) -> GripperDrive:
-        effector = self._description.end_effector
+    def _gripper_drive(self, simulation: SimulationModel) -> GripperDrive:
+        effector, model = self._description.end_effector, self._model
         limits = self._description.joint_limits
-        return GripperDrive(
-            {name: self._model.joints[name] for name in effector.opening},
-            effector,
-            {name: limits[name].velocity for name in effector.opening},
-            config.physics,
-        )
+        tips = Tips(simulation.linkages, model.fingers, model.joints, model.gains, model.index)
+        speeds = {name: limits[name].velocity for name in effector.opening}
+        return GripperDrive(model.fingers, tips, effector, speeds)
 
     def _place(self, start: Pose2D, pose: Mapping[str, float]) -> None:
         """Stand at `start` with the joints at `pose` and the gripper open; nothing moves."""

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import sapien
-from lxml import etree
+from sapien.wrapper.urdf_loader import URDFLoader
 
 from momantu_bt.geometry import Array
 from momantu_bt.robot import ActuatorKind, Cuts, RobotDescription, SimulationModel
 from momantu_worlds.sapien.cells import convex_cells
+from momantu_worlds.sapien.collision_filter import FLOOR_BIT, ignore_bits
 from momantu_worlds.sapien.config import Physics
+from momantu_worlds.sapien.drives import Gains, arm_gains
+from momantu_worlds.sapien.fingers import Finger, couple, fingers_of
 
-FLOOR_BIT = 1 << 30
-"""Collision bit of what a base may roll on: shapes that share it ignore each other."""
 MANY_TURNS = 1e3
 """rad; the limit given to joints that turn for ever, so that positions never wrap."""
 FLOOR_REACH = 1e3
@@ -28,14 +29,15 @@ class RobotModel:
     """A robot in the physics scene.
 
     joints: active joints by name. index: their place in qpos. links: by name.
-    efforts: force or torque limit of each arm and head joint.
+    gains: of each arm and head joint, and of finger tips. fingers: the gripper's, by joint.
     """
 
     articulation: Any
     joints: dict[str, Any]
     index: dict[str, int]
     links: dict[str, Any]
-    efforts: dict[str, float]
+    gains: Mapping[str, Gains]
+    fingers: Mapping[str, Finger]
 
     def positions(self) -> Array:
         """All joint positions now (dof,), true."""
@@ -78,17 +80,27 @@ def build_robot(
         joints,
         {name: i for i, name in enumerate(joints)},
         {link.name: link for link in articulation.get_links()},
-        _efforts(description),
+        arm_gains(description, simulation, physics),
+        fingers_of(description, simulation, joints, physics),
     )
     _set_drives(model, description, simulation, physics)
-    _couple_fingers(model, description, simulation, physics)
+    couple(articulation, model.fingers, physics)
     return model
+
+
+class _UnseenLoader(URDFLoader):  # type: ignore[misc]
+    """Leaves out what is only seen: without a renderer not even a colour can be made."""
+
+    def _build_link(self, link: Any, link_builder: Any) -> None:
+        link.visuals = []
+        super()._build_link(link, link_builder)
 
 
 def _parse(
     scene: Any, description: RobotDescription, simulation: SimulationModel, visuals: bool
 ) -> Any:
-    loader = scene.create_urdf_loader()
+    loader = URDFLoader() if visuals else _UnseenLoader()
+    loader.set_scene(scene)
     loader.fix_root_link = True
     for link in simulation.finger_links:
         friction = simulation.finger_friction
@@ -97,8 +109,6 @@ def _parse(
     builder = articulations[0]
     links = {link.name: link for link in builder.link_builders}
     for link in builder.link_builders:
-        if not visuals:
-            link.visual_records.clear()
         if link.name in simulation.no_collision_links:
             link.collision_records.clear()
         _unwrap(link.joint_record, simulation)
@@ -134,24 +144,14 @@ def _unwrap(joint: Any, simulation: SimulationModel) -> None:
 
 
 def _ignore_pairs(links: dict[str, Any], pairs: tuple[tuple[str, str], ...]) -> None:
-    """Give each ignored pair a bit of its own (collision group 2)."""
-    bit = 0
-    for first, second in pairs:
-        if links[first].parent is links[second] or links[second].parent is links[first]:
-            continue
-        for name in (first, second):
-            links[name].collision_groups[2] |= 1 << bit
-        bit += 1
-
-
-def _efforts(description: RobotDescription) -> dict[str, float]:
-    root = etree.fromstring(description.urdf.read_bytes())
-    efforts: dict[str, float] = {}
-    for joint in root.findall("joint"):
-        limit = joint.find("limit")
-        if limit is not None and limit.get("effort") is not None:
-            efforts[str(joint.get("name"))] = float(str(limit.get("effort")))
-    return efforts
+    """Let these pairs pass through each other; neighbours on the chain do so anyway."""
+    apart = [
+        (first, second)
+        for first, second in pairs
+        if links[first].parent is not links[second] and links[second].parent is not links[first]
+    ]
+    for name, bits in ignore_bits(apart).items():
+        links[name].collision_groups[2] |= bits
 
 
 def _set_drives(
@@ -168,26 +168,4 @@ def _set_drives(
     for actuator in description.actuators.values():
         if actuator.kind is ActuatorKind.JOINTS:
             for name in actuator.joints:
-                model.joints[name].set_drive_property(
-                    physics.arm_stiffness,
-                    physics.arm_damping,
-                    model.efforts.get(name, math.inf),
-                )
-
-
-def _couple_fingers(
-    model: RobotModel, description: RobotDescription, simulation: SimulationModel, physics: Physics
-) -> None:
-    """Make both fingers move alike: the difference of their travels is held at zero."""
-    if len(simulation.finger_links) != 2:
-        return
-    first, second = (model.links[name] for name in simulation.finger_links)
-    model.articulation.create_fixed_tendon(
-        [first.get_parent(), first, second],
-        [0, 1, -1],
-        [0, 1, -1],
-        rest_length=0,
-        offset=0,
-        stiffness=physics.tendon_stiffness,
-        damping=physics.tendon_damping,
-    )
+                model.gains[name].give(model.joints[name])

@@ -8,23 +8,16 @@ from typing import Any
 import sapien
 
 from momantu_bt.geometry import Transform
-from momantu_bt.robot import (
-    CameraSensor,
-    LaserSensor,
-    RobotDescription,
-    SimulationModel,
-    WristWrench,
-)
+from momantu_bt.robot import RobotDescription, SimulationModel
 from momantu_bt.world import TICK, WorldError
 from momantu_worlds.sapien.building import Addition, add_bodies, add_body, add_lights
-from momantu_worlds.sapien.camera import Camera
 from momantu_worlds.sapien.config import STEP, SUB_STEPS, Physics, SimulatorConfig
-from momantu_worlds.sapien.laser import Laser
 from momantu_worlds.sapien.memory import tidy
-from momantu_worlds.sapien.poses import pose_of, transform_of
+from momantu_worlds.sapien.poses import pose_of
 from momantu_worlds.sapien.rendering import render_system
-from momantu_worlds.sapien.robot import Sensor, SimulatedRobot
-from momantu_worlds.sapien.robot_model import RobotModel, build_robot
+from momantu_worlds.sapien.robot import SimulatedRobot
+from momantu_worlds.sapien.robot_model import build_robot
+from momantu_worlds.sapien.sensors import SensorBuilder
 from momantu_worlds.sapien.truth import Truth
 from momantu_worlds.sapien.wrench import Wrench
 from momantu_worlds.scenes.bodies import Body, Episode
@@ -88,8 +81,10 @@ class Simulator:
             self.config,
             self.now,
         )
-        for name, sensor in self._sensors(description, model, still, seed, render):
-            self.robot.sensors[name] = sensor
+        builder = SensorBuilder(
+            self.scene, description, model, still, self._moving, seed, self.config, self.robot.peek
+        )
+        self.robot.sensors.update(builder.build(render=render))
         self.model = model
         self._wrists = [s for s in self.robot.sensors.values() if isinstance(s, Wrench)]
 
@@ -160,36 +155,6 @@ class Simulator:
         """Empty the scene; safe to call twice."""
         for entity in list(self.scene.entities):
             self.scene.remove_entity(entity)
-
-    def _sensors(
-        self,
-        description: RobotDescription,
-        model: RobotModel,
-        still: Any,
-        seed: int,
-        render: bool,
-    ) -> list[tuple[str, Sensor]]:
-        sensors: list[tuple[str, Sensor]] = []
-        for name, spec in description.sensors.items():
-            link = model.links[spec.frame]
-            if isinstance(spec, CameraSensor):
-                if render:
-                    errors = self.config.camera
-                    links = list(model.links.values())
-                    camera = Camera(self.scene, link, name, spec, seed, errors, links)
-                    sensors.append((name, camera))
-            elif isinstance(spec, LaserSensor):
-                where = _pose_source(link)
-                laser = Laser(where, name, spec, still, self._moving, seed, self.config.laser)
-                sensors.append((name, laser))
-            elif isinstance(spec, WristWrench):
-                wrist = Wrench(model.articulation, link, name, spec, seed, self.config.wrench)
-                sensors.append((name, wrist))
-        return sensors
-
-
-def _pose_source(link: Any) -> Any:
-    return lambda: transform_of(link.entity_pose)
 
 
 def _simulation_of(description: RobotDescription) -> SimulationModel:
