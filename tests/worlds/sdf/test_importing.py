@@ -1,0 +1,341 @@
+"""What becomes of a world: bodies, masses, joints, the floor, lights, a robot, a site."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from momantu_worlds.scenes.world_reader import parse_world
+from momantu_worlds.sdf.findings import Fate, SdfError
+from momantu_worlds.sdf.importing import import_world
+from momantu_worlds.sdf.model import Box, Cylinder
+from momantu_worlds.sdf.parts import MeshPart
+
+GROUND = "<include><uri>model://ground_plane</uri></include>"
+BALL = "<geometry><sphere><radius>0.05</radius></sphere></geometry>"
+CAN = """<inertial><mass>{mass}</mass></inertial><collision name='c'><geometry><cylinder>
+  <radius>0.03</radius><length>0.1</length></cylinder></geometry></collision>"""
+
+
+def by_name(found):
+    return {body.name: body for body in found.world.bodies}
+
+
+def whats(found):
+    return [finding.what for finding in found.findings]
+
+
+def read_back(found, tmp_path):
+    """The world as the reader of world files has it."""
+    found.write(tmp_path / "room.yaml")
+    return parse_world((tmp_path / "room.yaml").read_text(), tmp_path / "room.yaml")
+
+
+def test_a_visual_and_a_collision_that_fit_are_one_part(imported, box):
+    found = imported(GROUND + box("crate", "1 2 3", "4 5 1.5 0 0 0.5"))
+    (body,) = found.world.bodies
+    (part,) = body.parts
+    assert part.solid == Box((1, 2, 3))
+    assert part.visual
+    assert part.collision
+    assert body.still
+    assert body.at.position == pytest.approx([4, 5, 1.5])
+    assert body.at.yaw == pytest.approx(0.5)
+    assert len(found.findings) == 0
+
+
+POSE = st.tuples(*[st.floats(-5, 5)] * 3, *[st.floats(-3, 3)] * 3)
+
+
+@settings(
+    max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
+@given(st.lists(st.tuples(POSE, POSE, POSE), min_size=1, max_size=4), st.data())
+def test_shapes_stand_where_they_stood_and_none_is_lost(sdf, tmp_path, shapes, data):
+    """Model, link and shape have poses of their own; the written file has the same points."""
+    models, expected = [], []
+    tall = ((9, 9, 1, 0, 0, 0), (0,) * 6, (0,) * 6)
+    shapes = [tall, *shapes]  # all others may lie below the floor
+    for number, poses in enumerate(shapes):
+        texts = [" ".join(f"{v:.9f}" for v in pose) for pose in poses]
+        size = [data.draw(st.floats(0.1, 2)) for _ in range(3)]
+        still = data.draw(st.booleans())
+        models.append(
+            f"<model name='m{number}'><static>{int(still)}</static><pose>{texts[0]}</pose>"
+            f"<link name='l'><pose>{texts[1]}</pose><collision name='c'><pose>{texts[2]}</pose>"
+            f"<geometry><box><size>{' '.join(map(str, size))}</size></box></geometry></collision>"
+            "</link></model>"
+        )
+        expected.append(corners(poses, size))
+    file = sdf("".join(models))
+    found = import_world(file, tmp_path / "room.yaml")
+    gone = sum(finding.fate is Fate.DROPPED for finding in found.findings)
+    world = read_back(found, tmp_path)
+    written = [
+        corners((note.at, part.at), part.box)
+        for note in world.bodies.values()
+        for part in note.parts
+    ]
+    assert len(written) + gone == len(expected)
+    for points in written:
+        assert any(np.abs(points - other).max() < 2e-5 for other in expected)
+
+
+def corners(poses, size):
+    from momantu_bt.geometry import Transform
+
+    found = Transform()
+    for pose in poses:
+        found = found @ Transform.from_rpy(pose[:3], pose[3:])
+    signs = [(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)]
+    return found.apply(np.array(signs) * size)
+
+
+def test_masses_are_kept_and_joined_links_are_one_body(imported):
+    found = imported(
+        f"""{GROUND}<model name='tool'><link name='a'>{CAN.format(mass=0.25)}</link>
+        <link name='b'><pose>0 0 0.1 0 0 0</pose>{CAN.format(mass=0.5)}</link>
+        <joint name='j' type='fixed'><parent>a</parent><child>b</child></joint></model>
+        <model name='pair'><pose>1 0 0.05 0 0 0</pose><link name='a'>{CAN.format(mass=0.1)}</link>
+        <link name='b'><pose>1 0 0 0 0 0</pose>{CAN.format(mass=0.2)}</link></model>"""
+    )
+    masses = {name: body.mass for name, body in by_name(found).items()}
+    assert masses == {"tool": 0.75, "pair_a": 0.1, "pair_b": 0.2}
+    assert len(by_name(found)["tool"].parts) == 2
+
+
+DOOR = """<model name='cupboard'><link name='box'>{}</link><link name='door'>{}</link>
+  <joint name='hinge' type='revolute'><parent>box</parent><child>door</child></joint>{}</model>"""
+
+
+def test_what_a_joint_moves_stays_where_it_is(imported):
+    can = CAN.format(mass=1)
+    found = imported(GROUND + DOOR.format(can, can, ""))
+    (body,) = found.world.bodies
+    assert body.still
+    assert body.mass is None
+    assert "a revolute joint" in whats(found)
+
+
+def test_a_joint_to_the_world_holds_a_body(imported):
+    inside = f"""{GROUND}<model name='sign'><link name='l'>{CAN.format(mass=1)}</link>
+      <joint name='j' type='fixed'><parent>world</parent><child>l</child></joint></model>"""
+    assert imported(inside).world.bodies[0].still
+
+
+def test_joints_reach_through_frames_and_models(imported):
+    inside = f"""{GROUND}<model name='m'><frame name='f' attached_to='a'/>
+      <link name='a'>{CAN.format(mass=1)}</link>
+      <model name='n'><link name='b'>{CAN.format(mass=2)}</link></model>
+      <joint name='j' type='fixed'><parent>f</parent><child>n::b</child></joint>
+      <joint name='k' type='fixed'><parent>a</parent><child>nobody</child></joint></model>"""
+    found = imported(inside)
+    assert [body.mass for body in found.world.bodies] == [3]
+    assert any("'nobody', which are not both there" in what for what in whats(found))
+
+
+def test_what_cannot_be_touched_does_not_fall(imported):
+    link = f"<link name='l'><visual name='v'>{BALL}</visual></link>"
+    found = imported(f"{GROUND}<model name='ghost'>{link}</model>")
+    assert found.world.bodies[0].still
+    assert "it can move but not be touched" in whats(found)
+
+
+ROBOT = """<model name='rover'><pose>3 2 0.1 0 0 1</pose><link name='base'>{}
+  <sensor name='s' type='ray'/></link><link name='left'>{}</link><link name='right'>{}</link>
+  <joint name='a' type='revolute'><parent>base</parent><child>left</child></joint>
+  <joint name='b' type='revolute'><parent>base</parent><child>right</child></joint></model>"""
+
+
+def test_a_robot_is_the_start(imported, box):
+    found = imported(GROUND + box("crate", "1 1 1") + ROBOT.format(*[CAN.format(mass=1)] * 3))
+    assert [body.name for body in found.world.bodies] == ["crate"]
+    start = found.world.site.start
+    assert (start.x, start.y, start.yaw) == pytest.approx((3, 2, 1))
+    assert any("a robot" in what for what in whats(found))
+    assert "where rover stood" in found.text
+
+
+def test_a_moved_robot_starts_where_it_was_moved_to(imported, box):
+    state = """<state><model name='rover'><pose>0 0 0 0 0 0</pose>
+      <link name='base'><pose>5 6 0 0 0 -1</pose></link></model></state>"""
+    robot = ROBOT.format(*[CAN.format(mass=1)] * 3)
+    start = imported(GROUND + box("crate", "1 1 1") + robot + state).world.site.start
+    assert (start.x, start.y, start.yaw) == pytest.approx((5, 6, -1))
+
+
+@pytest.mark.parametrize(("mu", "kept"), [("0.5", 0.5), ("100", 1.0), ("0", 0.01), ("-1", 0.01)])
+def test_friction_is_kept_within_what_is_possible(imported, box, mu, kept):
+    surface = f"<surface><friction><ode><mu>{mu}</mu><mu2>{mu}</mu2></ode></friction></surface>"
+    found = imported(GROUND + box("b", "1 1 1", "0 0 0.5 0 0 0", extra=surface))
+    assert found.world.bodies[0].friction == kept
+    assert bool(len(found.findings)) == (mu != "0.5")
+
+
+def test_the_floor_becomes_z_0(imported, box):
+    plane = "<model name='g'><static>1</static><pose>0 0 0.7 0 0 0</pose>{}</model>"
+    shape = "<geometry><plane/></geometry>"
+    link = f"<link name='l'><collision name='c'>{shape}</collision><visual name='v'>{shape}"
+    link += "<material><diffuse>0.1 0.2 0.3 1</diffuse></material></visual></link>"
+    found = imported(plane.format(link) + box("b", "1 1 1", "0 0 1.2 0 0 0"))
+    (body,) = found.world.bodies
+    assert body.at.position == pytest.approx([0, 0, 0.5])
+    assert found.world.ground.color == (0.1, 0.2, 0.3)
+    assert "becomes z = 0" in next(iter(found.findings)).instead
+
+
+def test_a_wide_slab_is_the_floor_and_a_narrow_one_stands_on_it(imported, box):
+    room = box("slab", "8 6 0.2", "0 0 0 0 0 0") + box("stage", "2 2 0.2", "1 1 0.2 0 0 0")
+    found = imported(GROUND + room + box("wall", "8 0.1 2", "0 3 1.1 0 0 0"))
+    bodies = by_name(found)
+    assert set(bodies) == {"stage", "wall"}
+    assert found.world.ground.height == pytest.approx(0.1)
+    assert bodies["stage"].at.position[2] == pytest.approx(0.1)
+
+
+def test_what_lies_flat_is_driven_over(imported, box):
+    found = imported(
+        GROUND + box("carpet", "2 1 0.02", "0 0 0.01 0 0 0") + box("b", "1 1 1", "3 0 0.5 0 0 0")
+    )
+    carpet = by_name(found)["carpet"].parts[0]
+    assert carpet.visual
+    assert not carpet.collision
+    assert any("lies flat" in what for what in whats(found))
+
+
+def test_planes_that_are_no_floor_end_somewhere(imported, tmp_path):
+    shape = "<geometry><plane><normal>1 0 0</normal><size>2 3</size></plane></geometry>"
+    inside = f"{GROUND}<model name='w'><static>1</static><pose>0 0 1.5 0 0 0</pose><link name='l'>"
+    found = imported(f"{inside}<collision name='c'>{shape}</collision></link></model>")
+    points = np.concatenate(list(found.world.bodies[0].hulls()))
+    assert points[:, 0].max() == pytest.approx(0, abs=1e-9)
+    assert points[:, 0].min() == pytest.approx(-0.01)
+    assert any("plane that is not the floor" in what for what in whats(found))
+
+
+def test_lights_are_carried_over(imported, box, tmp_path):
+    lights = """<scene><ambient>0.5 0.5 0.5 1</ambient></scene>
+      <light name='sun' type='directional'><pose>0 0 9 0 3.141592653589793 0</pose>
+        <diffuse>0.5 0.6 0.7 1</diffuse><direction>0 0 1</direction></light>
+      <light name='lamp' type='point'><pose>1 2 3 0 0 0</pose></light>
+      <light name='off' type='point'><light_on>0</light_on></light>
+      <light name='cone' type='spot'><pose>4 5 6 0 0 0</pose></light>"""
+    found = imported(GROUND + lights + box("b", "1 1 1"))
+    light = found.world.light
+    ((direction, color),) = light.suns
+    assert direction == pytest.approx((0, 0, -1), abs=1e-9)
+    assert color == (0.5, 0.6, 0.7)
+    assert [at for at, _ in light.bulbs] == [(1, 2, 3), (4, 5, 6)]
+    assert sorted(whats(found)) == ["a light that is off", "a spot light"]
+    assert read_back(found, tmp_path).light.ambient == (0.5, 0.5)
+
+
+TABLE = """<model name='table'><static>1</static><pose>{} 0 0 0 0 0.3</pose><link name='l'>
+  <collision name='c'><pose>0 0 0.7 0 0 0</pose><geometry><box><size>0.8 1.4 0.04</size></box>
+  </geometry></collision></link></model>"""
+
+
+def walls(box):
+    pieces = [(0, -3, 0), (0, 3, 0), (-4, 0, math.pi / 2), (4, 0, math.pi / 2)]
+    return "".join(
+        box(f"wall{n}", "8 0.1 2.5", f"{x} {y} 1.25 0 0 {yaw}")
+        for n, (x, y, yaw) in enumerate(pieces)
+    )
+
+
+def test_a_site_is_proposed(imported, box, tmp_path):
+    link = f"<link name='l'>{CAN.format(mass=0.4)}</link>"
+    can = f"<model name='can'><pose>1 0.1 0.77 0 0 0</pose>{link}</model>"
+    found = imported(GROUND + walls(box) + TABLE.format(1) + can)
+    site = found.world.site
+    assert list(site.surfaces) == ["table"]
+    top = site.surfaces["table"].top
+    assert top.height == pytest.approx(0.72)
+    assert top.size == pytest.approx((0.8, 1.4), abs=1e-3)
+    assert (top.pose.x, top.pose.y, top.pose.yaw) == pytest.approx((1, 0, 0.3), abs=1e-3)
+    assert set(np.round(site.surfaces["table"].sides[:2], 2)) == {0.0, 3.14}
+    assert site.objects == {"can": {"category": "can", "diameter": 0.06, "height": 0.1}}
+    for pose in (site.start, *site.places.values()):
+        assert abs(pose.x) < 3.6
+        assert abs(pose.y) < 2.6
+    assert math.hypot(site.start.x - 1, site.start.y) > 0.8
+    world = read_back(found, tmp_path)
+    assert world.bodies["table"].surface.height == pytest.approx(0.72)
+
+
+def test_tops_that_nobody_can_use_are_not_proposed(imported, box):
+    low, high = box("low", "1 1 0.2", "2 0 0.1 0 0 0"), box("high", "1 1 0.1", "0 2 1.5 0 0 0")
+    thin = box("thin", "0.1 1 0.7", "2 2 0.35 0 0 0")
+    shut = box("shut", "0.6 0.6 0.7", "-3.6 -2.6 0.35 0 0 0") + box(
+        "lid", "0.6 0.6 0.2", "-3.6 -2.6 0.8 0 0 0"
+    )
+    found = imported(GROUND + walls(box) + low + high + thin + shut)
+    assert set(found.world.site.surfaces) <= {"lid"}
+
+
+def test_names_are_made_to_fit_and_never_meet(imported, box):
+    inside = GROUND + box("Table (1)", "1 1 1") + box("table_1", "1 1 1", "3 0 0 0 0 0")
+    inside += box("3rd", "1 1 1", "6 0 0 0 0 0") + box("Ü", "1 1 1", "9 0 0 0 0 0")
+    assert [b.name for b in imported(inside).world.bodies] == [
+        "table_1",
+        "table_1_2",
+        "body_3rd",
+        "body",
+    ]
+
+
+def test_a_name_cannot_write_into_the_file(imported, box, tmp_path):
+    found = imported(GROUND + box("a&#10;momantu_world: 7&#10;", "1 1 1"))
+    assert read_back(found, tmp_path).momantu_world == 1
+
+
+def test_a_scaled_state_scales_shapes(imported, box):
+    state = "<state><model name='b'><pose>0 0 1 0 0 0</pose><scale>2 3 4</scale></model></state>"
+    found = imported(GROUND + box("b", "1 1 1") + state)
+    assert found.world.bodies[0].parts[0].solid == Box((2, 3, 4))
+    assert any("scale 2 3 4" in what for what in whats(found))
+
+
+@pytest.mark.parametrize(
+    ("shape", "height"),
+    [
+        ("<capsule><radius>0.2</radius><length>0.6</length></capsule>", 1.0),
+        ("<cone><radius>0.2</radius><length>0.6</length></cone>", 0.6),
+        ("<ellipsoid><radii>0.2 0.3 0.4</radii></ellipsoid>", 0.8),
+    ],
+)
+def test_round_shapes_become_meshes_around_their_middle(imported, tmp_path, shape, height):
+    shape = f"<geometry>{shape}</geometry>"
+    inside = f"{GROUND}<model name='m'><static>1</static><pose>0 0 1 0 0 0</pose><link name='l'>"
+    inside += (
+        f"<collision name='c'>{shape}</collision><visual name='v'>{shape}</visual></link></model>"
+    )
+    found = imported(inside)
+    (body,) = found.world.bodies
+    assert all(isinstance(part.solid, MeshPart) for part in body.parts)
+    points = np.concatenate(list(body.hulls()))
+    assert (points[:, 2].min(), points[:, 2].max()) == pytest.approx(
+        (1 - height / 2, 1 + height / 2), abs=0.01
+    )
+    assert len(read_back(found, tmp_path).bodies["m"].parts) == 2
+
+
+def test_a_world_of_nothing_is_refused(imported):
+    with pytest.raises(SdfError, match="nothing is left of this world"):
+        imported(GROUND)
+
+
+def test_an_import_is_the_same_twice(imported, box):
+    inside = GROUND + walls(box) + TABLE.format(1)
+    first, second = imported(inside), imported(inside)
+    assert first.text == second.text
+    assert first.assets == second.assets
+
+
+def test_cylinders_keep_their_axis(imported, tmp_path):
+    inside = f"{GROUND}<model name='m'><pose>0 0 1 1.57079632679 0 0</pose><link name='l'>"
+    found = imported(inside + CAN.format(mass=1) + "</link></model>")
+    assert found.world.bodies[0].parts[0].solid == Cylinder(0.03, 0.1)
+    points = np.concatenate(list(found.world.bodies[0].hulls()))
+    assert np.ptp(points[:, 1]) == pytest.approx(0.1)

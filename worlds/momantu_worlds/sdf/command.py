@@ -1,0 +1,119 @@
+"""`momantu-bt worlds import`: Gazebo's worlds as world files."""
+
+from __future__ import annotations
+
+import json
+from itertools import groupby
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from momantu_bt.world import WorldError
+from momantu_worlds.sdf.findings import Fate, Finding
+from momantu_worlds.sdf.importing import Import, import_world
+
+EXIT_LISTED = 1
+EXIT_WRONG_INPUT = 2
+
+
+def import_sdf(
+    file: Annotated[Path, typer.Argument(help="Gazebo's world: FILE.world or FILE.sdf.")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="The world file to write.")],
+    models: Annotated[
+        list[Path] | None,
+        typer.Option(help="A folder in which model:// is looked up; may be given again."),
+    ] = None,
+    strict: Annotated[
+        bool, typer.Option("--strict", help="Exit code 1 when something did not come over.")
+    ] = False,
+    ignore_up_axis: Annotated[
+        bool, typer.Option("--ignore-up-axis", help="Read COLLADA as Gazebo Classic does.")
+    ] = False,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite the world file.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,
+) -> int:
+    """Turn a world of Gazebo's into a world file and its meshes, and list what is different.
+
+    Models are looked for in --models, in GAZEBO_MODEL_PATH and GZ_SIM_RESOURCE_PATH, and beside
+    the file; nothing is downloaded. Meshes become GLB files in a folder beside the world file.
+    Exit code 2: the file is broken, and nothing was written.
+
+    Examples:
+      momantu-bt worlds import office.world --models ~/gazebo_models -o office.yaml
+      momantu-bt worlds preview office.yaml -o office.png
+      momantu-bt run trees/bring_object.yaml --world office.yaml
+    """
+    if output.suffix.lower() not in (".yaml", ".yml"):
+        return _refuse(f"{output} ends with neither .yaml nor .yml")
+    if output.exists() and not force:
+        return _refuse(f"{output} is there already; --force overwrites it")
+    if not output.parent.is_dir():
+        return _refuse(f"{output} cannot be written: there is no folder {output.parent}")
+    try:
+        found = import_world(file, output, models or (), upright=not ignore_up_axis)
+        count = found.write(output)
+    except WorldError as error:
+        return _refuse(str(error))
+    if as_json:
+        typer.echo(json.dumps(_plain(found, output), indent=2))
+    else:
+        _print(found, output, count)
+    return EXIT_LISTED if strict and len(found.findings) else 0
+
+
+def _refuse(message: str) -> int:
+    typer.echo(f"momantu-bt: {message}", err=True)
+    return EXIT_WRONG_INPUT
+
+
+def _print(found: Import, output: Path, assets: int) -> None:
+    world = found.world
+    loose = sum(not body.still for body in world.bodies)
+    typer.echo(
+        f"wrote {output}: {len(world.bodies)} bodies ({loose} loose), {assets} meshes, "
+        f"{len(world.site.surfaces)} surfaces, {len(world.light.suns + world.light.bulbs)} lights"
+    )
+    for fate, title in ((Fate.DROPPED, "Left out"), (Fate.CHANGED, "Different")):
+        listed = [finding for finding in found.findings if finding.fate is fate]
+        if listed:
+            typer.echo(f"\n{title}")
+        for line in _lines(listed):
+            typer.echo(f"  {line}")
+
+
+def _lines(findings: list[Finding]) -> list[str]:
+    """One line for each thing that a file says; where it is said often, how often."""
+
+    def alike(finding: Finding) -> tuple[Path, str, str]:
+        return finding.place.file, finding.what, finding.instead
+
+    lines: list[tuple[Finding, str]] = []
+    for _, group in groupby(sorted(findings, key=lambda f: (alike(f), f.place)), alike):
+        first, *more = group
+        often = f" ({len(more) + 1} times)" if more else ""
+        line = f"{first.place}: {first.subject}: {first.what}{often}: {first.instead}"
+        lines.append((first, line))
+    return [line for _, line in sorted(lines, key=lambda entry: entry[0].place)]
+
+
+def _plain(found: Import, output: Path) -> dict[str, object]:
+    return {
+        "world": str(output),
+        "bodies": [body.name for body in found.world.bodies],
+        "surfaces": list(found.world.site.surfaces),
+        "start": [found.world.site.start.x, found.world.site.start.y, found.world.site.start.yaw],
+        "robot": found.world.robot,
+        "findings": [
+            {
+                "file": str(finding.place.file),
+                "line": finding.place.line,
+                "column": finding.place.column,
+                "subject": finding.subject,
+                "what": finding.what,
+                "instead": finding.instead,
+                "fate": finding.fate.value,
+            }
+            for finding in found.findings
+        ],
+    }

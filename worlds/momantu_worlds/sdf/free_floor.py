@@ -1,0 +1,78 @@
+"""Where a robot can stand and drive in an imported world, on a grid."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from momantu_bt.geometry import Array
+
+CELL = 0.05
+"""m."""
+MOST_CELLS = 1500
+"""Along one side; larger worlds have larger cells."""
+MARGIN = 2.0
+"""m of floor around everything."""
+LOWEST, HIGHEST = 0.03, 1.5
+"""m; what is between these heights is in a robot's way."""
+HALF_WIDTH = 0.35
+"""m; of a robot that turns on the spot."""
+
+
+@dataclass(frozen=True, slots=True)
+class FreeFloor:
+    """clearance: (rows, columns) distance to the nearest thing, m; row 0 lies at the least y.
+
+    regions: (rows, columns) number of the region in which a robot gets about; 0: it fits nowhere.
+    """
+
+    origin: tuple[float, float]
+    cell: float
+    clearance: NDArray[np.float32]
+    regions: NDArray[np.int32]
+
+    def index(self, x: float, y: float) -> tuple[int, int] | None:
+        """Row and column of a point; None beyond the grid."""
+        column = int((x - self.origin[0]) / self.cell)
+        row = int((y - self.origin[1]) / self.cell)
+        inside = 0 <= row < self.clearance.shape[0] and 0 <= column < self.clearance.shape[1]
+        return (row, column) if inside and x >= self.origin[0] and y >= self.origin[1] else None
+
+    def region(self, x: float, y: float) -> int:
+        """The region of a point; 0 where the robot does not fit."""
+        index = self.index(x, y)
+        return 0 if index is None else int(self.regions[index])
+
+    def points(self, mask: NDArray[np.bool_]) -> Array:
+        """Middles (n, 2) of cells, m."""
+        rows, columns = np.nonzero(mask)
+        cells = np.stack([columns, rows], axis=1) + 0.5
+        return np.asarray(np.array(self.origin) + cells * self.cell)
+
+    def area(self, region: int) -> float:
+        """m2."""
+        return float((self.regions == region).sum()) * self.cell**2
+
+
+def free_floor(hulls: Iterable[Array]) -> FreeFloor:
+    """The free floor between convex things, each given by points (n, 3) in the map."""
+    import cv2
+
+    footprints = [
+        hull[:, :2] for hull in hulls if hull[:, 2].max() > LOWEST and hull[:, 2].min() < HIGHEST
+    ]
+    everything = np.concatenate(footprints) if footprints else np.zeros((1, 2))
+    low, high = everything.min(axis=0) - MARGIN, everything.max(axis=0) + MARGIN
+    cell = max(CELL, float((high - low).max()) / MOST_CELLS)
+    columns, rows = (int(n) for n in np.ceil((high - low) / cell).astype(int) + 1)
+    free = np.full((rows, columns), 255, dtype=np.uint8)
+    for footprint in footprints:
+        around = cv2.convexHull(((footprint - low) / cell).astype(np.float32))
+        cv2.fillConvexPoly(free, np.floor(around).astype(np.int32), 0)
+    clearance = np.asarray(cv2.distanceTransform(free, cv2.DIST_L2, 5), dtype=np.float32) * cell
+    fits = (clearance > HALF_WIDTH).astype(np.uint8)
+    _, regions = cv2.connectedComponents(fits, connectivity=4)
+    return FreeFloor((float(low[0]), float(low[1])), cell, clearance, np.asarray(regions))

@@ -1,0 +1,68 @@
+"""Whether the hull of a part would fill air: a room, the space below a table, between boards."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import trimesh
+from numpy.typing import NDArray
+
+from momantu_bt.geometry import Array
+from momantu_bt.world import seeded
+
+SAMPLES = 300
+"""Points tried within a hull."""
+CORNERS = 8
+"""Points are mixed from so many corners of the hull, evenly enough to get everywhere."""
+EVENNESS = 0.6
+"""Of the mixture (Dirichlet's alpha)."""
+INWARD = 0.95
+"""Points are drawn towards the middle by this factor: a point on a face sees nothing sure."""
+AIR = 0.15
+"""Share of points in the air from which on a part is hollow."""
+ROOM = (2.0, 2.0, 1.5)
+"""m; what extends farther is a building, whichever way its faces look."""
+UP = (0.0, 0.0, 1.0)
+_FLAT = [(np.cos(a), np.sin(a), 0.0) for a in np.arange(8) * np.pi / 4 + 0.1]
+DIRECTIONS = np.array([UP, *_FLAT])
+"""(9, 3) where a point looks to: up and around. Things without a bottom are not hollow."""
+
+
+class Air:
+    """Looks around from points within a mesh.
+
+    A point is in the air when it sees the sky, or when most faces around look at it: within
+    matter, one sees the backs of faces.
+    """
+
+    def __init__(self, parts: Sequence[tuple[Array, NDArray[np.int64]]]) -> None:
+        offsets = np.cumsum([0, *(len(vertices) for vertices, _ in parts)])
+        self._mesh = trimesh.Trimesh(
+            np.concatenate([vertices for vertices, _ in parts]),
+            np.concatenate([t + o for (_, t), o in zip(parts, offsets, strict=False)]),
+            process=False,
+        )
+
+    def fills(self, hull: Any) -> bool:
+        """Whether much of a hull (a trimesh.Trimesh) is air."""
+        vertices = np.asarray(hull.vertices)
+        if (np.ptp(vertices, axis=0) > ROOM).all():
+            return True
+        draw = seeded("hollow", len(vertices))
+        picked = vertices[draw.integers(len(vertices), size=(SAMPLES, CORNERS))]
+        weights = draw.dirichlet(np.full(CORNERS, EVENNESS), SAMPLES)
+        points = np.einsum("ij,ijk->ik", weights, picked)
+        middle = vertices.mean(axis=0)
+        points = middle + INWARD * (points - middle)
+        return float(self._in_air(points).mean()) > AIR
+
+    def _in_air(self, points: Array) -> NDArray[np.bool_]:
+        origins = np.repeat(points, len(DIRECTIONS), axis=0)
+        rays = np.tile(DIRECTIONS, (len(points), 1))
+        hit = self._mesh.ray.intersects_first(origins, rays)
+        facing = np.einsum("ij,ij->i", self._mesh.face_normals[hit], rays) < 0.0
+        free = ((hit < 0) | facing).reshape(len(points), -1)
+        sky = (hit < 0).reshape(len(points), -1)[:, 0]
+        return np.asarray(sky | (free.mean(axis=1) > 0.5))

@@ -1,0 +1,130 @@
+"""From an SDF file to a world file and its assets."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from momantu_bt.geometry import Pose2D, Transform
+from momantu_bt.world import WorldError
+from momantu_worlds.scenes.world_reader import parse_world
+from momantu_worlds.sdf.assets import Assets, write_whole
+from momantu_worlds.sdf.bodies import BodyMaker, ImportedBody, plain_name
+from momantu_worlds.sdf.findings import Findings, Place, SdfError
+from momantu_worlds.sdf.frames import PlacedModel
+from momantu_worlds.sdf.ground import find_ground
+from momantu_worlds.sdf.lighting import lighting
+from momantu_worlds.sdf.placing import placed_lights, placed_models
+from momantu_worlds.sdf.proposal import propose
+from momantu_worlds.sdf.read_world import read_world
+from momantu_worlds.sdf.rigid import is_robot, rigid_groups
+from momantu_worlds.sdf.settling import settled
+from momantu_worlds.sdf.shaping import Shaping
+from momantu_worlds.sdf.uris import search_folders
+from momantu_worlds.sdf.writing import Imported, world_text
+
+MOST_BODIES = 2000
+"""As many as a world file may have."""
+
+
+@dataclass(frozen=True, slots=True)
+class Import:
+    """What an import came to. text: of the world file; assets: the files beside it."""
+
+    world: Imported
+    text: str
+    assets: Assets
+    findings: Findings
+
+    def write(self, output: Path) -> int:
+        """Write the assets, then the world file; returns how many assets there are.
+
+        Raises:
+            WorldError: they cannot be written.
+        """
+        try:
+            count = self.assets.write(output)
+            parse_world(self.text, output)  # a file that the reader refuses is not left behind
+            write_whole(output, self.text.encode())
+        except OSError as error:
+            raise WorldError(f"{output} cannot be written: {error.strerror or error}") from error
+        return count
+
+
+def import_world(
+    file: Path, output: Path, models: Iterable[Path] = (), *, upright: bool = True
+) -> Import:
+    """Turn an SDF world into a world file; nothing is written yet.
+
+    Args:
+        file: a `.world` or `.sdf` file.
+        output: where the world file will lie; its assets lie beside it.
+        models: folders in which `model://` is looked up, before Gazebo's own and the file's.
+        upright: heed COLLADA's <up_axis>.
+
+    Raises:
+        SdfError: the file, or one that it includes, is broken.
+    """
+    findings = Findings()
+    for folder in (folder for folder in models if not folder.is_dir()):
+        raise SdfError(Place(file), f"--models {folder}: there is no such folder")
+    source = read_world(file, search_folders(file, models, os.environ), findings)
+    placed = placed_models(source, findings)
+    robot = next((model for model in placed if is_robot(model)), None)
+    things = [model for model in placed if model is not robot]
+    ground = find_ground(things, findings)
+    assets = Assets(f"{plain_name(output.stem)}_assets")
+    maker = BodyMaker(Shaping(assets, findings, upright), ground, findings)
+    made = [
+        body
+        for model in things
+        for group in rigid_groups(model, findings)
+        for body in maker.body(model, group)
+    ]
+    bodies = _enough(list(settled(made, ground.height, findings)), findings)
+    if not bodies:
+        raise SdfError(Place(file), "nothing is left of this world: it has no shape to be seen")
+    light = lighting(placed_lights(source, placed), source.ambient, ground.height, findings)
+    name = plain_name(output.stem)
+    world = Imported(
+        name,
+        file.name,
+        robot.model.name if robot else None,
+        bodies,
+        ground,
+        light,
+        propose(bodies, _start_of(robot, findings)),
+    )
+    return Import(world, world_text(world, findings), assets, findings)
+
+
+def _start_of(robot: PlacedModel | None, findings: Findings) -> Pose2D | None:
+    """Where a robot of the SDF world stood."""
+    if robot is None:
+        return None
+    pose = _base(robot)
+    findings.changed(
+        robot.model.place,
+        robot.model.name,
+        "a robot: its joints move, and it has sensors or plugins",
+        "its place is the start; which robot runs is said by --robot",
+    )
+    return Pose2D.from_transform(pose)
+
+
+def _base(robot: PlacedModel) -> Transform:
+    """The model's own frame, unless a saved state moved its first link away from it."""
+    if not robot.links:
+        return robot.world_from_model
+    first = robot.links[0]
+    back = robot.scope.pose(first.link.name, first.link.place).inverse()
+    return first.world_from_link @ back
+
+
+def _enough(bodies: list[ImportedBody], findings: Findings) -> list[ImportedBody]:
+    for body in bodies[MOST_BODIES:]:
+        what = f"a body beyond the first {MOST_BODIES}"
+        findings.dropped(body.place, body.title, what, "left out")
+    return bodies[:MOST_BODIES]

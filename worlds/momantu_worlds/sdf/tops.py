@@ -1,0 +1,81 @@
+"""Level tops of still bodies that could be tables."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from momantu_bt.geometry import Array, Pose2D
+from momantu_worlds.sdf.bodies import ImportedBody
+
+LOWEST, HIGHEST = 0.3, 1.2
+"""m; tops between these heights are proposed."""
+NARROWEST = 0.25
+"""m; the least edge of such a top."""
+LEVEL = 0.005
+"""m; what lies within this of a piece's highest point is its top."""
+COVERED = 0.7
+"""Least part of the rectangle around a top that is top: a disc has 0.79 of it."""
+HEADROOM = 0.3
+"""m; free height that a hand needs above a top."""
+
+
+@dataclass(frozen=True, slots=True)
+class Top:
+    """A level rectangle. pose: of its middle in the map. size: along its own x and y, m."""
+
+    pose: Pose2D
+    size: tuple[float, float]
+    height: float
+
+    @property
+    def area(self) -> float:
+        """m2."""
+        return self.size[0] * self.size[1]
+
+
+def best_top(body: ImportedBody, others: Sequence[Array]) -> Top | None:
+    """The largest top of a body with room above it; others: hulls (n, 3) of everything still."""
+    found = [top for hull in body.hulls() if (top := _top_of(hull)) is not None]
+    free = [top for top in found if _has_room(top, others)]
+    return max(free, key=lambda top: (round(top.area, 6), -top.height), default=None)
+
+
+def _top_of(hull: Array) -> Top | None:
+    import cv2
+
+    height = float(hull[:, 2].max())
+    if not LOWEST <= height <= HIGHEST:
+        return None
+    upper = hull[hull[:, 2] > height - LEVEL, :2]
+    if len(upper) < 3:
+        return None
+    middle = upper.mean(axis=0)
+    outline = cv2.convexHull((upper - middle).astype(np.float32))
+    (x, y), (width, depth), angle = cv2.minAreaRect(outline)
+    if min(width, depth) < NARROWEST or cv2.contourArea(outline) < COVERED * width * depth:
+        return None
+    yaw = math.radians(angle)
+    while yaw > math.pi / 4:
+        yaw, width, depth = yaw - math.pi / 2, depth, width
+    while yaw < -math.pi / 4:
+        yaw, width, depth = yaw + math.pi / 2, depth, width
+    at = Pose2D(float(middle[0] + x), float(middle[1] + y), yaw)
+    return Top(at, (float(width), float(depth)), height)
+
+
+def _has_room(top: Top, others: Iterable[Array]) -> bool:
+    """Whether nothing still reaches into the space above the middle of a top."""
+    back = top.pose.inverse()
+    c, s = math.cos(back.yaw), math.sin(back.yaw)
+    half = np.array(top.size) / 4.0
+    for hull in others:
+        if hull[:, 2].max() <= top.height + LEVEL or hull[:, 2].min() >= top.height + HEADROOM:
+            continue
+        own = hull[:, :2] @ np.array([(c, s), (-s, c)]) + (back.x, back.y)
+        if (own.min(axis=0) < half).all() and (own.max(axis=0) > -half).all():
+            return False
+    return True
