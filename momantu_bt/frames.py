@@ -83,7 +83,7 @@ class KinematicTree:
 
     def frames(self) -> tuple[str, ...]:
         """Every frame below the base, and the base itself."""
-        below = [name for name in self._joint_above if self._chain(name) is not None]
+        below = [name for name in self._joint_above if self._chain(name)]
         return (self.base_frame, *below)
 
     def joints(self) -> tuple[Joint, ...]:

@@ -45,6 +45,7 @@ from momantu_bt.robot_simulation import (
 __all__ = [
     "ARM",
     "CAMERA_CARRIER",
+    "MESH_ENDINGS",
     "REQUIRED_POSES",
     "WATCHDOG",
     "Actuator",
@@ -85,6 +86,9 @@ ARM = "arm"
 REQUIRED_POSES = ("home", "ready", "carry", "look_around")
 """Named poses that every robot has."""
 
+MESH_ENDINGS = (".glb", ".gltf", ".dae", ".obj", ".stl", ".ply")
+"""How names of mesh files end, in lower case."""
+
 WATCHDOG = 0.25
 """Seconds after the last command at which a driver stops its actuator by itself."""
 
@@ -96,7 +100,7 @@ class RobotDescription(Part):
     source: Path | None = None
     """The robot file that it was read from."""
     files: dict[str, Path] = {}
-    """Every file that it is made of except meshes, by names that mean something elsewhere."""
+    """Every file that it is made of, by names that mean something on other machines."""
     urdf: Path
     """One URDF of the whole robot; absolute."""
     mesh_directories: tuple[Path, ...] = ()
@@ -138,6 +142,7 @@ class RobotDescription(Part):
         return {
             name: path.read_text(encoding="utf-8", errors="replace")
             for name, path in self.files.items()
+            if path.suffix.lower() not in MESH_ENDINGS
         }
 
     def kinematics(self) -> KinematicTree:

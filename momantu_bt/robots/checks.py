@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Collection, Iterable, Iterator
 from typing import Any, TypeAlias
 
 from lxml import etree
 
+from momantu_bt.descriptions.names import nearest
 from momantu_bt.descriptions.quantities import LENGTH, unit_of
 from momantu_bt.descriptions.reading import Place
 from momantu_bt.frames import Joint, KinematicTree
@@ -32,7 +32,7 @@ def findings(robot: RobotFile, root: etree._Element, plain: Any) -> list[Finding
         return [
             (
                 ("base_frame",),
-                f"there is no link {robot.base_frame!r}{_near(robot.base_frame, links)}",
+                f"there is no link {robot.base_frame!r}{nearest(robot.base_frame, links)}",
             )
         ]
     tree = KinematicTree.from_element(root, robot.base_frame)
@@ -68,7 +68,7 @@ class _Checks:
 
     def _in(self, name: str, known: Collection[str], what: str, place: Place) -> Iterator[Finding]:
         if name not in known:
-            yield place, f"there is no {what} {name!r}{_near(name, known)}"
+            yield place, f"there is no {what} {name!r}{nearest(name, known)}"
 
     def _every(
         self, names: Iterable[str], known: Collection[str], what: str, place: Place
@@ -105,7 +105,7 @@ class _Checks:
         for name, limit in self._robot.joint_limits.items():
             place: Place = ("joint_limits", name)
             if name not in self._moving:
-                yield place, f"there is no moving joint {name!r}{_near(name, self._moving)}"
+                yield place, f"there is no moving joint {name!r}{nearest(name, self._moving)}"
                 continue
             if (limit.lower is None) != (limit.upper is None):
                 yield place, f"{name} has one limit; give `lower` and `upper`, or neither"
@@ -202,7 +202,7 @@ class _Checks:
             for joint, value in pose.items():
                 place: Place = ("named_poses", name, joint)
                 if joint not in limits:
-                    yield place, f"there is no joint {joint!r}{_near(joint, limits)}"
+                    yield place, f"there is no joint {joint!r}{nearest(joint, limits)}"
                     continue
                 limit = limits[joint]
                 low = -math.inf if limit.lower is None else limit.lower
@@ -231,10 +231,3 @@ class _Checks:
             place: Place = ("simulation", "linkages", joint)
             yield from self._in(joint, self._moving, "moving joint", place)
             yield from self._in(linkage.motor, fingers, "finger joint", (*place, "motor"))
-
-
-def _near(name: str, known: Collection[str]) -> str:
-    near = difflib.get_close_matches(name, known, n=3)
-    if near:
-        return f"; did you mean {' or '.join(repr(each) for each in near)}?"
-    return f"; there are: {', '.join(known) or 'none'}"

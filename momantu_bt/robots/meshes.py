@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import importlib.util
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 from lxml import etree
 
-from momantu_bt.robots.parts import LoadedPart
+from momantu_bt.robots.parts import LoadedPart, line_of
 
 MESHES = "MOMANTU_BT_MESHES"
 """Environment variable: a folder with `<robot>/<part>/<link>.…`, used instead of a part's own."""
@@ -65,17 +66,35 @@ def _give(link: etree._Element, tag: str, mesh: Path) -> None:
     etree.SubElement(geometry, "mesh", filename=str(mesh))
 
 
-def locate_meshes(part: LoadedPart, folder: Path, *, rewrite: bool) -> Iterator[str]:
-    """Look up every mesh; yields those that are missing. rewrite: make their paths absolute."""
+@dataclass(frozen=True, slots=True)
+class Located:
+    """found: mesh files by what a URDF calls them. missing: sentences about the others."""
+
+    found: Mapping[str, Path]
+    missing: tuple[str, ...]
+
+
+def locate_meshes(part: LoadedPart, folder: Path) -> Located:
+    """Look up every mesh of a part. folder: of the robot file."""
+    found: dict[str, Path] = {}
+    missing = []
     for mesh in part.root.findall("link/*/geometry/mesh"):
         name = str(mesh.get("filename", ""))
         looked = list(dict.fromkeys(_candidates(name, part.path, folder)))
-        found = next((path for path in looked if path.is_file()), None)
-        if found is None:
-            places = ", ".join(str(path) for path in looked)
-            yield f"{part.where(mesh)}: the mesh {name!r} is missing; looked for {places}"
-        elif rewrite:
-            mesh.set("filename", str(found.resolve()))
+        path = next((each for each in looked if each.is_file()), None)
+        if path is not None:
+            found[name] = path.resolve()
+            continue
+        places = ", ".join(str(each) for each in looked)
+        where = part.where(line_of(mesh))
+        missing.append(f"{where}: the mesh {name!r} is missing; looked for {places}")
+    return Located(found, tuple(missing))
+
+
+def write_paths(part: LoadedPart, found: Mapping[str, Path]) -> None:
+    """Name every mesh by its absolute path."""
+    for mesh in part.root.findall("link/*/geometry/mesh"):
+        mesh.set("filename", str(found[str(mesh.get("filename", ""))]))
 
 
 def _candidates(name: str, path: Path, folder: Path) -> Iterator[Path]:

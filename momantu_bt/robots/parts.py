@@ -15,6 +15,8 @@ from momantu_bt.robots.robot_file import PackageFile, PartSource
 
 MOST_BYTES = 20_000_000
 """No robot's URDF is longer."""
+_TAIL = 3
+"""Parts of a path that name a file of a package: `fetch_description/meshes/torso.dae`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,10 +34,14 @@ class LoadedPart:
     files: Mapping[str, Path]
     meshes: Path | None
 
-    def where(self, element: etree._Element) -> str:
-        """The place of an element, for messages; of a xacro's result only the file is known."""
-        line = "" if self.source.xacro is not None else f":{element.sourceline}"
-        return f"{self.path.name}{line}"
+    def where(self, line: int) -> str:
+        """The place of a line, for messages; of what xacro made only the file is known."""
+        return self.path.name if self.source.xacro is not None else f"{self.path.name}:{line}"
+
+
+def line_of(element: etree._Element) -> int:
+    """The line that an element begins in; 0 of one that was not read."""
+    return getattr(element, "sourceline", None) or 0
 
 
 def load_part(name: str, source: PartSource, folder: Path, meshes: Path | None) -> LoadedPart:
@@ -64,7 +70,7 @@ def load_part(name: str, source: PartSource, folder: Path, meshes: Path | None) 
         text, included = expand(path, source.args, folder, place)
     else:
         text, included = path.read_bytes(), ()
-    files = {_shown(each, folder): each for each in (path, *included)}
+    files = {shown(each, folder): each for each in (path, *included)}
     return LoadedPart(name, source, path, _parsed(text, path, place), files, meshes)
 
 
@@ -86,11 +92,11 @@ def _in_package(where: PackageFile, place: Place) -> Path:
     return found
 
 
-def _shown(path: Path, folder: Path) -> str:
-    """A file's name below the robot's folder, or its last parts."""
-    path = path.resolve()
-    folder = folder.resolve()
-    return path.relative_to(folder).as_posix() if path.is_relative_to(folder) else path.name
+def shown(path: Path, folder: Path) -> str:
+    """A file's name below the robot's folder; of a file elsewhere the end of its path."""
+    path, folder = path.resolve(), folder.resolve()
+    inside = path.is_relative_to(folder)
+    return path.relative_to(folder).as_posix() if inside else "/".join(path.parts[-_TAIL:])
 
 
 def _parsed(text: bytes, path: Path, place: Place) -> etree._Element:
@@ -106,7 +112,7 @@ def _parsed(text: bytes, path: Path, place: Place) -> etree._Element:
     for tag in ("link", "joint"):
         for element in root.findall(tag):
             if not element.get("name"):
-                raise PartError(place, f"{path}:{element.sourceline}: a <{tag}> without a name")
+                raise PartError(place, f"{path}:{line_of(element)}: a <{tag}> without a name")
     if root.find("link") is None:
         raise PartError(place, f"{path} has no <link>")
     return root

@@ -39,15 +39,15 @@ def expand(
     import xacro
 
     given = {name: _argument(value) for name, value in args.items()}
-    with _LOCK, _package_index(path, folder):
+    with _LOCK, _package_index(path, folder) as missing:
         xacro.all_includes.clear()
         try:
             document = xacro.process_file(str(path), mappings=given)
-        except (xacro.XacroException, xml.parsers.expat.ExpatError, OSError) as error:
-            raise PartError(place, _said(path, str(error), xacro.filestack)) from None
         except Exception as error:  # expressions of the file may raise anything
-            said = f"{type(error).__name__}: {error}"
-            raise PartError(place, _said(path, said, xacro.filestack)) from None
+            told = (xacro.XacroException, xml.parsers.expat.ExpatError, OSError)
+            words = str(error) if isinstance(error, told) else f"{type(error).__name__}: {error}"
+            words = missing[-1] if missing else words
+            raise PartError(place, _said(path, words, xacro.filestack)) from None
         included = tuple(dict.fromkeys(Path(str(each)) for each in xacro.all_includes))
     return document.toxml().encode(), included
 
@@ -63,11 +63,19 @@ def _said(path: Path, message: str, stack: list[str | None]) -> str:
 
 
 @contextmanager
-def _package_index(path: Path, folder: Path) -> Iterator[None]:
-    """Stand in for ROS's package index while a file is expanded."""
+def _package_index(path: Path, folder: Path) -> Iterator[list[str]]:
+    """Stand in for ROS's package index while a file is expanded.
+
+    Yields: sentences about packages that were asked for and are not there.
+    """
+    missing: list[str] = []
 
     def find(name: str) -> str:
-        return str(_package(name, path, folder))
+        try:
+            return str(_package(name, path, folder))
+        except LookupError as error:
+            missing.append(str(error))
+            raise
 
     index, packages = ModuleType(_INDEX), ModuleType(f"{_INDEX}.packages")
     packages.get_package_share_directory = find  # type: ignore[attr-defined]
@@ -75,7 +83,7 @@ def _package_index(path: Path, folder: Path) -> Iterator[None]:
     before = {name: sys.modules.get(name) for name in mine}
     sys.modules.update(mine)
     try:
-        yield
+        yield missing
     finally:
         for name, module in before.items():
             if module is None:

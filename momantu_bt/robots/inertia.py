@@ -1,0 +1,140 @@
+"""Masses and inertias of a URDF: whether a body can have them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from lxml import etree
+
+from momantu_bt.geometry import Array, Transform
+from momantu_bt.robots.parts import line_of
+from momantu_bt.robots.structure import linked
+
+TRIANGLE_SLACK = 0.01
+"""Relative; how far rounding may carry one principal inertia beyond the sum of the others."""
+DENSITY = 500.0
+"""kg per m3 of the box around a part: housings of light metal with motors, and much air."""
+
+
+@dataclass(frozen=True, slots=True)
+class Remark:
+    """What is wrong with a link's mass or inertia.
+
+    error: physics would have to invent something; else it is only unlikely. code: what kind.
+    line: of the link in its file. cure: what to write.
+    """
+
+    error: bool
+    code: str
+    link: str
+    line: int
+    message: str
+    cure: str
+
+
+def inertia_remarks(root: etree._Element) -> list[Remark]:
+    """Remarks about every link of a URDF's `robot` element, in its order."""
+    moving = {
+        linked(joint, "child") for joint in root.findall("joint") if joint.get("type") != "fixed"
+    }
+    found = []
+    for link in root.findall("link"):
+        name, line = str(link.get("name")), line_of(link)
+        for error, code, message, cure in _of_link(link, name in moving):
+            found.append(Remark(error, code, name, line, message, cure))
+    return found
+
+
+def _of_link(link: etree._Element, moves: bool) -> Iterator[tuple[bool, str, str, str]]:
+    name = repr(link.get("name"))
+    mass, inertia = _mass(link), _inertia(link)
+    solid = link.find("collision") is not None
+    if mass is not None and mass < 0.0:
+        yield True, "negative-mass", f"{name} has a mass of {mass:g} kg", _proposal(link, None)
+        return
+    if not mass:
+        if solid:
+            how = "moves and has a collision shape, but no mass"
+            how = how if moves else "has a collision shape, but no mass"
+            yield moves, "no-inertia", f"{name} {how}", _proposal(link, None)
+        return
+    if inertia is None:
+        yield moves, "no-inertia", f"{name} has a mass, but no inertia", _proposal(link, mass)
+        return
+    least, middle, most = np.linalg.eigvalsh(inertia)
+    if least <= 0.0:
+        what = f"the inertia of {name} is not positive definite (principal values "
+        what += f"{least:.3g}, {middle:.3g}, {most:.3g})"
+        yield moves, "bad-inertia", what, _proposal(link, mass)
+    elif most > (least + middle) * (1.0 + TRIANGLE_SLACK):
+        what = f"no body has the inertia of {name}: the largest principal value {most:.3g} is "
+        what += f"more than the sum of the others, {least + middle:.3g}"
+        yield False, "unlikely-inertia", what, _proposal(link, mass)
+
+
+def _mass(link: etree._Element) -> float | None:
+    element = link.find("inertial/mass")
+    return None if element is None else float(element.get("value", "0"))
+
+
+def _inertia(link: etree._Element) -> Array | None:
+    element = link.find("inertial/inertia")
+    if element is None:
+        return None
+    xx, xy, xz, yy, yz, zz = (
+        float(element.get(key, "0")) for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+    )
+    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+
+
+def _proposal(link: etree._Element, mass: float | None) -> str:
+    """The inertial of a solid box around the link's primitive shapes, ready to be written."""
+    low, high = _bounds(link)
+    if not np.isfinite(low).all():
+        return (
+            "write an <inertial> with its mass m, and of the box x, y, z around it ixx = "
+            "m/12 (y*y + z*z), iyy = m/12 (x*x + z*z), izz = m/12 (x*x + y*y)"
+        )
+    x, y, z = high - low
+    m = DENSITY * x * y * z if mass is None else mass
+    center = " ".join(f"{value + 0.0:.4g}" for value in (low + high) / 2)
+    xx, yy, zz = (m / 12 * (a * a + b * b) for a, b in ((y, z), (x, z), (x, y)))
+    return (
+        f'write <inertial><origin xyz="{center}"/><mass value="{m:.4g}"/><inertia ixx="{xx:.3g}" '
+        f'ixy="0" ixz="0" iyy="{yy:.3g}" iyz="0" izz="{zz:.3g}"/></inertial>, which is that of a '
+        f"solid box around it{'' if mass is not None else '; weigh the real one'}"
+    )
+
+
+def _bounds(link: etree._Element) -> tuple[Array, Array]:
+    """Lowest and highest corner of all primitive collision shapes in the link's frame."""
+    low, high = np.full(3, math.inf), np.full(3, -math.inf)
+    for collision in link.findall("collision"):
+        half = _half_extent(collision)
+        if half is None:
+            continue
+        origin = collision.find("origin")
+        xyz, rpy = (
+            [0.0, 0.0, 0.0]
+            if origin is None
+            else [float(v) for v in origin.get(k, "0 0 0").split()]
+            for k in ("xyz", "rpy")
+        )
+        pose = Transform.from_rpy(xyz, rpy)
+        reach = np.abs(pose.rotation) @ half
+        low, high = np.minimum(low, pose.position - reach), np.maximum(high, pose.position + reach)
+    return low, high
+
+
+def _half_extent(collision: etree._Element) -> Array | None:
+    shape = collision.find("geometry/*")
+    if shape is None or shape.tag not in ("box", "cylinder", "sphere"):
+        return None
+    if shape.tag == "box":
+        return np.array([float(v) / 2 for v in shape.get("size", "").split()])
+    radius = float(shape.get("radius", "0"))
+    tall = radius if shape.tag == "sphere" else float(shape.get("length", "0")) / 2
+    return np.array([radius, radius, tall])
