@@ -133,7 +133,7 @@ class Navigate(Skill):
         tolerance = (self.tolerance, self.angle_tolerance)
         surfaces = self.site.surfaces
         if self.in_front_of is not None and self.in_front_of in surfaces:
-            stands = before_surface(surfaces[self.in_front_of], working)
+            stands = before_surface(surfaces[self.in_front_of], working, vehicle.pose())
             return Destination(lambda: stands, tolerance, side=self.side)
         target = self.within_reach_of
         if target is not None:

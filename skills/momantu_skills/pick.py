@@ -10,7 +10,7 @@ from momantu_bt.failure import Failure, FailureValue
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.messages import DetectedObject, ObjectClass
 from momantu_bt.robot import ARM, CAMERA_CARRIER, Robot
-from momantu_bt.skill import Compute, In, Needs, Run, Skill, compute
+from momantu_bt.skill import Compute, In, Needs, Run, Skill
 
 if TYPE_CHECKING:
     from momantu_skills.manipulation.arm import Arm
@@ -54,12 +54,13 @@ class Pick(Skill):
     def run(self, robot: Robot) -> Run:
         """The whole skill; each step is a method below."""
         from momantu_skills.manipulation.arm import Arm
+        from momantu_skills.manipulation.blind import planned_in_sight
 
         arm = Arm(self, robot, self.planning_scene)
         self._check_start(arm)
         yield from arm.settle()
         yield from self._look(arm)
-        plan = yield from compute(lambda: self._plan(arm), THINKING)
+        plan = yield from planned_in_sight(arm, lambda: self._plan(arm), THINKING)
         yield from self._reach(arm, plan)
         rest = yield from self._close(arm, plan)
         yield from self._lift(arm, plan, rest)

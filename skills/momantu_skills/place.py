@@ -13,7 +13,7 @@ from momantu_bt.geometry import Array, Pose, Transform
 from momantu_bt.messages import SupportPlane
 from momantu_bt.robot import ARM, CAMERA_CARRIER, Robot
 from momantu_bt.service import HeldObject
-from momantu_bt.skill import In, Needs, Run, Skill, compute
+from momantu_bt.skill import In, Needs, Run, Skill
 
 if TYPE_CHECKING:
     from momantu_skills.manipulation.arm import Arm
@@ -51,13 +51,14 @@ class Place(Skill):
     def run(self, robot: Robot) -> Run:
         """The whole skill; each step is a method below."""
         from momantu_skills.manipulation.arm import Arm
+        from momantu_skills.manipulation.blind import planned_in_sight
 
         arm = Arm(self, robot, self.planning_scene)
         held = self._check_start(arm)
         yield from arm.settle()
         self.planning_scene.support(self.plane)
         yield from self._look(arm, self.spots[0].position)
-        plan = yield from compute(lambda: self._plan(arm, held), THINKING)
+        plan = yield from planned_in_sight(arm, lambda: self._plan(arm, held), THINKING)
         self._spot = plan.odom_from_object
         for trajectory in plan.transit:
             yield from arm.follow(trajectory, "carrying")

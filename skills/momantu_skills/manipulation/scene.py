@@ -14,6 +14,7 @@ from momantu_bt.robot import Robot, RobotDescription, read_camera
 from momantu_bt.service import HeldObject
 from momantu_skills.manipulation.collision import Attached, CollisionWorld, Obstacle, body_pairs
 from momantu_skills.manipulation.config import SceneConfig
+from momantu_skills.manipulation.looked import Looks
 from momantu_skills.manipulation.mask import LinkMask, floor_outline
 from momantu_skills.manipulation.model import arm_model
 from momantu_skills.manipulation.solids import object_corners
@@ -53,6 +54,7 @@ class Scene:
         self.surroundings = Surroundings()
         self.points: Array = np.empty((0, 3))
         self.known: tuple[Support, ...] = ()
+        self.looks = Looks()
         self._mask = LinkMask(self.model.hulls, config.robot_padding)
 
     # seeing
@@ -63,6 +65,7 @@ class Scene:
         base = self.model.description.base_frame
         odom_from_camera = frames.lookup(ODOM, image.frame, image.stamp)
         odom_from_base = frames.lookup(ODOM, base, image.stamp)
+        self.looks.add(image, odom_from_camera)
         self.points = self._seen(robot, image, odom_from_camera, odom_from_base, held)
         new = cells_of(self.points, odom_from_camera.position, FLOOR_BAND, self.config)
         old = self.surroundings.cells

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from momantu_bt.failure import FRAME_UNKNOWN, Failure
@@ -15,6 +16,7 @@ from momantu_skills.manipulation.config import SceneConfig
 from momantu_skills.manipulation.holding import Holding
 
 if TYPE_CHECKING:
+    from momantu_skills.manipulation.floor_plan import FloorPlan
     from momantu_skills.manipulation.scene import Scene
     from momantu_skills.manipulation.surroundings import Support
 
@@ -35,6 +37,13 @@ class PlanningSceneService(Service):
         self.site = context.site
         self.holding = Holding(self.config)
         self.scene: Scene = _scene(context, self.config)
+
+    @cached_property
+    def floor_plan(self) -> FloorPlan:
+        """What the site's maps know of."""
+        from momantu_skills.manipulation.floor_plan import FloorPlan
+
+        return FloorPlan(self.site, self.frames)
 
     def update(self, robot: Robot, now: float) -> None:
         """Judge anew what is held."""

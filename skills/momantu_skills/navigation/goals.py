@@ -22,6 +22,10 @@ STRAIGHT = 0.25
 """m: as far beside it as one may stand where that is straight ahead."""
 MANOEUVRE = 0.25
 """Cost of not being straight ahead, m: a turn, a drive and a turn take as long as a metre's way."""
+SQUARE = 0.3
+"""rad off a side's axis up to which the base stands squarely before it."""
+NEARER = 0.05
+"""m nearer than the place to look from at which the base is too near: its tolerance."""
 RING = 16
 """Directions from which a pose in the open is approached."""
 
@@ -35,10 +39,14 @@ class Stand:
     cost: float
 
 
-def before_surface(surface: Surface, working: Working) -> list[Stand]:
-    """Stands from which a surface can be looked over, best first, facing its middle (map)."""
-    stands = []
-    variant = 0
+def before_surface(surface: Surface, working: Working, base: Pose2D | None = None) -> list[Stand]:
+    """Stands from which a surface can be looked over, best first, facing its middle (map).
+
+    A `base` that stands squarely before a side, too near to look, had best back straight off: an
+    arm that still reaches over the surface then sweeps over nothing.
+    """
+    stands = [] if base is None else _straight_back(surface, base, working)
+    variant = len(stands)
     for angle in surface.sides:
         edge, half = _edge(surface, angle)
         for lateral in LATERAL:
@@ -52,6 +60,19 @@ def before_surface(surface: Surface, working: Working) -> list[Stand]:
                 stands.append(Stand(pose, variant, variant + back))
             variant += 1
     return stands
+
+
+def _straight_back(surface: Surface, base: Pose2D, working: Working) -> list[Stand]:
+    here = surface.map_from_surface.inverse() @ base
+    for angle in surface.sides:
+        edge, half = _edge(surface, angle)
+        c, s = math.cos(angle), math.sin(angle)
+        out, along = c * here.x + s * here.y, -s * here.x + c * here.y
+        square = abs(wrap_angle(here.yaw - angle - math.pi)) < SQUARE and abs(along) < half
+        if square and edge < out < edge + working.look_off - NEARER:
+            own = _facing(angle, edge + working.look_off, along)
+            return [Stand(surface.map_from_surface @ own, 0, -1.0)]
+    return []
 
 
 def within_reach(

@@ -75,6 +75,12 @@ def free_stands(vehicle: Vehicle, stands: list[Stand]) -> list[Stand]:
     return sorted(best.values(), key=lambda stand: stand.cost)
 
 
+def first_choice(vehicle: Vehicle, stands: list[Stand], side: int) -> Stand | None:
+    """The `side`-th best stand that is free, whether or not it can be reached; None: none is."""
+    free = free_stands(vehicle, stands)
+    return free[side % len(free)] if free else None
+
+
 def choose(vehicle: Vehicle, stands: list[Stand], side: int) -> Route:
     """A route to the `side`-th best stand that is free and can be reached.
 

@@ -12,10 +12,10 @@ from momantu_skills.navigation.arrive import arrive, within
 from momantu_skills.navigation.confidence import is_localized, sigmas
 from momantu_skills.navigation.cruise import cruise, leave
 from momantu_skills.navigation.goals import Stand
-from momantu_skills.navigation.manoeuvre import approach_is_sure, prepare
+from momantu_skills.navigation.manoeuvre import approach_is_sure, prepare, straight_behind
 from momantu_skills.navigation.moves import back_off, turn_to
 from momantu_skills.navigation.mppi import Mppi
-from momantu_skills.navigation.route import Route, choose
+from momantu_skills.navigation.route import Route, choose, first_choice
 from momantu_skills.navigation.vehicle import Vehicle
 
 Trip = Generator[str | Compute, Any, None]
@@ -90,6 +90,8 @@ def be_sure(vehicle: Vehicle) -> Trip:
 def _go(vehicle: Vehicle, mppi: Mppi, to: Destination) -> Trip:
     distance, angle = to.tolerance
     vehicle.sense()
+    if (yield from _straight_back(vehicle, to)):
+        return
     route: Route = yield from compute(
         lambda: choose(vehicle, to.stands(), to.side), vehicle.config.planning_time
     )
@@ -108,6 +110,20 @@ def _go(vehicle: Vehicle, mppi: Mppi, to: Destination) -> Trip:
         )
         to.chosen, goal = route.stand, _kept(vehicle, route.stand, to.in_odom)
     raise Failure("NO_PROGRESS", "three approaches did not end at the goal")
+
+
+def _straight_back(vehicle: Vehicle, to: Destination) -> Trip | Any:
+    """Whether the first choice lay straight behind and was backed into.
+
+    No way is planned: the arm may stand out too far for any turn.
+    """
+    distance, angle = to.tolerance
+    first = first_choice(vehicle, to.stands(), to.side)
+    behind = None if first is None else straight_behind(vehicle, first.pose, distance)
+    if first is None or behind is None or not (yield from back_off(vehicle, behind)):
+        return False
+    to.chosen, goal = first.pose, _kept(vehicle, first.pose, to.in_odom)
+    return (yield from arrive(vehicle, goal, distance, angle))
 
 
 def _near(vehicle: Vehicle, goal: Pose2D, distance: float) -> Trip | Any:

@@ -42,6 +42,27 @@ def test_the_first_stand_is_the_preferred_side(surface: Surface) -> None:
     assert abs(wrap_angle(math.atan2(here.y, here.x) - surface.sides[0])) < 1e-6
 
 
+@given(SURFACES, st.floats(0.30, 0.50), st.floats(-0.25, 0.25), st.floats(-0.2, 0.2))
+def test_too_near_before_a_side_the_first_stand_is_straight_behind(
+    surface: Surface, off: float, along: float, turn: float
+) -> None:
+    edge = surface.size[0] / 2
+    base = surface.map_from_surface @ Pose2D(edge + off, along, math.pi + turn)
+    first = min(before_surface(surface, WORKING, base), key=lambda stand: stand.cost)
+    here = surface.map_from_surface.inverse() @ first.pose
+    assert here.x == pytest.approx(edge + WORKING.look_off)
+    assert here.y == pytest.approx(along)
+    assert abs(wrap_angle(here.yaw - math.pi)) < 1e-6
+
+
+@given(SURFACES, POSES)
+def test_from_elsewhere_stands_are_those_of_nobody(surface: Surface, base: Pose2D) -> None:
+    far = surface.map_from_surface @ Pose2D(3.0, 0.0, math.pi)
+    across = surface.map_from_surface @ Pose2D(surface.size[0] / 2 + 0.4, 0.0, math.pi / 2)
+    for elsewhere in (far, across):
+        assert before_surface(surface, WORKING, elsewhere) == before_surface(surface, WORKING)
+
+
 @given(SURFACES, st.floats(-0.4, 0.4), st.floats(-0.4, 0.4), POSES)
 def test_stands_within_reach_are_square_and_near(
     surface: Surface, u: float, v: float, base: Pose2D

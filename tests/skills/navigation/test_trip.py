@@ -76,6 +76,16 @@ def test_at_the_goal_nothing_is_done(obedient: Any, run_move: Any) -> None:
     assert base.phases == []
 
 
+def test_straight_back_needs_no_way_however_far_the_arm_stands_out(
+    obedient: Any, run_move: Any
+) -> None:
+    base = _base(obedient, Pose2D(3.5, 3.0, 0.0), (3.8, 2.0, 4.4, 4.0))
+    base.half_width = 2.0
+    _travel(base, run_move, _to(Pose2D(3.2, 3.0, 0.0)), recovery=False)
+    assert base.pose().distance_to(Pose2D(3.2, 3.0)) <= TOLERANCE[0]
+    assert _code(base, run_move, _to(Pose2D(3.2, 4.0, 0.0)), recovery=False) == "NO_PATH"
+
+
 @pytest.mark.parametrize("side", [0, 1, 2, 3])
 def test_side_counts_through_the_stands_and_starts_again(
     obedient: Any, run_move: Any, side: int

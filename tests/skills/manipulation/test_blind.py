@@ -1,0 +1,121 @@
+"""Ways of the hand that no picture showed are found, and looked at before they are taken."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from momantu_skills.manipulation.blind import blind_spot
+from momantu_skills.manipulation.floor_plan import FAR, FloorPlan
+from momantu_skills.manipulation.looked import KEPT, Looks
+from momantu_skills.manipulation.surroundings import Support
+
+from momantu_bt.failure import FRAME_UNKNOWN, Failure
+from momantu_bt.geometry import Transform
+from momantu_bt.messages import CameraImage
+from momantu_bt.world import Site
+
+TABLE = Support(np.array([(0.5, -1.0), (1.3, -1.0), (1.3, 1.0), (0.5, 1.0)]), 0.7)
+AHEAD = Transform.from_rotation(
+    np.array([(0.0, 0.0, 1.0), (-1.0, 0.0, 0.0), (0.0, -1.0, 0.0)]), (0.0, 0.0, 0.8)
+)
+"""odom_from_camera: at the origin, 0.8 m high, looking along x; it sees 45 degrees to each side."""
+
+
+def picture() -> CameraImage:
+    intrinsics = np.array([(50.0, 0.0, 49.5), (0.0, 50.0, 49.5), (0.0, 0.0, 1.0)])
+    depth = np.zeros((100, 100), np.float32)
+    return CameraImage(0.0, "eye", np.zeros((100, 100, 3), np.uint8), depth, intrinsics)
+
+
+def looks(*cameras: Transform) -> Looks:
+    taken = Looks()
+    for camera in cameras:
+        taken.add(picture(), camera)
+    return taken
+
+
+def arm(taken: Looks, known: float = FAR) -> Any:
+    """An arm whose joints are the place between the pads; `known` m beside furniture."""
+    scene = SimpleNamespace(
+        surroundings=SimpleNamespace(supports=(TABLE,)),
+        known=(),
+        looks=taken,
+        model=SimpleNamespace(tip_from_grasp=Transform()),
+    )
+    plan = SimpleNamespace(distance=lambda points: np.full(len(points), known))
+    return SimpleNamespace(
+        scene=scene,
+        service=SimpleNamespace(floor_plan=plan),
+        state=SimpleNamespace(odom_from_base=Transform()),
+        group=SimpleNamespace(tip_pose=lambda q: Transform(tuple(q))),
+    )
+
+
+def way(start: tuple[float, float, float], end: tuple[float, float, float]) -> Any:
+    return [SimpleNamespace(positions=np.linspace(start, end, 60))]
+
+
+@given(st.floats(0.3, 3.0), st.floats(-0.9, 0.9), st.floats(-0.9, 0.9))
+def test_a_point_is_shown_when_it_lies_in_the_cone_of_a_picture(
+    x: float, across: float, up: float
+) -> None:
+    inside = np.array([(x, across * x, 0.8 + up * x)])
+    outside = np.array([(x, 1.1 * x, 0.8), (-x, 0.0, 0.8)])
+    assert looks(AHEAD).show(inside).all()
+    assert not looks(AHEAD).show(outside).any()
+    assert not looks().show(inside).any()
+
+
+def test_only_the_newest_pictures_count() -> None:
+    behind = Transform((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)) @ AHEAD
+    point = np.array([(1.0, 0.0, 0.8)])
+    assert looks(AHEAD, *[behind] * (KEPT - 1)).show(point).all()
+    assert not looks(AHEAD, *[behind] * KEPT).show(point).any()
+
+
+def test_a_way_in_sight_is_no_blind_spot() -> None:
+    assert blind_spot(arm(looks(AHEAD), known=0.0), way((0.6, 0.0, 0.8), (1.2, 0.4, 0.8))) is None
+
+
+def test_a_way_over_the_unseen_end_of_a_table_is_one() -> None:
+    spot = blind_spot(arm(looks(AHEAD)), way((0.6, 0.0, 0.8), (0.6, 0.95, 0.8)))
+    assert spot is not None
+    assert 0.6 < spot[1] < 0.95
+
+
+@pytest.mark.parametrize("height", [0.5, 1.1])
+def test_below_a_table_and_high_above_it_nothing_stands(height: float) -> None:
+    assert blind_spot(arm(looks(AHEAD)), way((0.6, 0.0, height), (0.6, 0.95, height))) is None
+
+
+def test_unseen_air_counts_beside_what_the_map_knows() -> None:
+    aside = way((0.1, -0.4, 0.8), (0.1, -0.9, 0.8))
+    assert blind_spot(arm(looks(AHEAD)), aside) is None
+    assert blind_spot(arm(looks(AHEAD), known=0.1), aside) is not None
+
+
+def test_no_way_has_no_blind_spot() -> None:
+    assert blind_spot(arm(looks()), []) is None
+
+
+def test_the_floor_plan_tells_how_far_what_the_map_knows_is(tmp_path: Any) -> None:
+    grey = np.full((20, 20), 254, np.uint8)
+    grey[:, 15] = 0
+    (tmp_path / "map.pgm").write_bytes(b"P5\n20 20\n255\n" + grey.tobytes())
+    (tmp_path / "map.yaml").write_text(
+        "image: map.pgm\nresolution: 0.1\norigin: [0, 0, 0]\nnegate: 0\n"
+        "occupied_thresh: 0.65\nfree_thresh: 0.196\n"
+    )
+    frames: Any = SimpleNamespace(lookup=lambda to, source: Transform((0.5, 0.0, 0.0)))
+    plan = FloorPlan(Site("test", map_file=tmp_path / "map.yaml"), frames)
+    near = plan.distance(np.array([(0.55, 1.0, 0.3), (1.05, 1.0, 2.0), (9.0, 1.0, 0.3)]))
+    assert near == pytest.approx([0.45, 0.0, FAR], abs=1e-6)
+
+    def lost(to: str, source: str) -> Transform:
+        raise Failure(FRAME_UNKNOWN, "nobody knows")
+
+    frames.lookup = lost
+    assert plan.distance(np.array([(0.55, 1.0, 0.3)])) == pytest.approx([FAR])
