@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import combinations, product
@@ -12,14 +12,12 @@ import numpy as np
 import pinocchio as pin
 
 from momantu_bt.geometry import Array, Transform
-from momantu_skills.manipulation.hulls import convex, load_mesh, part_points
+from momantu_skills.manipulation.hulls import convex
 from momantu_skills.manipulation.model import ArmModel
+from momantu_skills.manipulation.shapes import BodyShapes
 
 FLOOR = 0.01
 """m above which the floor's box ends: no moving link belongs below it."""
-LONGEST_HULL = 0.4
-"""m; longer links keep their mesh: the hull around a torso with shoulders and neck would swallow
-the arm folded before it. Checks against a mesh are slower, and few."""
 SAMPLES = 200
 """Random postures in which pairs of links that always touch are looked for."""
 SELF_MARGIN = 0.008
@@ -49,59 +47,27 @@ class BodyPairs:
 
     def __init__(self, model: ArmModel) -> None:
         self.model = model
-        self.geometry = pin.GeometryModel()
-        self.links: dict[str, list[int]] = {link: [] for link in model.hulls}
-        for link, corners in model.hulls.items():
-            if float(np.ptp(corners, axis=0).max()) < LONGEST_HULL:
-                self._add(link, convex(corners), Transform())
-                continue
-            for part in (part for part in model.urdf.parts if part.link == link):
-                shape = load_mesh(part) if part.kind == "mesh" else convex(part_points(part))
-                place = part.link_from_part if part.kind == "mesh" else Transform()
-                self._add(link, shape, place)
+        self.shapes = BodyShapes(model.pin, model.hulls, model.urdf.parts)
+        self.geometry, self.links = self.shapes.geometry, self.shapes.links
         self.moving = self._moving_links()
         self.pairs = self._sometimes_apart(self._worthwhile())
         self.close = self._always_close()
 
-    def _add(self, link: str, shape: coal.CollisionGeometry, link_from_shape: Transform) -> None:
-        identity = self.model.frame_ids[link]
-        frame = self.model.pin.frames[identity]
-        place = frame.placement * pin.SE3(link_from_shape.matrix)
-        name = f"{link}:{len(self.links[link])}" if self.links[link] else link
-        thing = pin.GeometryObject(name, frame.parentJoint, identity, place, shape)
-        self.links[link].append(int(self.geometry.addGeometryObject(thing)))
-
-    def shape_pairs(self, one: str, other: str) -> Iterator[tuple[int, int]]:
-        """Pairs of shape indices of two links."""
-        return product(self.links[one], self.links[other])
-
     def _moving_links(self) -> tuple[str, ...]:
         first = min(int(self.model.pin.getJointId(name)) for name in self.model.group.names)
         below = set(self.model.pin.subtrees[first])
-        frames = self.model.pin.frames
-        return tuple(
-            link
-            for link in self.model.hulls
-            if int(frames[self.model.frame_ids[link]].parentJoint) in below
-        )
+        return tuple(link for link in self.model.hulls if self.shapes.joint(link) in below)
 
     def _worthwhile(self) -> list[tuple[int, int]]:
         ignored = {frozenset(pair) for pair in self.model.description.ignored_collisions}
         return [
             pair
             for one, other in combinations(self.model.hulls, 2)
-            for pair in self.shape_pairs(one, other)
+            for pair in self.shapes.pairs(one, other)
             if frozenset((one, other)) not in ignored
-            and not self._adjacent(one, other)
+            and not self.shapes.adjacent(one, other)
             and (one in self.moving or other in self.moving)
         ]
-
-    def _adjacent(self, one: str, other: str) -> bool:
-        """Whether links share a joint, or sit on the same one."""
-        frames, parents = self.model.pin.frames, self.model.pin.parents
-        a = int(frames[self.model.frame_ids[one]].parentJoint)
-        b = int(frames[self.model.frame_ids[other]].parentJoint)
-        return a == b or int(parents[a]) == b or int(parents[b]) == a
 
     def _sometimes_apart(self, pairs: list[tuple[int, int]]) -> tuple[tuple[int, int], ...]:
         geometry = self.geometry.copy()

@@ -10,10 +10,10 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from momantu_bt.frames import Joint
+from momantu_bt.frames import Joint, KinematicTree
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.messages import RobotState
-from momantu_bt.robot import RobotDescription
+from momantu_bt.robot import JointLimit, RobotDescription
 from momantu_skills.manipulation import chain
 from momantu_skills.manipulation.hulls import link_hulls
 from momantu_skills.manipulation.urdf import base_urdf
@@ -137,7 +137,8 @@ class ArmModel:
         }
         self.group_index = np.array([self._index[name] for name in self.group.names])
         self.frame_ids = {
-            link: int(self.pin.getFrameId(link)) for link in (*self.hulls, effector.frame)
+            link: int(self.pin.getFrameId(link, pin.FrameType.BODY))
+            for link in (*self.hulls, effector.frame)
         }
 
     def joints(self, state: RobotState) -> Array:
@@ -252,17 +253,26 @@ def _cached(key: _Key) -> ArmModel:
 
 
 def _chain_of(description: RobotDescription, names: Sequence[str], tip: str) -> Group:
+    return chain_group(description.kinematics(), names, tip, description.joint_limits)
+
+
+def chain_group(
+    kinematics: KinematicTree,
+    names: Sequence[str],
+    tip: str,
+    joint_limits: Mapping[str, JointLimit],
+) -> Group:
     """Those of joints `names` that lead to a link; others on the way stand at 0."""
     joints: list[Joint] = []
     origins: list[Array] = []
     after = np.eye(4)
-    for joint in description.kinematics().chain(tip):
+    for joint in kinematics.chain(tip):
         after = after @ joint.parent_from_joint.matrix
         if joint.name in names:
             joints.append(joint)
             origins.append(after)
             after = np.eye(4)
-    limits = [description.joint_limits[joint.name] for joint in joints]
+    limits = [joint_limits[joint.name] for joint in joints]
     axes = np.array([joint.axis for joint in joints])
     return Group(
         names=tuple(joint.name for joint in joints),

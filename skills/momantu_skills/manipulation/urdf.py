@@ -5,11 +5,30 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Protocol
 
 from lxml import etree
 
 from momantu_bt.geometry import Transform
-from momantu_bt.robot import RobotDescription
+
+
+class UrdfSource(Protocol):
+    """What a URDF is read with; a robot's description is one."""
+
+    @property
+    def urdf(self) -> Path:
+        """Absolute path of the file."""
+        ...
+
+    @property
+    def base_frame(self) -> str:
+        """The link that everything hangs below."""
+        ...
+
+    @property
+    def mesh_directories(self) -> tuple[Path, ...]:
+        """Where `package://` addresses are looked up."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -38,7 +57,7 @@ class BaseUrdf:
     parts: tuple[CollisionPart, ...]
 
 
-def base_urdf(description: RobotDescription) -> BaseUrdf:
+def base_urdf(description: UrdfSource) -> BaseUrdf:
     """Cut a URDF down to what hangs below the base frame.
 
     Virtual base joints above the base would add degrees of freedom; pinocchio gives continuous
@@ -89,7 +108,7 @@ def _make_revolute(joint: etree._Element) -> None:
     limit.set("upper", repr(math.pi))
 
 
-def _parts(link: etree._Element, description: RobotDescription) -> list[CollisionPart]:
+def _parts(link: etree._Element, description: UrdfSource) -> list[CollisionPart]:
     parts = []
     for collision in link.findall("collision"):
         origin = collision.find("origin")
@@ -117,7 +136,7 @@ def _numbers(text: str) -> tuple[float, float, float]:
     return a, b, c
 
 
-def _mesh_path(name: str, description: RobotDescription) -> Path:
+def _mesh_path(name: str, description: UrdfSource) -> Path:
     relative = name.removeprefix("package://").removeprefix("file://")
     folders = (description.urdf.parent, *description.mesh_directories)
     for folder in folders:

@@ -1,0 +1,193 @@
+"""What stands on the floor: base frame, virtual joints above it, wheels, footprint."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
+
+from momantu_bt.geometry import Array
+from momantu_skills.robot_setup.body import Body
+from momantu_skills.robot_setup.skeleton import TURNING, SetupJoint, Skeleton
+
+NAMES = ("base_footprint", "base_link", "base")
+"""What bases are called, the one on the floor first."""
+ABOVE = 0.25
+"""m above the floor up to which what stands there makes the footprint."""
+ON_FLOOR = 0.03
+"""m from the lowest point of the robot within which a wheel touches the floor."""
+OVER_FLOOR = 0.05
+"""m; links of the base that reach this far down may touch an uneven floor."""
+CORNERS = 12
+"""Corners of a footprint around a round base."""
+WHEEL = 0.5
+"""m; a wheel with its fork is smaller."""
+LEVEL = 0.2
+"""Share of a wheel's axis that may point up."""
+
+
+@dataclass(frozen=True)
+class BaseFrame:
+    """frame: the link that the robot is placed by. virtual: joints above it that carry it."""
+
+    frame: str
+    virtual: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Stand:
+    """How the robot stands: links on the floor, outline, height of the floor in the base, mass.
+
+    fixed: links of the base itself. wheels: links that roll. grounded: those of both that reach
+    down to the floor. footprint: (k, 2), m, or None where
+    the base has no shape. floor: m, 0 where the base frame lies on the floor.
+    """
+
+    fixed: tuple[str, ...]
+    wheels: tuple[str, ...]
+    grounded: tuple[str, ...]
+    footprint: Array | None
+    floor: float
+    mass: float
+
+    @property
+    def width(self) -> float:
+        """Of the footprint across, m."""
+        return 0.0 if self.footprint is None else float(np.ptp(self.footprint[:, 1]))
+
+    @property
+    def front(self) -> float:
+        """Of the footprint from the base frame ahead, m."""
+        return 0.0 if self.footprint is None else float(self.footprint[:, 0].max())
+
+
+def find_base(skeleton: Skeleton) -> BaseFrame:
+    """The link that carries everything, below joints that only place the robot in a world."""
+    link = skeleton.root
+    virtual: list[str] = []
+    while not any(skeleton.links[name].shapes for name in skeleton.rigid(link)):
+        if planar(skeleton, tuple(virtual)) is not None:
+            break
+        below = [j for name in skeleton.rigid(link) for j in skeleton.below(name)]
+        leaving = [joint for joint in below if joint.kind != "fixed"]
+        if len(leaving) != 1 or not _places(leaving[0]):
+            break
+        virtual.append(leaving[0].name)
+        link = leaving[0].child
+    return BaseFrame(_named(skeleton, link), tuple(virtual))
+
+
+def planar(skeleton: Skeleton, virtual: tuple[str, ...]) -> tuple[str, str, str] | None:
+    """Joints above a base as (x, y, yaw) where that is what they are."""
+    joints = [skeleton.joints[name] for name in virtual]
+    if [j.kind == "prismatic" for j in joints] != [True, True, False]:
+        return None
+    axes = np.abs([j.axis for j in joints])
+    if not np.allclose(axes, np.eye(3), atol=1e-3):
+        return None
+    x, y, yaw = virtual
+    return x, y, yaw
+
+
+def _places(joint: SetupJoint) -> bool:
+    if joint.kind in ("floating", "planar"):
+        return True
+    return joint.moving and float(np.linalg.norm(joint.parent_from_joint.position)) < 1e-6
+
+
+def _named(skeleton: Skeleton, link: str) -> str:
+    candidates = [skeleton.rigid_root(link)]
+    while not skeleton.links[candidates[-1]].shapes:
+        below = skeleton.below(candidates[-1])
+        if len(below) != 1 or below[0].moving:
+            break
+        candidates.append(below[0].child)
+    for name in NAMES:
+        if name in candidates:
+            return name
+    return candidates[-1] if candidates[0] in ("world", "map", "odom") else candidates[0]
+
+
+def find_stand(body: Body) -> Stand:
+    """What is fixed to the base, what rolls, and the outline of both."""
+    skeleton = body.skeleton
+    below = set(skeleton.subtree(body.base_frame))
+    fixed = tuple(link for link in skeleton.rigid(body.base_frame) if link in below)
+    floor = body.lowest({})
+    wheels = tuple(
+        link
+        for joint in skeleton.branches(body.base_frame)
+        if joint.child in below and _rolls(body, joint, floor)
+        for link in skeleton.subtree(joint.child)
+    )
+    points = body.points((*fixed, *wheels), {})
+    low = points[points[:, 2] < floor + ABOVE]
+    mass = sum(skeleton.links[link].mass for link in below)
+    grounded = tuple(link for link in (*fixed, *wheels) if _touches(body, link, floor))
+    return Stand(fixed, wheels, grounded, outline(low if len(low) else points), floor, mass)
+
+
+def _touches(body: Body, link: str, floor: float) -> bool:
+    corners = body.corners((link,), {})
+    return len(corners) > 0 and float(corners[:, 2].min()) < floor + OVER_FLOOR
+
+
+def _rolls(body: Body, joint: SetupJoint, floor: float) -> bool:
+    links = body.skeleton.subtree(joint.child)
+    turning = [j for j in (joint, *body.skeleton.moving_below(joint.child)) if j.kind in TURNING]
+    corners = body.corners(links, {})
+    if not len(corners) or not any(j.endless for j in turning):
+        return False
+    size = np.ptp(corners, axis=0).max()
+    if corners[:, 2].min() > floor + ON_FLOOR or size > WHEEL:
+        return False
+    last = [j for j in turning if j.endless][-1]
+    base_from_child = body.link_poses({})[last.child]
+    axis = base_from_child[:3, :3] @ np.array(last.axis)
+    return bool(abs(axis[2]) < LEVEL * np.linalg.norm(axis))
+
+
+def outline(points: Array) -> Array | None:
+    """Convex outline (k, 2) of points (n, 3) seen from above, counter-clockwise, in whole mm.
+
+    Around a round base it is a polygon of CORNERS sides that encloses it. None for no area.
+    """
+    if len(points) < 3:
+        return None
+    try:
+        flat = points[:, :2]
+        corners = _plain(flat[ConvexHull(flat).vertices])
+        if len(corners) > CORNERS:
+            corners = _around(corners)
+    except QhullError:
+        return None
+    return np.sign(corners) * np.ceil(np.abs(corners) * 1000 - 1e-6) / 1000
+
+
+def _plain(corners: Array) -> Array:
+    """Without corners that lie within 1 mm of the line between their neighbours."""
+    kept = list(range(len(corners)))
+    changed = True
+    while changed and len(kept) > 3:
+        changed = False
+        for i, k in enumerate(kept):
+            a, b = corners[kept[i - 1]], corners[kept[(i + 1) % len(kept)]]
+            along = (b - a) / max(float(np.linalg.norm(b - a)), 1e-12)
+            off = abs(float(along[0] * (corners[k] - a)[1] - along[1] * (corners[k] - a)[0]))
+            if off < 1e-3:
+                kept.pop(i)
+                changed = True
+                break
+    return corners[kept]
+
+
+def _around(corners: Array) -> Array:
+    """A polygon of CORNERS sides around corners (n, 2)."""
+    angles = 2 * math.pi * (np.arange(CORNERS)) / CORNERS
+    normals = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    reach = (corners @ normals.T).max(axis=0)
+    sides = np.column_stack([normals, -reach])
+    points = HalfspaceIntersection(sides, corners.mean(axis=0)).intersections
+    return np.asarray(points[ConvexHull(points).vertices])

@@ -1,0 +1,134 @@
+"""`momantu-bt robots setup`: a robot file from a URDF, as far as a URDF tells."""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from momantu_skills.robot_setup.proposal import Proposal
+
+EXIT_TO_DO = 1
+EXIT_WRONG_INPUT = 2
+FILE = "robot.yaml"
+
+
+def setup(
+    urdf: Annotated[Path, typer.Argument(help="A URDF or xacro file.")],
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="The robot's folder; else its name.")
+    ] = None,
+    samples: Annotated[
+        int, typer.Option(min=1, max=1_000_000, help="Random postures for self-collisions.")
+    ] = 10_000,
+    seed: Annotated[int, typer.Option(min=0, help="The same seed proposes the same.")] = 0,
+    force: Annotated[bool, typer.Option("--force", help="Write over a file there is.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,
+) -> int:
+    """Write a robot file for a URDF: hand, arm, poses, footprint, sensors, self-collisions.
+
+    What cannot be found out is said, on the terminal and in the file; nothing is asked.
+
+    Exit code 0: the file is whole; 1: something is left to fill in; 2: no URDF, or a file in the
+    way.
+
+    Examples:
+      momantu-bt robots setup my_robot.urdf
+      momantu-bt robots setup my_robot.urdf.xacro -o robots/my_robot
+      momantu-bt robots setup my_robot.urdf --samples 50000 --force
+    """
+    from momantu_skills.robot_setup.skeleton import SetupError
+
+    if output is not None and (output / FILE).exists() and not force:
+        return _in_the_way(output / FILE)
+    try:
+        from momantu_skills.robot_setup.proposal import propose
+
+        proposal = propose(urdf, samples=samples, seed=seed)
+    except SetupError as error:
+        return _refuse(str(error))
+    folder = output or Path(proposal.name)
+    path = folder / FILE
+    if path.exists() and not force:
+        return _in_the_way(path)
+    text, fill_in = _text(proposal, folder)
+    try:
+        _write(path, text)
+    except OSError as error:
+        return _refuse(f"{path} cannot be written: {error.strerror}")
+    wrong = _read_again(path)
+    if as_json:
+        typer.echo(json.dumps(_plain(proposal, path, fill_in, wrong), indent=2))
+    else:
+        _say(proposal, path, fill_in, wrong)
+    return EXIT_TO_DO if fill_in or wrong else 0
+
+
+def _in_the_way(path: Path) -> int:
+    return _refuse(f"{path} is there already; --force writes over it, -o FOLDER elsewhere")
+
+
+def _refuse(message: str) -> int:
+    typer.echo(f"momantu-bt: {message}", err=True)
+    return EXIT_WRONG_INPUT
+
+
+def _text(proposal: Proposal, folder: Path) -> tuple[str, tuple[str, ...]]:
+    from momantu_skills.robot_setup.writer import missing, robot_file
+
+    return robot_file(proposal, folder), missing(proposal)
+
+
+def _write(path: Path, text: str) -> None:
+    """Whole or not at all."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8") as file:
+            file.write(text)
+        Path(name).chmod(0o644)
+        Path(name).replace(path)
+    except OSError:
+        Path(name).unlink(missing_ok=True)
+        raise
+
+
+def _read_again(path: Path) -> str:
+    """What the reader says to the file; empty when it takes it."""
+    from momantu_bt.robots import RobotFileError, read_robot
+
+    try:
+        read_robot(path)
+    except RobotFileError as error:
+        return str(error)
+    return ""
+
+
+def _plain(proposal: Proposal, path: Path, fill_in: tuple[str, ...], wrong: str) -> dict[str, Any]:
+    from momantu_skills.robot_setup.summary import plain
+
+    return {"file": str(path), **plain(proposal), "fill_in": list(fill_in), "reader": wrong}
+
+
+def _say(proposal: Proposal, path: Path, fill_in: tuple[str, ...], wrong: str) -> None:
+    from momantu_skills.robot_setup.summary import lines
+
+    for line in lines(proposal):
+        typer.echo(line)
+    for note in proposal.notes:
+        typer.echo(f"note         {note}")
+    for what in fill_in:
+        typer.echo(f"FILL IN      {what}")
+    typer.echo(f"written to {path}")
+    if fill_in:
+        typer.echo("The file cannot be read before that is filled in; its comments say how.")
+    elif wrong:
+        typer.echo(f"The file cannot be read yet:\n{wrong}")
+    else:
+        typer.echo(f"Now: momantu-bt robots check {path}")
+        typer.echo(f"     momantu-bt robots preview {path}")

@@ -1,0 +1,220 @@
+"""A URDF as a tree of links and joints, with what setting up asks of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from lxml import etree
+
+from momantu_bt.geometry import Transform
+
+TURNING = ("revolute", "continuous")
+MOVING = (*TURNING, "prismatic")
+"""Types of joints with one degree of freedom."""
+
+
+class SetupError(Exception):
+    """A URDF that nothing can be found out of; the message says why and what to do."""
+
+
+@dataclass(frozen=True)
+class Mimic:
+    """A joint that follows another: position = multiplier * leader's + offset."""
+
+    leader: str
+    multiplier: float
+    offset: float
+
+
+@dataclass(frozen=True)
+class Link:
+    """mass: kg, 0 where none is given. shapes: how many collision elements it has."""
+
+    name: str
+    mass: float
+    shapes: int
+
+
+@dataclass(frozen=True)
+class SetupJoint:
+    """A joint of a URDF, with its limits as they are written: None where they are missing.
+
+    lower, upper: rad or m. velocity: per second. effort: Nm or N. axis: (3,) in its own frame.
+    """
+
+    name: str
+    kind: str
+    parent: str
+    child: str
+    parent_from_joint: Transform
+    axis: tuple[float, float, float]
+    lower: float | None = None
+    upper: float | None = None
+    velocity: float | None = None
+    effort: float | None = None
+    mimic: Mimic | None = None
+
+    @property
+    def moving(self) -> bool:
+        """Whether it has a degree of freedom that is its own or that follows another."""
+        return self.kind in MOVING
+
+    @property
+    def endless(self) -> bool:
+        """Whether it turns for ever."""
+        return self.kind == "continuous"
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """The positions it may take, rad or m; half a turn each way where it turns for ever."""
+        if self.endless or self.lower is None or self.upper is None or self.lower >= self.upper:
+            return (-math.pi, math.pi) if self.kind in TURNING else (0.0, 0.0)
+        return self.lower, self.upper
+
+
+class Skeleton:
+    """Links and joints of a URDF, from its root outwards."""
+
+    def __init__(self, links: Iterable[Link], joints: Iterable[SetupJoint]) -> None:
+        """Raises SetupError: no tree with one root."""
+        self.links = {link.name: link for link in links}
+        self.joints = {joint.name: joint for joint in joints}
+        self._above = {joint.child: joint for joint in self.joints.values()}
+        self._below: dict[str, list[SetupJoint]] = {name: [] for name in self.links}
+        for joint in self.joints.values():
+            for end in (joint.parent, joint.child):
+                if end not in self.links:
+                    raise SetupError(f"the joint {joint.name!r} names a link {end!r} there is not")
+            self._below[joint.parent].append(joint)
+        self.root = self._only_root()
+
+    def _only_root(self) -> str:
+        roots = [name for name in self.links if name not in self._above]
+        if len(roots) != 1 or len(self._above) != len(self.joints):
+            twice = [j.child for j in self.joints.values() if self._above[j.child] is not j]
+            what = f"links with two parents: {', '.join(twice)}" if twice else ""
+            what = what or f"links without a parent: {', '.join(roots) or 'none'}"
+            raise SetupError(
+                f"the links do not hang together as a tree with one root ({what}); "
+                "a robot in several files is described by `parts` and `mounts` in a robot.yaml"
+            )
+        reached = set(self.subtree(roots[0]))
+        lost = [name for name in self.links if name not in reached]
+        if lost:
+            raise SetupError(f"these links hang in a circle of joints: {', '.join(lost)}")
+        return roots[0]
+
+    def above(self, link: str) -> SetupJoint | None:
+        """The joint that carries a link; None for the root."""
+        return self._above.get(link)
+
+    def below(self, link: str) -> tuple[SetupJoint, ...]:
+        """The joints that a link carries."""
+        return tuple(self._below[link])
+
+    def subtree(self, link: str) -> tuple[str, ...]:
+        """A link and everything that it carries."""
+        found, waiting, seen = [], [link], {link}
+        while waiting:
+            found.append(waiting.pop())
+            for joint in self._below[found[-1]]:
+                if joint.child not in seen:
+                    seen.add(joint.child)
+                    waiting.append(joint.child)
+        return tuple(found)
+
+    def chain(self, link: str) -> tuple[SetupJoint, ...]:
+        """The joints from the root to a link, fixed ones included."""
+        chain: list[SetupJoint] = []
+        joint = self.above(link)
+        while joint is not None:
+            chain.append(joint)
+            joint = self.above(joint.parent)
+        return tuple(reversed(chain))
+
+    def rigid_root(self, link: str) -> str:
+        """The link nearest to the root that a link is fixed to."""
+        joint = self.above(link)
+        while joint is not None and not joint.moving:
+            link = joint.parent
+            joint = self.above(link)
+        return link
+
+    def rigid(self, link: str) -> tuple[str, ...]:
+        """All links that are fixed to a link, itself included, from the root outwards."""
+        found, waiting = [], [self.rigid_root(link)]
+        while waiting:
+            found.append(waiting.pop(0))
+            waiting += [j.child for j in self._below[found[-1]] if not j.moving]
+        return tuple(found)
+
+    def branches(self, link: str) -> tuple[SetupJoint, ...]:
+        """The moving joints that sit on a link or on what is fixed to it."""
+        return tuple(j for name in self.rigid(link) for j in self._below[name] if j.moving)
+
+    def moving_below(self, link: str) -> tuple[SetupJoint, ...]:
+        """Every moving joint in what a link carries, in the order of the file."""
+        inside = set(self.subtree(link))
+        return tuple(j for j in self.joints.values() if j.moving and j.parent in inside)
+
+
+def read_skeleton(root: etree._Element) -> Skeleton:
+    """Links and joints of a parsed URDF.
+
+    Raises:
+        SetupError: a number that is none, or no tree.
+    """
+    try:
+        links = [_link(element) for element in root.findall("link")]
+        joints = [_joint(element) for element in root.findall("joint")]
+    except (ValueError, TypeError) as error:
+        raise SetupError(f"the URDF has a value that cannot be read: {error}") from None
+    return Skeleton(links, joints)
+
+
+def _link(element: etree._Element) -> Link:
+    mass = element.find("inertial/mass")
+    weight = 0.0 if mass is None else float(mass.get("value", "0"))
+    return Link(element.get("name", ""), weight, len(element.findall("collision")))
+
+
+def _joint(element: etree._Element) -> SetupJoint:
+    def attribute(tag: str, name: str, default: str) -> str:
+        child = element.find(tag)
+        return default if child is None else str(child.get(name, default))
+
+    def number(tag: str, name: str) -> float | None:
+        text = attribute(tag, name, "")
+        return float(text) if text else None
+
+    return SetupJoint(
+        name=element.get("name", ""),
+        kind=element.get("type", "fixed"),
+        parent=attribute("parent", "link", ""),
+        child=attribute("child", "link", ""),
+        parent_from_joint=Transform.from_rpy(
+            _three(attribute("origin", "xyz", "0 0 0")), _three(attribute("origin", "rpy", "0 0 0"))
+        ),
+        axis=_three(attribute("axis", "xyz", "1 0 0")),
+        lower=number("limit", "lower"),
+        upper=number("limit", "upper"),
+        velocity=number("limit", "velocity"),
+        effort=number("limit", "effort"),
+        mimic=_mimic(element),
+    )
+
+
+def _mimic(element: etree._Element) -> Mimic | None:
+    mimic = element.find("mimic")
+    if mimic is None:
+        return None
+    ratio, offset = mimic.get("multiplier", "1"), mimic.get("offset", "0")
+    return Mimic(mimic.get("joint", ""), float(ratio), float(offset))
+
+
+def _three(text: str) -> tuple[float, float, float]:
+    numbers: Iterator[float] = (float(part) for part in text.split())
+    a, b, c = numbers
+    return a, b, c

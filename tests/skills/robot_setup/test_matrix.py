@@ -1,0 +1,77 @@
+"""Laws of the self-collision matrix."""
+
+from __future__ import annotations
+
+from itertools import combinations
+from pathlib import Path
+
+import pytest
+from momantu_skills.robot_setup.base import find_base
+from momantu_skills.robot_setup.body import Body, Contacts
+from momantu_skills.robot_setup.matrix import SAMPLES, CollisionMatrix, Why, sample_matrix
+from momantu_skills.robot_setup.prepare import Placed, prepare
+
+
+@pytest.fixture(scope="module")
+def body(rolling_urdf: Path, tmp_path_factory: pytest.TempPathFactory) -> Body:
+    prepared = prepare(rolling_urdf, tmp_path_factory.mktemp("cleaned"))
+    base = find_base(prepared.skeleton)
+    return Body(prepared.skeleton, Placed(prepared.urdf, base.frame))
+
+
+@pytest.fixture(scope="module")
+def matrix(body: Body) -> CollisionMatrix:
+    return sample_matrix(body, SAMPLES, seed=1)
+
+
+def test_every_pair_has_one_entry_and_its_order_does_not_matter(
+    body: Body, matrix: CollisionMatrix
+) -> None:
+    pairs = [frozenset(pair) for pair in matrix.why]
+    assert len(pairs) == len(set(pairs))
+    assert set(pairs) == {frozenset(pair) for pair in combinations(body.hulls, 2)}
+
+
+def test_links_that_share_a_joint_are_adjacent(body: Body, matrix: CollisionMatrix) -> None:
+    for (one, other), why in matrix.why.items():
+        shared = body.skeleton.rigid_root(one) == body.skeleton.rigid_root(other)
+        for a, b in ((one, other), (other, one)):
+            above = body.skeleton.above(body.skeleton.rigid_root(a))
+            shared |= above is not None and body.skeleton.rigid_root(
+                above.parent
+            ) == body.skeleton.rigid_root(b)
+        assert (why is Why.ADJACENT) == shared, (one, other)
+
+
+def test_a_never_pair_does_not_meet_in_a_thousand_fresh_postures(
+    body: Body, matrix: CollisionMatrix
+) -> None:
+    never = Contacts(body, matrix.pairs(Why.NEVER))
+    assert len(never.pairs) > 5
+    for q in body.random_configurations(1000, seed=77):
+        assert never.names(q) == []
+
+
+def test_the_fingers_meet_at_rest_and_are_ignored(matrix: CollisionMatrix) -> None:
+    assert matrix.why["left_finger", "right_finger"] is Why.DEFAULT
+    assert ("left_finger", "right_finger") in matrix.ignored
+    assert not set(matrix.ignored) & set(matrix.checked)
+
+
+def test_an_arm_can_meet_its_base(matrix: CollisionMatrix) -> None:
+    assert matrix.why["base_link", "palm"] is Why.SOMETIMES
+    assert 0 < matrix.share["base_link", "palm"] < 1
+
+
+def test_the_same_seed_gives_the_same_matrix(body: Body) -> None:
+    assert sample_matrix(body, 200, seed=4) == sample_matrix(body, 200, seed=4)
+
+
+def test_joints_that_follow_do_so_in_samples(
+    bolted_xacro: Path, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    prepared = prepare(bolted_xacro, tmp_path_factory.mktemp("cleaned"))
+    bolted = Body(prepared.skeleton, Placed(prepared.urdf, "base_link"))
+    left, right = bolted.index["left_hinge"], bolted.index["right_hinge"]
+    for q in bolted.random_configurations(20, seed=3):
+        assert q[left] == q[right]
