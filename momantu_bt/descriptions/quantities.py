@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Mapping
 from typing import Annotated, TypeAlias
 
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator, Field, WithJsonSchema
 
 LENGTH: Mapping[str, float] = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 ANGLE: Mapping[str, float] = {"rad": 1.0, "deg": math.pi / 180.0}
@@ -46,28 +46,67 @@ def reader(what: str, units: Mapping[str, float]) -> Callable[[object], object]:
     return read
 
 
+UNITS_KEY = "x-units"
+"""In a JSON Schema: the units that a quantity may be written with, the first that of a number."""
+_NUMBER = r"[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?"
+
+
+def _written(units: Mapping[str, float], **bounds: float) -> WithJsonSchema:
+    """What an editor is told of a quantity: a number in SI, or a text with one of these units."""
+    names = "|".join(re.escape(unit) for unit in units)
+    text = {"type": "string", "pattern": rf"^\s*{_NUMBER}\s*({names})\s*$"}
+    return WithJsonSchema({"anyOf": [{"type": "number", **bounds}, text], UNITS_KEY: list(units)})
+
+
 Length: TypeAlias = Annotated[
-    float, BeforeValidator(reader("a length", LENGTH)), Field(allow_inf_nan=False)
+    float,
+    BeforeValidator(reader("a length", LENGTH)),
+    Field(allow_inf_nan=False),
+    _written(LENGTH),
 ]
 Angle: TypeAlias = Annotated[
-    float, BeforeValidator(reader("an angle", ANGLE)), Field(allow_inf_nan=False)
+    float, BeforeValidator(reader("an angle", ANGLE)), Field(allow_inf_nan=False), _written(ANGLE)
 ]
-Mass: TypeAlias = Annotated[float, BeforeValidator(reader("a mass", MASS)), Field(gt=0)]
-Force: TypeAlias = Annotated[float, BeforeValidator(reader("a force", FORCE)), Field(gt=0)]
-Time: TypeAlias = Annotated[float, BeforeValidator(reader("a time", TIME)), Field(ge=0)]
+Mass: TypeAlias = Annotated[
+    float,
+    BeforeValidator(reader("a mass", MASS)),
+    Field(gt=0),
+    _written(MASS, exclusiveMinimum=0),
+]
+Force: TypeAlias = Annotated[
+    float,
+    BeforeValidator(reader("a force", FORCE)),
+    Field(gt=0),
+    _written(FORCE, exclusiveMinimum=0),
+]
+Time: TypeAlias = Annotated[
+    float, BeforeValidator(reader("a time", TIME)), Field(ge=0), _written(TIME, minimum=0)
+]
 Size: TypeAlias = Annotated[
-    float, BeforeValidator(reader("a length", LENGTH)), Field(gt=0, allow_inf_nan=False)
+    float,
+    BeforeValidator(reader("a length", LENGTH)),
+    Field(gt=0, allow_inf_nan=False),
+    _written(LENGTH, exclusiveMinimum=0),
 ]
 """A length above zero."""
-Speed: TypeAlias = Annotated[float, BeforeValidator(reader("a speed", SPEED)), Field(gt=0)]
+Speed: TypeAlias = Annotated[
+    float,
+    BeforeValidator(reader("a speed", SPEED)),
+    Field(gt=0),
+    _written(SPEED, exclusiveMinimum=0),
+]
 """m/s or rad/s."""
 Acceleration: TypeAlias = Annotated[
-    float, BeforeValidator(reader("an acceleration", ACCELERATION)), Field(gt=0)
+    float,
+    BeforeValidator(reader("an acceleration", ACCELERATION)),
+    Field(gt=0),
+    _written(ACCELERATION, exclusiveMinimum=0),
 ]
 """m/s2 or rad/s2."""
 JointPosition: TypeAlias = Annotated[
     float,
     BeforeValidator(reader("a joint's position", {**ANGLE, **LENGTH})),
     Field(allow_inf_nan=False),
+    _written({**ANGLE, **LENGTH}),
 ]
 """rad of a joint that turns, m of one that slides."""

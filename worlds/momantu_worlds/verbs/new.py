@@ -1,0 +1,58 @@
+"""`momantu-bt worlds new`: a small world to begin with."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+EXIT_WRONG_INPUT = 2
+
+
+def new(
+    file: Annotated[Path, typer.Argument(help="The YAML file to make; it must not exist yet.")],
+    size: Annotated[
+        str, typer.Option(metavar="WxD", help="Of both rooms together, along x and y, m.")
+    ] = "8x5",
+    schema: Annotated[
+        Path | None, typer.Option(help="Where the JSON Schema for the editor lies, if anywhere.")
+    ] = None,
+) -> int:
+    """Make a small world with comments, to be changed by hand.
+
+    Two rooms with a door between them, two tables, a can and a tag: the bundled tree bring_object
+    runs in it as it is. Nothing is overwritten.
+
+    Examples:
+      momantu-bt worlds new my_flat.yaml
+      momantu-bt worlds new hall.yaml --size 12x7
+      momantu-bt run bring_object --world ./my_flat.yaml
+    """
+    from momantu_worlds.verbs.template import CannotMake, two_rooms
+
+    try:
+        text = two_rooms(file, size, schema)
+        with file.open("x", encoding="utf-8") as made:
+            made.write(text)
+    except CannotMake as error:
+        return _complain(str(error))
+    except FileExistsError:
+        return _complain(f"{file} exists already; choose another name, or remove it first")
+    except OSError as error:
+        return _complain(f"{file} cannot be written: {error.strerror}")
+    typer.echo(
+        f"{file}: `momantu-bt worlds preview {file} -o {file.stem}.png` draws it, "
+        f"`momantu-bt run bring_object --world {_path(file)}` runs a job in it"
+    )
+    return 0
+
+
+def _path(file: Path) -> str:
+    """The file as `--world` takes it."""
+    return str(file) if file.suffix in (".yaml", ".yml") else f"./{file}"
+
+
+def _complain(message: str) -> int:
+    typer.echo(f"momantu-bt: {message}", err=True)
+    return EXIT_WRONG_INPUT
