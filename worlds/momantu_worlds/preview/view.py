@@ -32,6 +32,10 @@ AMBIENT = 0.7
 """Light from everywhere; an episode's own light is for the robot's camera, not for a picture."""
 SUN = SunLight((0.35, 0.55, -1.0), (0.75, 0.75, 0.72))
 """One sun from behind the eye gives every face its own shade."""
+HALVINGS = 50
+"""Of the heights between which the eye must be: far below a millimetre."""
+MOST_HEIGHT = 1800
+"""px; a deep house makes a narrower picture."""
 UPRIGHT = 0.999
 """Cosine of the tilt up to which a box of a wall counts as upright."""
 PAPER = (238, 238, 236)
@@ -41,14 +45,15 @@ PAPER = (238, 238, 236)
 def draw_view(
     episode: Episode, description: RobotDescription, low: Array, high: Array, width: int
 ) -> Image.Image:
-    """The view. low, high: corners (3,) of what must be in it, map, m. width: px.
+    """The view. low, high: corners (3,) of what must be in it, map, m. width: px, at most.
 
     Raises:
         WorldError: the robot cannot be simulated, or nothing renders.
     """
     corners = np.array(np.meshgrid(*zip(low, high, strict=True))).reshape(3, -1).T
-    turn = looking(_towards(), np.zeros(3)).rotation
-    eye, aspect = _eye(corners, turn)
+    turn = looking(towards(), np.zeros(3)).rotation
+    eye, aspect = eye_over(corners, turn)
+    width = min(width, round(MOST_HEIGHT / aspect))
     height = round(width * aspect)
     simulator = Simulator(description, _model(episode), episode.seed)
     try:
@@ -89,32 +94,32 @@ def _cut_part(wall: Body, part: Part) -> Part:
     )
 
 
-def _towards() -> Array:
+def towards() -> Array:
     """Unit vector (3,) from what is looked at to the eye."""
     flat = math.cos(ELEVATION)
     return np.array([flat * math.cos(AZIMUTH), flat * math.sin(AZIMUTH), math.sin(ELEVATION)])
 
 
-def _eye(corners: Array, turn: Array) -> tuple[Array, float]:
+def eye_over(corners: Array, turn: Array) -> tuple[Array, float]:
     """Where the camera must be so that all corners (n, 3) just fit, and height by width.
 
-    In the camera's frame x is ahead, y to the left, z up. The middle of what is seen shifts with
-    the distance; a few rounds settle both.
+    In the camera's frame x is ahead, y to the left, z up. A corner is between the picture's sides
+    when it is on the inner side of both planes through the eye; each plane touches a corner. Above
+    and below are then made equal.
     """
-    tangent = math.tan(FIELD / 2) / AIR
+    slope = math.tan(FIELD / 2) / AIR
     own = corners @ turn
-    at = own.mean(axis=0)
-    at[0] = own[:, 0].min() - 1.0
-    span = np.zeros(2)
-    for _ in range(50):
-        depth = own[:, 0] - at[0]
-        left, up = (own[:, 1] - at[1]) / depth, (own[:, 2] - at[2]) / depth
-        middle = float(depth.mean())
-        at[1] += middle * (left.max() + left.min()) / 2
-        at[2] += middle * (up.max() + up.min()) / 2
-        span = np.array([left.max() - left.min(), up.max() - up.min()]) / 2
-        at[0] -= middle * (span[0] / tangent - 1.0)
-    return turn @ at, float(span[1] / span[0])
+    left = float((own[:, 1] - slope * own[:, 0]).max())
+    right = float((-own[:, 1] - slope * own[:, 0]).max())
+    ahead, across = -(left + right) / (2 * slope), (left - right) / 2
+    depth = own[:, 0] - ahead
+    low, high = float(own[:, 2].min()) - 1.0, float(own[:, 2].max()) + 1.0
+    for _ in range(HALVINGS):
+        middle = (low + high) / 2
+        up = (own[:, 2] - middle) / depth
+        low, high = (middle, high) if up.max() + up.min() > 0 else (low, middle)
+    up = np.abs((own[:, 2] - low) / depth).max()
+    return turn @ np.array([ahead, across, low]), float(up) / math.tan(FIELD / 2) * AIR
 
 
 def _far(corners: Array, eye: Array) -> float:
