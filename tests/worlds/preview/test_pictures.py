@@ -15,7 +15,7 @@ from momantu_worlds.preview.page import page
 from momantu_worlds.preview.plan import draw_plan
 from momantu_worlds.robots import fetch
 from momantu_worlds.scenes.bodies import Episode
-from momantu_worlds.scenes.loading import sketch
+from momantu_worlds.scenes.loading import draw_episode
 from momantu_worlds.scenes.plain import plain_episode
 from numpy.typing import NDArray
 from PIL import Image
@@ -57,11 +57,11 @@ def difference(picture: Image.Image, name: str) -> float:
 
 
 def test_the_plan_is_the_one_that_is_kept() -> None:
-    assert difference(plan_of(sketch("four_rooms", 0)), "four_rooms_plan.png") < MOST
+    assert difference(plan_of(draw_episode("four_rooms", 0)), "four_rooms_plan.png") < MOST
 
 
 def test_another_episode_has_another_plan() -> None:
-    assert difference(plan_of(sketch("four_rooms", 1)), "four_rooms_plan.png") > MOST
+    assert difference(plan_of(draw_episode("four_rooms", 1)), "four_rooms_plan.png") > MOST
 
 
 def test_the_view_is_the_one_that_is_kept() -> None:
@@ -86,7 +86,7 @@ def test_a_page_is_a_png_with_the_plan_alone_where_no_view_is_wanted() -> None:
 
 if __name__ == "__main__":
     for name, made in (
-        ("four_rooms_plan.png", plan_of(sketch("four_rooms", 0))),
+        ("four_rooms_plan.png", plan_of(draw_episode("four_rooms", 0))),
         ("plain_view.png", view_of()),
     ):
         Image.fromarray(small(made).astype(np.uint8)).save(FOLDER / name, optimize=True)

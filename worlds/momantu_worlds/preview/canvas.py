@@ -15,6 +15,9 @@ SMOOTH = 2
 MOST_PIXELS = 2200
 """px; the longer side of a picture."""
 
+SMALL_SCALE, LARGEST = 70.0, 1.5
+"""px per metre above which words grow with the picture, and how much they grow at most."""
+
 Rgb = tuple[int, int, int]
 Point = Sequence[float] | Array
 
@@ -86,7 +89,8 @@ class Canvas:
 
         above: px by which they are moved up. always: else they are left out where there is no room.
         """
-        font = _font(size * SMOOTH)
+        larger = float(np.clip(self.scale / SMALL_SCALE, 1.0, LARGEST))
+        font = _font(round(size * larger) * SMOOTH)
         left, top, right, bottom = font.getbbox(words)
         wide, high = right - left, bottom - top
         x, y = self._at(near)

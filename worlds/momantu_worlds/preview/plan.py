@@ -11,14 +11,16 @@ from PIL import Image
 
 from momantu_bt.geometry import Array, Pose2D, Transform
 from momantu_worlds.checking.ground import Ground
-from momantu_worlds.checking.scenario import Scenario
+from momantu_worlds.checking.scenario import WALL, Scenario
 from momantu_worlds.preview.canvas import Canvas, Rgb, rgb
 from momantu_worlds.scenes.bodies import Body, Mesh, Part, Picture
 from momantu_worlds.scenes.solids import outline
 
 PAPER: Rgb = (226, 224, 219)
 WAY: Rgb = (251, 250, 246)
-WALL: Rgb = (72, 74, 80)
+DARK: Rgb = (72, 74, 80)
+LINTEL: Rgb = (196, 194, 188)
+"""What walls are above the robot is an outline only: the way below is free."""
 INK: Rgb = (40, 42, 48)
 FAINT: Rgb = (122, 120, 114)
 RED: Rgb = (190, 32, 24)
@@ -37,13 +39,13 @@ def draw_plan(scenario: Scenario, width: int) -> Image.Image:
     low, high = extent(scenario)
     canvas = Canvas(low, high, width, PAPER)
     _ways(canvas, scenario, scenario.ground)
+    _scale(canvas, low)
     _bodies(canvas, scenario)
     _surfaces(canvas, scenario)
+    _start(canvas, scenario)
     _doors(canvas, scenario)
     _places(canvas, scenario)
-    _start(canvas, scenario)
     _names(canvas, scenario)
-    _scale(canvas, low)
     return canvas.picture()
 
 
@@ -71,8 +73,9 @@ def _bodies(canvas: Canvas, scenario: Scenario) -> None:
     for body, part, _ in sorted(_parts(scenario), key=lambda entry: entry[2]):
         if isinstance(part.geometry, Picture):
             canvas.polygon(_shape(body, part), (20, 20, 20), (255, 255, 255), 1)
-        elif body.category == "wall":
-            canvas.polygon(_shape(body, part), WALL, WALL, 1)
+        elif body.category == WALL:
+            above = float(_points(body, part)[:, 2].min()) >= scenario.robot.height
+            canvas.polygon(_shape(body, part), None if above else DARK, LINTEL if above else DARK)
         else:
             color = rgb(part.color)
             canvas.polygon(_shape(body, part), color, rgb(part.color, 0.55), 1)
@@ -165,7 +168,7 @@ def _names(canvas: Canvas, scenario: Scenario) -> None:
         canvas.text(f"{height:.2f} m high", (x, y), GREEN, 12, above=-below - 15)
     for body in scenario.bodies:
         named = body.name in wanted or body.name in scenario.surfaces
-        if body.static and body.category not in ("wall", "tag") and not named:
+        if body.static and body.category not in (WALL, "tag") and not named:
             canvas.text(body.name, _middle(body), INK, 11, always=False)
 
 

@@ -76,18 +76,20 @@ def _model(episode: Episode) -> Episode:
 
 def _cut(wall: Body) -> Body:
     """A wall no higher than `CUT`; what is not an upright box stays as it is."""
-    return replace(wall, parts=tuple(_cut_part(wall, part) for part in wall.parts))
+    parts = (_cut_part(wall, part) for part in wall.parts)
+    return replace(wall, parts=tuple(part for part in parts if part is not None))
 
 
-def _cut_part(wall: Body, part: Part) -> Part:
+def _cut_part(wall: Body, part: Part) -> Part | None:
+    """What is left of a part; None of a lintel, which is above the cut."""
     at = wall.map_from_body @ part.body_from_part
     box = part.geometry
     if not isinstance(box, Box) or at.rotation[2, 2] < UPRIGHT:
         return part
     bottom = float(at.position[2]) - box.size[2] / 2
     over = bottom + box.size[2] - CUT
-    if over <= 0 or bottom >= CUT:
-        return part
+    if bottom >= CUT or over <= 0:
+        return None if bottom >= CUT else part
     shape = Box((box.size[0], box.size[1], box.size[2] - over))
     return replace(
         part, geometry=shape, body_from_part=part.body_from_part @ Transform((0, 0, -over / 2))

@@ -8,7 +8,11 @@ from typing import Annotated, Any
 
 import typer
 
+from momantu_bt.descriptions.quantities import UNITS_KEY
+
 EXIT_WRONG_INPUT = 2
+NAMING = ("properties", "$defs")
+"""Keys of a schema beneath which every key is a name, not a word of schemas."""
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 
@@ -25,7 +29,7 @@ def schema(
     Examples:
       momantu-bt worlds schema -o world.schema.json
     """
-    from momantu_worlds.scenes.sites import put
+    from momantu_worlds.scenes.kept import put
 
     text = json.dumps(world_schema(), indent=2) + "\n"
     if out is None:
@@ -44,5 +48,24 @@ def world_schema() -> dict[str, Any]:
     """The schema, from the models that read world files."""
     from momantu_worlds.scenes.world_file import WorldFile
 
-    made: dict[str, Any] = WorldFile.model_json_schema(mode="validation")
+    made = _told(WorldFile.model_json_schema(mode="validation"))
     return {"$schema": DIALECT, **made, "title": "momantu-bt world file"}
+
+
+def _told(schema: Any) -> Any:
+    """A schema whose quantities name their units, without the titles that repeat the keys."""
+    if isinstance(schema, list):
+        return [_told(each) for each in schema]
+    if not isinstance(schema, dict):
+        return schema
+    told: dict[str, Any] = {}
+    for key, value in schema.items():
+        if key in NAMING:
+            told[key] = {name: _told(each) for name, each in value.items()}
+        elif key not in ("title", UNITS_KEY):
+            told[key] = value if key == "default" else _told(value)
+    if UNITS_KEY in schema:
+        first, *others = schema[UNITS_KEY]
+        unit = f"{first}, or written with a unit: {', '.join((first, *others))}"
+        told["description"] = " ".join(filter(None, [schema.get("description"), f"[{unit}]"]))
+    return told
