@@ -33,6 +33,13 @@ def test_depth_noise_grows_with_the_square_of_the_distance(distance: float) -> N
     assert 1.0 - len(seen) / flat.size == pytest.approx(ERRORS.drop_out, rel=0.3)
 
 
+def test_a_camera_may_be_better_or_worse_than_usual() -> None:
+    flat = np.full((480, 640), 2.0, dtype=np.float32)
+    coarse = CAMERA.model_copy(update={"depth_noise": 0.006})
+    measured = noisy_depth(flat, seeded(0), coarse, ERRORS)
+    assert np.std(measured[measured > 0]) == pytest.approx(0.006 * 4.0, rel=0.05)
+
+
 def test_depth_ends_at_its_range_and_is_torn_at_edges() -> None:
     depth = np.full((480, 640), 1.0, dtype=np.float32)
     depth[:, 320:] = 2.0

@@ -100,7 +100,8 @@ def noisy_depth(
     noise = random.standard_normal(z.shape, dtype=np.float32)
     chance = random.random(z.shape, dtype=np.float32)
     lost_share = np.where(_edges(z, errors.edge_jump), errors.edge_hole, errors.drop_out)
-    measured = z + np.float32(errors.depth_noise) * z * z * noise
+    sigma = errors.depth_noise if sensor.depth_noise is None else sensor.depth_noise
+    measured = z + np.float32(sigma) * z * z * noise
     measured = np.round(measured / np.float32(errors.depth_quantum))
     measured *= np.float32(errors.depth_quantum)
     valid = (z > 0) & (measured >= sensor.min_depth) & (measured <= sensor.max_depth)
