@@ -9,9 +9,10 @@ import pytest
 from momantu_worlds.robots import fetch, kinova_jackal
 from momantu_worlds.sapien.config import Physics
 from momantu_worlds.sapien.drives import Gains, arm_gains, with_own
-from momantu_worlds.sapien.fingers import Finger, Tips, fingers_of
+from momantu_worlds.sapien.fingers import Finger, Tips, fingers_of, torques
 
 from momantu_bt.robot import JointGains, Linkage, RobotDescription
+from momantu_bt.world import WorldError
 
 PHYSICS = Physics()
 
@@ -51,6 +52,28 @@ def test_fingers_that_turn_have_the_distance_to_the_grasp_as_lever() -> None:
         assert finger.closing == 1.0
         assert finger.gains.stiffness == PHYSICS.finger_stiffness * finger.lever**2
         assert finger.gains.armature > 0.0
+
+
+def test_each_side_presses_with_the_whole_force_however_many_fingers_it_has() -> None:
+    pair, three = fingers(fetch()), fingers(kinova_jackal())
+    assert set(torques(pair, 40.0).values()) == {40.0}
+    for name, torque in torques(three, 25.0).items():
+        assert torque / three[name].lever == pytest.approx(25.0 / 1.5)
+    name, finger = next(iter(pair.items()))
+    assert torques({name: finger}, 40.0) == {name: 40.0}
+
+
+def test_a_gripper_that_cannot_close_is_refused_with_the_reason() -> None:
+    robot = kinova_jackal()
+    hand = robot.end_effector
+    sideways = robot.model_copy(
+        update={"end_effector": hand.model_copy(update={"frame": "arm_finger_1"})}
+    )
+    with pytest.raises(WorldError, match=r"arm_joint_finger_1.* along y of 'arm_finger_1'"):
+        fingers(sideways)
+    bare = robot.model_copy(update={"end_effector": hand.model_copy(update={"opening": {}})})
+    with pytest.raises(WorldError, match="no joints"):
+        fingers(bare)
 
 
 def test_a_joints_own_gains_take_the_place_of_the_usual_ones() -> None:

@@ -11,11 +11,14 @@ import numpy as np
 
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.robot import Linkage, RobotDescription, SimulationModel
+from momantu_bt.world import WorldError
 from momantu_worlds.sapien.config import Physics
 from momantu_worlds.sapien.drives import Gains, with_own
 
 EXACT = 9
 """Decimals to which a lever is rounded: what a product of rotations loses."""
+LEAST_LEVER = 1e-3
+"""m, or share of a slide's way: fingers that close the gripper less do not close it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,10 +45,23 @@ def fingers_of(
     """The gripper's finger joints by name; joints: SAPIEN's.
 
     A stiffness at the pads becomes one of the joint by the lever's square.
+
+    Raises:
+        WorldError: there are none, or one does not move along the closing direction.
     """
     effector, found = description.end_effector, {}
+    if not effector.opening:
+        raise WorldError(
+            f"the gripper {effector.actuator!r} of {description.name} has no joints; a simulated "
+            "gripper needs at least one finger"
+        )
     for name, rows in effector.opening.items():
         lever = _lever(description, name)
+        if lever < LEAST_LEVER:
+            raise WorldError(
+                f"the finger joint {name!r} of {description.name} does not move its finger along y "
+                f"of {effector.frame!r}, the direction in which the gripper closes; turn that frame"
+            )
         usual = Gains(
             physics.finger_stiffness * lever**2, physics.finger_damping * lever**2, 0.0, 0.0
         )
@@ -91,6 +107,16 @@ def couple(articulation: Any, fingers: Mapping[str, Finger], physics: Physics) -
             stiffness=physics.tendon_stiffness * first.lever**2,
             damping=physics.tendon_damping * first.lever**2,
         )
+
+
+def torques(fingers: Mapping[str, Finger], force: float) -> dict[str, float]:
+    """What each finger joint must give so that either side presses with `force`, N; Nm or N."""
+    return {name: force * finger.lever / sides(fingers) for name, finger in fingers.items()}
+
+
+def sides(fingers: Mapping[str, Finger]) -> float:
+    """Fingers on either side; a single one presses against something that does not move."""
+    return max(1.0, len(fingers) / 2)
 
 
 @dataclass(frozen=True, slots=True)

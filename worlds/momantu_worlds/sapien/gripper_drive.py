@@ -9,7 +9,7 @@ from momantu_bt.geometry import Array
 from momantu_bt.messages import GripperCommand
 from momantu_bt.robot import EndEffector
 from momantu_worlds.sapien.config import STEP
-from momantu_worlds.sapien.fingers import Finger, Tips
+from momantu_worlds.sapien.fingers import Finger, Tips, sides, torques
 
 
 class GripperDrive:
@@ -66,11 +66,10 @@ class GripperDrive:
 
     def effort(self, positions: Mapping[str, float]) -> float:
         """Closing force of each side at these finger positions, N: positive pressing inwards."""
-        sides = len(self._fingers) / 2
         push = 0.0
         for name, finger in self._fingers.items():
             way = finger.closing * (self._targets[name] - positions[name])
-            push += sides * finger.gains.stiffness * way / finger.lever
+            push += sides(self._fingers) * finger.gains.stiffness * way / finger.lever
         return min(max(push / len(self._fingers), -self._force), self._force)
 
     def _send(self) -> None:
@@ -80,11 +79,10 @@ class GripperDrive:
 
     def _set_force(self, force: float) -> None:
         self._force = force
-        sides = len(self._fingers) / 2
-        torques = {name: force * finger.lever / sides for name, finger in self._fingers.items()}
+        needed = torques(self._fingers, force)
         for name, finger in self._fingers.items():
-            finger.gains.give(finger.joint, torques[name])
-        self._tips.press(torques)
+            finger.gains.give(finger.joint, needed[name])
+        self._tips.press(needed)
 
 
 def _closing_speed(effector: EndEffector, speeds: Mapping[str, float]) -> float:
