@@ -9,7 +9,8 @@ from typing import Annotated
 import typer
 
 from momantu_bt.cli.listing import listing
-from momantu_bt.plugins import ROBOTS, load
+from momantu_bt.cli.naming import robot_of
+from momantu_bt.plugins import ROBOTS
 from momantu_bt.robot import RobotDescription
 
 robots = typer.Typer(rich_markup_mode=None, invoke_without_command=True)
@@ -35,32 +36,22 @@ def list_all(
     listing(ROBOTS, _about, as_json)
 
 
-@robots.command("show", help="Show a robot's actuators, sensors and named poses.")
+@robots.command("show", help="Show a robot: parts, joints, sensors, hand, poses.")
 def show_one(
     name: Annotated[str, typer.Argument(help="The robot's name, or its file.")],
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,
 ) -> None:
     """Show one robot."""
-    describe: Description = load(ROBOTS, name)
-    description = describe()
+    from momantu_bt.cli.robot_text import robot_lines
+    from momantu_bt.robots.summary import summary
+
+    about = summary(robot_of(name))
     if as_json:
-        about = {
-            "name": name,
-            "actuators": {n: a.kind.value for n, a in description.actuators.items()},
-            "sensors": {n: s.kind for n, s in description.sensors.items()},
-            "groups": {n: list(g.joints) for n, g in description.groups.items()},
-            "named_poses": description.named_poses,
-        }
         typer.echo(json.dumps(about, indent=2))
         return
-    typer.echo(f"{name}: {_about(describe)}")
-    typer.echo("\nActuators")
-    for actuator_name, actuator in description.actuators.items():
-        typer.echo(f"  {actuator_name}: {', '.join(actuator.joints) or actuator.kind.value}")
-    typer.echo("\nSensors")
-    for sensor_name, sensor in description.sensors.items():
-        typer.echo(f"  {sensor_name}: {sensor.kind}, in {sensor.frame}")
-    typer.echo(f"\nNamed poses   {', '.join(description.named_poses)}")
+    typer.echo(about["name"])
+    for line in robot_lines(about):
+        typer.echo(line)
 
 
 def _about(describe: Description) -> str:

@@ -67,12 +67,26 @@ class _Findings:
             return Problem(*at(place, key=True), self._unknown_key(name, place))
         if kind == "missing":
             return Problem(*at(place[:-1]), f"{self._dotted(place[:-1])} needs a key {name!r}")
+        if kind in ("union_tag_invalid", "union_tag_not_found"):
+            return self._unknown_kind(place, finding)
         message = str(finding["msg"]).removeprefix("Value error, ")
         if kind in ("literal_error", "enum"):
             message = (
                 f"{finding['input']!r} is not possible here; {message[0].lower()}{message[1:]}"
             )
         return Problem(*at(place), f"{self._dotted(place)}: {message}")
+
+    def _unknown_kind(self, place: Place, finding: dict[str, Any]) -> Problem:
+        """What kinds there are of a thing whose kind is missing or unknown."""
+        key = str(finding["ctx"]["discriminator"]).strip("'")
+        union = _inner(self._schema_at(place[:-1]), place[-1])
+        kinds = ", ".join(union.get("discriminator", {}).get("mapping", ()))
+        given = _item(self._reading.value(place), key)
+        if given is None:
+            place_of, said = place, f"{self._dotted(place)} needs a key {key!r}"
+        else:
+            place_of, said = (*place, key), f"{given!r} is not possible here"
+        return Problem(*self._reading.at(place_of), f"{said}; possible: {kinds}")
 
     def _dotted(self, place: Place) -> str:
         return ".".join(str(part) for part in place) or f"the {self._what}"
@@ -89,14 +103,14 @@ class _Findings:
         return near[0] if near else ""
 
     def _known_keys(self, place: Place) -> list[str]:
+        return list(self._schema_at(place).get("properties", {}))
+
+    def _schema_at(self, place: Place) -> dict[str, Any]:
         here, data = self._resolved(self._schema, self._reading.plain), self._reading.plain
         for part in place:
             data = _item(data, part)
-            inner = here.get("properties", {}).get(part)
-            inner = inner if inner is not None else here.get("additionalProperties")
-            inner = inner if isinstance(inner, dict) else here.get("items", {})
-            here = self._resolved(inner, data)
-        return list(here.get("properties", {}))
+            here = self._resolved(_inner(here, part), data)
+        return here
 
     def _resolved(self, schema: dict[str, Any], data: Any) -> dict[str, Any]:
         """What a schema stands for: a reference followed, of a union the member that is meant."""
@@ -110,6 +124,14 @@ class _Findings:
             members = [{"$ref": chosen}] if chosen is not None else ()
         objects = [self._resolved(m, data) for m in members]
         return next((m for m in objects if "properties" in m), schema)
+
+
+def _inner(schema: dict[str, Any], part: str | int) -> dict[str, Any]:
+    """The schema of what stands under a key or an index."""
+    candidates = [schema.get("properties", {}).get(part)]
+    candidates += schema.get("patternProperties", {}).values()
+    candidates += [schema.get("additionalProperties"), schema.get("items")]
+    return next((each for each in candidates if isinstance(each, dict)), {})
 
 
 def _item(data: Any, part: str | int) -> Any:

@@ -108,6 +108,13 @@ class Reading:
             place = place[:-1]
         return 1, 1
 
+    def value(self, place: Place) -> Any:
+        """The plain value at a place; KeyError or IndexError when there is none."""
+        here = self.plain
+        for part in place:
+            here = here[part]
+        return here
+
     def _compose(self) -> Node:
         try:
             root: Node | None = YAML(typ="safe", pure=True).compose(self.text)

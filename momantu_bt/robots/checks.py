@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable, Iterator
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 from lxml import etree
 
 from momantu_bt.descriptions.names import nearest
 from momantu_bt.descriptions.quantities import LENGTH, unit_of
-from momantu_bt.descriptions.reading import Place
+from momantu_bt.descriptions.reading import Place, Reading
 from momantu_bt.frames import Joint, KinematicTree
 from momantu_bt.robot import REQUIRED_POSES
 from momantu_bt.robot_parts import ActuatorKind, CameraSensor, LaserSensor, LidarSensor
@@ -22,10 +22,10 @@ SLACK = 1e-9
 """rad or m by which a named pose may lie beyond a limit: rounding."""
 
 
-def findings(robot: RobotFile, root: etree._Element, plain: Any) -> list[Finding]:
+def findings(robot: RobotFile, root: etree._Element, reading: Reading) -> list[Finding]:
     """Everything that does not fit; empty when the robot is as it should be.
 
-    root: the assembled URDF's element. plain: the file's values as they are written.
+    root: the assembled URDF's element. reading: the file, as it is written.
     """
     links = [str(link.get("name")) for link in root.findall("link")]
     if robot.base_frame not in links:
@@ -36,7 +36,7 @@ def findings(robot: RobotFile, root: etree._Element, plain: Any) -> list[Finding
             )
         ]
     tree = KinematicTree.from_element(root, robot.base_frame)
-    return list(_Checks(robot, tree, root, links, plain).run())
+    return list(_Checks(robot, tree, root, links, reading).run())
 
 
 class _Checks:
@@ -46,9 +46,9 @@ class _Checks:
         tree: KinematicTree,
         root: etree._Element,
         links: list[str],
-        plain: Any,
+        reading: Reading,
     ) -> None:
-        self._robot, self._tree, self._links, self._plain = robot, tree, links, plain
+        self._robot, self._tree, self._links, self._reading = robot, tree, links, reading
         self._frames = tree.frames()
         self._moving: dict[str, Joint] = {j.name: j for j in tree.joints() if j.kind != "fixed"}
         self._every_joint = [str(joint.get("name")) for joint in root.findall("joint")]
@@ -121,7 +121,7 @@ class _Checks:
 
     def _units(self, joint: str, place: Place) -> Iterator[Finding]:
         """Lengths are for joints that slide, angles for joints that turn."""
-        written = self._written(place)
+        written = self._reading.value(place)
         values = written.items() if isinstance(written, dict) else [(None, written)]
         slides = self._moving[joint].kind == "prismatic"
         for key, value in values:
@@ -129,12 +129,6 @@ class _Checks:
             if unit is not None and (unit.partition("/")[0] in LENGTH) != slides:
                 fitting = "slides: write it in m" if slides else "turns: write it in rad or deg"
                 yield (*place, key) if key else place, f"{value!r}, but {joint} {fitting}"
-
-    def _written(self, place: Place) -> Any:
-        here = self._plain
-        for part in place:
-            here = here[part]
-        return here
 
     def _groups(self) -> Iterator[Finding]:
         for name, group in self._robot.groups.items():

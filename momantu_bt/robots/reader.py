@@ -7,6 +7,7 @@ from pathlib import Path
 from momantu_bt.descriptions.findings import checked
 from momantu_bt.descriptions.reading import Reading, read_text
 from momantu_bt.robot import RobotDescription
+from momantu_bt.robot_parts import BaseLimits
 from momantu_bt.robot_simulation import JointGains, PlanarDrive, SimulationModel
 from momantu_bt.robots.assembly import Assembled, assemble
 from momantu_bt.robots.checks import findings
@@ -26,18 +27,27 @@ def read_robot(path: Path) -> RobotDescription:
         RobotFileError: the file, or one that it names, is missing or wrong; every problem is told
             with line and column.
     """
-    file = path / FILE if path.is_dir() else path
-    text = read_text(file, RobotFileError)
-    reading = Reading(file, text, RobotFileError)
-    robot = checked(reading, RobotFile, RobotFileError)
+    reading, robot = _read(path)
+    file = reading.path.absolute()
     try:
-        assembled = assemble(robot, file.absolute().parent)
+        assembled = assemble(robot, file.parent)
     except ExceptionGroup as group:
         troubles = [e for e in group.exceptions if isinstance(e, PartError)]
         reading.refuse((trouble.place, trouble.message) for trouble in troubles)
         raise
-    reading.refuse(findings(robot, assembled.root, reading.plain))
-    return _description(robot, file.absolute(), assembled)
+    reading.refuse(findings(robot, assembled.root, reading))
+    return _description(robot, file, assembled)
+
+
+def read_robot_file(path: Path) -> RobotFile:
+    """What a robot file says, its parts not looked at; `path` and errors as of `read_robot`."""
+    return _read(path)[1]
+
+
+def _read(path: Path) -> tuple[Reading, RobotFile]:
+    file = path / FILE if path.is_dir() else path
+    reading = Reading(file, read_text(file, RobotFileError), RobotFileError)
+    return reading, checked(reading, RobotFile, RobotFileError)
 
 
 def _description(robot: RobotFile, file: Path, assembled: Assembled) -> RobotDescription:
@@ -51,7 +61,7 @@ def _description(robot: RobotFile, file: Path, assembled: Assembled) -> RobotDes
         footprint=robot.footprint,
         height=robot.height,
         working=robot.working,
-        base=robot.base.model_copy(update={"drive": None}),
+        base=BaseLimits(**robot.base.model_dump(exclude={"drive"})),
         actuators=robot.actuators,
         joint_limits=robot.joint_limits,
         sensors=robot.sensors,

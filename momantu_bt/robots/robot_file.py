@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self, TypeAlias
+from typing import Annotated, Any, Literal, Self, TypeAlias
 
 from pydantic import Field, model_validator
 
@@ -136,3 +136,10 @@ class RobotFile(Part):
     """Gains for simulation, by actuator or joint; a joint's own win."""
     simulation: Contacts | None = None
     """What touches what in a simulator. Not given: the robot cannot be simulated."""
+
+    def as_written(self) -> dict[str, Any]:
+        """Plain data for a YAML file that reads as this: SI units, nothing that is usual."""
+        data = self.model_dump(mode="json", exclude_defaults=True)
+        for name, sensor in self.sensors.items():
+            data["sensors"][name] = {"kind": sensor.kind, **data["sensors"][name]}
+        return data

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import math
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -12,9 +13,12 @@ import numpy as np
 import pytest
 import trimesh
 from momantu_worlds.robots import FOLDER, fetch
+from ruamel.yaml import YAML
 
+from momantu_bt import plugins
 from momantu_bt.robot import CAMERA_CARRIER, REQUIRED_POSES, ActuatorKind, CameraSensor
 from momantu_bt.robots import RobotFileError, RobotNotInstalled, read_robot
+from momantu_bt.robots.reader import read_robot_file
 
 FETCH = fetch()
 MOVING = [
@@ -120,3 +124,17 @@ def test_a_broken_robot_file_is_named_with_the_place(
 def test_it_can_be_simulated_with_a_friction_that_rubber_has() -> None:
     assert FETCH.simulation is not None
     assert 1.0 <= FETCH.simulation.finger_friction <= 2.0
+
+
+@pytest.mark.parametrize("file", sorted(FOLDER.glob("*/robot.yaml")), ids=lambda f: f.parent.name)
+def test_every_robot_of_the_package_reads_the_same_when_it_is_written_again(
+    file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("MOMANTU_BT_CACHE", str(tmp_path / "cache"))
+    folder = tmp_path / "robot"
+    shutil.copytree(file.parent, folder)
+    model, robot = read_robot_file(folder / "robot.yaml"), read_robot(folder)
+    with (folder / "robot.yaml").open("w") as out:
+        YAML().dump(model.as_written(), out)
+    assert read_robot(folder) == robot
+    assert robot.name == file.parent.name == plugins.load(plugins.ROBOTS, robot.name)().name
