@@ -199,8 +199,8 @@ class ClaimJudge:
         return np.asarray(grasp.apply(grid))
 
     def _opening(self) -> float:
-        gripper = self._description.actuators[self._description.end_effector.actuator]
-        return sum(self._truth.joint(name) for name in gripper.joints)
+        hand = self._description.end_effector
+        return hand.width({name: self._truth.joint(name) for name in hand.opening})
 
     def _off_axis(self, frame: str, point: Array) -> float:
         """Angle between an optical frame's z axis and the way to a point, rad."""
