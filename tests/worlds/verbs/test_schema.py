@@ -11,6 +11,7 @@ from momantu_worlds.scenes.loading import world_path
 from momantu_worlds.scenes.world_reader import parse_world
 from momantu_worlds.verbs.schema import world_schema
 from momantu_worlds.verbs.template import two_rooms
+from momantu_worlds.verbs.words import WORDS, words_of
 from ruamel.yaml import YAML
 
 from momantu_bt.cli import main
@@ -69,9 +70,19 @@ def test_it_is_a_schema_and_tells_units_where_there_are_any() -> None:
     jsonschema.Draft202012Validator.check_schema(SCHEMA)
     assert UNITS_KEY not in json.dumps(SCHEMA)
     width = SCHEMA["$defs"]["Door"]["properties"]["width"]
-    assert "[m, or written with a unit: m, cm, mm]" in width["description"]
+    assert width["description"] == "Of the gap. [m, or written with a unit: m, cm, mm]"
     assert width["anyOf"][0] == {"type": "number", "exclusiveMinimum": 0}
     assert "title" not in SCHEMA["$defs"]["Door"]
+
+
+def test_every_key_is_described_and_no_words_are_left_over() -> None:
+    parts = {"WorldFile": SCHEMA, **SCHEMA["$defs"]}
+    keys = {(part, key) for part, schema in parts.items() for key in schema.get("properties", {})}
+    assert {f"{part}.{key}" for part, key in keys if words_of(part, key) is None} == set()
+    of_all = {f"*.{key}" for _, key in keys}
+    assert set(WORDS) - {f"{part}.{key}" for part, key in keys} - of_all == set()
+    for part, key in keys:
+        assert str(words_of(part, key)) in parts[part]["properties"][key]["description"]
 
 
 def test_the_verb_prints_or_writes_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

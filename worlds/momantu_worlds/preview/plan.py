@@ -28,8 +28,8 @@ BLUE: Rgb = (24, 92, 176)
 GREEN: Rgb = (20, 120, 80)
 MARGIN = 0.4
 """m of floor that is drawn around everything."""
-BIG = 0.12
-"""m; narrower loose bodies get no outline of their own colour, which would be all there is."""
+BIG = 0.18
+"""m; loose bodies that are smaller either way are drawn, but not named: there are too many."""
 ARROW = 0.28
 """m; length of the mark that tells which way a place looks."""
 
@@ -154,7 +154,8 @@ def _start(canvas: Canvas, scenario: Scenario) -> None:
 def _names(canvas: Canvas, scenario: Scenario) -> None:
     """Names of surfaces and of what the goal is about first, then of all that there is room for."""
     goal = scenario.episode.goal
-    wanted = set() if goal is None else {goal.item, goal.marker}
+    wanted = {body.name for body in scenario.bodies if body.category == "tag"}
+    wanted |= set() if goal is None else {goal.item, goal.marker}
     for body in scenario.bodies:
         if body.name in wanted:
             color = RED if goal is not None and body.name == goal.item else INK
@@ -168,13 +169,12 @@ def _names(canvas: Canvas, scenario: Scenario) -> None:
         canvas.text(f"{height:.2f} m high", (x, y), GREEN, 12, above=-below - 15)
     for body in scenario.bodies:
         named = body.name in wanted or body.name in scenario.surfaces
-        if body.static and body.category not in (WALL, "tag") and not named:
-            canvas.text(body.name, _middle(body), INK, 11, always=False)
-
-
-def _middle(body: Body) -> Array:
-    points = np.concatenate([_shape(body, part) for part in body.parts])
-    return np.asarray((points.min(axis=0) + points.max(axis=0)) / 2)
+        if named or body.category == WALL or not body.parts:
+            continue
+        points = np.concatenate([_shape(body, part) for part in body.parts])
+        low, high = points.min(axis=0), points.max(axis=0)
+        if body.static or (high - low).max() >= BIG:
+            canvas.text(body.name, (low + high) / 2, INK, 11, always=False)
 
 
 def _scale(canvas: Canvas, low: Array) -> None:

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from momantu_bt.descriptions.quantities import UNITS_KEY
+from momantu_worlds.verbs.words import words_of
 
 EXIT_WRONG_INPUT = 2
 NAMING = ("properties", "$defs")
@@ -48,8 +49,13 @@ def world_schema() -> dict[str, Any]:
     """The schema, from the models that read world files."""
     from momantu_worlds.scenes.world_file import WorldFile
 
-    made = _told(WorldFile.model_json_schema(mode="validation"))
-    return {"$schema": DIALECT, **made, "title": "momantu-bt world file"}
+    made = WorldFile.model_json_schema(mode="validation")
+    for part, schema in {"WorldFile": made, **made["$defs"]}.items():
+        for key, inner in schema.get("properties", {}).items():
+            words = words_of(part, key)
+            if words is not None:
+                inner["description"] = words
+    return {"$schema": DIALECT, **_told(made), "title": "momantu-bt world file"}
 
 
 def _told(schema: Any) -> Any:
