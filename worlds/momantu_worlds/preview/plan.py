@@ -155,7 +155,8 @@ def _names(canvas: Canvas, scenario: Scenario) -> None:
     """Names of surfaces and of what the goal is about first, then of all that there is room for."""
     goal = scenario.episode.goal
     wanted = {body.name for body in scenario.bodies if body.category == "tag"}
-    wanted |= set() if goal is None else {goal.item, goal.marker}
+    if goal is not None:
+        wanted |= {name for name in (goal.item, goal.marker) if name is not None}
     for body in scenario.bodies:
         if body.name in wanted:
             color = RED if goal is not None and body.name == goal.item else INK
