@@ -339,3 +339,15 @@ def test_cylinders_keep_their_axis(imported, tmp_path):
     assert found.world.bodies[0].parts[0].solid == Cylinder(0.03, 0.1)
     points = np.concatenate(list(found.world.bodies[0].hulls()))
     assert np.ptp(points[:, 1]) == pytest.approx(0.1)
+
+
+def test_what_is_flush_with_the_floor_is_lifted_to_be_seen(imported, box):
+    carpet = box("carpet", "2 1 0.02", "0 0 -0.01 0 0 0")
+    boards = box("boards", "8 4 0.02", "0 5 -0.0105 0 0 0")
+    found = imported(GROUND + carpet + boards + box("b", "1 1 1", "3 0 0.5 0 0 0"))
+    tops = {
+        name: float((body.at @ body.parts[0].body_from_part).position[2]) + 0.01
+        for name, body in by_name(found).items()
+    }
+    assert tops["carpet"] == pytest.approx(0.003)
+    assert tops["boards"] == pytest.approx(0.001)

@@ -187,3 +187,33 @@ def test_big_meshes_keep_their_form_and_lose_triangles():
     again = trimesh.Trimesh(few[0].vertices, few[0].triangles)
     assert again.volume == pytest.approx(ball.volume, rel=0.02)
     assert reduced([piece], 10**6)[0] is piece
+
+
+def test_pictures_are_found_where_gazebo_looks_for_them(tmp_path):
+    """Beside the mesh by its path, or in the model's folder of textures; nowhere else."""
+    from PIL import Image
+
+    meshes, textures = tmp_path / "chair" / "meshes", tmp_path / "chair" / "materials" / "textures"
+    meshes.mkdir(parents=True)
+    textures.mkdir(parents=True)
+    Image.new("RGB", (2, 2), (9, 8, 7)).save(textures / "wood.png")
+    Image.new("RGB", (2, 2), (1, 1, 1)).save(tmp_path / "secret.png")
+    (meshes / "chair.obj").write_text(
+        "mtllib chair.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n"
+        "usemtl m\nf 1/1 2/2 3/3\n"
+    )
+    for said, found in (
+        ("../materials/textures/wood.png", True),
+        ("wood.png", True),
+        ("C:\\old\\wood.png", True),
+        ("none.png", False),
+        ("../../secret.png", False),
+        (f"{tmp_path}/secret.png", False),
+    ):
+        (meshes / "chair.mtl").write_text(f"newmtl m\nKd 1 1 1\nmap_Kd {said}\n")
+        read = read_mesh(MeshFile(meshes / "chair.obj"))
+        picture = read.pieces[0].picture
+        assert (picture is not None) == found, said
+        assert bool(read.missing) != found, said
+        if found:
+            assert picture.convert("RGB").getpixel((0, 0)) == (9, 8, 7)

@@ -13,6 +13,8 @@ from momantu_worlds.sapien.meshes import collision_mesh
 from momantu_worlds.sapien.poses import transform_of
 from momantu_worlds.scenes.bodies import Box, Cylinder, Hull, Mesh, Part, Picture, Sphere
 
+SLACK = 0.01
+"""Of a picture: coordinates that lie farther outside it mean it again and again, as tiles do."""
 GAMMA = 2.2
 """Colours are given as a screen shows them; the shader computes with light."""
 
@@ -63,15 +65,18 @@ def _plain(part: Part) -> Any:
     return sapien.render.RenderMaterial(base_color=[*color, 1.0])
 
 
-def _textured(pixels: NDArray[np.uint8]) -> Any:
-    """A material with a texture (h, w, 3) of screen colours."""
+def _textured(pixels: NDArray[np.uint8], beyond: str = "edge") -> Any:
+    """A material with a texture (h, w, 3) of screen colours.
+
+    beyond: what lies outside the picture, "edge" (its last row or column) or "repeat".
+    """
     alpha = np.full((*pixels.shape[:2], 1), 255, dtype=np.uint8)
     texture = sapien.render.RenderTexture2D(
         np.ascontiguousarray(np.concatenate([pixels, alpha], axis=2)),
         "r8g8b8a8unorm",
         mipmap_levels=1,
         filter_mode="linear",
-        address_mode="edge",
+        address_mode=beyond,
         srgb=True,
     )
     material = sapien.render.RenderMaterial()
@@ -97,7 +102,9 @@ def _mesh(mesh: Mesh, part: Part) -> Any:
     uv, material = np.zeros((len(vertices), 2)), _plain(part)
     if mesh.uv is not None and mesh.texture is not None:
         # a mesh's v counts from its picture's last row, the renderer's from the first
-        uv, material = np.array([0.0, 1.0]) + mesh.uv * (1.0, -1.0), _textured(mesh.texture)
+        tiled = mesh.uv.min() < -SLACK or mesh.uv.max() > 1.0 + SLACK
+        uv = np.array([0.0, 1.0]) + mesh.uv * (1.0, -1.0)
+        material = _textured(mesh.texture, "repeat" if tiled else "edge")
     return sapien.render.RenderShapeTriangleMesh(
         vertices.astype(np.float32),
         np.asarray(mesh.triangles).astype(np.uint32),

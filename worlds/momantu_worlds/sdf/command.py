@@ -33,7 +33,7 @@ def import_sdf(
     force: Annotated[bool, typer.Option("--force", help="Overwrite the world file.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,
 ) -> int:
-    """Turn a world of Gazebo's into a world file and its meshes, and list what is different.
+    """Turn a world of Gazebo's into a world file, and list what is different.
 
     Models are looked for in --models, in GAZEBO_MODEL_PATH and GZ_SIM_RESOURCE_PATH, and beside
     the file; nothing is downloaded. Meshes become GLB files in a folder beside the world file.

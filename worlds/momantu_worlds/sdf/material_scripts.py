@@ -9,7 +9,7 @@ from pathlib import Path
 
 from momantu_worlds.sdf.findings import Place
 from momantu_worlds.sdf.model import Material, Rgba
-from momantu_worlds.sdf.uris import Library, MissingFile
+from momantu_worlds.sdf.uris import Library, MissingFile, is_there
 
 COMMON: Mapping[str, tuple[float, float, float]] = {
     "black": (0.05, 0.05, 0.05),
@@ -117,7 +117,7 @@ def _material(block: str, file: Path, folders: list[Path]) -> Material:
     if texture is not None and ".." not in Path(texture[1]).parts:
         around = [*folders, file.parent, file.parent.parent / "textures"]
         candidates = (folder / texture[1] for folder in around)
-        picture = next((path for path in candidates if path.is_file()), None)
+        picture = next((path for path in candidates if is_there(path)), None)
     return Material(_color(_DIFFUSE, block) or _color(_AMBIENT, block), picture)
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array
 from momantu_worlds.sdf.collada import Z_FROM, BadMesh, ColladaNotes, collada_notes
+from momantu_worlds.sdf.companions import Companions
 from momantu_worlds.sdf.model import MeshFile
 
 ENDINGS = (".dae", ".stl", ".obj", ".glb", ".gltf", ".ply")
@@ -38,10 +39,15 @@ class Piece:
 
 @dataclass(frozen=True, slots=True)
 class ReadMesh:
-    """A mesh as a shape has it. turned: by what the file says of its up; empty when it was not."""
+    """A mesh as a shape has it.
+
+    turned: by what the file says of its up; empty when it was not. missing: files that it names
+    and that are not there.
+    """
 
     pieces: tuple[Piece, ...]
     turned: str = ""
+    missing: tuple[str, ...] = ()
 
 
 def read_mesh(mesh: MeshFile, *, upright: bool = True) -> ReadMesh:
@@ -62,16 +68,17 @@ def read_mesh(mesh: MeshFile, *, upright: bool = True) -> ReadMesh:
         raise BadMesh(f"it cannot be read: {error.strerror}") from None
     if ending in (".glb", ".gltf"):
         notes.up = "Y_UP"  # glTF 2.0 knows no other
-    pieces = [piece for name, piece in _load(mesh) if _wanted(name, mesh, notes)]
+    companions = Companions(mesh.file)
+    pieces = [piece for name, piece in _load(mesh, companions) if _wanted(name, mesh, notes)]
     if not pieces:
         raise BadMesh(_nothing(mesh, notes))
     turn = Z_FROM[notes.up] if upright and notes.up else np.eye(3)
     turned = notes.up if not np.array_equal(turn, np.eye(3)) else ""
-    return ReadMesh(_shaped(pieces, turn * notes.meter, mesh), turned)
+    return ReadMesh(_shaped(pieces, turn * notes.meter, mesh), turned, tuple(companions.missing))
 
 
-def _load(mesh: MeshFile) -> list[tuple[str, Piece]]:
-    options: dict[str, Any] = {"process": False}
+def _load(mesh: MeshFile, companions: Companions) -> list[tuple[str, Piece]]:
+    options: dict[str, Any] = {"process": False, "resolver": companions}
     if mesh.file.suffix.lower() == ".obj" and mesh.submesh:
         options |= {"split_objects": True, "split_groups": True}
     try:

@@ -16,8 +16,11 @@ from momantu_worlds.sdf.model import Box, Cylinder, Plane, Sphere
 Rgb: TypeAlias = tuple[float, float, float]
 SIDES = 24
 """Of the prism around a cylinder, and of rings around round things."""
+THINNEST = 1e-5
+"""m; what is written with six decimals has to stay above zero."""
 SLAB = 0.01
 """m; thickness of a plane that is not the floor."""
+_CORNERS = np.array([(x, y, z) for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
 SAME = 1e-6
 """m, rad; shapes that lie closer are in one place."""
 
@@ -34,7 +37,11 @@ Solid: TypeAlias = Box | Cylinder | Sphere | MeshPart
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """One part of a body. hulls: convex points (n, 3) in the part's frame that are touched."""
+    """One part of a body, in its own frame.
+
+    hulls: convex points (n, 3) of all that is touched. seen: corners (8, 3) around a mesh that is
+    looked at.
+    """
 
     solid: Solid
     body_from_part: Transform
@@ -42,27 +49,31 @@ class Part:
     visual: bool = True
     collision: bool = True
     hulls: tuple[Array, ...] = field(default=(), compare=False)
-
-    def outline(self) -> Array:
-        """Points (n, 3) around all that is touched, in the body's frame."""
-        return self.body_from_part.apply(np.concatenate(self.hulls))
+    seen: Array | None = field(default=None, compare=False)
 
 
 def simple(shape: Box | Cylinder | Sphere, scale: tuple[float, float, float]) -> Solid:
     """A shape that the world file has too, scaled; what is round stays round."""
     x, y, z = scale
     if isinstance(shape, Box):
-        return Box((shape.size[0] * x, shape.size[1] * y, shape.size[2] * z))
+        a, b, c = shape.size
+        return Box((max(a * x, THINNEST), max(b * y, THINNEST), max(c * z, THINNEST)))
     if isinstance(shape, Cylinder):
-        return Cylinder(shape.radius * max(x, y), shape.length * z)
-    return Sphere(shape.radius * max(x, y, z))
+        radius, length = shape.radius * max(x, y), shape.length * z
+        return Cylinder(max(radius, THINNEST), max(length, THINNEST))
+    return Sphere(max(shape.radius * max(x, y, z), THINNEST))
+
+
+def corners_around(points: Array) -> Array:
+    """Corners (8, 3) of the box around points (n, 3)."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    return np.asarray(np.where(_CORNERS > 0.0, high, low))
 
 
 def hull_of(solid: Box | Cylinder | Sphere) -> Array:
     """Points (n, 3) around a simple solid."""
     if isinstance(solid, Box):
-        corners = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
-        return np.array(corners) * solid.size / 2.0
+        return np.asarray(_CORNERS * solid.size / 2.0)
     if isinstance(solid, Cylinder):
         return np.concatenate(
             [_ring(solid.radius, z) for z in (-solid.length / 2, solid.length / 2)]

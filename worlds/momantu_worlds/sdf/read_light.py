@@ -12,6 +12,8 @@ from momantu_worlds.sdf.model import Light, LightKind
 from momantu_worlds.sdf.reading import Reading
 from momantu_worlds.sdf.values import color_of, flag, name_of, number, pose_of, vector
 
+STRONGEST = 100.0
+"""A light with more intensity leaves nothing but white."""
 WHITE = (1.0, 1.0, 1.0, 1.0)
 _READ = ("pose", "diffuse", "direction", "intensity", "light_on", "visualize")
 
@@ -42,7 +44,7 @@ def read_light(element: Element, around: str, reading: Reading) -> Light | None:
         raise element.error("<light> has a direction without length")
     if kind is LightKind.SPOT:
         reading.findings.changed(element.place, subject, "a spot light", "it shines to all sides")
-    strength = max(number(element, "intensity", 1.0), 0.0)
+    strength = min(max(number(element, "intensity", 1.0), 0.0), STRONGEST)
     red, green, blue, alpha = color_of(element, "diffuse") or WHITE
     diffuse = (red * strength, green * strength, blue * strength, alpha)
     return Light(name, kind, element.place, pose_of(element), diffuse, (x, y, z))

@@ -21,6 +21,8 @@ Named = TypeVar("Named", Link, Joint, Model)
 
 MASS = 1.0
 """kg; of a link that gives none, as SDF has it."""
+MASSES = (1e-5, 1e5)
+"""kg; lighter or heavier things are mistakes."""
 _OF_MODEL = ("pose", "static", "link", "joint", "frame", "model", "include")
 _OF_LINK = ("pose", "inertial", "visual", "collision", "light")
 _OF_INCLUDE = ("uri", "name", "pose", "static", "placement_frame")
@@ -145,7 +147,7 @@ def _link(element: Element, around: str, static: bool, reading: Reading) -> Link
     if inertia is not None and not static:
         instead = "inertia follows from the mass and the shape"
         reading.findings.changed(inertia.place, subject, "<inertia>", instead)
-    if mass <= 0.0 and not static:
+    if not MASSES[0] <= mass <= MASSES[1] and not static:
         where = element.find("inertial/mass") or element
         reading.findings.changed(where.place, subject, f"a mass of {mass:g} kg", f"{MASS:g} kg")
         mass = MASS

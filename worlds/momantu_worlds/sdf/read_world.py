@@ -21,6 +21,8 @@ DOWN = 9.8
 """m/s2; gravity that is meant to be the Earth's lies within 0.1 of it."""
 _OF_WORLD = ("model", "include", "light", "frame", "state", "scene", "gravity", "physics")
 _GRAVITY_NEAR = 0.1
+SCALES = (0.001, 1000)
+"""Factors by which a state may scale a model."""
 
 
 def read_world(file: Path, folders: Iterable[Path], findings: Findings) -> SdfWorld:
@@ -111,8 +113,9 @@ def _states(element: Element, tag: str) -> dict[str, ModelState]:
     for child in element.all(tag):
         scale = child.child("scale")
         x, y, z = (1.0, 1.0, 1.0) if scale is None else numbers(scale, 3)
-        if min(x, y, z) <= 0.0:
-            raise child.error(f"<scale> is {x:g} {y:g} {z:g}; expected factors above 0")
+        if not SCALES[0] <= min(x, y, z) <= max(x, y, z) <= SCALES[1]:
+            few, many = SCALES
+            raise child.error(f"<scale> is {x:g} {y:g} {z:g}; expected factors of {few} to {many}")
         found[name_of(child)] = ModelState(
             child.place,
             None if child.child("pose") is None else pose_of(child).transform,

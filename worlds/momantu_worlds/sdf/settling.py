@@ -5,15 +5,22 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
-from momantu_bt.geometry import Transform
+import numpy as np
+
+from momantu_bt.geometry import Array, Transform
 from momantu_worlds.sdf.bodies import ImportedBody
 from momantu_worlds.sdf.findings import Findings
 from momantu_worlds.sdf.parts import Part
 
 FLAT = 0.03
 """m; a still part that ends below this height is driven over, as a carpet or a marking is."""
-PAPER = 0.001
-"""m; what is flush with the floor lies this much above it, to be seen."""
+FLUSH = 0.002
+"""m; what ends no lower than this below the floor is meant to be seen on it."""
+WIDE, LIFTED = 10.0, (0.001, 0.003)
+"""m2, and m: how high things on the floor are at least, wide ones and those that lie on such.
+
+Two faces at one height flicker in pictures.
+"""
 
 
 def settled(
@@ -29,24 +36,33 @@ def settled(
 
 def _flattened(body: ImportedBody, findings: Findings) -> Iterator[Part]:
     for part in body.parts:
-        top = _top(body, part)
-        if top is None or top > FLAT:
+        if part.seen is not None:
+            yield _visible(body, part, part.seen)
+            continue
+        around = np.concatenate(part.hulls) if part.hulls else None
+        top = None if around is None else _height(body, part, around)
+        if around is None or top is None or top > FLAT:
             yield part
             continue
         what = f"a part that lies flat on the floor, up to {top:.3f} m"
         if part.visual:
             findings.changed(body.place, body.title, what, "it is seen, but not touched")
-            lift = Transform((0.0, 0.0, PAPER if abs(top) < PAPER else 0.0))
-            at = body.at.inverse() @ lift @ body.at @ part.body_from_part
-            yield replace(part, collision=False, hulls=(), body_from_part=at)
+            yield _visible(body, replace(part, collision=False, hulls=()), around)
         else:
             findings.dropped(body.place, body.title, what, "it is not touched")
 
 
-def _top(body: ImportedBody, part: Part) -> float | None:
-    """Height of what is touched of a part, m; None when nothing is."""
-    if not part.hulls:
-        return None
-    return max(
-        float(body.at.apply(part.body_from_part.apply(hull))[:, 2].max()) for hull in part.hulls
-    )
+def _visible(body: ImportedBody, part: Part, around: Array) -> Part:
+    """A part that is flush with the floor, lifted out of it; around: points (n, 3) of it."""
+    points = body.at.apply(part.body_from_part.apply(around))
+    top, wide = float(points[:, 2].max()), float(np.ptp(points[:, :2], axis=0).prod()) > WIDE
+    least = LIFTED[0] if wide else LIFTED[1]
+    if not -FLUSH <= top < least:
+        return part
+    lift = Transform((0.0, 0.0, least - top))
+    return replace(part, body_from_part=body.at.inverse() @ lift @ body.at @ part.body_from_part)
+
+
+def _height(body: ImportedBody, part: Part, points: Array) -> float:
+    """Of the highest of some points of a part, m."""
+    return float(body.at.apply(part.body_from_part.apply(points))[:, 2].max())

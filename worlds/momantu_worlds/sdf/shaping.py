@@ -29,7 +29,15 @@ from momantu_worlds.sdf.model import (
     Sphere,
     Vector,
 )
-from momantu_worlds.sdf.parts import MeshPart, Part, Rgb, hull_of, plane_slab, simple
+from momantu_worlds.sdf.parts import (
+    MeshPart,
+    Part,
+    Rgb,
+    corners_around,
+    hull_of,
+    plane_slab,
+    simple,
+)
 from momantu_worlds.sdf.reducing import count, reduced
 
 ROUND_SIDES = 32
@@ -75,7 +83,8 @@ class Shaping:
                     shape.place, subject, "a picture given for a mesh", "its mean colour is kept"
                 )
             path = self.assets.look(_stem(geometry), self._few(pieces, shape, subject), color)
-            yield Part(MeshPart(path), at, None, collision=False)
+            around = corners_around(np.concatenate([piece.vertices for piece in pieces]))
+            yield Part(MeshPart(path), at, None, collision=False, seen=around)
 
     def touched(
         self,
@@ -153,6 +162,13 @@ class Shaping:
                 subject,
                 f"{mesh.file.name} says {found.turned}",
                 "it is turned upright; --ignore-up-axis leaves it as Gazebo Classic shows it",
+            )
+        for name in found.missing:
+            self.findings.dropped(
+                shape.place,
+                subject,
+                f"{mesh.file.name} names {name!r}, which is not there",
+                "what it colours is drawn in plain",
             )
         return found.pieces
 

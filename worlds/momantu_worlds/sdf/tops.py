@@ -15,6 +15,8 @@ LOWEST, HIGHEST = 0.3, 1.2
 """m; tops between these heights are proposed."""
 NARROWEST = 0.25
 """m; the least edge of such a top."""
+SMALLEST = 0.2
+"""m2; the seat of a chair is smaller."""
 LEVEL = 0.005
 """m; what lies within this of a piece's highest point is its top."""
 COVERED = 0.7
@@ -56,7 +58,9 @@ def _top_of(hull: Array) -> Top | None:
     middle = upper.mean(axis=0)
     outline = cv2.convexHull((upper - middle).astype(np.float32))
     (x, y), (width, depth), angle = cv2.minAreaRect(outline)
-    if min(width, depth) < NARROWEST or cv2.contourArea(outline) < COVERED * width * depth:
+    if min(width, depth) < NARROWEST or width * depth < SMALLEST:
+        return None
+    if cv2.contourArea(outline) < COVERED * width * depth:
         return None
     yaw = math.radians(angle)
     while yaw > math.pi / 4:

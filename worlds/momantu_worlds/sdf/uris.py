@@ -66,7 +66,7 @@ class Library:
         else:
             raise MissingFile(f"{scheme}:// is not an address that can be read from a disk")
         for candidate in candidates:
-            if candidate.exists():
+            if is_there(candidate):
                 return candidate
         looked = ", ".join(str(f) for f in self.folders[:MOST_NAMED])
         raise MissingFile(f"{uri!r} is not in {looked}; name its folder by --models")
@@ -78,7 +78,7 @@ class Library:
             inside = any(candidate.is_relative_to(folder) for folder in self.folders)
             if inside or candidate.is_relative_to(_lexical(place.file).parent):
                 yield candidate
-            elif candidate.exists():
+            elif is_there(candidate):
                 raise SdfError(
                     place,
                     f"{path!r} lies outside every folder of models; name its folder by --models",
@@ -175,6 +175,14 @@ def _version_of(element: Element) -> tuple[int, int]:
     if not digits or not (minor.isascii() and minor.isdigit() and len(minor) < 4):
         return (0, 0)
     return int(major), int(minor)
+
+
+def is_there(path: Path) -> bool:
+    """Whether a path leads to anything; names that no disk takes do not."""
+    try:
+        return path.exists()
+    except (OSError, ValueError):
+        return False
 
 
 def _lexical(path: Path) -> Path:
