@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 from pydantic import BaseModel, ValidationError
 
 from momantu_bt.descriptions.reading import DescriptionError, Place, Problem, Reading
+from momantu_bt.descriptions.wording import said
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -33,18 +34,21 @@ class _Findings:
         self._schema: dict[str, Any] = model.model_json_schema()
 
     def problems(self, error: ValidationError) -> list[Problem]:
-        """Every finding; a key that is missing because it is misspelt is reported once."""
+        """Every finding, once: not what lacks because it is misspelt or wrong within."""
         findings = [(self._place(finding["loc"]), dict(finding)) for finding in error.errors()]
         misspelt = {
             (*place[:-1], self._nearest(str(place[-1]), place[:-1]))
             for place, finding in findings
             if finding["type"] == "extra_forbidden"
         }
-        return [
-            self._problem(place, finding)
+        within = {place[:i] for place, _ in findings for i in range(len(place))}
+        told = {
+            self._problem(place, finding): None
             for place, finding in findings
-            if finding["type"] != "missing" or place not in misspelt
-        ]
+            if not (finding["type"] == "missing" and place in misspelt)
+            and not (finding["type"] == "too_short" and place in within)
+        }
+        return list(told)
 
     def _place(self, location: tuple[str | int, ...]) -> Place:
         """Where a finding is in the file: without the names of a union's members."""
@@ -65,15 +69,18 @@ class _Findings:
         at = self._reading.at
         if kind == "extra_forbidden":
             return Problem(*at(place, key=True), self._unknown_key(name, place))
+        if kind == "missing" and isinstance(finding["loc"][-1], int):
+            values = len(self._reading.value(place))
+            message = f"expected more values, found {values}"
+            wanted = self._schema_at(place).get("minItems")
+            if wanted is not None:
+                message = f"expected {wanted} values, found {values}"
+            return Problem(*at(place), f"{self._dotted(place)}: {message}")
         if kind == "missing":
             return Problem(*at(place[:-1]), f"{self._dotted(place[:-1])} needs a key {name!r}")
         if kind in ("union_tag_invalid", "union_tag_not_found"):
             return self._unknown_kind(place, finding)
-        message = str(finding["msg"]).removeprefix("Value error, ")
-        if kind in ("literal_error", "enum"):
-            message = (
-                f"{finding['input']!r} is not possible here; {message[0].lower()}{message[1:]}"
-            )
+        message = said(finding, self._known_keys(place))
         return Problem(*at(place), f"{self._dotted(place)}: {message}")
 
     def _unknown_kind(self, place: Place, finding: dict[str, Any]) -> Problem:
@@ -83,10 +90,10 @@ class _Findings:
         kinds = ", ".join(union.get("discriminator", {}).get("mapping", ()))
         given = _item(self._reading.value(place), key)
         if given is None:
-            place_of, said = place, f"{self._dotted(place)} needs a key {key!r}"
+            place_of, words = place, f"{self._dotted(place)} needs a key {key!r}"
         else:
-            place_of, said = (*place, key), f"{given!r} is not possible here"
-        return Problem(*self._reading.at(place_of), f"{said}; possible: {kinds}")
+            place_of, words = (*place, key), f"{given!r} is not possible here"
+        return Problem(*self._reading.at(place_of), f"{words}; possible: {kinds}")
 
     def _dotted(self, place: Place) -> str:
         return ".".join(str(part) for part in place) or f"the {self._what}"
@@ -123,7 +130,8 @@ class _Findings:
             chosen = mapping.get("mapping", {}).get(data.get(mapping["propertyName"]))
             members = [{"$ref": chosen}] if chosen is not None else ()
         objects = [self._resolved(m, data) for m in members]
-        return next((m for m in objects if "properties" in m), schema)
+        fitting = (m for m in objects if "properties" in m or "prefixItems" in m)
+        return next(fitting, schema)
 
 
 def _inner(schema: dict[str, Any], part: str | int) -> dict[str, Any]:

@@ -8,23 +8,21 @@ below the robot's height: table tops, seats, low boards.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from momantu_bt.geometry import Array, Pose2D, Transform
+from momantu_bt.geometry import Array, Pose2D
 from momantu_bt.world import WorldError
-from momantu_worlds.scenes.bodies import Box, Cylinder, Part
 from momantu_worlds.scenes.building import piece_parts, table_parts
+from momantu_worlds.scenes.coverage import Standing, covered, standing_of
 from momantu_worlds.scenes.given_bodies import given_bodies
 from momantu_worlds.scenes.kept import put
 from momantu_worlds.scenes.obstacles import DOORSTEP, floor_extent, wall_rectangles
-from momantu_worlds.scenes.plane_geometry import Rectangle, in_outline, slab_outline
-from momantu_worlds.scenes.prisms import prism_around
-from momantu_worlds.scenes.solids import outline
+from momantu_worlds.scenes.plane_geometry import in_outline
 from momantu_worlds.scenes.world_file import WorldFile
 
 OCCUPIED, UNKNOWN, FREE = 0, 205, 254
@@ -32,8 +30,6 @@ OCCUPIED, UNKNOWN, FREE = 0, 205, 254
 OCCUPIED_ABOVE, FREE_BELOW = 0.65, 0.196
 MARGIN = 0.5
 """m; of unknown floor drawn around the outer walls."""
-UPRIGHT = 1.0 - 1e-9
-"""Cosine of the tilt below which a part counts as upright."""
 MOST_CELLS = 25_000_000
 
 
@@ -44,21 +40,6 @@ class FloorPlan:
     pixels: NDArray[np.uint8]
     origin: tuple[float, float]
     resolution: float
-
-
-@dataclass(frozen=True, slots=True)
-class Standing:
-    """The floor under one part, and the heights between which it lies, m.
-
-    base: a rectangle, of which only the round disc within counts when `round`; for a part that
-    is neither, `points` (n, 3) in the map have it as their convex hull.
-    """
-
-    base: Rectangle
-    bottom: float
-    top: float
-    round: bool = False
-    points: Array | None = None
 
 
 def draw_plans(
@@ -88,8 +69,8 @@ def draw_plans(
         axis=-1,
     )
     walls = [Standing(base, 0.0, math.inf) for base in wall_rectangles(world)]
-    solid = _covered(centers, [*walls, *standing], cell, band)
-    hanging = _covered(centers, standing, cell, (DOORSTEP, robot_height)) & ~solid
+    solid = covered(centers, [*walls, *standing], cell, band)
+    hanging = covered(centers, standing, cell, (DOORSTEP, robot_height)) & ~solid
     plan = np.where(solid, OCCUPIED, np.where(_inside(world, centers), FREE, UNKNOWN))
     origin = (round(float(low[0]), 6), round(float(low[1]), 6))
     return (
@@ -103,78 +84,15 @@ def known_parts(world: WorldFile) -> Iterator[Standing]:
     for table in world.tables.values():
         if table.board_of is None and table.at is not None and table.size is not None:
             parts = table_parts(world, table, table.size)
-            yield from _standing(parts, Pose2D(*table.at).transform())
+            yield from standing_of(parts, Pose2D(*table.at).transform())
     for piece in world.furniture.values():
-        yield from _standing(piece_parts(world, piece), piece.pose.transform())
+        yield from standing_of(piece_parts(world, piece), piece.pose.transform())
     for body in given_bodies(world):
         if body.static:
-            yield from _standing(body.parts, body.map_from_body)
+            yield from standing_of(body.parts, body.map_from_body)
     for run in world.wall_runs:
         if run.bottom > 0.0:
             yield Standing(run.base, run.bottom, run.top)
-
-
-def _standing(parts: Iterable[Part], map_from_body: Transform) -> Iterator[Standing]:
-    for part in parts:
-        if not part.collision:
-            continue
-        shape, pose = part.geometry, map_from_body @ part.body_from_part
-        upright = float(pose.rotation[2, 2]) >= UPRIGHT
-        if not upright or not isinstance(shape, Box | Cylinder):
-            points = pose.apply(outline(part))
-            prism = prism_around(points, 0.0)
-            yield Standing(prism.base, prism.bottom, prism.top, points=points)
-            continue
-        round_ = isinstance(shape, Cylinder)
-        size = (
-            (2 * shape.radius, 2 * shape.radius) if isinstance(shape, Cylinder) else shape.size[:2]
-        )
-        height = shape.height if isinstance(shape, Cylinder) else shape.size[2]
-        middle = float(pose.position[2])
-        base = Rectangle(Pose2D.from_transform(pose), size)
-        yield Standing(base, middle - height / 2, middle + height / 2, round_)
-
-
-def _covered(
-    centers: Array, parts: Iterable[Standing], cell: float, band: tuple[float, float]
-) -> NDArray[np.bool_]:
-    """Cells whose centre lies in what a part has within some heights, m.
-
-    A part thinner than a cell counts as one cell thick.
-    """
-    low, high = band
-    covered = np.zeros(centers.shape[:2], dtype=np.bool_)
-    for part in parts:
-        if part.top < low or part.bottom > high:
-            continue
-        pose, size = part.base.pose, part.base.size
-        if part.points is not None:
-            covered |= _within(centers, slab_outline(part.points, low, high), cell)
-        elif part.round:
-            radius = max(size[0], cell) / 2
-            offset = centers - (pose.x, pose.y)
-            covered |= np.hypot(offset[..., 0], offset[..., 1]) <= radius
-        else:
-            grown = Rectangle(pose, (max(size[0], cell), max(size[1], cell)))
-            covered |= grown.distance(centers) <= 1e-9
-    return covered
-
-
-def _within(centers: Array, corners: Array, cell: float) -> NDArray[np.bool_]:
-    """Cells whose centre lies in a convex outline (n, 2), counter-clockwise."""
-    edges = np.roll(corners, -1, axis=0) - corners
-    lengths = np.hypot(edges[:, 0], edges[:, 1])
-    edges, at = edges[lengths > 0] / lengths[lengths > 0, None], corners[lengths > 0]
-    if len(edges) == 0:
-        return np.asarray(np.linalg.norm(centers - corners[0], axis=-1) <= cell / 2)
-    inwards = np.column_stack([-edges[:, 1], edges[:, 0]])
-    depth = inwards @ corners.T
-    width = float((depth.max(axis=1) - depth.min(axis=1)).min())
-    grown = max(0.0, (cell - width) / 2)
-    inside = np.ones(centers.shape[:2], dtype=np.bool_)
-    for point, normal in zip(at, inwards, strict=True):
-        inside &= (centers - point) @ normal >= -grown - 1e-9
-    return inside
 
 
 def _extent(world: WorldFile, cell: float) -> tuple[Array, Array]:
@@ -194,11 +112,13 @@ def _walled(world: WorldFile) -> tuple[Array, Array]:
 
 
 def _inside(world: WorldFile, centers: Array) -> NDArray[np.bool_]:
-    """Cells within the rooms, or within the box around all walls where walls are given alone."""
+    """Cells within rooms and doors, or within the box around walls that are given alone."""
     if world.rooms and not world.walls.pieces:
         inside = np.zeros(centers.shape[:2], dtype=np.bool_)
         for room in world.rooms.values():
             inside |= in_outline(centers, np.array(room.corners))
+        for threshold in world.room_walls.thresholds():
+            inside |= threshold.distance(centers) <= 0.0
         return inside
     low, high = _walled(world)
     return np.asarray(np.all((centers >= low) & (centers <= high), axis=-1))

@@ -118,6 +118,12 @@ class RoomWalls:
             if not door.closed
         }
 
+    def thresholds(self) -> Iterator[Rectangle]:
+        """The floor in open doors, as deep as the wall."""
+        for _, door, pose in self._hung():
+            if not door.closed:
+                yield Rectangle(pose, (door.width, self._shared.thickness))
+
     def _hung(self) -> Iterator[tuple[str, Door, Pose2D]]:
         for wall in self._walls:
             for name, door in wall.doors.items():

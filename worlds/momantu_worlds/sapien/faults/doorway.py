@@ -81,7 +81,7 @@ class DoorwayBlocked:
 
     def _opening(self, gap: Gap) -> tuple[tuple[float, float], float, float]:
         """Middle of the narrowest line between the jambs, its direction (rad) and length (m)."""
-        walls = self._stage.prisms(categories=(WALL,))
+        walls = [w for w in self._stage.prisms(categories=(WALL,)) if w.bottom < HEIGHT]
         angles = math.pi * np.arange(ANGLES) / ANGLES
         steps = np.arange(STEP, LONGEST, STEP)
         best = (math.inf, 0.0, 0.0)

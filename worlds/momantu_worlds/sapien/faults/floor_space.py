@@ -17,6 +17,8 @@ AIR = 0.05
 """m; what the base keeps from everything."""
 BORDER = 1.0
 """m; floor around the outermost bodies that counts, where there are no walls."""
+BARE = 20.0
+"""m; edge of the floor around the robot that counts where nothing at all stands on it."""
 
 
 def free_floor(stage: Stage) -> Passages:
@@ -26,7 +28,8 @@ def free_floor(stage: Stage) -> Passages:
     loose = {body.name for body in stage.bodies if not body.static}
     prisms = [s for s in stage.prisms(*loose) if s.bottom < height]
     walls = stage.prisms(categories=(WALL,))
-    corners = np.concatenate([s.base.corners() for s in walls or prisms])
+    bounds = [s.base for s in walls or prisms] or [Rectangle(stage.base(), (BARE, BARE))]
+    corners = np.concatenate([base.corners() for base in bounds])
     border = 0.0 if walls else BORDER
     low, high = corners.min(axis=0) - border, corners.max(axis=0) + border
     center, size = (low + high) / 2, high - low

@@ -16,6 +16,8 @@ from momantu_worlds.scenes.prisms import Prism, body_points, prism_around
 from momantu_worlds.scenes.standing import Top
 from momantu_worlds.scenes.tabletop import Disc
 
+TABLES = ("table", "desk")
+"""Categories of bodies with a top, surfaces of the site or not."""
 STANDING = 0.03
 """m; what is no farther than this above or below a top stands on it."""
 RIM = 0.02
@@ -66,9 +68,9 @@ def item_top(stage: Stage) -> TableTop:
     if stage.in_hand():
         raise FaultError(f"{item} is between the fingers now, so nothing else happens to it")
     foot = stage.item_prism().bottom
-    for name in stage.episode.site.surfaces:
-        if name in stage.simulator.truth.bodies:
-            top = table_top(stage, name)
+    for body in stage.episode.bodies:
+        if body.category in TABLES or body.name in stage.episode.site.surfaces:
+            top = table_top(stage, body.name)
             x, y, _ = top.map_from_top.inverse().apply(stage.item_pose().position)
             within = abs(x) <= top.size[0] / 2 and abs(y) <= top.size[1] / 2
             if within and abs(foot - float(top.map_from_top.position[2])) <= STANDING:
