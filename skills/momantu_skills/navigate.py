@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from momantu_bt.claim import BaseAt, BaseNear, Claim
 from momantu_bt.failure import FailureValue
-from momantu_bt.frames import ODOM
+from momantu_bt.frames import MAP, ODOM
 from momantu_bt.geometry import Pose, Pose2D
 from momantu_bt.robot import CAMERA_CARRIER, Robot, Working
 from momantu_bt.service import Localization
@@ -29,7 +29,9 @@ class Navigate(Skill):
 
     in_front_of: str | None = In(None, names="place", doc="a place, or a surface to look over")
     goal: Pose2D | None = In(None, doc="a pose in the map")
-    within_reach_of: Pose | None = In(None, doc="stand where the hand reaches this pose")
+    within_reach_of: Pose | None = In(
+        None, doc="stand where the hand reaches this pose, or as near as its surface lets"
+    )
     side: int = In(
         0, least=0, doc="0: the best stand; 1, 2, …: the next best, to try from elsewhere"
     )
@@ -88,11 +90,12 @@ class Navigate(Skill):
         if self._going is None or self._going.chosen is None:
             return None
         if failure is None and self.within_reach_of is not None:
-            target = self.within_reach_of
+            target, stand = self.within_reach_of, self._going.chosen
             x, y, _ = self.frames.lookup(ODOM, target.frame).apply(target.position)
-            return BaseNear(
-                (float(x), float(y)), robot.description.working.reach[2] + self.tolerance
-            )
+            there = self.frames.lookup(MAP, target.frame).apply(target.position)
+            away = stand.distance_to(Pose2D(float(there[0]), float(there[1])))
+            farthest = max(away, robot.description.working.reach[2])
+            return BaseNear((float(x), float(y)), farthest + self.tolerance)
         if failure is None or (failure.code in self.failures and self.within_reach_of is None):
             distance, turn = SURVEY
             stand, angle = self._going.chosen, self.angle_tolerance

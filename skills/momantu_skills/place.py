@@ -119,13 +119,15 @@ class Place(Skill):
             raise Failure("LOST", f"the {held.object.category} slipped out of the hand on the way")
 
     def _lower(self, arm: Arm, plan: PlacePlan, held: HeldObject) -> Run:
-        """Straight down until the surface carries part of the weight."""
+        """Straight down until the surface carries part of the weight, where that can be felt."""
         from momantu_skills.manipulation.hand import bump, rested_force
 
         rest = yield from rested_force(arm.robot, self.frames, "feeling")
         watch = bump(self.frames, rest, arm.hand.contact_force, vertical=True)
         if watch is None:
-            raise Failure("NO_CONTACT", "this robot has no wrench sensor to feel the surface with")
+            yield from arm.follow(plan.blind, "lowering")
+            self._still_held(held)
+            return
         reached_end = yield from arm.follow(plan.lower, "lowering", watch)
         self._still_held(held)
         if reached_end:

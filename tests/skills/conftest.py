@@ -23,7 +23,7 @@ from momantu_bt.messages import (
     WrenchReading,
     frozen,
 )
-from momantu_bt.robot import Robot
+from momantu_bt.robot import Robot, RobotDescription
 from momantu_bt.service import HeldObject, ServiceContext
 from momantu_bt.testing import (
     ScriptedRobot,
@@ -274,15 +274,20 @@ TABLE = 0.72
 
 
 class Tabletop(ScriptedRobot):
-    """Fetch before a table with a can on it: what the fingers close on moves with them.
+    """Fetch, or another robot, before a table with a can on it; what it grasps moves with it.
 
     can: odom_from_can, its centre. slips: it stays behind when the hand rises. stays_hidden: the
     camera does not see it. weightless: the wrist feels nothing of it. others: more solids.
     table: height of the top as it is; surface_felt: whether touching it is felt.
     """
 
-    def __init__(self, can: tuple[float, float] | None = (0.75, 0.0), pose: str = "ready") -> None:
-        description = fetch()
+    def __init__(
+        self,
+        can: tuple[float, float] | None = (0.75, 0.0),
+        pose: str = "ready",
+        description: RobotDescription | None = None,
+    ) -> None:
+        description = description or fetch()
         joints = description.named_poses[pose]
         super().__init__(description, joints=joints)
         self.can = None if can is None else Transform((*can, TABLE + 0.065))
@@ -290,7 +295,7 @@ class Tabletop(ScriptedRobot):
         self.slips = self.stays_hidden = self.weightless = self.topples = False
         self.surface_felt = True
         self.hand_from_can: Transform | None = None
-        self.readings = {"head_camera": Tabletop._picture, "wrench": Tabletop._wrench}
+        self.readings = {description.camera()[0]: Tabletop._picture, "wrench": Tabletop._wrench}
         self._kinematics = description.kinematics()
 
     def hold(self, hand_from_can: Transform) -> None:

@@ -122,6 +122,21 @@ def test_a_surface_that_is_not_felt_is_no_contact(holding: Any) -> None:
     assert robot.can.position[2] - 0.065 > 0.72
 
 
+def test_a_hand_that_feels_nothing_lets_go_just_above_the_surface(holding: Any) -> None:
+    robot, scene = holding()
+    seen: list[float] = []
+    del robot.description.sensors["wrench"]
+
+    def note(session: Any, world: Any) -> None:
+        if robot.hand_from_can is not None:
+            seen.append(robot.can.position[2] - 0.065)
+
+    result = place(robot, scene, on_tick=note)
+    assert result.status == "SUCCESS", result.explain()
+    assert 0.72 + 0.003 < seen[-1] < 0.72 + 0.009
+    assert scene.held is None
+
+
 def test_what_falls_on_the_way_is_lost(holding: Any) -> None:
     robot, scene = holding()
 

@@ -24,17 +24,24 @@ ENOUGH = 4
 """Candidates with which a way is searched."""
 TESTED = 900
 """Postures whose lowering and retreat are tested at most."""
+DROP = 0.006
+"""m above the measured surface at which a hand that feels nothing lets go: such a fall topples
+nothing, and a surface that much higher is not pressed hard."""
 SPOT_PENALTY = 0.5
 """s per rank of a spot: the first are the better ones."""
 
 
 @dataclass(frozen=True, eq=False)
 class PlacePlan:
-    """What to execute. odom_from_object: where it will stand. Paths: (k, n) joints."""
+    """What to execute. odom_from_object: where it will stand.
+
+    lower: down past the surface, for a hand that feels it; blind: to just above it, for others.
+    """
 
     odom_from_object: Transform
     transit: list[JointTrajectory]
     lower: JointTrajectory
+    blind: JointTrajectory
     retreat: Transform
 
 
@@ -61,6 +68,7 @@ def plan_place(arm: Arm, held: HeldObject, spots: Sequence[Pose]) -> PlacePlan:
         best.odom_from_object,
         transit,
         arm.trajectory(lower, arm.hand.lower_speed),
+        arm.trajectory(_blind(arm, lower), arm.hand.lower_speed),
         retreat_of(arm, held),
     )
 
@@ -144,6 +152,14 @@ def _lowering(arm: Arm, q: Array) -> Array | None:
     tip = arm.group.tip_pose(q)
     depth = arm.hand.above + arm.hand.below
     return arm.line(q, Transform(tip.position - (0.0, 0.0, depth), tip.quaternion))
+
+
+def _blind(arm: Arm, lower: Array) -> Array:
+    """Joints (k, n) of the part of a lowering that ends `DROP` above the spot."""
+    path = arm.group.poses(lower)[:, 2, 3]
+    whole = int(np.searchsorted(path[0] - path, arm.hand.above - DROP, side="right"))
+    share = (path[whole - 1] - path[0] + arm.hand.above - DROP) / (path[whole - 1] - path[whole])
+    return np.vstack([lower[:whole], lower[whole - 1] + share * (lower[whole] - lower[whole - 1])])
 
 
 def _steps(distance: float, arm: Arm) -> int:

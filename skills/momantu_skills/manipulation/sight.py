@@ -98,13 +98,16 @@ def outline(corners: Array) -> Array | None:
 
 def clearance(ray: Array, seen: Array) -> float:
     """Angle from a ray (3,) to the nearest point of an outline (k, 2), rad; 0 within."""
-    spot = ray[:2] / ray[2]
-    edges = np.roll(seen, -1, axis=0) - seen
-    offsets = spot - seen
-    if (edges[:, 0] * offsets[:, 1] - edges[:, 1] * offsets[:, 0] >= 0.0).all():
+    first = np.column_stack([seen, np.ones(len(seen))])
+    second = np.roll(first, -1, axis=0)
+    inward = np.cross(first, second)
+    inward /= np.linalg.norm(inward, axis=1, keepdims=True)
+    beyond = inward @ ray
+    if (beyond >= 0.0).all():
         return 0.0
-    share = np.einsum("ki,ki->k", offsets, edges) / np.einsum("ki,ki->k", edges, edges)
-    points = seen + np.clip(share, 0.0, 1.0)[:, None] * edges
-    towards = np.column_stack([points, np.ones(len(points))])
-    cosines = towards @ ray / np.linalg.norm(towards, axis=1)
+    foot = ray - beyond[:, None] * inward
+    left = np.einsum("ki,ki->k", np.cross(first, foot), inward) >= 0.0
+    right = np.einsum("ki,ki->k", np.cross(foot, second), inward) >= 0.0
+    nearest = np.vstack([first, foot[left & right]])
+    cosines = nearest @ ray / np.linalg.norm(nearest, axis=1)
     return float(np.arccos(np.clip(cosines, -1.0, 1.0)).min())

@@ -26,6 +26,8 @@ SQUARE = 0.3
 """rad off a side's axis up to which the base stands squarely before it."""
 NEARER = 0.05
 """m nearer than the place to look from at which the base is too near: its tolerance."""
+AS_NEAR = 0.1
+"""m farther off than the nearest place to stand that is as good, where none is near enough."""
 RING = 16
 """Directions from which a pose in the open is approached."""
 
@@ -84,14 +86,18 @@ def within_reach(
     """Stands from which a point (x, y) can be reached, best first; all in the map.
 
     Square before the surface that it lies on; around it where it lies on none. `base` is where
-    the robot stands: the shorter way is better.
+    the robot stands: the shorter way is better. What lies too far from all of a surface's edges is
+    approached as near as the surface lets: its near side, at least, is within reach.
     """
     stands: list[Stand] = []
     for surface in surfaces:
         here = surface.map_from_surface.inverse() @ Pose2D(*target)
         beyond = max(abs(here.x) - surface.size[0] / 2, abs(here.y) - surface.size[1] / 2)
         if beyond < ON_SURFACE:
-            stands = list(_square_stands(surface, here, base, working))
+            square = list(_square_stands(surface, here, base, working))
+            stands = [stand for away, stand in square if away <= working.reach[2]]
+            nearest = min((away for away, _ in square), default=0.0)
+            stands = stands or [stand for away, stand in square if away <= nearest + AS_NEAR]
             break
     if not stands:
         for k in range(RING):
@@ -107,8 +113,9 @@ def within_reach(
 
 def _square_stands(
     surface: Surface, target: Pose2D, base: Pose2D, working: Working
-) -> Iterable[Stand]:
-    nearest, best, farthest = working.reach
+) -> Iterable[tuple[float, Stand]]:
+    """Every stand square before one of the sides, with its distance from the target, m."""
+    nearest, best, _ = working.reach
     for number, angle in enumerate(surface.sides):
         edge, _ = _edge(surface, angle)
         c, s = math.cos(angle), math.sin(angle)
@@ -121,8 +128,6 @@ def _square_stands(
             for back in BACK:
                 away = max(closest + back, min(best, closest + 0.05))
                 distance = math.hypot(away, shift)
-                if distance > farthest:
-                    continue
                 pose = surface.map_from_surface @ _facing(angle, out + away, along + shift)
                 cost = (
                     2.0 * abs(distance - best)
@@ -131,7 +136,7 @@ def _square_stands(
                     + 0.3 * min(pose.distance_to(base), 3.0)
                     + (0.0 if _straight_ahead(base, pose) else MANOEUVRE)
                 )
-                yield Stand(pose, number * (len(SHIFTS) + 1) + index, cost)
+                yield distance, Stand(pose, number * (len(SHIFTS) + 1) + index, cost)
 
 
 def _straight_ahead(base: Pose2D, stand: Pose2D) -> bool:

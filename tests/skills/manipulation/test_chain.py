@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from momantu_skills.manipulation.model import ArmModel, Group, arm_model
 from momantu_worlds.robots import fetch
+
+from momantu_bt.testing import eye_in_hand_robot
 
 GROUP = arm_model(fetch()).group
 
@@ -93,3 +97,43 @@ def test_pinocchio_places_every_link_where_the_frames_do(model: ArmModel) -> Non
     tree = model.description.kinematics()
     for link, pose in model.link_poses(full).items():
         assert pose == pytest.approx(tree.base_from_frame(link, joints).matrix, abs=1e-9)
+
+
+@given(st.integers(0, 1_000))
+def test_many_poses_are_those_of_one_after_the_other(seed: int) -> None:
+    postures = np.array([some_joints(seed + i) for i in range(3)])
+    for q, pose in zip(postures, GROUP.poses(postures), strict=True):
+        assert pose == pytest.approx(GROUP.tip_matrix(q), abs=1e-12)
+
+
+@given(st.integers(0, 1_000), st.floats(-0.3, 0.3))
+def test_a_ray_that_is_turned_goes_through_the_point(seed: int, aside: float) -> None:
+    eye = arm_model(eye_in_hand_robot()).eye
+    ray = np.array([math.sin(aside), 0.0, math.cos(aside)])
+    start = some_joints(seed, eye)
+    pose = eye.tip_matrix(start)
+    tilted = pose[:3, :3] @ np.array([0.3, -0.2, 1.0])
+    target = pose[:3, 3] + 0.8 * tilted / np.linalg.norm(tilted)
+    found, left = eye.point(start[None], ray, target)
+    assert ((found[0] >= eye.lower) & (found[0] <= eye.upper)).all()
+    turned = eye.tip_matrix(found[0])
+    way = target - turned[:3, 3]
+    angle = math.acos(min(1.0, float(turned[:3, :3] @ ray @ way) / float(np.linalg.norm(way))))
+    assert angle == pytest.approx(left[0], abs=1e-4)
+    inside = bool(((start > eye.lower + 0.6) & (start < eye.upper - 0.6)).all())
+    assert left[0] < 0.01 or not inside
+
+
+def test_a_slow_arm_has_a_slower_pace_and_none_of_its_joints_is_slow() -> None:
+    slow = arm_model(eye_in_hand_robot()).group
+    assert slow.pace == pytest.approx(0.735)
+    assert (slow.scale < 2.0).all()
+    assert GROUP.pace == 1.5
+    assert (GROUP.scale > 2.0).tolist() == [name == "torso_lift_joint" for name in GROUP.names]
+
+
+def test_the_palm_is_what_does_not_move_against_the_hand() -> None:
+    fetch_model, small = arm_model(fetch()), arm_model(eye_in_hand_robot())
+    assert fetch_model.palm == pytest.approx(fetch_model.hulls["gripper_link"])
+    assert small.palm[:, 0].max() == pytest.approx(-0.05, abs=1e-9)
+    assert small.palm[:, 0].min() == pytest.approx(-0.16, abs=1e-9)
