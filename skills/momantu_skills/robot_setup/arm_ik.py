@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from momantu_bt.frames import KinematicTree
 from momantu_bt.geometry import Array, Transform
+from momantu_bt.robot import JointLimit
 from momantu_skills.manipulation.model import Group, chain_group
-from momantu_skills.robot_setup.arms import Limb
-from momantu_skills.robot_setup.limits import FoundLimit
 
 
 class LimbSolver:
@@ -20,13 +19,14 @@ class LimbSolver:
     def __init__(
         self,
         kinematics: KinematicTree,
-        limb: Limb,
-        limits: Mapping[str, FoundLimit],
+        joints: Sequence[str],
+        limits: Mapping[str, JointLimit],
         link: str,
         link_from_frame: Transform,
         seed: int,
     ) -> None:
-        group = chain_group(kinematics, limb.joints, link, {n: f.limit for n, f in limits.items()})
+        """joints: of the limb. link_from_frame: what is brought to poses, on a link."""
+        group = chain_group(kinematics, joints, link, limits)
         self.group: Group = dataclasses.replace(group, tip=group.tip @ link_from_frame.matrix)
         self.random = np.random.default_rng(seed)
 

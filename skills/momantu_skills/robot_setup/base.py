@@ -40,6 +40,7 @@ class BaseFrame:
 class Stand:
     """How the robot stands: links on the floor, outline, height of the floor in the base, mass.
 
+    A robot whose lowest shape lies above its base frame has wheels without shapes.
     fixed: links of the base itself. wheels: links that roll. grounded: those of both that reach
     down to the floor. footprint: (k, 2), m, or None where
     the base has no shape. floor: m, 0 where the base frame lies on the floor.
@@ -115,7 +116,7 @@ def find_stand(body: Body) -> Stand:
     skeleton = body.skeleton
     below = set(skeleton.subtree(body.base_frame))
     fixed = tuple(link for link in skeleton.rigid(body.base_frame) if link in below)
-    floor = body.lowest({})
+    floor = min(body.lowest({}), 0.0)
     wheels = tuple(
         link
         for joint in skeleton.branches(body.base_frame)

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
+from scipy.spatial import QhullError
 
 from momantu_bt.geometry import Array
 from momantu_skills.manipulation.hulls import link_hulls, part_points
@@ -23,14 +24,18 @@ class Body:
     """
 
     def __init__(self, skeleton: Skeleton, source: UrdfSource) -> None:
-        """Raises SetupError: pinocchio does not take the URDF."""
+        """Raises SetupError: the URDF is no mechanism, or a shape has no volume."""
         self.skeleton, self.base_frame = skeleton, source.base_frame
         self.urdf = base_urdf(source)
         try:
             self.pin: pin.Model = pin.buildModelFromXML(self.urdf.text)
         except (RuntimeError, ValueError) as error:
             raise SetupError(f"the URDF's joints make no mechanism: {error}") from None
-        self.hulls = link_hulls(self.urdf.parts)
+        try:
+            self.hulls = link_hulls(self.urdf.parts)
+        except (QhullError, ValueError, RuntimeError) as error:
+            reason = str(error).strip().splitlines()[0]
+            raise SetupError(f"a collision shape cannot be used: {reason}") from None
         self.shapes = BodyShapes(self.pin, self.hulls, self.urdf.parts)
         self.frames = {str(f.name): i for i, f in enumerate(self.pin.frames) if _is_body(f)}
         self._data = self.pin.createData()

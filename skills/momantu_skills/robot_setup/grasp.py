@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from dataclasses import dataclass
 from itertools import product
@@ -10,8 +11,9 @@ import numpy as np
 from scipy.spatial import ConvexHull
 
 from momantu_bt.geometry import Array, Transform
-from momantu_skills.robot_setup.body import Body
+from momantu_skills.robot_setup.body import Body, placed
 from momantu_skills.robot_setup.fingers import STEPS, Hand
+from momantu_skills.robot_setup.rays import opening_between
 
 SNAP = 0.2
 """rad; directions nearer than this to an axis of the palm's frame are that axis."""
@@ -77,6 +79,7 @@ def find_grasp(body: Body, hand: Hand) -> Grasp:
     solids = [points @ axes for points in solids if len(points)]
     clearance = _clearance(solids, origin, float(hand.widths[0]), height)
     link, link_from_grasp, offset = _frame(body, hand, place, posture)
+    hand = dataclasses.replace(hand, widths=_widths_at(body, hand, place, length, height))
     force, known = _force(body, hand)
     return Grasp(
         link,
@@ -91,6 +94,23 @@ def find_grasp(body: Body, hand: Hand) -> Grasp:
         _opening(hand),
         float(hand.widths[-1]),
     )
+
+
+def _widths_at(body: Body, hand: Hand, place: Transform, length: float, height: float) -> Array:
+    """Openings (STEPS,) at the pads' middle, where fingers that turn may differ from their tips."""
+    if hand.single:
+        return hand.widths
+    widths = []
+    for share in np.linspace(0.0, 1.0, STEPS):
+        poses = body.link_poses(hand.posture(share))
+        grasp_from_base = (Transform.from_matrix(poses[hand.palm]) @ place).inverse()
+        fingers = [n for n in (*hand.ahead, *hand.behind) if n in body.hulls]
+        corners = [grasp_from_base.apply(placed(body.hulls[n], poses[n])) for n in fingers]
+        gap = opening_between(corners, length, height)
+        if gap is None:
+            return hand.widths
+        widths.append(gap)
+    return np.minimum.accumulate(widths)
 
 
 def _half_open(hand: Hand) -> float:

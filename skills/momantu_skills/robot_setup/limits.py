@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -33,6 +33,11 @@ class FoundLimit:
 
     limit: JointLimit
     guessed: tuple[str, ...] = ()
+
+
+def plain_limits(found: Mapping[str, FoundLimit]) -> dict[str, JointLimit]:
+    """Limits alone, by joint."""
+    return {name: limit.limit for name, limit in found.items()}
 
 
 def find_limits(body: Body, joints: Iterable[str], light: Iterable[str]) -> dict[str, FoundLimit]:

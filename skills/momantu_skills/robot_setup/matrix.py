@@ -6,7 +6,7 @@ that meet in nearly every posture, and that meet in none of many random ones.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import combinations
@@ -59,12 +59,22 @@ class CollisionMatrix:
         return self.pairs(Why.SOMETIMES)
 
 
-def sample_matrix(body: Body, samples: int = SAMPLES, seed: int = 0) -> CollisionMatrix:
-    """The matrix from `samples` postures of a seed, and the posture at rest."""
+def sample_matrix(
+    body: Body,
+    samples: int = SAMPLES,
+    seed: int = 0,
+    usual: Iterable[Mapping[str, float]] = (),
+) -> CollisionMatrix:
+    """The matrix from `samples` postures of a seed.
+
+    usual: postures that count as the one at rest does, such as a closed hand's.
+    """
     every = tuple(combinations(body.hulls, 2))
     apart = tuple(pair for pair in every if not body.shapes.adjacent(*pair))
     contacts = Contacts(body, apart)
     at_rest = contacts.meeting(body.configuration({}))
+    for posture in usual:
+        at_rest |= contacts.meeting(body.configuration(posture))
     met = _count(contacts, body.random_configurations(samples, seed))
     why = dict.fromkeys(every, Why.ADJACENT)
     share = dict.fromkeys(every, 0.0)

@@ -10,7 +10,7 @@ from lxml import etree
 from scipy.spatial import QhullError
 
 from momantu_bt.robots.errors import PartError
-from momantu_bt.robots.parts import load_part
+from momantu_bt.robots.parts import MOST_BYTES, load_part
 from momantu_bt.robots.robot_file import PartSource
 from momantu_skills.manipulation.hulls import hull_points, part_points
 from momantu_skills.manipulation.urdf import BaseUrdf, CollisionPart, base_urdf
@@ -22,8 +22,6 @@ from momantu_skills.robot_setup.skeleton import (
     read_skeleton,
 )
 
-HEAD = 4096
-"""Bytes in which a file says that it is xacro."""
 SOLIDS = ("box", "cylinder", "sphere", "mesh")
 HALF_TURN = "3.14159"
 """rad; the range that a hinge without limits is looked at in."""
@@ -102,12 +100,12 @@ def prepare(source: Path, folder: Path) -> Prepared:
 
 
 def _is_xacro(source: Path) -> bool:
-    """By its ending, or because it is written in xacro's namespace."""
+    """By its ending, or because it has xacro's elements; expanded files only name xacro."""
     if source.suffix == ".xacro":
         return True
     try:
         with source.open("rb") as file:
-            return b"ros.org/wiki/xacro" in file.read(HEAD)
+            return b"<xacro:" in file.read(MOST_BYTES)
     except OSError:
         return False
 

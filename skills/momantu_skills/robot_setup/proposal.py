@@ -16,7 +16,7 @@ from momantu_skills.robot_setup.base import BaseFrame, Stand, find_base, find_st
 from momantu_skills.robot_setup.body import Body
 from momantu_skills.robot_setup.fingers import find_hands
 from momantu_skills.robot_setup.grasp import Grasp, find_grasp
-from momantu_skills.robot_setup.limits import FoundLimit, find_limits
+from momantu_skills.robot_setup.limits import FoundLimit, find_limits, plain_limits
 from momantu_skills.robot_setup.matrix import SAMPLES, CollisionMatrix, Why, sample_matrix
 from momantu_skills.robot_setup.named import find_poses
 from momantu_skills.robot_setup.poses import VIEW, Eye, FoundPose, PoseFinder
@@ -82,7 +82,8 @@ def _propose(prepared: Prepared, samples: int, seed: int) -> Proposal:
         if limb is not None and limb.hand is not None
     }
     limits = find_limits(body, _actuated(limbs), _light(limbs))
-    matrix = sample_matrix(body, samples, seed)
+    closed = [{n: rows[0][1] for n, rows in g.opening.items()} for g in grasps.values()]
+    matrix = sample_matrix(body, samples, seed, closed)
     solver = _hand_solver(prepared, base, limbs, grasps.get("arm"), limits, seed)
     poses = _poses(prepared, base, body, stand, limbs, camera, limits, matrix, solver, seed)
     return Proposal(
@@ -151,7 +152,7 @@ def _hand_solver(
         return None
     place = grasp.link_from_grasp or Transform((grasp.offset, 0.0, 0.0))
     tree = KinematicTree.from_urdf(prepared.urdf, base.frame)
-    return LimbSolver(tree, limbs.arm, limits, grasp.link, place, seed)
+    return LimbSolver(tree, limbs.arm.joints, plain_limits(limits), grasp.link, place, seed)
 
 
 def _poses(
@@ -175,7 +176,8 @@ def _poses(
         eye = Eye(camera.link, place, camera.fov or VIEW, in_hand)
         if in_hand:
             tree = KinematicTree.from_urdf(prepared.urdf, base.frame)
-            view = LimbSolver(tree, limbs.arm, limits, camera.link, place, seed)
+            joints, known = limbs.arm.joints, plain_limits(limits)
+            view = LimbSolver(tree, joints, known, camera.link, place, seed)
     pairs = matrix.pairs(Why.SOMETIMES, Why.NEVER)
     finder = PoseFinder(body, limbs, stand, pairs, eye, seed)
     return find_poses(finder, hand, view)

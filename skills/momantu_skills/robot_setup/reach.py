@@ -53,14 +53,9 @@ class Reach:
 def find_reach(solver: LimbSolver | None, stand: Stand) -> Reach:
     """Sample grasps before the robot at the heights of tables."""
     distances = np.arange(STEP, FARTHEST + STEP / 2, STEP)
-    shares = np.zeros(len(distances))
-    heights = np.zeros(len(distances))
+    shares, heights = np.zeros(len(distances)), np.zeros(len(distances))
     if solver is not None:
-        targets = np.array([_poses(d, stand.floor) for d in distances])
-        flat = solver.reaches(targets.reshape(-1, 4, 4), SEEDS)
-        reached = flat.reshape(len(distances), len(HEIGHTS), -1)
-        shares = reached.mean(axis=(1, 2))
-        heights = reached.any(axis=2).mean(axis=1)
+        shares, heights = reached(solver, distances, stand.floor)
     stand_off = math.ceil((stand.front + ROOM) * 100) / 100
     least = stand_off + BESIDE
     good = np.flatnonzero((heights >= GOOD) & (distances >= least - 1e-9))
@@ -73,6 +68,17 @@ def find_reach(solver: LimbSolver | None, stand: Stand) -> Reach:
     return Reach(
         distances, shares, stand_off, round(stand_off + LOOK_BACK, 2), _cm((near, best, far)), True
     )
+
+
+def reached(solver: LimbSolver, distances: Array, floor: float) -> tuple[Array, Array]:
+    """What is reached straight ahead at distances (k,), m.
+
+    Returns the share of grasps (k,), and the share of the tables' heights with one of them (k,).
+    """
+    targets = np.array([_poses(distance, floor) for distance in distances])
+    flat = solver.reaches(targets.reshape(-1, 4, 4), SEEDS)
+    good = flat.reshape(len(distances), len(HEIGHTS), -1)
+    return good.mean(axis=(1, 2)), good.any(axis=2).mean(axis=1)
 
 
 def _cm(values: tuple[float, float, float]) -> tuple[float, float, float]:

@@ -327,7 +327,8 @@ def _ignored(proposal: Proposal) -> Iterator[str]:
     yield from _wrapped(
         f"Measured in {matrix.samples} random postures: {told or 'no pairs'}. Pairs that share a "
         "joint are never checked. Pairs that never met are: a check costs little, and random "
-        "postures prove nothing. These overlap for good, or where every joint stands at rest:"
+        "postures prove nothing. These overlap for good, where every joint stands at rest, or "
+        "where the hand is closed:"
     )
     if not matrix.ignored:
         yield "ignored_collisions: []"

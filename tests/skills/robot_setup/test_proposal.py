@@ -41,11 +41,13 @@ def test_hinged_fingers_are_measured_at_their_tips(bolted_proposal: Proposal) ->
     grasp = bolted_proposal.grasp
     assert grasp is not None
     assert grasp.link_from_grasp is not None
-    # closed they stay 2 cm apart; each tip turns out by 0.6 rad, 10 cm from its hinge
+    # closed they stay 2 cm apart; each turns out by 0.6 rad about a hinge 2 cm off the middle,
+    # and the opening is measured where the pads' inner part is nearest
     assert grasp.thinnest == pytest.approx(0.02, abs=1e-3)
-    assert grasp.max_width == pytest.approx(
-        2 * (0.02 - 0.01 * np.cos(0.6) + 0.1 * np.sin(0.6)), abs=2e-3
-    )
+    height = grasp.link_from_grasp.position[2] - 0.07 - 0.2 * grasp.pad_length
+    along = (height - 0.01 * np.sin(0.6)) / np.cos(0.6)
+    inner = 0.02 - 0.01 * np.cos(0.6) + along * np.sin(0.6)
+    assert grasp.max_width == pytest.approx(2 * inner, abs=1e-3)
     assert set(grasp.opening) == {"left_hinge", "right_hinge"}
     rows = grasp.opening["left_hinge"]
     assert rows[0][0] == 0.0

@@ -1,0 +1,18 @@
+"""Robots as a command line names them: an installed one's name, or a file."""
+
+from __future__ import annotations
+
+from momantu_bt.robot import RobotDescription
+
+
+def robot_of(name: str) -> RobotDescription:
+    """The robot of a name, or of a path.
+
+    Raises:
+        PluginError: there is none, with the nearest ones.
+        WorldError: its file is wrong.
+    """
+    from momantu_bt.plugins import ROBOTS, load
+
+    description: RobotDescription = load(ROBOTS, name)()
+    return description

@@ -1,0 +1,81 @@
+"""`momantu-bt robots check`: everything that makes a robot unusable or worth a second look."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from momantu_bt.findings import Finding
+    from momantu_bt.robot import RobotDescription
+
+EXIT_FOUND = 1
+EXIT_WRONG_INPUT = 2
+
+
+def check(
+    robot: Annotated[str, typer.Argument(help="An installed robot's name, or a robot file.")],
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,
+) -> int:
+    """Say what is wrong with a robot: collisions, sensors that see it, hand, reach, footprint.
+
+    Errors make the robot useless for something; warnings are worth a look.
+
+    Exit code 0: nothing was found; 1: something was; 2: the file cannot be read.
+
+    Examples:
+      momantu-bt robots check fetch
+      momantu-bt robots check robots/my_robot/robot.yaml
+      momantu-bt robots check my_robot/ --json
+    """
+    from momantu_bt.findings import findings_json, findings_text
+    from momantu_bt.robots.named import robot_of
+    from momantu_skills.robot_setup.skeleton import SetupError
+
+    description = robot_of(robot)
+    try:
+        findings = check_robot(description)
+    except SetupError as error:
+        typer.echo(f"momantu-bt: {description.source or description.urdf}: {error}", err=True)
+        return EXIT_WRONG_INPUT
+    if as_json:
+        typer.echo(json.dumps(findings_json(description.name, findings), indent=2))
+    else:
+        typer.echo(findings_text(description.name, findings))
+    return EXIT_FOUND if findings else 0
+
+
+def check_robot(description: RobotDescription) -> list[Finding]:
+    """Everything that is found, in order.
+
+    Raises:
+        SetupError: the URDF is no mechanism, or has a collision shape without volume.
+    """
+    from lxml import etree
+
+    from momantu_skills.manipulation.model import ArmModel
+    from momantu_skills.robot_setup.base import find_stand
+    from momantu_skills.robot_setup.body import Body
+    from momantu_skills.robot_setup.check_body import check_footprint, check_limits, check_poses
+    from momantu_skills.robot_setup.check_hand import check_hand, check_reach
+    from momantu_skills.robot_setup.check_sensors import check_sensors
+    from momantu_skills.robot_setup.remarks import located
+    from momantu_skills.robot_setup.skeleton import read_skeleton
+
+    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False)
+    skeleton = read_skeleton(etree.fromstring(description.urdf.read_bytes(), parser))
+    body = Body(skeleton, description)
+    stand = find_stand(body)
+    return located(
+        description,
+        [
+            *check_poses(description, ArmModel(description)),
+            *check_footprint(description, body, stand),
+            *check_limits(description, body),
+            *check_sensors(description, body),
+            *check_hand(description, body),
+            *check_reach(description, body, stand),
+        ],
+    )

@@ -1,0 +1,202 @@
+"""`robots check`: every finding by a robot file that is wrong in that one way."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from momantu_skills.robot_setup.check_verb import check, check_robot
+from momantu_skills.robot_setup.proposal import Proposal
+from momantu_skills.robot_setup.writer import robot_file
+from momantu_worlds.robots import fetch
+from typer import Typer
+from typer.testing import CliRunner
+
+from momantu_bt.findings import Finding
+from momantu_bt.plugins import PluginError
+from momantu_bt.robots import read_robot
+
+app = Typer()
+app.command()(check)
+
+Wrong = Callable[..., list[Finding]]
+
+
+@pytest.fixture
+def wrong(rolling_proposal: Proposal, tmp_path: Path) -> Wrong:
+    """What is found when a text of the rolling robot's file is replaced by another."""
+
+    def changed(*changes: tuple[str, str]) -> list[Finding]:
+        text = robot_file(rolling_proposal, tmp_path)
+        for before, after in changes:
+            assert before in text, before
+            text = text.replace(before, after)
+        (tmp_path / "robot.yaml").write_text(text)
+        return [f for f in check_robot(read_robot(tmp_path)) if f.code != "no-force"]
+
+    return changed
+
+
+def only(findings: list[Finding], code: str) -> Finding:
+    assert {finding.code for finding in findings} == {code}, findings
+    return findings[0]
+
+
+def test_a_proposed_robot_is_fine(wrong: Wrong) -> None:
+    assert wrong() == []
+
+
+def test_fetch_is_fine() -> None:
+    assert check_robot(fetch()) == []
+
+
+def test_a_joint_without_force_is_told(rolling_proposal: Proposal, tmp_path: Path) -> None:
+    (tmp_path / "robot.yaml").write_text(robot_file(rolling_proposal, tmp_path))
+    finding = only(check_robot(read_robot(tmp_path)), "no-force")
+    assert finding.severity == "warning"
+    assert finding.message.endswith("roll")
+
+
+def test_a_pose_that_collides_is_told_at_its_line(
+    wrong: Wrong, rolling_proposal: Proposal, tmp_path: Path
+) -> None:
+    text = robot_file(rolling_proposal, tmp_path)
+    block = text[text.index("  home:\n") : text.index("    head_pan", text.index("  home:\n"))]
+    bent = "  home:\n    pan: 0\n    lift: 2\n    elbow: 2\n    flex: 0\n    roll: 0\n"
+    findings = [f for f in wrong((block, bent)) if f.code == "pose-collides"]
+    assert findings
+    lines = (tmp_path / "robot.yaml").read_text().splitlines()
+    for finding in findings:
+        assert finding.severity == "error"
+        assert "the pose home" in finding.message
+        assert lines[finding.line - 1].strip() == "home:"
+
+
+def test_a_footprint_that_the_wheels_leave(wrong: Wrong, rolling_proposal: Proposal) -> None:
+    outline = rolling_proposal.stand.footprint
+    assert outline is not None
+    corners = "".join(f"  - [{x:g}, {y:g}]\n" for x, y in outline)
+    small = "  - [0.25, -0.2]\n  - [0.25, 0.2]\n  - [-0.25, 0.2]\n  - [-0.25, -0.2]\n"
+    finding = only(wrong((corners, small)), "footprint-too-small")
+    assert "0.021 m" in finding.message
+    large = small.replace("0.2]", "0.3]")
+    assert only(wrong((corners, large)), "footprint-too-large").severity == "warning"
+
+
+def test_a_robot_that_is_taller_than_it_says(wrong: Wrong, rolling_proposal: Proposal) -> None:
+    height = f"height: {rolling_proposal.height:g}"
+    finding = only(wrong((height, "height: 0.7")), "taller-than-height")
+    assert finding.severity == "error"
+    assert "0.7 m" in finding.message
+
+
+def test_limits_beyond_the_urdf(wrong: Wrong) -> None:
+    finding = only(wrong(("  lift: {lower: -2,", "  lift: {lower: -3,")), "limit-beyond-urdf")
+    assert "lower of lift is -3" in finding.message
+    text = (
+        "  elbow: {lower: -2, upper: 2, velocity: 1",
+        "  elbow: {lower: -2, upper: 2, velocity: 9",
+    )
+    assert only(wrong(text), "faster-than-urdf").severity == "warning"
+
+
+def test_a_camera_in_its_own_mast(wrong: Wrong) -> None:
+    turned = (
+        "xyz: [0, 0, 0], rpy: [-1.5708, 0, -1.5708]",
+        "xyz: [0, 0, 0], rpy: [-1.5708, 0, 1.5708]",
+    )
+    codes = {finding.code for finding in wrong(turned)}
+    assert "camera-sees-itself" in codes
+
+
+def test_a_camera_frame_that_is_no_optical_frame(wrong: Wrong) -> None:
+    found = wrong(("    frame: head_camera_optical_frame", "    frame: head_camera_link"))
+    assert "camera-tilted" in {finding.code for finding in found}
+
+
+def test_a_laser_that_stands_on_edge_or_behind_the_mast(wrong: Wrong) -> None:
+    frames = "frames:\n"
+    edge = "frames:\n  edge: {on: base_laser_link, rpy: [90 deg, 0, 0]}\n"
+    use = ("    frame: base_laser_link", "    frame: edge")
+    assert "laser-tilted" in {f.code for f in wrong((frames, edge), use)}
+    behind = "frames:\n  edge: {on: mast, xyz: [-0.05, 0, 0.5], rpy: [0, 0, 0]}\n"
+    found = [f for f in wrong((frames, behind), use) if f.code == "laser-sees-itself"]
+    assert found
+    assert "laser" in found[0].message
+
+
+@pytest.mark.parametrize(
+    ("rpy", "code"),
+    [("0, 1.5708, 1.5708", "grasp-frame-x"), ("0, -1.5708, 0", "grasp-frame-y")],
+)
+def test_a_grasp_frame_that_points_elsewhere(wrong: Wrong, rpy: str, code: str) -> None:
+    found = wrong(("rpy: [0, -1.5708, 1.5708]", f"rpy: [{rpy}]"))
+    assert code in {finding.code for finding in found}
+
+
+def test_an_opening_that_does_not_fit_the_fingers(wrong: Wrong) -> None:
+    found = wrong(("[0.08, 0.04]", "[0.08, 0.02]"))
+    finding = only(found, "opening-does-not-fit")
+    assert "0.024 m, the fingers' hulls are 0.012 m apart" in finding.message
+
+
+def test_touch_links_without_fingers(wrong: Wrong) -> None:
+    found = wrong(("touch_links: [palm, left_finger, right_finger]", "touch_links: [palm]"))
+    assert "no-fingers" in {finding.code for finding in found}
+
+
+def test_working_distances_out_of_reach(wrong: Wrong, rolling_proposal: Proposal) -> None:
+    near, best, far = rolling_proposal.reach.reach
+    found = wrong((f"reach: [{near:g}, {best:g}, {far:g}]", "reach: [1.3, 1.4, 1.5]"))
+    assert {f.code for f in found} == {"out-of-reach"}
+    assert [f.severity for f in found] == ["error", "warning", "warning"]
+    found = wrong(("stand_off: 0.38", "stand_off: 0.2"))
+    assert only(found, "stands-in-table").severity == "error"
+
+
+def run(*arguments: object) -> tuple[int, str]:
+    result = CliRunner().invoke(app, [str(a) for a in arguments], standalone_mode=False)
+    assert result.exception is None, result.exception
+    return result.return_value, result.output
+
+
+def test_the_verb_by_path_in_words_and_as_json(rolling_proposal: Proposal, tmp_path: Path) -> None:
+    (tmp_path / "robot.yaml").write_text(robot_file(rolling_proposal, tmp_path))
+    code, said = run(tmp_path / "robot.yaml")
+    assert code == 1
+    assert "rolling_arm: 1 warning" in said
+    code, said = run(tmp_path / "robot.yaml", "--json")
+    told = json.loads(said)
+    assert code == 1
+    assert told["ok"] is False
+    (finding,) = told["findings"]
+    assert finding["code"] == "no-force"
+    assert finding["line"] > 0
+    assert finding["file"] == str(tmp_path / "robot.yaml")
+
+
+def test_the_verb_by_name() -> None:
+    assert run("fetch") == (0, "fetch: nothing is wrong\n")
+
+
+def test_a_robot_that_there_is_not() -> None:
+    with pytest.raises(PluginError, match="did you mean 'fetch'"):
+        CliRunner().invoke(app, ["fetsch"], standalone_mode=False, catch_exceptions=False)
+
+
+def test_a_shape_without_volume(rolling_proposal: Proposal, tmp_path: Path) -> None:
+    corners = "vertex 0 0 0 vertex 1 0 0 vertex 0 1 0"
+    facet = f"facet normal 0 0 1 outer loop {corners} endloop endfacet "
+    (tmp_path / "flat.stl").write_text(f"solid flat {2 * facet}endsolid flat")
+    text = rolling_proposal.prepared.source.read_text()
+    (tmp_path / "flat.urdf").write_text(
+        text.replace('<box size="0.04 0.04 0.6"/>', '<mesh filename="flat.stl"/>')
+    )
+    text = robot_file(rolling_proposal, tmp_path)
+    source = next(line for line in text.splitlines() if "{urdf: " in line)
+    (tmp_path / "robot.yaml").write_text(text.replace(source, "  r: {urdf: flat.urdf}"))
+    code, said = run(tmp_path)
+    assert code == 2
+    assert "cannot be used" in said
