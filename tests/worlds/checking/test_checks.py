@@ -106,6 +106,7 @@ def test_nothing_is_wrong_at_first() -> None:
     assert all_codes(changed()) == []
 
 
+high, narrow = Part(Box((0.3, 0.02, 0.6))), Part(Box((0.02, 0.22, 0.6)))
 CASES = {
     "furniture in a wall": (
         changed(table("a", -2.56, 2.0), can("can", -2.5, 1.75)),
@@ -235,6 +236,7 @@ CONSEQUENCES = {
     "a tag under something": {"goal-no-room"},
     "a goal without room": {"tag-unseen"},
     "a tag that faces a wall": {"goal-no-room"},
+    "a tag beyond the room": {"goal-no-room"},
 }
 """What follows from what is wrong, and is found beside it."""
 

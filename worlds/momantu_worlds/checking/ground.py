@@ -109,10 +109,13 @@ class Ground:
         rows, columns = mask.shape
         return bool(0 <= row < rows and 0 <= column < columns and mask[row, column])
 
-    def centres(self, mask: NDArray[np.bool_]) -> Array:
-        """Centres (n, 2) of the cells of a mask, m."""
-        rows, columns = np.nonzero(mask)
-        return np.asarray(self.low + self.cell * (np.column_stack([columns, rows]) + 0.5))
+    def centres(self, mask: NDArray[np.bool_], point: Array, distance: float) -> Array:
+        """Centres (n, 2) of a mask's cells within `distance` m of a point, along x and along y."""
+        first = np.maximum(np.floor((point[:2] - distance - self.low) / self.cell).astype(int), 0)
+        last = np.maximum(np.ceil((point[:2] + distance - self.low) / self.cell).astype(int), 0)
+        rows, columns = np.nonzero(mask[first[1] : last[1], first[0] : last[0]])
+        cells = np.column_stack([columns + first[0], rows + first[1]])
+        return np.asarray(self.low + self.cell * (cells + 0.5))
 
     def blocking(self, point: Point, but: Callable[[str], bool] = lambda body: False) -> str:
         """The body that is nearest to a point, or in which it lies; "" when there is none."""

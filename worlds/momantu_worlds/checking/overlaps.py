@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import combinations
 
 import numpy as np
 
@@ -33,9 +32,11 @@ def _near(scenario: Scenario, bodies: list[Body]) -> Iterator[tuple[Body, Body]]
     boxes = [[solid.box for solid in scenario.solids[body.name]] for body in bodies]
     low = np.array([np.min([b[0] for b in own], axis=0) for own in boxes]).reshape(-1, 3)
     high = np.array([np.max([b[1] for b in own], axis=0) for own in boxes]).reshape(-1, 3)
-    for i, j in combinations(range(len(bodies)), 2):
-        if (high[i] - TOUCHING > low[j]).all() and (high[j] - TOUCHING > low[i]).all():
-            yield bodies[i], bodies[j]
+    for i, body in enumerate(bodies):
+        rest = slice(i + 1, None)
+        meet = (high[i] - TOUCHING > low[rest]) & (high[rest] - TOUCHING > low[i])
+        for j in np.flatnonzero(meet.all(axis=1)):
+            yield body, bodies[i + 1 + int(j)]
 
 
 def _depth(scenario: Scenario, first: str, second: str) -> float:

@@ -82,15 +82,9 @@ class Scenario:
         start = self.episode.start
         return self.ground.reached((start.x, start.y), self.robot.half_width)
 
-    @cached_property
-    def stands(self) -> Array:
-        """Centres (n, 2) of the cells that are reached."""
-        return self.ground.centres(self.reached)
-
     def stands_near(self, point: Array, distance: float) -> Array:
-        """Those of `stands` that are within `distance` m of a point, along x and along y."""
-        near = np.abs(self.stands - point[:2]).max(axis=1) <= distance
-        return np.asarray(self.stands[near])
+        """Centres (n, 2) of `reached` within `distance` m of a point, along x and along y."""
+        return self.ground.centres(self.reached, np.asarray(point), distance)
 
     @cached_property
     def surfaces(self) -> Mapping[str, tuple[Transform, tuple[float, float]]]:

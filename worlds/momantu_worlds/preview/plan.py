@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 
 import cv2
 import numpy as np
@@ -19,8 +18,8 @@ from momantu_worlds.scenes.solids import outline
 PAPER: Rgb = (226, 224, 219)
 WAY: Rgb = (251, 250, 246)
 DARK: Rgb = (72, 74, 80)
-LINTEL: Rgb = (196, 194, 188)
-"""What walls are above the robot is an outline only: the way below is free."""
+ABOVE: Rgb = (196, 194, 188)
+"""Lintels, lamps and roofs: what begins above the robot, which passes below."""
 INK: Rgb = (40, 42, 48)
 FAINT: Rgb = (122, 120, 114)
 RED: Rgb = (190, 32, 24)
@@ -52,7 +51,7 @@ def draw_plan(scenario: Scenario, width: int) -> Image.Image:
 def extent(scenario: Scenario) -> tuple[Array, Array]:
     """Corners of what is drawn: everything but the floor that is empty around it."""
     points = [scenario.robot.outline(scenario.episode.start)]
-    points += [_shape(body, part) for body in scenario.bodies for part in body.parts]
+    points += [part_points(b, part)[:, :2] for b in scenario.bodies for part in b.parts]
     points += [np.array([(p.x, p.y)]) for p in scenario.episode.site.places.values()]
     everything = np.concatenate(points)
     return everything.min(axis=0) - MARGIN, everything.max(axis=0) + MARGIN
@@ -69,27 +68,26 @@ def _ways(canvas: Canvas, scenario: Scenario, ground: Ground) -> None:
 
 
 def _bodies(canvas: Canvas, scenario: Scenario) -> None:
-    """Every part of every body, the highest last."""
-    for body, part, _ in sorted(_parts(scenario), key=lambda entry: entry[2]):
+    """Every part of every body, the highest last; of what is above the robot only the outline."""
+    parts = [
+        (body, part, part_points(body, part))
+        for body in scenario.bodies
+        for part in body.parts
+        if part.visual
+    ]
+    for body, part, points in sorted(parts, key=lambda entry: float(entry[2][:, 2].max())):
+        shape = _outline(points)
         if isinstance(part.geometry, Picture):
-            canvas.polygon(_shape(body, part), (20, 20, 20), (255, 255, 255), 1)
+            canvas.polygon(shape, (20, 20, 20), (255, 255, 255))
+        elif float(points[:, 2].min()) >= scenario.robot.height:
+            canvas.polygon(shape, None, ABOVE)
         elif body.category == WALL:
-            above = float(_points(body, part)[:, 2].min()) >= scenario.robot.height
-            canvas.polygon(_shape(body, part), None if above else DARK, LINTEL if above else DARK)
+            canvas.polygon(shape, DARK, DARK)
         else:
-            color = rgb(part.color)
-            canvas.polygon(_shape(body, part), color, rgb(part.color, 0.55), 1)
+            canvas.polygon(shape, rgb(part.color), rgb(part.color, 0.55))
 
 
-def _parts(scenario: Scenario) -> Iterator[tuple[Body, Part, float]]:
-    """Parts that are to be seen, and how high they reach, m."""
-    for body in scenario.bodies:
-        for part in body.parts:
-            if part.visual:
-                yield body, part, float(_points(body, part)[:, 2].max())
-
-
-def _points(body: Body, part: Part) -> Array:
+def part_points(body: Body, part: Part) -> Array:
     """Points (n, 3) around a part in the map."""
     geometry = part.geometry
     if isinstance(geometry, Picture):
@@ -102,10 +100,9 @@ def _points(body: Body, part: Part) -> Array:
     return (body.map_from_body @ part.body_from_part).apply(own)
 
 
-def _shape(body: Body, part: Part) -> Array:
-    """The outline (n, 2) of a part as it is seen from above."""
-    points = _points(body, part)[:, :2].astype(np.float32)
-    return np.asarray(cv2.convexHull(points)[:, 0], dtype=np.float64)
+def _outline(points: Array) -> Array:
+    """The outline (n, 2) of points (m, 3) as they are seen from above."""
+    return np.asarray(cv2.convexHull(points[:, :2].astype(np.float32))[:, 0], dtype=np.float64)
 
 
 def _surfaces(canvas: Canvas, scenario: Scenario) -> None:
@@ -172,7 +169,7 @@ def _names(canvas: Canvas, scenario: Scenario) -> None:
         named = body.name in wanted or body.name in scenario.surfaces
         if named or body.category == WALL or not body.parts:
             continue
-        points = np.concatenate([_shape(body, part) for part in body.parts])
+        points = np.concatenate([part_points(body, part)[:, :2] for part in body.parts])
         low, high = points.min(axis=0), points.max(axis=0)
         if body.static or (high - low).max() >= BIG:
             canvas.text(body.name, (low + high) / 2, INK, 11, always=False)

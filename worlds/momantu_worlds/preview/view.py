@@ -11,7 +11,9 @@ from PIL import Image
 
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.robot import RobotDescription
+from momantu_worlds.checking.scenario import WALL
 from momantu_worlds.display.chase import looking
+from momantu_worlds.preview.plan import part_points
 from momantu_worlds.sapien.camera_view import ViewCamera
 from momantu_worlds.sapien.simulator import Simulator
 from momantu_worlds.scenes.bodies import Body, Box, Episode, Part, SunLight
@@ -28,6 +30,8 @@ AIR = 1.03
 """How much more than the rooms is in the picture."""
 CUT = 1.3
 """m; walls are cut at this height, so that they hide little of the rooms behind them."""
+ROOF, WIDE = 1.9, 1.0
+"""m; what begins so high and is so wide either way is a roof: it is left out."""
 AMBIENT = 0.7
 """Light from everywhere; an episode's own light is for the robot's camera, not for a picture."""
 SUN = SunLight((0.35, 0.55, -1.0), (0.75, 0.75, 0.72))
@@ -68,10 +72,25 @@ def draw_view(
 
 
 def _model(episode: Episode) -> Episode:
-    """The episode as a model of it would be built: with low walls, in even light."""
-    bodies = tuple(_cut(body) if body.category == "wall" else body for body in episode.bodies)
+    """The episode as a model of it would be built: with low walls and no roof, in even light."""
+    bodies = tuple(
+        _cut(body) if body.category == WALL else _roofless(body) for body in episode.bodies
+    )
     ambient = (AMBIENT, AMBIENT, AMBIENT)
     return replace(episode, bodies=bodies, ambient=ambient, suns=(SUN,), lamps=())
+
+
+def _roofless(body: Body) -> Body:
+    """A body without those of its parts that would hide a room from above."""
+    if not body.static:
+        return body
+    return replace(body, parts=tuple(part for part in body.parts if not _is_roof(body, part)))
+
+
+def _is_roof(body: Body, part: Part) -> bool:
+    points = part_points(body, part)
+    extent = points.max(axis=0) - points.min(axis=0)
+    return bool(points[:, 2].min() >= ROOF and extent[:2].min() >= WIDE)
 
 
 def _cut(wall: Body) -> Body:
