@@ -59,7 +59,7 @@ def draw_view(
     eye, aspect = eye_over(corners, turn)
     width = min(width, round(MOST_HEIGHT / aspect))
     height = round(width * aspect)
-    simulator = Simulator(description, _model(episode), episode.seed)
+    simulator = Simulator(description, as_model(episode), episode.seed)
     try:
         camera = ViewCamera(
             simulator.scene, SMOOTH * width, SMOOTH * height, FIELD, far=_far(corners, eye)
@@ -71,7 +71,7 @@ def draw_view(
     return Image.fromarray(picture).resize((width, height), Image.Resampling.LANCZOS)
 
 
-def _model(episode: Episode) -> Episode:
+def as_model(episode: Episode) -> Episode:
     """The episode as a model of it would be built: with low walls and no roof, in even light."""
     bodies = tuple(
         _cut(body) if body.category == WALL else _roofless(body) for body in episode.bodies
