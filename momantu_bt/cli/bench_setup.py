@@ -52,10 +52,11 @@ def plan_of(tree: str, seeds: Sequence[int], how: HowToRun) -> tuple[Plan, Docum
     """
     from momantu_bt.bench.made_of import made_of
     from momantu_bt.bench.plan import Plan, Wanted
-    from momantu_bt.plugin_files import absolute
+    from momantu_bt.plugin_files import absolute, by_path
     from momantu_bt.plugins import ROBOTS, WORLDS
     from momantu_bt.tree.load import load
     from momantu_bt.tree.lookup import find
+    from momantu_bt.tree.named_world import world_of
     from momantu_bt.tree.registry import Registry
 
     registry = Registry.installed()
@@ -66,6 +67,9 @@ def plan_of(tree: str, seeds: Sequence[int], how: HowToRun) -> tuple[Plan, Docum
     }
     document = load(place, registry, values=how.values, **told).document
     _check_world(document, how.world, registry)
+    if by_path(WORLDS, document.world or ""):
+        # an episode elsewhere has the tree in another folder
+        told["world"] = told["world"] or absolute(WORLDS, world_of(document, None))
     told |= {"max_time": how.max_time, "referee": how.referee}
     made = made_of(document, registry, values=how.values, **told)
     wanted = Wanted(tuple((seed, fault) for seed in seeds for fault in how.faults), made)

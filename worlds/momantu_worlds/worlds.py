@@ -28,10 +28,12 @@ class WorldOfFile:
 
     @property
     def default_robot(self) -> str:
-        """The robot that it is meant for; raises as `site`."""
+        """The robot that it is meant for: a name, or a path seen from here; raises as `site`."""
         from momantu_worlds.scenes.loading import nominal
 
-        return nominal(self.path).robot
+        robot = nominal(self.path).robot
+        is_path = "/" in robot or robot.endswith((".yaml", ".yml"))
+        return str(self.path.parent / robot) if is_path else robot
 
     def site(self) -> Site:
         """The nominal site, without maps.

@@ -4,15 +4,16 @@ import numpy as np
 import pytest
 import trimesh
 from momantu_worlds.sapien.meshes import map_triangles
-from momantu_worlds.scenes.bodies import Box, Hull, Mesh
+from momantu_worlds.scenes.bodies import Body, Box, Hull, Mesh, Part
 from momantu_worlds.scenes.floor_plan import OCCUPIED, cells_of, draw_plans
 from momantu_worlds.scenes.loading import draw_episode, load_world
 from momantu_worlds.scenes.mesh_files import HULL_POINTS, hull_points, mesh_parts, mesh_size
-from momantu_worlds.scenes.solids import outline
+from momantu_worlds.scenes.solids import Standing, outline
 from momantu_worlds.scenes.world_furniture import MeshUse
 from momantu_worlds.scenes.world_reader import WorldFileError
 from PIL import Image
 
+from momantu_bt.geometry import Transform
 from momantu_bt.world import WorldError
 
 RED = [200, 40, 30, 255]
@@ -118,6 +119,14 @@ def test_a_hull_has_few_points_and_nearly_the_shape():
     few = hull_points(ball)
     assert len(few) <= HULL_POINTS
     assert trimesh.convex.convex_hull(few).volume > 0.85 * 4 / 3 * np.pi
+
+
+def test_what_lies_in_a_large_hull_is_told_by_its_faces():
+    wedge = np.array([[0, 0, 0], [2, 0, 0], [0, 2, 0], [0, 0, 2]], dtype=float)
+    body = Body("wedge", "body", Transform((1, 0, 0)), (Part(Hull(wedge), visual=False),))
+    points = np.array([(1.3, 0.3, 0.3), (2.5, 1.5, 1.5), (1.6, 0.6, 0.6), (1.7, 0.7, 0.7)])
+    inside = Standing(body, body.map_from_body).inside(points)
+    assert inside.tolist() == [True, False, True, False]
 
 
 def test_mesh_furniture_is_on_the_map_and_the_laser_meets_it(write, two_boxes):

@@ -147,7 +147,7 @@ def test_a_hung_tag_looks_where_it_is_told(write):
     assert y == pytest.approx([0, 0, 1], abs=1e-9)
     # seen from before it, with its face looking along y, right is towards -x
     assert x == pytest.approx([-1, 0, 0], abs=1e-9)
-    assert tag.map_from_body.position == pytest.approx([1, 2, 1.5])
+    assert tag.map_from_body.position == pytest.approx([1, 2, 1.5], abs=1e-3)
 
 
 def test_bodies_have_their_parts_where_they_are_told(write):
@@ -283,6 +283,12 @@ def test_a_map_without_end_is_refused(write):
     world = load_world(write(rooms=wide, site={"resolution": "2 cm"}))
     with pytest.raises(WorldError, match=r"make site.resolution coarser"):
         draw_plans(world, (0.3, 0.3), 1.4)
+
+
+def test_a_floor_without_end_is_refused(write):
+    far = {"post": {"parts": [{"sphere": 0.1}], "at": [9000, 0, 0.1]}}
+    with pytest.raises(WorldError, match="m wide; at most 500 m"):
+        draw_episode(write(bodies=far), 0)
 
 
 def test_the_site_has_services_and_its_kept_form_keeps_them(write):

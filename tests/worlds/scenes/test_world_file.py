@@ -119,3 +119,86 @@ def test_a_huge_file_is_not_parsed(tmp_path):
 def test_a_world_that_does_not_exist_is_a_world_error():
     with pytest.raises(WorldError, match="no_such_world"):
         load_world("no_such_world")
+
+
+STUDIO = """momantu_world: 1
+name: studio
+rooms: {hall: {corner: [0, 0], size: [6, 4]}}
+doors: {out: {at: [3, 0]}}
+furniture:
+  rack: {kind: shelf, at: [1, 1, 0], size: [0.4, 1, 1.2], boards: [0.1, 0.6]}
+tables:
+  desk: {at: [5, 2, 0], size: [0.8, 1.2, 0.7], sides: [0]}
+  low: {board_of: rack, board: 2, sides: [0 deg]}
+objects: {cup: {kind: mug, on: desk}}
+tags: {mark: {id: 1, edge: 10 cm, on: low, at: [0, 0]}}
+bodies: {post: {parts: [{sphere: 10 cm}]}}
+start: {at: [3, 2, 0]}
+goal: {item: cup, on: low, beside: mark}
+"""
+
+
+def test_the_world_of_the_cases_below_is_fine():
+    assert parse_world(STUDIO, PATH).sought == "cup"
+
+
+SECTIONS = [
+    ("name: studio", "name: My Studio", "expected a name: lower-case letters"),
+    ("name: studio", "name: none", "'none' means no world at all"),
+    ("{at: [3, 0]}", "{at: [3, 1]}", "the door 'out': no wall of a room is there"),
+    ("{at: [3, 0]}", "{at: 3}", "doors.out.at: expected a list; found 3"),
+    ("size: [6, 4]", "size: [6]", "rooms.hall.size: expected 2 values, found 1"),
+    ("size: [6, 4]", "size: [6, 4, 1]", "rooms.hall.size: expected at most 2 values, found 3"),
+    (", size: [6, 4]", "", "write corner and size, or an outline"),
+    ("{corner: [0, 0], size: [6, 4]}", "big", "expected a mapping with the keys corner, size"),
+    ("boards: [0.1, 0.6]", "boards: [0.6, 0.1]", "heights from below upwards"),
+    ("boards: [0.1, 0.6]", "boards: [0.1, 1.6]", "a board at 1.6 m is above 1.2 m"),
+    ("kind: shelf,", "kind: sofa,", "only a shelf has boards"),
+    ("kind: shelf,", "mesh: none.glb, kind: shelf,", "write a kind of the catalogue or a mesh"),
+    ("board: 2", "board: 3", "'rack' has 2 boards, counted from 1"),
+    ("board_of: rack", "board_of: rak", "did you mean 'rack'?"),
+    ("board: 2, ", "", "needs the key 'board'"),
+    ("board: 2, ", "board: 2, lift: 1 cm, ", "write only sides, color"),
+    ("sides: [0]}", "sides: []}", "tables.desk.sides: expected at least 1 value, found 0"),
+    ("{kind: mug, on: desk}", "{kind: mug, on: dsk}", "there is no table 'dsk'; did you mean"),
+    ("{kind: mug, on: desk}", "{kind: mug, on: desk, size: [1, 1, 1]}", "no size"),
+    ("{kind: mug, on: desk}", "{kind: mug, on: desk, radius: 1 cm}", "both radius and height"),
+    ("on: low, at: [0, 0]", "on: low", "write on and at, or hung"),
+    ("on: low, at: [0, 0]", "hung: [0, 0, 1], turn: 1", "has no shift, yaw and turn"),
+    ("on: low, at: [0, 0]", "hung: [0, 0]", "expected [x, y, z], [x, y, z, yaw] or"),
+    ("{mark:", "{cup: {id: 2, edge: 1, hung: [0, 0, 1]}, mark:", "'cup' is an object already"),
+    ("{post:", "{wall_hall_2: {parts: [{sphere: 1}]}, post:", "is a wall already"),
+    ("beside: mark", "beside: mrk", "there is no tag or body 'mrk'; did you mean 'mark'?"),
+    ("beside: mark", "beside: cup", "'cup' cannot stand beside itself"),
+    ("[{sphere: 10 cm}]", "[{sphere: 10 cm, box: [1, 1, 1]}]", "exactly one of box, cylinder"),
+    ("[{sphere: 10 cm}]", "[]", "bodies.post.parts: expected at least 1 value, found 0"),
+    ("[{sphere: 10 cm}]", "[{sphere: 10 cm}], mass: 1", "a static body has no mass"),
+    ("[{sphere: 10 cm}]", "[{sphere: 10 cm}], static: false", "needs a mass"),
+    ("start: {", "light: {ambient: [1, 0]}\nstart: {", "the least, 1, is more than the most, 0"),
+    ("start: {", "light: {suns: [{direction: [0, 0, 0]}]}\nstart: {", "is no direction"),
+    ("start: {", "floor: {center: [0, 0]}\nstart: {", "both center and size"),
+    ("start: {", "floor: {center: [0, 0], size: [9000, 1]}\nstart: {", "at most 500 m wide"),
+    ("start: {", "site: {resolution: 1 mm}\nstart: {", "greater than or equal to 0.01"),
+]
+
+
+@pytest.mark.parametrize(("before", "after", "words"), SECTIONS, ids=lambda c: str(c)[:30])
+def test_a_mistake_in_a_section_is_told_once_at_its_line(before, after, words):
+    assert STUDIO.count(before) == 1
+    text = STUDIO.replace(before, after)
+    error = refusal(text)
+    assert words in str(error)
+    assert len(error.problems) == 1, error
+    changed_line = STUDIO[: STUDIO.index(before)].count("\n") + 1
+    assert error.problems[0].line - changed_line in (0, after.count("\n") - before.count("\n"), 0)
+
+
+def test_what_moves_as_the_unknown_says_carries_no_surface():
+    text = STUDIO.replace("{kind: shelf,", "{kind: shelf, moves: true,")
+    assert "write shift and turn, not moves" in str(refusal(text))
+
+
+def test_more_rooms_than_anybody_draws_are_refused():
+    rooms = ", ".join(f"r{i}: {{corner: [{i}, 0], size: [1, 1]}}" for i in range(101))
+    text = STUDIO.replace("rooms: {", f"rooms: {{{rooms}, ")
+    assert "rooms: " in str(refusal(text))

@@ -24,7 +24,7 @@ from momantu_worlds.scenes.world_site import GoalDemand
 from momantu_worlds.scenes.world_values import transform
 
 TAG_LIFT = 0.0005
-"""m; thickness of the paper, so that it is seen above the table's top."""
+"""m; thickness of the paper, so that it is seen before what it is on."""
 SLAB = 0.1
 """m; thickness of the floor."""
 X_TO_Z = Transform.from_rpy((0.0, 0.0, 0.0), (math.pi / 2, 0.0, math.pi / 2))
@@ -141,7 +141,7 @@ def tag_pose(tag: PlacedTag, layout: Layout) -> Transform:
     if tag.table is not None:
         return layout.tables[tag.table].map_from_top @ tag.at.transform(TAG_LIFT)
     assert tag.note.hung is not None
-    return transform(tag.note.hung) @ X_TO_Z
+    return transform(tag.note.hung) @ X_TO_Z @ Transform((0.0, 0.0, TAG_LIFT))
 
 
 def goal_of(goal: GoalDemand) -> Goal:

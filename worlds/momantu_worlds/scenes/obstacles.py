@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from momantu_bt.geometry import Pose2D
+from momantu_bt.world import WorldError
 from momantu_worlds.scenes.furniture import Size3
 from momantu_worlds.scenes.given_bodies import given_bodies
 from momantu_worlds.scenes.mesh_files import mesh_size
@@ -15,6 +16,7 @@ from momantu_worlds.scenes.prisms import prism_around
 from momantu_worlds.scenes.solids import outline
 from momantu_worlds.scenes.surfaces import nominal_surfaces
 from momantu_worlds.scenes.wall_runs import LEAF
+from momantu_worlds.scenes.world_building import MOST_FLOOR
 from momantu_worlds.scenes.world_file import WorldFile
 from momantu_worlds.scenes.world_furniture import Piece
 
@@ -67,7 +69,11 @@ def body_columns(world: WorldFile) -> Iterator[tuple[Rectangle, float, float]]:
 
 
 def floor_extent(world: WorldFile) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Middle and size of the floor, m: the file's, or around all that stands on it."""
+    """Middle and size of the floor, m: the file's, or around all that stands on it.
+
+    Raises:
+        WorldError: it would be wider than MOST_FLOOR.
+    """
     floor = world.floor
     if floor.center is not None and floor.size is not None:
         return floor.center, floor.size
@@ -77,4 +83,8 @@ def floor_extent(world: WorldFile) -> tuple[tuple[float, float], tuple[float, fl
     corners = np.concatenate([rectangle.corners() for rectangle in found])
     low, high = corners.min(axis=0) - SLAB_MARGIN, corners.max(axis=0) + SLAB_MARGIN
     (x, y), (width, depth) = ((low + high) / 2).tolist(), (high - low).tolist()
+    if max(width, depth) > MOST_FLOOR:
+        raise WorldError(
+            f"the world {world.name!r} is {max(width, depth):.0f} m wide; at most {MOST_FLOOR:g} m"
+        )
     return (x, y), (width, depth)

@@ -1,7 +1,7 @@
 """Bodies as they stand in the world: extent, what lies inside, what is below, how far beside.
 
-Parts that do not collide are air here. Hulls of objects are small: the box around one stands for
-it.
+Parts that do not collide are air here. The box around a small hull stands for it: those of hollow
+objects are thin.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +33,8 @@ DIRECTIONS = np.stack(
     [np.cos(np.arange(180) * math.pi / 90), np.sin(np.arange(180) * math.pi / 90)]
 )
 """(2, 180) unit vectors on the floor, every two degrees."""
+SMALL = 0.25
+"""m; a hull that is nowhere larger is one of a loose object."""
 FLUSH = 0.005
 """m between a body's lowest point and a top that it stands on."""
 FLOOR = "floor"
@@ -57,6 +59,9 @@ class Solid:
         if isinstance(geometry, Sphere):
             return np.asarray(np.linalg.norm(own, axis=1) <= geometry.radius)
         around = outline(self.part)
+        if isinstance(geometry, Hull) and np.ptp(around, axis=0).max() > SMALL:
+            normals, offsets = _planes(geometry)
+            return np.asarray((own @ normals.T <= offsets).all(axis=1))
         return np.asarray(((own >= around.min(axis=0)) & (own <= around.max(axis=0))).all(axis=1))
 
     def beside(self, point: Array) -> float:
@@ -183,6 +188,16 @@ def _solids(body: Body, map_from_body: Transform) -> Iterable[Solid]:
         if part.collision:
             map_from_part = map_from_body @ part.body_from_part
             yield Solid(part, map_from_part, map_from_part.apply(outline(part)))
+
+
+@lru_cache(maxsize=256)
+def _planes(hull: Hull) -> tuple[Array, Array]:
+    """Outward normals (k, 3) of a hull's faces, and how far out along them these are (k,), m."""
+    import trimesh
+
+    mesh = trimesh.convex.convex_hull(np.asarray(hull.vertices))
+    normals = np.asarray(mesh.face_normals)
+    return normals, np.asarray((normals * mesh.triangles[:, 0]).sum(axis=1))
 
 
 def outline(part: Part) -> Array:

@@ -16,6 +16,8 @@ DOOR_CLEAR = 0.9
 """m; around a doorway's middle, kept free of furniture that the map does not know."""
 MOST_ROOMS, MOST_DOORS, MOST_WALLS = 100, 200, 1000
 MOST_CORNERS = 60
+MOST_FLOOR = 500.0
+"""m; ways over a larger floor would take too long to find."""
 
 
 class Floor(Part):
@@ -30,6 +32,8 @@ class Floor(Part):
     def _both(self) -> Self:
         if (self.center is None) != (self.size is None):
             raise ValueError("write both center and size, or none of them")
+        if self.size is not None and max(self.size) > MOST_FLOOR:
+            raise ValueError(f"the floor is at most {MOST_FLOOR:g} m wide")
         return self
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Self, TypeAlias
 
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from momantu_bt.descriptions.quantities import Length, Size
 from momantu_worlds.scenes.world_furniture import FurnitureKind
@@ -23,6 +23,16 @@ MOST_LAMPS = 60
 _Channel: TypeAlias = Annotated[float, Field(ge=0, le=1000)]
 Strength: TypeAlias = tuple[_Channel, _Channel, _Channel]
 """Of red, green and blue light."""
+_Finite: TypeAlias = Annotated[float, Field(allow_inf_nan=False)]
+
+
+def _somewhere(value: tuple[float, float, float]) -> tuple[float, float, float]:
+    if not any(value):
+        raise ValueError("[0, 0, 0] is no direction")
+    return value
+
+
+Direction: TypeAlias = Annotated[tuple[_Finite, _Finite, _Finite], AfterValidator(_somewhere)]
 
 
 class Start(Part):
@@ -76,7 +86,7 @@ class Unknown(Part):
 class SunNote(Part):
     """Parallel light that stays as it is. direction: where it shines to."""
 
-    direction: tuple[float, float, float]
+    direction: Direction
     color: Strength = (1.0, 1.0, 1.0)
 
 

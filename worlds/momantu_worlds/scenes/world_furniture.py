@@ -136,6 +136,8 @@ class Table(Part):
         if self.board_of is None:
             if self.at is None or self.size is None or self.board is not None:
                 raise ValueError("needs at and size, or board_of and board")
+            if self.mesh is not None and self.mesh.size is not None:
+                raise ValueError("a mesh that is a table has the table's own size, not mesh.size")
         elif self.board is None:
             raise ValueError("needs the key 'board': which board, counted from 1 at the lowest")
         elif set(self.model_fields_set) - {"board_of", "board", "sides", "color"}:

@@ -13,10 +13,14 @@ Place: TypeAlias = tuple[str | int, ...]
 Finding: TypeAlias = tuple[Place, str]
 FLOOR = "floor"
 """The name of the body that everything stands on."""
+NO_WORLD = "none"
+"""What trees and the command line call running without a world."""
 
 
 def dangling(world: WorldFile) -> Iterator[Finding]:
     """Everything that one part of a file says of another and that is not so."""
+    if world.name == NO_WORLD:
+        yield ("name",), f"{NO_WORLD!r} means no world at all; choose another name"
     yield from _twice(world)
     yield from _boards(world)
     yield from _standing(world)
@@ -141,7 +145,7 @@ def _meshes(world: WorldFile) -> Iterator[tuple[Place, MeshUse]]:
 
 def no_such(name: str, having: Iterable[str], what: str, several: str) -> str:
     """A name that is none, the nearest one, and all that there are."""
-    names = list(having)
+    names = list(dict.fromkeys(having))
     near = difflib.get_close_matches(name, names, n=1)
     hint = f"did you mean {near[0]!r}? " if near else ""
     return f"there is no {what} {name!r}; {hint}{several}: {', '.join(names) or 'none'}"

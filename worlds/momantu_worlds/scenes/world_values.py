@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, TypeAlias
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
 
 from momantu_bt.descriptions.quantities import ANGLE, LENGTH, Angle, Length, Size, reader
 from momantu_bt.geometry import Pose2D, Transform
@@ -15,7 +15,17 @@ Point: TypeAlias = tuple[Length, Length]
 Point3: TypeAlias = tuple[Length, Length, Length]
 Size3D: TypeAlias = tuple[Size, Size, Size]
 PlanarPose: TypeAlias = tuple[Length, Length, Angle]
-Range: TypeAlias = tuple[float, float]
+_Strength: TypeAlias = Annotated[float, Field(ge=0, le=1000)]
+
+
+def _ordered(value: tuple[float, float]) -> tuple[float, float]:
+    if value[0] > value[1]:
+        raise ValueError(f"the least, {value[0]:g}, is more than the most, {value[1]:g}")
+    return value
+
+
+Range: TypeAlias = Annotated[tuple[_Strength, _Strength], AfterValidator(_ordered)]
+"""Least and most of a brightness."""
 Name: TypeAlias = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$", max_length=60)]
 Friction: TypeAlias = Annotated[float, Field(gt=0, le=1)]
 Count: TypeAlias = Annotated[int, Field(ge=0, le=50)]
