@@ -10,13 +10,17 @@ from typing import Annotated, Literal, Self, TypeAlias
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from momantu_bt.descriptions.quantities import (
-    Acceleration,
     Angle,
+    AngularAcceleration,
+    AngularSpeed,
     Force,
+    JointAcceleration,
     JointPosition,
+    JointSpeed,
     Length,
+    LinearAcceleration,
+    LinearSpeed,
     Size,
-    Speed,
 )
 
 Count: TypeAlias = Annotated[int, Field(gt=0, le=100_000)]
@@ -53,9 +57,9 @@ class JointLimit(Part):
     """Least position; none: it turns for ever."""
     upper: JointPosition | None = None
     """Greatest position; none: it turns for ever."""
-    velocity: Speed
+    velocity: JointSpeed
     """Greatest speed."""
-    acceleration: Acceleration
+    acceleration: JointAcceleration
     """Greatest acceleration."""
 
 
@@ -234,14 +238,14 @@ def _on_line(xs: Sequence[float], ys: Sequence[float], x: float) -> float:
 class BaseLimits(Part):
     """How fast the base may go and change its speed."""
 
-    linear: Speed
-    """Greatest speed ahead, m/s."""
-    angular: Speed
-    """Greatest turning speed, rad/s."""
-    linear_acceleration: Acceleration
-    """m/s2."""
-    angular_acceleration: Acceleration
-    """rad/s2."""
+    linear: LinearSpeed
+    """Greatest speed ahead."""
+    angular: AngularSpeed
+    """Greatest turning speed."""
+    linear_acceleration: LinearAcceleration
+    """How fast it may change its speed."""
+    angular_acceleration: AngularAcceleration
+    """How fast it may change its turning."""
 
 
 class Working(Part):

@@ -8,8 +8,10 @@ from typing import Annotated
 
 import typer
 
+from momantu_bt.cli.help import help_of
 from momantu_bt.cli.listing import listing
 from momantu_bt.cli.naming import robot_of
+from momantu_bt.cli.robots_schema import schema
 from momantu_bt.plugins import ROBOTS
 from momantu_bt.robot import RobotDescription
 
@@ -52,6 +54,9 @@ def show_one(
     typer.echo(about["name"])
     for line in robot_lines(about):
         typer.echo(line)
+
+
+robots.command("schema", help=help_of(schema))(schema)
 
 
 def _about(describe: Description) -> str:

@@ -2,26 +2,20 @@
 
 from __future__ import annotations
 
-import json
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from momantu_bt.cli.schema_file import Out, put_schema
 from momantu_bt.plugins import ROBOTS, WORLDS, PluginError, load
-from momantu_bt.record.files import OutputError, check_writable, write_whole
 from momantu_bt.skill import Skill
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.schema import tree_schema
 from momantu_bt.tree.schema_values import Names
 
-EXIT_WRONG_INPUT = 2
-
 
 def schema(
-    out: Annotated[
-        Path | None, typer.Option("--out", "-o", help="Write to this file; else print it.")
-    ] = None,
+    out: Out = None,
     world: Annotated[
         str | None, typer.Option(help="Complete this world's places and surfaces.")
     ] = None,
@@ -36,18 +30,7 @@ def schema(
       momantu-bt skills schema --world four_rooms --robot fetch -o trees/schema.json
     """
     registry = Registry.installed()
-    text = json.dumps(tree_schema(_skills(registry), _names(world, robot)), indent=2) + "\n"
-    if out is None:
-        typer.echo(text, nl=False)
-        return 0
-    try:
-        check_writable(out)
-        write_whole(out, text)
-    except OutputError as error:
-        typer.echo(f"momantu-bt: {error}", err=True)
-        return EXIT_WRONG_INPUT
-    typer.echo(f"schema: {out}; begin a tree with `# yaml-language-server: $schema={out}`")
-    return 0
+    return put_schema(tree_schema(_skills(registry), _names(world, robot)), out, "a tree")
 
 
 def _skills(registry: Registry) -> dict[str, type[Skill]]:

@@ -15,8 +15,12 @@ MASS: Mapping[str, float] = {"kg": 1.0, "g": 0.001}
 FORCE: Mapping[str, float] = {"N": 1.0}
 TIME: Mapping[str, float] = {"s": 1.0, "ms": 0.001, "min": 60.0}
 
-SPEED: Mapping[str, float] = {"m/s": 1.0, "cm/s": 0.01, "rad/s": 1.0, "deg/s": math.pi / 180.0}
-ACCELERATION: Mapping[str, float] = {"m/s2": 1.0, "rad/s2": 1.0, "deg/s2": math.pi / 180.0}
+LINEAR_SPEED: Mapping[str, float] = {"m/s": 1.0, "cm/s": 0.01}
+ANGULAR_SPEED: Mapping[str, float] = {"rad/s": 1.0, "deg/s": math.pi / 180.0}
+JOINT_SPEED: Mapping[str, float] = {**ANGULAR_SPEED, **LINEAR_SPEED}
+LINEAR_ACCELERATION: Mapping[str, float] = {"m/s2": 1.0, "cm/s2": 0.01}
+ANGULAR_ACCELERATION: Mapping[str, float] = {"rad/s2": 1.0, "deg/s2": math.pi / 180.0}
+JOINT_ACCELERATION: Mapping[str, float] = {**ANGULAR_ACCELERATION, **LINEAR_ACCELERATION}
 
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([A-Za-z°%][\w/°%]*)\s*")
 
@@ -89,20 +93,44 @@ Size: TypeAlias = Annotated[
     _written(LENGTH, exclusiveMinimum=0),
 ]
 """A length above zero."""
-Speed: TypeAlias = Annotated[
+LinearSpeed: TypeAlias = Annotated[
     float,
-    BeforeValidator(reader("a speed", SPEED)),
+    BeforeValidator(reader("a speed", LINEAR_SPEED)),
     Field(gt=0),
-    _written(SPEED, exclusiveMinimum=0),
+    _written(LINEAR_SPEED, exclusiveMinimum=0),
 ]
-"""m/s or rad/s."""
-Acceleration: TypeAlias = Annotated[
+AngularSpeed: TypeAlias = Annotated[
     float,
-    BeforeValidator(reader("an acceleration", ACCELERATION)),
+    BeforeValidator(reader("a turning speed", ANGULAR_SPEED)),
     Field(gt=0),
-    _written(ACCELERATION, exclusiveMinimum=0),
+    _written(ANGULAR_SPEED, exclusiveMinimum=0),
 ]
-"""m/s2 or rad/s2."""
+JointSpeed: TypeAlias = Annotated[
+    float,
+    BeforeValidator(reader("a joint's speed", JOINT_SPEED)),
+    Field(gt=0),
+    _written(JOINT_SPEED, exclusiveMinimum=0),
+]
+"""rad/s of a joint that turns, m/s of one that slides."""
+LinearAcceleration: TypeAlias = Annotated[
+    float,
+    BeforeValidator(reader("an acceleration", LINEAR_ACCELERATION)),
+    Field(gt=0),
+    _written(LINEAR_ACCELERATION, exclusiveMinimum=0),
+]
+AngularAcceleration: TypeAlias = Annotated[
+    float,
+    BeforeValidator(reader("a turning acceleration", ANGULAR_ACCELERATION)),
+    Field(gt=0),
+    _written(ANGULAR_ACCELERATION, exclusiveMinimum=0),
+]
+JointAcceleration: TypeAlias = Annotated[
+    float,
+    BeforeValidator(reader("a joint's acceleration", JOINT_ACCELERATION)),
+    Field(gt=0),
+    _written(JOINT_ACCELERATION, exclusiveMinimum=0),
+]
+"""rad/s2 of a joint that turns, m/s2 of one that slides."""
 JointPosition: TypeAlias = Annotated[
     float,
     BeforeValidator(reader("a joint's position", {**ANGLE, **LENGTH})),

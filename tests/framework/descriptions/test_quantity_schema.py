@@ -10,18 +10,26 @@ from pydantic import TypeAdapter, ValidationError
 
 from momantu_bt.descriptions.quantities import (
     UNITS_KEY,
-    Acceleration,
     Angle,
+    AngularAcceleration,
+    AngularSpeed,
     Force,
+    JointAcceleration,
     JointPosition,
+    JointSpeed,
     Length,
+    LinearAcceleration,
+    LinearSpeed,
     Mass,
     Size,
-    Speed,
     Time,
 )
 
-KINDS = (Length, Angle, Mass, Force, Time, Size, Speed, Acceleration, JointPosition)
+KINDS = (
+    *(Length, Size, Angle, Mass, Force, Time),
+    *(LinearSpeed, AngularSpeed, LinearAcceleration, AngularAcceleration),
+    *(JointPosition, JointSpeed, JointAcceleration),
+)
 WORDS = st.one_of(
     st.floats(-10, 10),
     st.integers(-3, 3),

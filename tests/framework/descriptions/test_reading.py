@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
 
 from momantu_bt.descriptions.findings import checked
-from momantu_bt.descriptions.quantities import JointPosition, Length, Speed, unit_of
+from momantu_bt.descriptions.quantities import JointPosition, JointSpeed, Length, unit_of
 from momantu_bt.descriptions.reading import DescriptionError, Reading, read_text
 
 FILE = Path("thing.yaml")
@@ -90,5 +90,5 @@ def test_what_is_no_length_is_refused(wrong: object) -> None:
 
 
 def test_units_of_speeds_have_a_slash() -> None:
-    assert TypeAdapter(Speed).validate_python("36 deg/s") == pytest.approx(math.radians(36))
+    assert TypeAdapter(JointSpeed).validate_python("36 deg/s") == pytest.approx(math.radians(36))
     assert [unit_of(text) for text in ("36 deg/s", "5", 5, "2 m")] == ["deg/s", None, None, "m"]

@@ -8,13 +8,10 @@ from typing import Annotated, Any
 
 import typer
 
-from momantu_bt.descriptions.quantities import UNITS_KEY
+from momantu_bt.descriptions.schema import editor_schema
 from momantu_worlds.verbs.words import words_of
 
 EXIT_WRONG_INPUT = 2
-NAMING = ("properties", "$defs")
-"""Keys of a schema beneath which every key is a name, not a word of schemas."""
-DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 
 def schema(
@@ -55,23 +52,4 @@ def world_schema() -> dict[str, Any]:
             words = words_of(part, key)
             if words is not None:
                 inner["description"] = words
-    return {"$schema": DIALECT, **_told(made), "title": "momantu-bt world file"}
-
-
-def _told(schema: Any) -> Any:
-    """A schema whose quantities name their units, without the titles that repeat the keys."""
-    if isinstance(schema, list):
-        return [_told(each) for each in schema]
-    if not isinstance(schema, dict):
-        return schema
-    told: dict[str, Any] = {}
-    for key, value in schema.items():
-        if key in NAMING:
-            told[key] = {name: _told(each) for name, each in value.items()}
-        elif key not in ("title", UNITS_KEY):
-            told[key] = value if key == "default" else _told(value)
-    if UNITS_KEY in schema:
-        first, *others = schema[UNITS_KEY]
-        unit = f"{first}, or written with a unit: {', '.join((first, *others))}"
-        told["description"] = " ".join(filter(None, [schema.get("description"), f"[{unit}]"]))
-    return told
+    return editor_schema(made, "momantu-bt world file")

@@ -1,0 +1,28 @@
+"""`momantu-bt robots schema`: what an editor completes in robot files."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from momantu_bt.cli.schema_file import Out, put_schema
+from momantu_bt.descriptions.schema import editor_schema
+
+
+def robot_schema() -> dict[str, Any]:
+    """The schema, from the models that read robot files."""
+    from momantu_bt.robots.robot_file import RobotFile
+
+    made = RobotFile.model_json_schema(mode="validation")
+    return editor_schema(made, "momantu-bt robot file")
+
+
+def schema(out: Out = None) -> int:
+    """Print a JSON Schema of robot files.
+
+    With it editors complete keys, show what they mean, and mark what is wrong while it is typed;
+    reading the file says more.
+
+    Examples:
+      momantu-bt robots schema -o robot.schema.json
+    """
+    return put_schema(robot_schema(), out, "a robot file")
