@@ -10,6 +10,8 @@ SUFFIX = ".yaml"
 """Of bundled trees."""
 SUFFIXES = (SUFFIX, ".yml", ".xml", ".btproj")
 """Of tree files in either spelling."""
+VALUES = "values"
+"""The folder of values for `--values`, beside the bundled trees."""
 _PACKAGE = Path(__file__).resolve().parent.parent
 
 
@@ -31,7 +33,8 @@ def bundled() -> dict[str, Path]:
     if folder is None:
         return {}
     paths = [*sorted(folder.glob(f"*{SUFFIX}")), *sorted(folder.glob(f"*/*{SUFFIX}"))]
-    return {path.relative_to(folder).with_suffix("").as_posix(): path for path in paths}
+    trees = [path for path in paths if path.parent != folder / VALUES]
+    return {path.relative_to(folder).with_suffix("").as_posix(): path for path in trees}
 
 
 def tree_files(folder: Path) -> list[Path]:

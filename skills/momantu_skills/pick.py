@@ -60,7 +60,9 @@ class Pick(Skill):
         self._check_start(arm)
         yield from arm.settle()
         yield from self._look(arm)
-        plan = yield from planned_in_sight(arm, lambda: self._plan(arm), THINKING)
+        plan = yield from planned_in_sight(
+            arm, lambda: self._plan(arm), lambda plan: plan.transit, THINKING
+        )
         yield from self._reach(arm, plan)
         rest = yield from self._close(arm, plan)
         yield from self._lift(arm, plan, rest)

@@ -58,7 +58,9 @@ class Place(Skill):
         yield from arm.settle()
         self.planning_scene.support(self.plane)
         yield from self._look(arm, self.spots[0].position)
-        plan = yield from planned_in_sight(arm, lambda: self._plan(arm, held), THINKING)
+        plan = yield from planned_in_sight(
+            arm, lambda: self._plan(arm, held), lambda plan: plan.transit, THINKING
+        )
         self._spot = plan.odom_from_object
         for trajectory in plan.transit:
             yield from arm.follow(trajectory, "carrying")

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import difflib
-from typing import Any
+from collections.abc import Generator, Sequence
+from typing import TYPE_CHECKING, Any
 
 from momantu_bt.claim import Claim, JointsAt
 from momantu_bt.failure import Failure, FailureValue
-from momantu_bt.messages import JointPositions
+from momantu_bt.geometry import Array
+from momantu_bt.messages import JointPositions, JointTrajectory
 from momantu_bt.robot import ARM, CAMERA_CARRIER, Robot
-from momantu_bt.skill import In, Needs, Run, Skill, compute
+from momantu_bt.skill import Compute, In, Needs, Run, Skill, compute
+
+if TYPE_CHECKING:
+    from momantu_skills.manipulation.arm import Arm
 
 THINKING = 0.2
 """s that planning is given: several times its median."""
@@ -46,14 +51,26 @@ class ResetPose(Skill):
         goal = arm.posed(wanted)
         if abs(goal - arm.joints).max() > CLOSE:
             self.planning_scene.observe(robot)
-            trajectories = yield from compute(
-                lambda: arm.route([goal], self.planning_scene.held), THINKING
-            )
-            for trajectory in trajectories:
+            for trajectory in (yield from self._way(arm, goal)):
                 for phase in arm.follow(trajectory, "moving"):
                     self._turn_camera(robot, wanted)
                     yield phase
         yield from self._finish_camera(robot, wanted)
+
+    def _way(
+        self, arm: Arm, goal: Array
+    ) -> Generator[str | Compute, Any, Sequence[JointTrajectory]]:
+        """The way to the pose; with something in the hand, where the camera has looked."""
+        from momantu_skills.manipulation.blind import planned_in_sight
+
+        held = self.planning_scene.held
+        if held is None:
+            return (yield from compute(lambda: arm.route([goal], held), THINKING))
+        return (
+            yield from planned_in_sight(
+                arm, lambda: arm.route([goal], held), lambda way: way, THINKING
+            )
+        )
 
     def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
         """The joints of arm and camera are where the pose has them, said or denied."""

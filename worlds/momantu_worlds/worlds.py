@@ -100,3 +100,5 @@ def _bundled(name: str) -> WorldOfFile:
 
 
 four_rooms = _bundled("four_rooms")
+small_flat = _bundled("small_flat")
+warehouse = _bundled("warehouse")

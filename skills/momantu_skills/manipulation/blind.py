@@ -7,7 +7,7 @@ furniture: a narrow view leaves out what stands at a table's end, and the cupboa
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Sequence
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -33,31 +33,26 @@ ALONG = 3
 """Points of the hand's way that must be in doubt to be worth a look: one may be noise."""
 
 
-class Way(Protocol):
-    """A plan with a way to its start."""
-
-    @property
-    def transit(self) -> Sequence[JointTrajectory]:
-        """Trajectories, one after the other."""
-        ...
-
-
-W = TypeVar("W", bound=Way)
+P = TypeVar("P")
 
 
 def planned_in_sight(
-    arm: Arm, plan: Callable[[], W], thinking: float
-) -> Generator[str | Compute, Any, W]:
-    """A plan whose way over surfaces was looked at, as far as the camera can be turned there.
+    arm: Arm,
+    plan: Callable[[], P],
+    way: Callable[[P], Sequence[JointTrajectory]],
+    thinking: float,
+) -> Generator[str | Compute, Any, P]:
+    """A plan whose way was looked at where it leads unseen, as far as the camera can be turned.
 
-    thinking: s that one planning is given. A camera that the hand carries comes along its way
-    itself, and looking elsewhere would lead the hand elsewhere first; then the plan is just made.
+    way: of a plan, one trajectory after the other. thinking: s that one planning is given. A
+    camera that the hand carries comes along its way itself, and looking elsewhere would lead the
+    hand elsewhere first; then the plan is just made.
     """
     from momantu_skills.perception.looking import look_at
 
-    made: W = yield from compute(plan, thinking)
+    made: P = yield from compute(plan, thinking)
     for _ in range(0 if arm.robot.description.eye_in_hand else FURTHER):
-        doubtful = blind_spot(arm, made.transit)
+        doubtful = blind_spot(arm, way(made))
         if doubtful is None:
             break
         try:

@@ -32,6 +32,16 @@ class SegmentConfig:
     """Lower things are the surface's own unevenness, or paper."""
     side_range: float = 0.012
     """A cell whose points span more height than this shows a side, not a top."""
+    overhead: float = 0.2
+    """Level surfaces this high above may hang over what stands here: boards of a shelf."""
+    overhead_area: float = 0.10
+    """m2 that such a surface shows at least; tops of things on a table are a tenth of it."""
+    overhead_cell: float = 0.02
+    """Grid over which that area is counted."""
+    overhead_slice: float = 0.02
+    """Thickness of the slices in which it is looked for."""
+    overhead_gap: float = 0.06
+    """How far below its top such a surface begins: a board's thickness, and noise."""
     rim: float = 0.008
     """The uppermost part of a side's cell, which may already be the top."""
 
@@ -64,9 +74,28 @@ def things_on(support: Support, config: SegmentConfig | None = None) -> list[Thi
     """Everything that stands on the surface, in the order of the grid cells it covers."""
     config = config or SegmentConfig()
     points = support.points - [0.0, 0.0, support.height]
-    standing = (points[:, 2] > config.floor) & (points[:, 2] < config.ceiling) & ~support.on_plane
+    top = headroom(support, config)
+    standing = (points[:, 2] > config.floor) & (points[:, 2] < top) & ~support.on_plane
     standing[standing] = depth_inside(points[standing, :2], support.outline) > -config.edge
     return group(points[standing], config)
+
+
+def headroom(support: Support, config: SegmentConfig) -> float:
+    """How high above the surface things may stand, m: the ceiling, or what hangs over it."""
+    points = support.points - [0.0, 0.0, support.height]
+    above = points[(points[:, 2] > config.overhead) & (points[:, 2] < config.ceiling)]
+    above = above[depth_inside(above[:, :2], support.outline) > 0.0]
+    if not len(above):
+        return config.ceiling
+    grid = Grid.over(above[:, :2], config.overhead_cell)
+    size = grid.shape[0] * grid.shape[1]
+    slices = np.floor((above[:, 2] - config.overhead) / config.overhead_slice).astype(np.int64)
+    covered = np.unique(slices * size + grid.cells(above[:, :2]))
+    areas = np.bincount(covered // size) * config.overhead_cell**2
+    wide = np.flatnonzero(areas >= config.overhead_area)
+    if not len(wide):
+        return config.ceiling
+    return float(config.overhead + int(wide[0]) * config.overhead_slice - config.overhead_gap)
 
 
 def group(points: Array, config: SegmentConfig) -> list[Thing]:

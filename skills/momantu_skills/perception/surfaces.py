@@ -11,7 +11,7 @@ from momantu_bt.frames import ODOM
 from momantu_bt.geometry import Array, Pose, Transform, quaternion_from_axis_angle
 from momantu_bt.messages import SupportPlane
 from momantu_skills.perception.planes import Support, measure_support
-from momantu_skills.perception.segment import SegmentConfig, Thing, things_on
+from momantu_skills.perception.segment import SegmentConfig, Thing, headroom, things_on
 from momantu_skills.perception.spots import SpotConfig, free_spots, survey_ground
 from momantu_skills.perception.surveys import SurfaceRegion
 from momantu_skills.perception.views import View
@@ -42,7 +42,7 @@ def surroundings(
     if support is None:
         return None
     things = things_on(support, segments)
-    ground = survey_ground(support, segments.floor, segments.ceiling, config)
+    ground = survey_ground(support, segments.floor, headroom(support, segments), config)
     robot = odom_from_base.position[:2]
     places = free_spots(ground, support.outline, near[:2], robot, radius, config)
     turn = quaternion_from_axis_angle((0.0, 0.0, 1.0), odom_from_base.yaw)

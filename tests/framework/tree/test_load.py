@@ -30,6 +30,7 @@ def test_a_file_by_path(folder: Path, registry: Registry) -> None:
 
 def test_bundled_trees_by_name() -> None:
     assert {"bring_object", "bring_object_plain"} <= bundled().keys()
+    assert not [name for name in bundled() if name.startswith("values/")]
     assert find("bring_object").name == "bring_object.yaml"
     assert find("examples/patrol").parts[-2:] == ("examples", "patrol.yaml")
 

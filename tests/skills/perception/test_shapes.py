@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from momantu_skills.perception.planes import measure_support
-from momantu_skills.perception.segment import SegmentConfig, Thing, things_on
+from momantu_skills.perception.segment import SegmentConfig, Thing, headroom, things_on
 from momantu_skills.perception.shapes import Shape, describe
 from momantu_skills.perception.splitting import split
 
@@ -93,3 +93,22 @@ def test_cans_that_touch_are_split(viewed: Any, bearing: float) -> None:
 def test_one_can_is_not_split(viewed: Any) -> None:
     (thing,), _ = things(viewed, [at(0.95, 0.1, 0.13, 0.035)])
     assert len(split(thing, SegmentConfig())) == 1
+
+
+def test_a_board_above_is_no_thing_and_joins_none(viewed: Any) -> None:
+    below = Block((0.6, 1.2, 0.03), (1.0, 0.0, TOP - 0.015))
+    above = Block((0.6, 1.2, 0.03), (1.25, 0.0, TOP + 0.425))
+    views = viewed([below, above, at(0.85, 0.0, 0.12, 0.035)], pans=(-0.15, 0.15))
+    support = measure_support(views, 0.66, 0.78)
+    assert support is not None
+    config = SegmentConfig()
+    assert config.overhead < headroom(support, config) < 0.425
+    found = [thing for thing in things_on(support, config) if len(thing.points) > 200]
+    assert [thing.height for thing in found] == pytest.approx([0.12], abs=0.01)
+
+
+def test_nothing_above_leaves_the_whole_ceiling(viewed: Any) -> None:
+    box = Block((0.2, 0.2, 0.3), (0.95, 0.1, TOP + 0.15))
+    support = measure_support(viewed([TABLE, box]), 0.66, 0.78)
+    assert support is not None
+    assert headroom(support, SegmentConfig()) == SegmentConfig().ceiling

@@ -9,7 +9,7 @@ from types import MappingProxyType
 from momantu_bt.geometry import Transform
 from momantu_bt.world import Site
 from momantu_worlds.scenes.bodies import Body, BodyTop, Box, Episode, Gap, Goal, Part, Picture
-from momantu_worlds.scenes.furniture import Size3, furniture, shelf_with
+from momantu_worlds.scenes.furniture import Size3, boarded, furniture
 from momantu_worlds.scenes.given_bodies import given_bodies
 from momantu_worlds.scenes.layout import FRICTION, Layout, PlacedTag, PlacedThing
 from momantu_worlds.scenes.mesh_files import mesh_parts
@@ -124,7 +124,7 @@ def piece_parts(world: WorldFile, piece: Piece, without: Collection[int] = ()) -
         return mesh_parts(piece.mesh, file, standing=True, color=piece.color)
     if piece.boards:
         tops = (top for number, top in enumerate(piece.boards, 1) if number not in without)
-        return shelf_with(piece.extent, piece.color, tops)
+        return boarded(str(piece.kind), piece.extent, piece.color, tops)
     assert piece.kind is not None
     return furniture(piece.kind, piece.size, piece.color)
 

@@ -21,6 +21,10 @@ BOARD = 0.03
 """m; thickness of boards and panels."""
 LEG = 0.05
 """m; thickness of table legs."""
+POST = 0.05
+"""m; thickness of a rack's posts."""
+_DECK: Color = (0.73, 0.64, 0.50)
+"""Of a rack's boards: chipboard, whatever its posts are painted in."""
 
 
 def table(size: Size3, color: Color) -> tuple[Part, ...]:
@@ -88,18 +92,15 @@ def shelf(size: Size3, color: Color) -> tuple[Part, ...]:
     boards = max(2, round(height / 0.38) + 1)
     gap = (height - BOARD) / (boards - 1)
     middles = (BOARD / 2 + i * gap for i in range(boards))
-    return (*_shelf_frame(size, color), *(_board(size, middle, color) for middle in middles))
+    return (*_shelf_frame(size, color), *(_shelf_board(size, m, color) for m in middles))
 
 
-def shelf_with(size: Size3, color: Color | None, tops: Iterable[float]) -> tuple[Part, ...]:
-    """As `shelf`, with boards whose tops are at these heights, m."""
-    frame = _shelf_frame(size, color or CATALOGUE["shelf"][2])
-    return (*frame, *(shelf_board(size, top, color) for top in tops))
-
-
-def shelf_board(size: Size3, top: float, color: Color | None) -> Part:
-    """One board of a shelf, its top at a height, m."""
-    return _board(size, top - BOARD / 2, color or CATALOGUE["shelf"][2])
+def rack(size: Size3, color: Color) -> tuple[Part, ...]:
+    """Four posts with boards about every 0.5 m, open to the front and to the back."""
+    height = size[2]
+    boards = max(2, round(height / 0.5))
+    middles = (BOARD / 2 + 0.1 + i * (height - 0.1 - BOARD) / (boards - 1) for i in range(boards))
+    return (*_rack_frame(size, color), *(_rack_board(size, m, color) for m in middles))
 
 
 def _shelf_frame(size: Size3, color: Color) -> tuple[Part, ...]:
@@ -112,9 +113,37 @@ def _shelf_frame(size: Size3, color: Color) -> tuple[Part, ...]:
     )
 
 
-def _board(size: Size3, middle: float, color: Color) -> Part:
+def _shelf_board(size: Size3, middle: float, color: Color) -> Part:
     depth, width, _ = size
     return block((depth - 0.01, width - 2 * BOARD, BOARD), (0.005, 0, middle), color)
+
+
+def _rack_frame(size: Size3, color: Color) -> tuple[Part, ...]:
+    depth, width, height = size
+    at_x, at_y = (depth - POST) / 2, (width - POST) / 2
+    return tuple(
+        block((POST, POST, height), (a * at_x, b * at_y, height / 2), color)
+        for a, b in product((-1, 1), (-1, 1))
+    )
+
+
+def _rack_board(size: Size3, middle: float, color: Color) -> Part:
+    """A board between the posts at its ends."""
+    depth, width, _ = size
+    return block((depth, width - 2 * POST, BOARD), (0, 0, middle), _DECK)
+
+
+def boarded(kind: str, size: Size3, color: Color | None, tops: Iterable[float]) -> tuple[Part, ...]:
+    """A shelf or rack with boards whose tops are at these heights, m."""
+    frame, _ = BOARDED[kind]
+    own = color or CATALOGUE[kind][2]
+    return (*frame(size, own), *(board(kind, size, top, color) for top in tops))
+
+
+def board(kind: str, size: Size3, top: float, color: Color | None) -> Part:
+    """One board of a shelf or rack, its top at a height, m."""
+    _, make = BOARDED[kind]
+    return make(size, top - BOARD / 2, color or CATALOGUE[kind][2])
 
 
 def crate(size: Size3, color: Color) -> tuple[Part, ...]:
@@ -219,6 +248,7 @@ CATALOGUE: Mapping[str, tuple[Maker, Size3, Color]] = MappingProxyType(
         "chair": (chair, (0.45, 0.45, 0.90), (0.30, 0.36, 0.44)),
         "sofa": (sofa, (0.85, 1.90, 0.80), (0.42, 0.47, 0.50)),
         "shelf": (shelf, (0.35, 1.60, 1.90), (0.62, 0.52, 0.42)),
+        "rack": (rack, (0.60, 2.40, 1.80), (0.20, 0.34, 0.56)),
         "crate": (crate, (0.45, 0.55, 0.50), (0.70, 0.55, 0.36)),
         "cabinet": (cabinet, (0.45, 1.20, 0.90), (0.55, 0.56, 0.58)),
         "counter": (counter, (0.60, 1.80, 0.88), (0.80, 0.79, 0.76)),
@@ -229,6 +259,11 @@ CATALOGUE: Mapping[str, tuple[Maker, Size3, Color]] = MappingProxyType(
     }
 )
 """Kind -> how to make it, its usual size and its usual colour."""
+
+BOARDED: Mapping[
+    str, tuple[Callable[[Size3, Color], tuple[Part, ...]], Callable[[Size3, float, Color], Part]]
+] = MappingProxyType({"shelf": (_shelf_frame, _shelf_board), "rack": (_rack_frame, _rack_board)})
+"""Kinds whose boards a world file may place: how to make the frame, and one board."""
 
 
 def furniture(kind: str, size: Size3 | None = None, color: Color | None = None) -> tuple[Part, ...]:

@@ -6,7 +6,7 @@ import math
 
 from momantu_bt.geometry import Pose2D
 from momantu_worlds.scenes.bodies import Box, Part
-from momantu_worlds.scenes.furniture import shelf_board
+from momantu_worlds.scenes.furniture import board
 from momantu_worlds.scenes.layout import PlacedTable
 from momantu_worlds.scenes.world_file import WorldFile
 from momantu_worlds.scenes.world_furniture import Piece, Table
@@ -46,7 +46,7 @@ def board_surface(shelf: Piece, table: Table, pose: Pose2D) -> PlacedTable:
 
 def board_part(shelf: Piece, index: int) -> Part:
     """A board of a shelf, in the shelf's frame."""
-    return shelf_board(shelf.extent, shelf.boards[index], shelf.color)
+    return board(str(shelf.kind), shelf.extent, shelf.boards[index], shelf.color)
 
 
 def carriers(world: WorldFile) -> dict[str, tuple[str, ...]]:

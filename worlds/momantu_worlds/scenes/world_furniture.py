@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from momantu_bt.descriptions.quantities import Size
 from momantu_bt.geometry import Pose2D
-from momantu_worlds.scenes.furniture import Size3, usual_size
+from momantu_worlds.scenes.furniture import BOARDED, Size3, usual_size
 from momantu_worlds.scenes.world_values import (
     Name,
     NotNegative,
@@ -29,6 +29,7 @@ FurnitureKind: TypeAlias = Literal[
     "sofa",
     "bed",
     "shelf",
+    "rack",
     "crate",
     "pallet",
     "cabinet",
@@ -71,8 +72,8 @@ class MeshUse(Part):
 class Piece(Part):
     """One piece of furniture: of a kind of the catalogue, or a mesh.
 
-    boards: heights of a shelf's boards, m. moves: an episode may move it, as `unknown` says;
-    shift, turn: every episode does, by up to so much.
+    boards: heights of the boards of a shelf or rack, m. moves: an episode may move it, as
+    `unknown` says; shift, turn: every episode does, by up to so much.
     """
 
     kind: FurnitureKind | None = None
@@ -91,8 +92,8 @@ class Piece(Part):
             raise ValueError("write a kind of the catalogue or a mesh")
         if self.mesh is not None and self.size is not None:
             raise ValueError("the size of a mesh is written as mesh.size")
-        if self.boards and self.kind != "shelf":
-            raise ValueError("only a shelf has boards")
+        if self.boards and self.kind not in BOARDED:
+            raise ValueError(f"only a {' or a '.join(BOARDED)} has boards")
         if list(self.boards) != sorted(set(self.boards)):
             raise ValueError("boards are heights from below upwards, each once")
         if self.boards and self.boards[-1] > self.extent[2]:
