@@ -29,6 +29,8 @@ MARGIN = 0.4
 """m of floor that is drawn around everything."""
 BIG = 0.18
 """m; loose bodies that are smaller either way are drawn, but not named: there are too many."""
+BENEATH = 12
+"""px; of a surface's name beneath its edge."""
 ARROW = 0.28
 """m; length of the mark that tells which way a place looks."""
 
@@ -162,7 +164,8 @@ def _names(canvas: Canvas, scenario: Scenario) -> None:
     for name, (map_from_top, size) in scenario.surfaces.items():
         height = float(map_from_top.position[2])
         x, y, _ = map_from_top.position
-        below = canvas.scale * math.hypot(*size) / 2
+        corners = _flat(map_from_top, np.array([(1, 1), (-1, 1), (-1, -1), (1, -1)]) * size / 2)
+        below = canvas.scale * float(y - corners[:, 1].min()) + BENEATH
         canvas.text(name, (x, y), GREEN, 15, above=-below)
         canvas.text(f"{height:.2f} m high", (x, y), GREEN, 12, above=-below - 15)
     for body in scenario.bodies:
