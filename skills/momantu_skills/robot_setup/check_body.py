@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+from lxml import etree
 
 from momantu_bt.robot import REQUIRED_POSES, ActuatorKind, RobotDescription
 from momantu_skills.manipulation.collision import CollisionWorld, body_pairs
@@ -187,3 +188,28 @@ def _forces(description: RobotDescription, body: Body) -> Iterator[Remark]:
                 f"write `drives: {{{weak[0]}: {{force: …}}}}`, Nm or N",
                 ("actuators", name),
             )
+
+
+def check_looks(description: RobotDescription) -> Iterator[Remark]:
+    """Links that touch things and that no camera sees."""
+    root = read_urdf(description)
+    bare = [
+        str(link.get("name"))
+        for link in root.findall("link")
+        if link.find("collision") is not None and link.find("visual") is None
+    ]
+    if bare:
+        yield Remark(
+            "warning",
+            "invisible",
+            f"{len(bare)} links have a collision shape and nothing to look at: simulated cameras "
+            f"and pictures do not show {', '.join(bare[:4])}{', …' if len(bare) > 4 else ''}",
+            "give them a <visual>, the same shape at least",
+            ("parts",),
+        )
+
+
+def read_urdf(description: RobotDescription) -> etree._Element:
+    """The assembled URDF's element."""
+    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False)
+    return etree.fromstring(description.urdf.read_bytes(), parser)

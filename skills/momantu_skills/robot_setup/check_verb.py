@@ -53,20 +53,22 @@ def check_robot(description: RobotDescription) -> list[Finding]:
     Raises:
         SetupError: the URDF is no mechanism, or has a collision shape without volume.
     """
-    from lxml import etree
-
     from momantu_skills.manipulation.model import ArmModel
     from momantu_skills.robot_setup.base import find_stand
     from momantu_skills.robot_setup.body import Body
-    from momantu_skills.robot_setup.check_body import check_footprint, check_limits, check_poses
+    from momantu_skills.robot_setup.check_body import (
+        check_footprint,
+        check_limits,
+        check_looks,
+        check_poses,
+        read_urdf,
+    )
     from momantu_skills.robot_setup.check_hand import check_hand, check_reach
     from momantu_skills.robot_setup.check_sensors import check_sensors
     from momantu_skills.robot_setup.remarks import located
     from momantu_skills.robot_setup.skeleton import read_skeleton
 
-    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False)
-    skeleton = read_skeleton(etree.fromstring(description.urdf.read_bytes(), parser))
-    body = Body(skeleton, description)
+    body = Body(read_skeleton(read_urdf(description)), description)
     stand = find_stand(body)
     return located(
         description,
@@ -74,6 +76,7 @@ def check_robot(description: RobotDescription) -> list[Finding]:
             *check_poses(description, ArmModel(description)),
             *check_footprint(description, body, stand),
             *check_limits(description, body),
+            *check_looks(description),
             *check_sensors(description, body),
             *check_hand(description, body),
             *check_reach(description, body, stand),

@@ -26,6 +26,10 @@ MARGINS = (0.03, 0.015, 0.005)
 """m that links keep from each other, tried in turn."""
 PARTING = 60
 """Postures in which a pair that stays nearer than a margin shows itself."""
+AIMING = 6
+"""Times that each joint of a head is turned, ever more finely."""
+LAZY = 1e-3
+"""rad per rad; a head does not turn where that hardly helps."""
 OVER_FLOOR = 0.05
 """m that the arm keeps from the floor."""
 TARGETS = 120
@@ -173,19 +177,19 @@ class PoseFinder:
         head = self.limbs.head
         if head is None or self.eye is None:
             return posture
-        best = _Best()
-        for i in range(400):
-            spread = 0.3 * 0.98**i
-            trial = dict(posture)
-            for name in head.joints:
-                low, high = self.body.skeleton.joints[name].range
-                around = best.posture.get(name, min(max(0.0, low), high))
-                draw = around + spread * (high - low) * float(self.random.normal())
-                trial[name] = min(max(draw, low), high) if i else around
-            cost = self.aside(trial, target)
-            if cost < best.cost:
-                best = _Best(cost, trial)
-        return best.posture
+        ranges = {name: self.body.skeleton.joints[name].range for name in head.joints}
+        aimed = {**posture, **{name: self.body.rest()[name] for name in head.joints}}
+        for turn in range(AIMING):
+            for name, (low, high) in ranges.items():
+                reach = (high - low) * 0.3**turn
+                near = np.linspace(aimed[name] - reach, aimed[name] + reach, 41)
+                tried = [min(max(float(q), low), high) for q in (aimed[name], *near)]
+                aimed[name] = min(tried, key=lambda q: self._off(aimed, name, q, target))
+        return aimed
+
+    def _off(self, posture: dict[str, float], name: str, position: float, target: Array) -> float:
+        """How badly the camera looks at a point, and a little how far a joint is turned."""
+        return self.aside({**posture, name: position}, target) + LAZY * abs(position)
 
     def folded(self, cost: Cost, fixed: dict[str, float]) -> tuple[dict[str, float], float | None]:
         """The cheapest posture of the arm that is clear, by sampling and then small changes.

@@ -17,12 +17,9 @@ def link(
     name: str, shape: str = "", at: str = "0 0 0", mass: float = 1.0, rpy: str = "0 0 0"
 ) -> str:
     inertial = MASS.format(m=mass, i=0.01 * mass) if mass else ""
-    collision = (
-        f'<collision><origin xyz="{at}" rpy="{rpy}"/><geometry>{shape}</geometry></collision>'
-        if shape
-        else ""
-    )
-    return f'<link name="{name}">{inertial}{collision}</link>'
+    placed = f'<origin xyz="{at}" rpy="{rpy}"/><geometry>{shape}</geometry>'
+    both = f"<visual>{placed}</visual><collision>{placed}</collision>" if shape else ""
+    return f'<link name="{name}">{inertial}{both}</link>'
 
 
 def box(x: float, y: float, z: float) -> str:

@@ -142,6 +142,17 @@ def test_an_opening_that_does_not_fit_the_fingers(wrong: Wrong) -> None:
     assert "0.024 m, the fingers' hulls are 0.012 m apart" in finding.message
 
 
+def test_links_that_nobody_sees(rolling_proposal: Proposal, tmp_path: Path) -> None:
+    text = rolling_proposal.prepared.source.read_text()
+    (tmp_path / "bare.urdf").write_text(text.replace("visual>", "ignored>"))
+    text = robot_file(rolling_proposal, tmp_path)
+    source = next(line for line in text.splitlines() if "{urdf: " in line)
+    (tmp_path / "robot.yaml").write_text(text.replace(source, "  r: {urdf: bare.urdf}"))
+    found = [f for f in check_robot(read_robot(tmp_path)) if f.code == "invisible"]
+    assert len(found) == 1
+    assert "13 links" in found[0].message
+
+
 def test_touch_links_without_fingers(wrong: Wrong) -> None:
     found = wrong(("touch_links: [palm, left_finger, right_finger]", "touch_links: [palm]"))
     assert "no-fingers" in {finding.code for finding in found}

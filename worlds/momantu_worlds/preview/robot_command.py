@@ -1,0 +1,69 @@
+"""`momantu-bt robots preview`: a robot in its named poses, before it is run anywhere."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+EXIT_WRONG_INPUT, EXIT_NO_WORLD = 2, 3
+
+
+def preview(
+    robot: Annotated[str, typer.Argument(help="An installed robot's name, or a robot file.")],
+    out: Annotated[
+        Path | None, typer.Option("-o", "--out", help="The PNG file; else the robot's name.")
+    ] = None,
+) -> int:
+    """Draw a robot in its named poses, with its frames and what its camera sees.
+
+    It stands before a table, as far off as it stands to look, on squares of half a metre. Axes are
+    red (x), green (y) and blue (z).
+
+    Exit code 0: the picture is written; 2: the robot or the file is wrong; 3: the robot cannot be
+    simulated, or nothing on this machine renders.
+
+    Examples:
+      momantu-bt robots preview fetch
+      momantu-bt robots preview robots/my_robot/robot.yaml -o my_robot.png
+    """
+    from momantu_bt.robots.named import robot_of
+    from momantu_bt.world import WorldError
+
+    if out is not None and out.suffix.lower() != ".png":
+        return _complain(f"{out} is no .png file; the picture is a PNG", EXIT_WRONG_INPUT)
+    if out is not None and not out.absolute().parent.is_dir():
+        return _complain(f"there is no folder {out.absolute().parent}", EXIT_WRONG_INPUT)
+    description = robot_of(robot)
+    path = out or Path(f"{description.name}.png")
+    try:
+        from momantu_worlds.preview.robot_sheet import robot_sheet
+
+        _write(path, robot_sheet(description))
+    except WorldError as error:
+        return _complain(str(error), EXIT_NO_WORLD)
+    except OSError as error:
+        return _complain(f"{path} cannot be written: {error.strerror}", EXIT_WRONG_INPUT)
+    typer.echo(f"{path}: {description.name}, {len(description.named_poses)} poses")
+    return 0
+
+
+def _complain(message: str, code: int) -> int:
+    typer.echo(f"momantu-bt: {message}", err=True)
+    return code
+
+
+def _write(path: Path, data: bytes) -> None:
+    """Whole or not at all."""
+    handle, name = tempfile.mkstemp(dir=path.absolute().parent, prefix=f".{path.name}.")
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(data)
+        Path(name).chmod(0o644)
+        Path(name).replace(path)
+    except OSError:
+        Path(name).unlink(missing_ok=True)
+        raise
