@@ -12,12 +12,14 @@ from momantu_bt.descriptions.names import nearest
 from momantu_bt.descriptions.quantities import LENGTH, unit_of
 from momantu_bt.descriptions.reading import Place, Reading
 from momantu_bt.frames import Joint, KinematicTree
-from momantu_bt.robot import REQUIRED_POSES
+from momantu_bt.robot import ARM, REQUIRED_POSES
 from momantu_bt.robot_parts import ActuatorKind, CameraSensor, LaserSensor, LidarSensor
 from momantu_bt.robots.robot_file import RobotFile
 
 Finding: TypeAlias = tuple[Place, str]
 
+ROLES = {"base": ActuatorKind.BASE, ARM: ActuatorKind.JOINTS, "gripper": ActuatorKind.GRIPPER}
+"""Actuators that skills name in their `uses`."""
 SLACK = 1e-9
 """rad or m by which a named pose may lie beyond a limit: rounding."""
 
@@ -56,6 +58,7 @@ class _Checks:
     def run(self) -> Iterator[Finding]:
         yield from self._base()
         yield from self._actuators()
+        yield from self._roles()
         yield from self._limits()
         yield from self._groups()
         yield from self._sensors()
@@ -100,6 +103,25 @@ class _Checks:
             for i, joint in enumerate(actuator.joints):
                 if joint in self._moving and joint not in self._robot.joint_limits:
                     yield (*place, i), f"{joint!r} needs a line in `joint_limits`"
+
+    def _roles(self) -> Iterator[Finding]:
+        """Skills know a robot's actuators, and the group that plans for its arm, by name."""
+        actuators, groups = self._robot.actuators, self._robot.groups
+        for name, kind in ROLES.items():
+            if name not in actuators:
+                yield (
+                    ("actuators",),
+                    f"skills move an actuator named {name!r} of kind {kind}; there is none",
+                )
+            elif actuators[name].kind is not kind:
+                yield ("actuators", name), f"skills take {name!r} for one of kind {kind}"
+        if ARM not in groups:
+            yield ("groups",), f"motions are planned for the group {ARM!r}; there is none"
+        elif ARM in actuators and groups[ARM].joints != actuators[ARM].joints:
+            yield (
+                ("groups", ARM, "joints"),
+                "the group and the actuator of this name need the same joints in the same order",
+            )
 
     def _limits(self) -> Iterator[Finding]:
         for name, limit in self._robot.joint_limits.items():

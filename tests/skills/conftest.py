@@ -45,8 +45,14 @@ class FlatRobot(ScriptedRobot):
     boxes: what stands in the world. nearest: least distance of the base's outline to any, m.
     """
 
-    def __init__(self, truth: Pose2D, seed: int = 0, drift: float = 0.02) -> None:
-        super().__init__()
+    def __init__(
+        self,
+        truth: Pose2D,
+        seed: int = 0,
+        drift: float = 0.02,
+        description: RobotDescription | None = None,
+    ) -> None:
+        super().__init__(description)
         self.truth, self.seed, self.drift = truth, seed, drift
         self.boxes: list[Box] = []
         self.nearest = math.inf
@@ -201,8 +207,9 @@ def flat(tmp_path: Path) -> Flat:
         known: Sequence[Box] = (),
         seed: int = 0,
         drift: float = 0.02,
+        description: RobotDescription | None = None,
     ) -> ScriptedWorld:
-        robot = FlatRobot(truth, seed, drift)
+        robot = FlatRobot(truth, seed, drift, description)
         robot.boxes = [*ROOMS, *known, desk, *hidden]
         site = scripted_site(
             map_file=write_map(tmp_path, [*ROOMS, *known, DESK], (-4.5, -3.5, 6.5, 3.5)),

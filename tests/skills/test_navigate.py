@@ -12,7 +12,7 @@ from momantu_skills.navigation.service import LocalizationService
 from momantu_bt.claim import BaseAt, BaseNear
 from momantu_bt.geometry import Pose, Pose2D, Transform, wrap_angle
 from momantu_bt.messages import BaseVelocity
-from momantu_bt.testing import ScriptedRobot, ScriptedWorld
+from momantu_bt.testing import ScriptedRobot, ScriptedWorld, small_robot
 from momantu_bt.testing.skill_run import SkillResult, run_skill
 
 Drive = Callable[..., SkillResult]
@@ -278,3 +278,22 @@ def test_it_does_not_drive_with_an_arm_stretched_out_that_does_not_fold(
     )
     assert result.code == "ARM_STUCK", result.explain()
     assert all(actuator != "base" for _, actuator, goal in stretched_out.commands if goal)
+
+
+def test_a_camera_that_nothing_turns_still_shows_what_the_laser_does_not(
+    flat: Any, drive: Drive
+) -> None:
+    small = small_robot()
+    camera = small.sensors["camera"].model_copy(update={"carrier": None})
+    fixed = small.model_copy(update={"sensors": {**small.sensors, "camera": camera}})
+    world = flat(description=fixed)
+    pictures, blind = [], world.robot.readings["camera"]
+
+    def picture(robot: ScriptedRobot) -> Any:
+        pictures.append(robot.time)
+        return blind(robot)
+
+    world.robot.readings["camera"] = picture
+    _arrived(drive(world, goal=Pose2D(0.0, 1.0, 0.0)), world, Pose2D(0.0, 1.0, 0.0))
+    assert len(pictures) >= 2
+    assert {actuator for _, actuator, _ in world.robot.commands} == {"base"}

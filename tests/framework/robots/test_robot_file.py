@@ -61,6 +61,14 @@ WRONG: list[tuple[str, str, str]] = [
         "joint_limits:\n  arm_trn: {velocity: 1, acceleration: 1}\n",
         "no moving joint 'arm_trn'",
     ),
+    ("  arm: {kind: joints", "  manipulator: {kind: joints", "named 'arm' of kind joints; there"),
+    ("base: {kind: base}", "base: {kind: gripper}", "skills take 'base' for one of kind base"),
+    ("groups:\n  arm:", "groups:\n  hand:", "planned for the group 'arm'; there is none"),
+    (
+        "kind: joints, joints: [arm_turn, arm_bend]",
+        "kind: joints, joints: [arm_bend, arm_turn]",
+        "of this name need the same joints in the same order",
+    ),
 ]
 
 
