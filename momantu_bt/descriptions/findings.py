@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+from dataclasses import replace
 from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
@@ -43,7 +44,7 @@ class _Findings:
         }
         within = {place[:i] for place, _ in findings for i in range(len(place))}
         told = {
-            self._problem(place, finding): None
+            replace(self._problem(place, finding), place=place): None
             for place, finding in findings
             if not (finding["type"] == "missing" and place in misspelt)
             and not (finding["type"] == "too_short" and place in within)

@@ -26,11 +26,12 @@ MOST_ERRORS = 30
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """One thing that is wrong. line and column count from 1."""
+    """One thing that is wrong. line and column count from 1; place: whose they are."""
 
     line: int
     column: int
     message: str
+    place: Place = ()
 
 
 class DescriptionError(WorldError):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import difflib
+import re
 from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any, TypeAlias
@@ -44,8 +46,11 @@ def _count(finding: dict[str, Any]) -> str:
 
 
 def _choice(finding: dict[str, Any]) -> str:
-    message = str(finding["msg"])
-    return f"{_found(finding)} is not possible here; {message[0].lower()}{message[1:]}"
+    possible = re.findall(r"'([^']*)'", str(finding["ctx"]["expected"]))
+    near = difflib.get_close_matches(str(finding["input"]), possible, n=1)
+    hint = f"did you mean {near[0]!r}? Possible" if near else "possible"
+    listed = ", ".join(map(repr, possible)) or finding["ctx"]["expected"]
+    return f"{_found(finding)} is not possible here; {hint}: {listed}"
 
 
 _NAME = "a name: lower-case letters, digits and _, beginning with a letter"

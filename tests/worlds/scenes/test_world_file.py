@@ -51,7 +51,7 @@ CASES = [
         "flag\n",
         ["there is no tag or body 'flag'", "tag, table_a"],
     ),
-    ("  item: can\n", "  item: mug\n", "mug\n", ["there is no object 'mug'", "objects: can"]),
+    ("  item: can\n", "  item: mug\n", "mug\n", ["there is no object 'mug'", "there are: can"]),
     ("  edge: 150 mm ", "  edge: 010x ", "010x", ["'x' is not a unit of a length"]),
     ("  chair_a: {", "  table_a: {", "{kind: chair, at: [-1.20", ["'table_a' is a table already"]),
 ]
@@ -153,7 +153,7 @@ SECTIONS = [
     ("{corner: [0, 0], size: [6, 4]}", "big", "expected a mapping with the keys corner, size"),
     ("boards: [0.1, 0.6]", "boards: [0.6, 0.1]", "heights from below upwards"),
     ("boards: [0.1, 0.6]", "boards: [0.1, 1.6]", "a board at 1.6 m is above 1.2 m"),
-    ("kind: shelf,", "kind: sofa,", "only a shelf has boards"),
+    ("kind: shelf,", "kind: sofa,", "only a shelf or a rack has boards"),
     ("kind: shelf,", "mesh: none.glb, kind: shelf,", "write a kind of the catalogue or a mesh"),
     ("board: 2", "board: 3", "'rack' has 2 boards, counted from 1"),
     ("board_of: rack", "board_of: rak", "did you mean 'rack'?"),
@@ -195,10 +195,27 @@ def test_a_mistake_in_a_section_is_told_once_at_its_line(before, after, words):
 
 def test_what_moves_as_the_unknown_says_carries_no_surface():
     text = STUDIO.replace("{kind: shelf,", "{kind: shelf, moves: true,")
-    assert "write shift and turn, not moves" in str(refusal(text))
+    assert "shift and turn it, instead of moves" in str(refusal(text))
 
 
 def test_more_rooms_than_anybody_draws_are_refused():
     rooms = ", ".join(f"r{i}: {{corner: [{i}, 0], size: [1, 1]}}" for i in range(101))
     text = STUDIO.replace("rooms: {", f"rooms: {{{rooms}, ")
     assert "rooms: " in str(refusal(text))
+
+
+def test_wrong_values_and_wrong_names_are_told_together():
+    text = STUDIO.replace("board: 2", "board: two").replace("on: desk", "on: dsk")
+    text = text.replace("beside: mark", "beside: mrk")
+    messages = [problem.message for problem in refusal(text).problems]
+    assert len(messages) == 3
+    assert "tables.low.board: expected a whole number; found 'two'" in messages
+    assert any("no table 'dsk'; did you mean 'desk'?" in m for m in messages)
+    assert any("no tag or body 'mrk'" in m for m in messages)
+    # what is on `low`, which is wrong in itself, is not held against it
+
+
+def test_after_a_misspelt_section_no_names_are_missed():
+    text = STUDIO.replace("tables:", "tabels:")
+    (problem,) = refusal(text).problems
+    assert "unknown key 'tabels' in the world; did you mean 'tables'?" in problem.message

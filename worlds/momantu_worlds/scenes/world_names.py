@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import difflib
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from typing import TypeAlias
 
+from momantu_bt.descriptions.names import nearest
 from momantu_worlds.scenes.world_file import WorldFile
 from momantu_worlds.scenes.world_furniture import MeshUse
 
@@ -17,14 +17,15 @@ NO_WORLD = "none"
 """What trees and the command line call running without a world."""
 
 
-def dangling(world: WorldFile) -> Iterator[Finding]:
-    """Everything that one part of a file says of another and that is not so."""
+def dangling(world: WorldFile, also: Collection[str] = ()) -> Iterator[Finding]:
+    """Everything that one part of a file says of another and that is not so.
+
+    also: names of parts that are wrong in themselves and were left out.
+    """
     if world.name == NO_WORLD:
         yield ("name",), f"{NO_WORLD!r} means no world at all; choose another name"
     yield from _twice(world)
-    yield from _boards(world)
-    yield from _standing(world)
-    yield from _goal(world)
+    yield from _Names(world, also).findings()
     yield from _files(world)
     for name, problem in world.room_walls.problems.items():
         yield ("doors", name), f"the door {name!r}: {problem}"
@@ -61,61 +62,81 @@ def _a(what: str) -> str:
     return f"{'an' if what[0] in 'aeiou' else 'a'} {what}"
 
 
-def _boards(world: WorldFile) -> Iterator[Finding]:
-    """Boards that are surfaces: their shelf, their number, and whether somebody took it."""
-    taken: dict[tuple[str, int], str] = {}
-    for name, table in world.tables.items():
-        if table.board_of is None or table.board is None:
-            continue
-        piece = world.furniture.get(table.board_of)
-        shelves = [other for other, each in world.furniture.items() if each.boards]
-        if piece is None or not piece.boards:
-            message = no_such(table.board_of, shelves, "shelf with boards", "shelves with boards")
-            yield ("tables", name, "board_of"), message
-        elif table.board > len(piece.boards):
-            message = f"{table.board_of!r} has {len(piece.boards)} boards, counted from 1"
-            yield ("tables", name, "board"), message
-        elif piece.moves:
-            message = f"{table.board_of!r} carries a surface; write shift and turn, not moves"
-            yield ("furniture", table.board_of, "moves"), message
-        other = taken.setdefault((table.board_of, table.board), name)
-        if other != name:
-            yield ("tables", name, "board"), f"this board is {other!r} already"
+class _Names:
+    """Names of what stands on what, and what they point at."""
 
+    def __init__(self, world: WorldFile, also: Collection[str]) -> None:
+        self._world, self._also = world, also
+        self._surfaces = surface_names(world)
 
-def _standing(world: WorldFile) -> Iterator[Finding]:
-    """What stands on a surface that is none."""
-    surfaces = surface_names(world)
-    asked: list[tuple[Place, str]] = []
-    if world.item is not None:
-        asked.append((("item", "on"), world.item.on))
-    if world.tag is not None and world.tag.on is not None:
-        asked.append((("tag", "on"), world.tag.on))
-    for name, note in world.objects.items():
-        asked += [(("objects", name, "on"), top) for top in note.tops]
-    asked += [(("tags", name, "on"), tag.on) for name, tag in world.tags.items() if tag.on]
-    if world.distractors is not None:
-        asked += [(("distractors", "on", i), on) for i, on in enumerate(world.distractors.on or ())]
-    for place, top in asked:
-        if top not in surfaces:
-            yield place, no_such(top, surfaces, "table", "tables")
+    def findings(self) -> Iterator[Finding]:
+        yield from self._boards()
+        for place, top in self._tops():
+            yield from self._missing(place, top, self._surfaces, "table")
+        yield from self._goal()
 
+    def _missing(
+        self, place: Place, name: str, having: Iterable[str], what: str
+    ) -> Iterator[Finding]:
+        names = list(having)
+        if name not in names and name not in self._also:
+            yield place, f"there is no {what} {name!r}{nearest(name, names)}"
 
-def _goal(world: WorldFile) -> Iterator[Finding]:
-    goal = world.goal
-    if goal is None:
-        return
-    things = [*([world.item.name] if world.item is not None else ()), *world.objects]
-    if goal.item not in things:
-        yield ("goal", "item"), no_such(goal.item, things, "object", "objects")
-    surfaces = surface_names(world)
-    if goal.on not in surfaces:
-        yield ("goal", "on"), no_such(goal.on, surfaces, "table", "tables")
-    markers = [*world.all_tags, *world.objects, *surfaces, *world.bodies]
-    if goal.beside is not None and goal.beside not in markers:
-        yield ("goal", "beside"), no_such(goal.beside, markers, "tag or body", "there are")
-    elif goal.beside == goal.item:
-        yield ("goal", "beside"), f"{goal.item!r} cannot stand beside itself"
+    def _boards(self) -> Iterator[Finding]:
+        """Boards that are surfaces: their shelf, their number, and whether somebody took it."""
+        world = self._world
+        taken: dict[tuple[str, int], str] = {}
+        shelves = [name for name, piece in world.furniture.items() if piece.boards]
+        for name, table in world.tables.items():
+            if table.board_of is None or table.board is None:
+                continue
+            place = ("tables", name)
+            yield from self._missing(
+                (*place, "board_of"), table.board_of, shelves, "shelf with boards"
+            )
+            if table.board_of in shelves:
+                piece = world.furniture[table.board_of]
+                if table.board > len(piece.boards):
+                    message = f"{table.board_of!r} has {len(piece.boards)} boards, counted from 1"
+                    yield (*place, "board"), message
+                elif piece.moves:
+                    message = (
+                        f"{table.board_of!r} carries a surface: shift and turn it, instead of moves"
+                    )
+                    yield ("furniture", table.board_of, "moves"), message
+            other = taken.setdefault((table.board_of, table.board), name)
+            if other != name:
+                yield (*place, "board"), f"this board is {other!r} already"
+
+    def _tops(self) -> Iterator[tuple[Place, str]]:
+        """What stands on which surface."""
+        world = self._world
+        if world.item is not None:
+            yield ("item", "on"), world.item.on
+        if world.tag is not None and world.tag.on is not None:
+            yield ("tag", "on"), world.tag.on
+        for name, note in world.objects.items():
+            yield from ((("objects", name, "on"), top) for top in note.tops)
+        for name, tag in world.tags.items():
+            if tag.on is not None:
+                yield ("tags", name, "on"), tag.on
+        if world.distractors is not None:
+            for number, top in enumerate(world.distractors.on or ()):
+                yield ("distractors", "on", number), top
+
+    def _goal(self) -> Iterator[Finding]:
+        world, goal = self._world, self._world.goal
+        if goal is None:
+            return
+        things = [*([world.item.name] if world.item is not None else ()), *world.objects]
+        yield from self._missing(("goal", "item"), goal.item, things, "object")
+        yield from self._missing(("goal", "on"), goal.on, self._surfaces, "table")
+        if goal.beside is None:
+            return
+        markers = [*world.all_tags, *world.objects, *self._surfaces, *world.bodies]
+        yield from self._missing(("goal", "beside"), goal.beside, markers, "tag or body")
+        if goal.beside == goal.item:
+            yield ("goal", "beside"), f"{goal.item!r} cannot stand beside itself"
 
 
 def surface_names(world: WorldFile) -> tuple[str, ...]:
@@ -141,11 +162,3 @@ def _meshes(world: WorldFile) -> Iterator[tuple[Place, MeshUse]]:
         for number, part in enumerate(body.parts):
             if part.mesh is not None:
                 yield ("bodies", name, "parts", number, "mesh"), part.mesh
-
-
-def no_such(name: str, having: Iterable[str], what: str, several: str) -> str:
-    """A name that is none, the nearest one, and all that there are."""
-    names = list(dict.fromkeys(having))
-    near = difflib.get_close_matches(name, names, n=1)
-    hint = f"did you mean {near[0]!r}? " if near else ""
-    return f"there is no {what} {name!r}; {hint}{several}: {', '.join(names) or 'none'}"
