@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import sapien
 import trimesh
-from momantu_worlds.robots import fetch
+from momantu_worlds.robots import fetch, kinova_jackal
 from momantu_worlds.sapien.building import add_bodies
 from momantu_worlds.sapien.cells import convex_cells
 from momantu_worlds.sapien.meshes import body_mesh, collision_mesh, map_triangles, volume
@@ -100,3 +100,29 @@ def test_cutting_a_box_gives_its_parts() -> None:
     assert len(cells) == 4
     volumes = [trimesh.convex.convex_hull(cell).volume for cell in cells]
     assert sum(volumes) == pytest.approx(whole, rel=1e-3)
+
+
+def test_links_that_are_fixed_to_each_other_never_push() -> None:
+    robot = kinova_jackal()
+    simulator = Simulator(robot, plain_episode(table=False), 0, render=False)
+    groups = {
+        name: link.collision_shapes[0].get_collision_groups()[2]
+        for name, link in simulator.model.links.items()
+        if link.collision_shapes
+    }
+    # the deck carries bracket and mast; the arm's foot stands on the bracket, its shoulder turns
+    for one, other in (
+        ("chassis_link", "bracket_link"),
+        ("chassis_link", "mast_link"),
+        ("bracket_link", "arm_link_base"),
+        ("bracket_link", "arm_link_1"),
+        ("arm_camera_link", "arm_link_5"),
+    ):
+        assert groups[one] & groups[other]
+    for one, other in (
+        ("arm_link_1", "arm_link_3"),
+        ("arm_link_2", "chassis_link"),
+        ("arm_finger_1", "arm_finger_2"),
+        ("arm_finger_tip_1", "arm_link_6"),
+    ):
+        assert not groups[one] & groups[other]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import combinations, product
 from typing import Any
 
 import numpy as np
@@ -144,14 +145,38 @@ def _unwrap(joint: Any, simulation: SimulationModel) -> None:
 
 
 def _ignore_pairs(links: dict[str, Any], pairs: tuple[tuple[str, str], ...]) -> None:
-    """Let these pairs pass through each other; neighbours on the chain do so anyway."""
-    apart = [
+    """Let these pairs pass through each other, and those that sit on one joint or share one.
+
+    SAPIEN itself leaves out a link and the one above it.
+    """
+    apart = [*pairs, *_neighbours(links)]
+    unknown = [
         (first, second)
-        for first, second in pairs
+        for first, second in apart
         if links[first].parent is not links[second] and links[second].parent is not links[first]
     ]
-    for name, bits in ignore_bits(apart).items():
+    for name, bits in ignore_bits(unknown).items():
         links[name].collision_groups[2] |= bits
+
+
+def _neighbours(links: dict[str, Any]) -> list[tuple[str, str]]:
+    """Pairs of colliding links that no joint moves against each other, or just one does."""
+    bodies: dict[Any, list[str]] = {}
+    for name, link in links.items():
+        if link.collision_records:
+            bodies.setdefault(_body(link), []).append(name)
+    pairs = [pair for names in bodies.values() for pair in combinations(names, 2)]
+    for body, names in bodies.items():
+        if body.parent is not None:
+            pairs += product(names, bodies.get(_body(body.parent), ()))
+    return pairs
+
+
+def _body(link: Any) -> Any:
+    """The topmost link that is fixed to this one."""
+    while link.parent is not None and link.joint_record.joint_type == "fixed":
+        link = link.parent
+    return link
 
 
 def _set_drives(
