@@ -12,8 +12,8 @@ from momantu_worlds.sapien.faults.box_row import FINGERS
 from momantu_worlds.sapien.faults.stage import Stage
 from momantu_worlds.sapien.faults.tag import marker_picture
 from momantu_worlds.sapien.faults.tops import table_top, things_on
+from momantu_worlds.scenes.spots import SetDown, free_spots
 from momantu_worlds.scenes.standing import Upright
-from momantu_worlds.scenes.tabletop import SetDown, free_spots
 from momantu_worlds.scenes.tag36h11 import tag_cells
 
 from momantu_bt.geometry import Pose2D

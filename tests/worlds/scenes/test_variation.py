@@ -10,8 +10,8 @@ from momantu_worlds.scenes.layout import Layout
 from momantu_worlds.scenes.loading import draw_episode, load_world
 from momantu_worlds.scenes.obstacles import footprint, wall_rectangles
 from momantu_worlds.scenes.plane_geometry import Rectangle, gap, passages
-from momantu_worlds.scenes.tabletop import Disc, SetDown, free_spots, lane, seen_share, tag_points
-from momantu_worlds.scenes.tabletop import outline_points as body_points
+from momantu_worlds.scenes.spots import Disc, SetDown, free_spots, lane, seen_share, tag_points
+from momantu_worlds.scenes.spots import outline_points as body_points
 from momantu_worlds.scenes.tag36h11 import picture_edge
 from momantu_worlds.scenes.variation import vary
 

@@ -15,8 +15,8 @@ from momantu_worlds.scenes.bodies import Body
 from momantu_worlds.scenes.parts import block
 from momantu_worlds.scenes.plane_geometry import Rectangle
 from momantu_worlds.scenes.prisms import body_prism
+from momantu_worlds.scenes.spots import SetDown, free_spots
 from momantu_worlds.scenes.standing import Upright
-from momantu_worlds.scenes.tabletop import SetDown, free_spots
 
 MOST_FREE = 4
 APART = 0.25

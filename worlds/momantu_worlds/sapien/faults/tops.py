@@ -13,8 +13,8 @@ from momantu_worlds.sapien.faults.stage import Stage
 from momantu_worlds.scenes.bodies import Body, Cylinder
 from momantu_worlds.scenes.layout import PlacedTable
 from momantu_worlds.scenes.prisms import Prism, body_points, prism_around
+from momantu_worlds.scenes.spots import Disc
 from momantu_worlds.scenes.standing import Top
-from momantu_worlds.scenes.tabletop import Disc
 
 TABLES = ("table", "desk")
 """Categories of bodies with a top, surfaces of the site or not."""
