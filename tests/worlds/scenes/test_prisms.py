@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from momantu_worlds.scenes.bodies import Body, Box, Cylinder, Mesh, Part
 from momantu_worlds.scenes.plane_geometry import Rectangle
-from momantu_worlds.scenes.prisms import Prism, body_prism, prism_around
+from momantu_worlds.scenes.prisms import Prism, body_prism, prism_around, tightest_prism
 
 from momantu_bt.geometry import Pose2D, Transform
 
@@ -90,3 +90,22 @@ def test_solid_parts_of_all_kinds_count():
     assert prism is not None
     assert prism.base.size == pytest.approx((0.5, 0.2))
     assert prism.top == pytest.approx(0.2)
+
+
+@given(PLACES, st.floats(0.1, 9), st.floats(0.1, 9))
+def test_the_tightest_prism_around_a_turned_box_is_the_box(place, width, depth):
+    corners = Rectangle(Pose2D(*place), (width, depth)).corners()
+    points = np.column_stack([corners, [0.0, 1.0, 2.0, 3.0]])
+    base = tightest_prism(points).base
+    assert sorted(base.size) == pytest.approx(sorted((width, depth)), abs=1e-3)
+    assert (base.pose.x, base.pose.y) == pytest.approx(place[:2], abs=1e-3)
+
+
+@given(st.lists(st.tuples(*[st.floats(-5, 5)] * 3), min_size=1, max_size=12))
+def test_no_prism_is_tighter(points):
+    points = np.array(points)
+    least = tightest_prism(points)
+    assert float(least.base.distance(points[:, :2]).max()) < 1e-3
+    for yaw in np.linspace(0.0, math.pi / 2, 7):
+        other = prism_around(points, float(yaw))
+        assert math.prod(least.base.size) <= math.prod(other.base.size) + 1e-2

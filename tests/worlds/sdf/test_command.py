@@ -99,12 +99,24 @@ def test_a_broken_mesh_leaves_the_rest(run, box, tmp_path):
     assert "bad.stl" in out
 
 
-def test_gazebo_classics_reading_of_collada_can_be_had(run, tmp_path):
+def test_collada_can_be_turned_upright(run, tmp_path):
     import trimesh
 
     (tmp_path / "box.dae").write_bytes(trimesh.creation.box((1, 2, 3)).export(file_type="dae"))
     mesh = "<geometry><mesh><uri>box.dae</uri></mesh></geometry>"
     inside = f"{GROUND}<model name='m'><static>1</static><link name='l'><visual name='v'>{mesh}"
     inside += "</visual></link></model>"
-    assert "says Y_UP: it is turned upright" in run(inside)[1]
-    assert "Y_UP" not in run(inside, "--ignore-up-axis", "--force")[1]
+    assert "says Y_UP: its z is up, as in Gazebo" in run(inside)[1]
+    assert "says Y_UP: it is turned upright" in run(inside, "--heed-up-axis", "--force")[1]
+
+
+def test_an_empty_world_is_a_bare_floor(run, tmp_path):
+    assert run(GROUND)[0] == 0
+    assert "size: [20, 20]" in (tmp_path / "office.yaml").read_text()
+
+
+def test_a_world_of_which_nothing_is_left_says_why(run):
+    code, _, err = run("<include><uri>model://none</uri></include>" * 2)
+    assert code == 2
+    assert "nothing is left of this world: what it has is left out" in err
+    assert "model://none" in err

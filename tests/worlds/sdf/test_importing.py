@@ -323,7 +323,15 @@ def test_round_shapes_become_meshes_around_their_middle(imported, tmp_path, shap
 
 def test_a_world_of_nothing_is_refused(imported):
     with pytest.raises(SdfError, match="nothing is left of this world"):
-        imported(GROUND)
+        imported("<model name='m'><link name='l'/></model>")
+
+
+def test_a_joint_without_way_is_fixed(imported):
+    axis = "<axis><limit><lower>{}</lower><upper>{}</upper></limit></axis>"
+    for limits, still in (((0, 0), False), ((-1, 1), True)):
+        can = CAN.format(mass=1)
+        door = DOOR.format(can, can, "").replace("</joint>", axis.format(*limits) + "</joint>")
+        assert imported(GROUND + door).world.bodies[0].still == still
 
 
 def test_an_import_is_the_same_twice(imported, box):

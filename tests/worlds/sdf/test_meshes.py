@@ -37,23 +37,23 @@ def extent(read):
     return points.min(axis=0).tolist(), points.max(axis=0).tolist()
 
 
-def test_collada_is_turned_upright_and_measured_in_metres(dae):
+def test_collada_is_measured_in_metres(dae):
     file = dae('<unit name="inch" meter="0.5"/><up_axis>Z_UP</up_axis>')
-    found = read_mesh(MeshFile(file))
+    found = read_mesh(MeshFile(file), heed_up=True)
     assert extent(found) == ([-0.25, -0.5, 0], [0.25, 0.5, 1.5])
-    assert found.turned == ""
+    assert found.up == ""
     assert found.pieces[0].color == (1, 0, 0)
 
 
-def test_y_up_becomes_z_up(dae):
-    found = read_mesh(MeshFile(dae("<up_axis>Y_UP</up_axis>")))
+def test_y_up_becomes_z_up_where_that_is_wanted(dae):
+    found = read_mesh(MeshFile(dae("<up_axis>Y_UP</up_axis>")), heed_up=True)
     low, high = extent(found)
     assert low == pytest.approx([-0.5, -3, -1])
     assert high == pytest.approx([0.5, 0, 1])
-    assert found.turned == "Y_UP"
-    plain = read_mesh(MeshFile(dae("<up_axis>Y_UP</up_axis>")), upright=False)
+    plain = read_mesh(MeshFile(dae("<up_axis>Y_UP</up_axis>")))
     assert extent(plain) == ([-0.5, -1, 0], [0.5, 1, 3])
-    assert extent(read_mesh(MeshFile(dae()))) == extent(plain)
+    assert found.up == plain.up == "Y_UP"
+    assert extent(read_mesh(MeshFile(dae()), heed_up=True)) == extent(plain)
 
 
 def test_turns_are_turns_that_bring_the_named_axis_up():

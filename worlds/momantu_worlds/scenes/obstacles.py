@@ -12,7 +12,7 @@ from momantu_worlds.scenes.furniture import Size3
 from momantu_worlds.scenes.given_bodies import given_bodies
 from momantu_worlds.scenes.mesh_files import mesh_size
 from momantu_worlds.scenes.plane_geometry import Rectangle
-from momantu_worlds.scenes.prisms import prism_around
+from momantu_worlds.scenes.prisms import tightest_prism
 from momantu_worlds.scenes.solids import outline
 from momantu_worlds.scenes.surfaces import nominal_surfaces
 from momantu_worlds.scenes.wall_runs import LEAF
@@ -60,10 +60,8 @@ def body_columns(world: WorldFile) -> Iterator[tuple[Rectangle, float, float]]:
     for body in given_bodies(world):
         for part in body.parts if body.static else ():
             if part.collision:
-                prism = prism_around(
-                    (body.map_from_body @ part.body_from_part).apply(outline(part)),
-                    body.map_from_body.yaw,
-                )
+                map_from_part = body.map_from_body @ part.body_from_part
+                prism = tightest_prism(map_from_part.apply(outline(part)))
                 if prism.top > DOORSTEP and prism.bottom < HEADROOM:
                     yield prism.base, prism.bottom, prism.top
 

@@ -56,6 +56,23 @@ def prism_around(points: Array, yaw: float) -> Prism:
     return Prism(Rectangle(pose, size), float(points[:, 2].min()), float(points[:, 2].max()))
 
 
+def tightest_prism(points: Array) -> Prism:
+    """The prism around points (n, 3) of the map over the smallest rectangle of all.
+
+    One of its sides lies along two of the points (Freeman and Shapira, 1975).
+    """
+    flat = np.unique(np.round(points[:, :2], 5), axis=0)
+    first, second = np.triu_indices(len(flat), 1)
+    steps = flat[second] - flat[first]
+    yaws = np.unique(np.round(np.arctan2(steps[:, 1], steps[:, 0]) % (math.pi / 2), 6))
+    if len(yaws) == 0:
+        return prism_around(points, 0.0)
+    along = flat @ np.stack([np.cos(yaws), np.sin(yaws)])
+    across = flat @ np.stack([-np.sin(yaws), np.cos(yaws)])
+    areas = np.ptp(along, axis=0) * np.ptp(across, axis=0)
+    return prism_around(points, float(yaws[int(np.argmin(areas))]))
+
+
 def body_prism(body: Body, map_from_body: Transform) -> Prism | None:
     """The prism around all of a body that collides, however it lies; None when nothing does."""
     points = body_points(body)

@@ -27,8 +27,9 @@ def import_sdf(
     strict: Annotated[
         bool, typer.Option("--strict", help="Exit code 1 when something did not come over.")
     ] = False,
-    ignore_up_axis: Annotated[
-        bool, typer.Option("--ignore-up-axis", help="Read COLLADA as Gazebo Classic does.")
+    heed_up_axis: Annotated[
+        bool,
+        typer.Option("--heed-up-axis", help="Turn COLLADA upright by <up_axis>; Gazebo does not."),
     ] = False,
     force: Annotated[bool, typer.Option("--force", help="Overwrite the world file.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,
@@ -51,7 +52,7 @@ def import_sdf(
     if not output.parent.is_dir():
         return _refuse(f"{output} cannot be written: there is no folder {output.parent}")
     try:
-        found = import_world(file, output, models or (), upright=not ignore_up_axis)
+        found = import_world(file, output, models or (), heed_up=heed_up_axis)
         count = found.write(output)
     except WorldError as error:
         return _refuse(str(error))

@@ -12,7 +12,7 @@ from momantu_bt.world import WorldError
 from momantu_worlds.scenes.world_reader import parse_world
 from momantu_worlds.sdf.assets import Assets, write_whole
 from momantu_worlds.sdf.bodies import BodyMaker, ImportedBody, plain_name
-from momantu_worlds.sdf.findings import Findings, Place, SdfError
+from momantu_worlds.sdf.findings import Fate, Findings, Place, SdfError
 from momantu_worlds.sdf.frames import PlacedModel
 from momantu_worlds.sdf.ground import find_ground
 from momantu_worlds.sdf.lighting import lighting
@@ -27,6 +27,10 @@ from momantu_worlds.sdf.writing import Imported, world_text
 
 MOST_BODIES = 2000
 """As many as a world file may have."""
+TIGHT = 0.25
+"""m; half the edge of a square in which hardly a robot stands."""
+MOST_SAID = 10
+"""Things of which a refusal says that they are left out."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +58,7 @@ class Import:
 
 
 def import_world(
-    file: Path, output: Path, models: Iterable[Path] = (), *, upright: bool = True
+    file: Path, output: Path, models: Iterable[Path] = (), *, heed_up: bool = False
 ) -> Import:
     """Turn an SDF world into a world file; nothing is written yet.
 
@@ -62,7 +66,7 @@ def import_world(
         file: a `.world` or `.sdf` file.
         output: where the world file will lie; its assets lie beside it.
         models: folders in which `model://` is looked up, before Gazebo's own and the file's.
-        upright: heed COLLADA's <up_axis>.
+        heed_up: turn COLLADA upright by its <up_axis>, which Gazebo does not.
 
     Raises:
         SdfError: the file, or one that it includes, is broken.
@@ -76,7 +80,7 @@ def import_world(
     things = [model for model in placed if model is not robot]
     ground = find_ground(things, findings)
     assets = Assets(f"{plain_name(output.stem)}_assets")
-    maker = BodyMaker(Shaping(assets, findings, upright), ground, findings)
+    maker = BodyMaker(Shaping(assets, findings, heed_up), ground, findings)
     made = [
         body
         for model in things
@@ -84,19 +88,15 @@ def import_world(
         for body in maker.body(model, group)
     ]
     bodies = _enough(list(settled(made, ground.height, findings)), findings)
-    if not bodies:
-        raise SdfError(Place(file), "nothing is left of this world: it has no shape to be seen")
+    if not bodies and not ground.shapes:
+        raise SdfError(Place(file), _nothing_left(findings))
     light = lighting(placed_lights(source, placed), source.ambient, ground.height, findings)
-    name = plain_name(output.stem)
-    world = Imported(
-        name,
-        file.name,
-        robot.model.name if robot else None,
-        bodies,
-        ground,
-        light,
-        propose(bodies, _start_of(robot, findings)),
-    )
+    name, model = plain_name(output.stem), robot.model.name if robot else None
+    site = propose(bodies, _start_of(robot, findings))
+    if site.clear < TIGHT:
+        near = f"{site.clear:.2f} m around the start"
+        findings.changed(Place(file), "world", near, "no robot turns there; write another start")
+    world = Imported(name, file.name, model, bodies, ground, light, site)
     return Import(world, world_text(world, findings), assets, findings)
 
 
@@ -121,6 +121,13 @@ def _base(robot: PlacedModel) -> Transform:
     first = robot.links[0]
     back = robot.scope.pose(first.link.name, first.link.place).inverse()
     return first.world_from_link @ back
+
+
+def _nothing_left(findings: Findings) -> str:
+    """Why there is nothing to write."""
+    gone = [finding for finding in findings if finding.fate is Fate.DROPPED]
+    why = "".join(f"\n  {f.place}: {f.subject}: {f.what}" for f in gone[:MOST_SAID])
+    return f"nothing is left of this world{': what it has is left out' + why if why else ''}"
 
 
 def _enough(bodies: list[ImportedBody], findings: Findings) -> list[ImportedBody]:

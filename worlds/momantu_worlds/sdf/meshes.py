@@ -41,17 +41,20 @@ class Piece:
 class ReadMesh:
     """A mesh as a shape has it.
 
-    turned: by what the file says of its up; empty when it was not. missing: files that it names
-    and that are not there.
+    up: which axis the file says points up, when that is another than z. missing: files that it
+    names and that are not there.
     """
 
     pieces: tuple[Piece, ...]
-    turned: str = ""
+    up: str = ""
     missing: tuple[str, ...] = ()
 
 
-def read_mesh(mesh: MeshFile, *, upright: bool = True) -> ReadMesh:
-    """The pieces of a mesh in its shape's frame. upright: heed COLLADA's <up_axis>.
+def read_mesh(mesh: MeshFile, *, heed_up: bool = False) -> ReadMesh:
+    """The pieces of a mesh in its shape's frame.
+
+    heed_up: turn COLLADA upright by its <up_axis>. Gazebo does not, and many of the meshes made
+    for it say Y_UP where z is up.
 
     Raises:
         BadMesh: the file is broken, too large, of a kind that is not read, or has no such submesh.
@@ -66,15 +69,19 @@ def read_mesh(mesh: MeshFile, *, upright: bool = True) -> ReadMesh:
         notes = collada_notes(mesh.file) if ending == ".dae" else ColladaNotes()
     except OSError as error:
         raise BadMesh(f"it cannot be read: {error.strerror}") from None
-    if ending in (".glb", ".gltf"):
-        notes.up = "Y_UP"  # glTF 2.0 knows no other
     companions = Companions(mesh.file)
     pieces = [piece for name, piece in _load(mesh, companions) if _wanted(name, mesh, notes)]
     if not pieces:
         raise BadMesh(_nothing(mesh, notes))
-    turn = Z_FROM[notes.up] if upright and notes.up else np.eye(3)
-    turned = notes.up if not np.array_equal(turn, np.eye(3)) else ""
-    return ReadMesh(_shaped(pieces, turn * notes.meter, mesh), turned, tuple(companions.missing))
+    up = "Z_UP"
+    if ending in (".glb", ".gltf"):
+        up = "Y_UP"  # glTF 2.0 knows no other, and Gazebo turns it
+    elif heed_up and notes.up:
+        up = notes.up
+    said = notes.up if notes.up != "Z_UP" else ""
+    return ReadMesh(
+        _shaped(pieces, Z_FROM[up] * notes.meter, mesh), said, tuple(companions.missing)
+    )
 
 
 def _load(mesh: MeshFile, companions: Companions) -> list[tuple[str, Piece]]:

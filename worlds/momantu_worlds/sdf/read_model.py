@@ -178,7 +178,17 @@ def _joint(element: Element, around: str, reading: Reading) -> Joint:
     sensors = sum(1 for _ in element.all("sensor"))
     if sensors:
         reading.findings.dropped(element.place, f"{around}/{name}", "<sensor>", "left out")
+    if _is_locked(element):
+        kind = "fixed"
     return Joint(name, kind, ends[0], ends[1], pose_of(element), element.place)
+
+
+def _is_locked(element: Element) -> bool:
+    """Whether limits leave a joint no way: an old spelling of a fixed one."""
+    axis = element.child("axis")
+    if axis is None or axis.find("limit/lower") is None or axis.find("limit/upper") is None:
+        return False
+    return number(axis, "limit/lower", 0.0) >= number(axis, "limit/upper", 0.0)
 
 
 def unique(what: str, things: Iterable[Named]) -> tuple[Named, ...]:

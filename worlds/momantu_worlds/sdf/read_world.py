@@ -55,7 +55,7 @@ def _world(element: Element, file: Path, version: tuple[int, int], reading: Read
         models = [model for model in models if model.name not in gone]
         lights = [light for light in lights if light.name not in gone]
         list_leftovers(state, "state", _OF_STATE, reading.findings)
-    if not models:
+    if not models and element.child("include") is None:
         raise element.error(f"there is no <model> in {file}; nothing could be imported")
     scene = element.child("scene")
     return SdfWorld(

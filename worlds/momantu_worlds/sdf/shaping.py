@@ -48,11 +48,11 @@ HIDDEN = 1e-4
 
 @dataclass(slots=True)
 class Shaping:
-    """Turns the shapes of one import into parts. upright: heed COLLADA's <up_axis>."""
+    """Turns the shapes of one import into parts. heed_up: COLLADA's <up_axis> counts."""
 
     assets: Assets
     findings: Findings
-    upright: bool = True
+    heed_up: bool = False
     _meshes: dict[MeshFile, ReadMesh | BadMesh] = field(default_factory=dict)
     _hulls: dict[tuple[Geometry, bool], tuple[list[Array], bool]] = field(default_factory=dict)
 
@@ -147,7 +147,7 @@ class Shaping:
         mesh = replace(geometry, scale=_product(geometry.scale, scale))
         if mesh not in self._meshes:
             try:
-                self._meshes[mesh] = read_mesh(mesh, upright=self.upright)
+                self._meshes[mesh] = read_mesh(mesh, heed_up=self.heed_up)
             except BadMesh as error:
                 self._meshes[mesh] = error
         found = self._meshes[mesh]
@@ -156,12 +156,13 @@ class Shaping:
                 shape.place, subject, f"{mesh.file}: {found}", "this shape is left out"
             )
             return ()
-        if found.turned:
+        if found.up:
+            how = "its z is up, as in Gazebo; --heed-up-axis turns it upright"
             self.findings.changed(
                 shape.place,
                 subject,
-                f"{mesh.file.name} says {found.turned}",
-                "it is turned upright; --ignore-up-axis leaves it as Gazebo Classic shows it",
+                f"{mesh.file.name} says {found.up}",
+                "it is turned upright" if self.heed_up else how,
             )
         for name in found.missing:
             self.findings.dropped(

@@ -15,6 +15,8 @@ from momantu_worlds.sdf.model import Box, Cylinder, Sphere
 from momantu_worlds.sdf.parts import MeshPart, Part
 from momantu_worlds.sdf.proposal import Proposal, Surface
 
+BARE = 20.0
+"""m; edge of a floor on which nothing stands."""
 DECIMALS = 6
 """Of metres and radians: a micrometre."""
 
@@ -42,19 +44,25 @@ def world_text(imported: Imported, findings: Iterable[Finding]) -> str:
     if listed:
         lines.append(f"# {listed} things did not come over as they were; the import listed them.")
     lines += ["momantu_world: 1", f"name: {imported.name}", ""]
-    lines += [*_floor(imported.ground), *_start(imported), *_light(imported.light)]
     lines += [
-        "# What stands there. What is not static can be pushed, and carried where a hand fits."
+        *_floor(imported.ground, bare=not imported.bodies),
+        *_start(imported),
+        *_light(imported.light),
     ]
-    lines.append("bodies:")
+    if imported.bodies:
+        lines.append(
+            "# What stands there. What is not static can be pushed, and carried where a hand fits."
+        )
+        lines.append("bodies:")
     for body in imported.bodies:
         lines += _body(body, imported.site.surfaces.get(body.name))
     lines += ["", *_site(imported.site)]
     return "\n".join(lines) + "\n"
 
 
-def _floor(ground: Ground) -> list[str]:
-    lines = []
+def _floor(ground: Ground, *, bare: bool) -> list[str]:
+    """bare: nothing stands on it, so that its size has to be said."""
+    lines = [f"  center: {_row((0.0, 0.0))}", f"  size: {_row((BARE, BARE))}"] if bare else []
     if ground.color is not None:
         lines.append(f"  color: {_row(ground.color)}")
     if ground.friction is not None:
