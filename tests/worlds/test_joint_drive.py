@@ -20,6 +20,7 @@ LIMITS = (
 )
 OFFSET = np.array([0.002, -0.001])
 EFFORTS = np.array([30.0, 0.5])
+STIFFNESS = np.array([1e4, 1e4])
 
 
 class FakeJoint:
@@ -39,9 +40,9 @@ class FakeJoint:
 class Bench:
     """A drive with two joints at rest at 0, and a clock."""
 
-    def __init__(self) -> None:
+    def __init__(self, stiffness: np.ndarray = STIFFNESS) -> None:
         self.joints = [FakeJoint(), FakeJoint()]
-        self.drive = JointDrive(NAMES, self.joints, LIMITS, OFFSET, EFFORTS)
+        self.drive = JointDrive(NAMES, self.joints, LIMITS, OFFSET, EFFORTS, stiffness)
         self.drive.place(np.zeros(2))
         self.now = 0.0
         self.blocked: np.ndarray | None = None
@@ -181,3 +182,16 @@ def test_what_it_cannot_take_is_refused_with_the_reason(goal: object, words: str
         bench.drive.command(goal, 0.0)
     bench.tick(5)
     assert np.all(bench.positions[-1] == 0.0)
+
+
+@pytest.mark.parametrize(("stiffness", "lag"), [(1e4, 0.01), (1e3, 0.03), (300.0, 0.1)])
+def test_a_soft_drive_gives_way_only_where_it_pushes_with_all_it_has(
+    stiffness: float, lag: float
+) -> None:
+    for share, held in ((0.8, True), (1.2, False)):
+        bench = Bench(np.array([stiffness, stiffness]))
+        bench.tick(40, JointPositions(("pan",), (0.3,)))
+        there = bench.positions[-1].copy()
+        bench.blocked = there - np.array([share * lag, 0.0])
+        bench.tick()
+        assert bench.positions[-1][0] == pytest.approx((there if held else bench.blocked)[0])

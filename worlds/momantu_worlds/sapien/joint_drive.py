@@ -23,6 +23,10 @@ SPEED_TOLERANCE = 1.05
 GIVE_WAY = 0.01
 """rad or m between command and joint at which a drive gives up its goal. Free motion stays below
 0.003 even when the base jerks; what is more is an obstacle, pushed with 100 Nm or N already."""
+HARD_PUSH = 100.0
+"""Nm or N; a soft drive gives way where it pushes as hard, or with all it has, not before."""
+LEAST_STIFFNESS = 1e-9
+"""Nm/rad or N/m; a drive without stiffness follows nothing and never gives way."""
 WEAK = 5.0
 """Nm or N; joints with less effort than this (a head's) hurt nobody and never give way."""
 
@@ -41,6 +45,7 @@ class JointDrive:
         limits: Sequence[JointLimit],
         offset: Array,
         efforts: Array,
+        stiffness: Array,
     ) -> None:
         self.names = tuple(names)
         self._joints = list(joints)
@@ -49,7 +54,8 @@ class JointDrive:
         self._upper = np.array([math.inf if m.upper is None else m.upper for m in limits])
         self._speed = np.array([m.velocity for m in limits])
         self._acceleration = np.array([m.acceleration for m in limits])
-        self._tolerance = np.where(efforts > WEAK, GIVE_WAY, math.inf)
+        pushing = np.minimum(efforts, HARD_PUSH) / np.maximum(stiffness, LEAST_STIFFNESS)
+        self._tolerance = np.where(efforts > WEAK, np.maximum(GIVE_WAY, pushing), math.inf)
         self._command: object = object()
         self._given_up: object = object()
         self._last_command = -math.inf

@@ -222,6 +222,7 @@ class SimulatedRobot:
             [self._description.joint_limits[name] for name in actuator.joints],
             self._encoders.offsets[places],
             self._efforts[places],
+            self._stiffness[places],
         )
 
     def _gripper_drive(self, simulation: SimulationModel) -> GripperDrive:
