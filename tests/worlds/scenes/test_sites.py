@@ -6,7 +6,7 @@ import pytest
 from momantu_worlds.robots import fetch
 from momantu_worlds.scenes import kept, loading
 from momantu_worlds.scenes.loading import load_world, nominal, nominal_site, world_path
-from momantu_worlds.scenes.maps import with_maps
+from momantu_worlds.scenes.maps import MOST_KEPT, with_maps
 from momantu_worlds.scenes.sites import kept_nominal
 
 from momantu_bt.robot import laser_band
@@ -91,6 +91,17 @@ def test_another_robot_or_a_changed_file_has_maps_of_its_own(copy):
     assert (
         maps(copy)[0].with_suffix(".pgm").read_bytes() != first[0].with_suffix(".pgm").read_bytes()
     )
+
+
+def test_maps_of_a_file_that_is_edited_all_day_do_not_pile_up(cache, copy):
+    change(copy, "name: four_rooms", "name: rooms")
+    before = "home: [-4.70"
+    for step in range(MOST_KEPT + 3):
+        after = f"home: [-4.{step:02d}"
+        change(copy, before, after)
+        last, before = maps(copy), after
+    assert len(list((cache / "maps").iterdir())) == MOST_KEPT
+    assert all(file.is_file() for file in last)
 
 
 def test_a_half_written_map_is_drawn_again():

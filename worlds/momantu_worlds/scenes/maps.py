@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
+from shutil import rmtree
 
 from momantu_bt.world import Site, WorldError
 from momantu_worlds.scenes import kept
 from momantu_worlds.scenes.floor_plan import draw_plans, save_plan
 from momantu_worlds.scenes.world_file import WorldFile
+
+MOST_KEPT = 16
+"""Maps of one world: for several robots, and for the file as it was in the last edits."""
 
 
 def with_maps(site: Site, world: WorldFile, band: tuple[float, float], robot_height: float) -> Site:
@@ -38,7 +43,17 @@ def _drawn(world: WorldFile, band: tuple[float, float], robot_height: float) -> 
         folder.mkdir(exist_ok=True)
         for plan, file in zip(draw_plans(world, band, robot_height), files, strict=True):
             save_plan(plan, file)
+        _forget(folder)
     return files
+
+
+def _forget(newest: Path) -> None:
+    """Remove the oldest maps of a world whose file was changed again and again."""
+    name = newest.name.rpartition("-")[0]
+    others = [f for f in newest.parent.glob(f"{name}-*") if f.name.rpartition("-")[0] == name]
+    with suppress(OSError):  # another process forgets, too
+        for old in sorted(others, key=lambda f: f.stat().st_mtime)[:-MOST_KEPT]:
+            rmtree(old, ignore_errors=True)
 
 
 def _contents(world: WorldFile) -> Iterator[str]:
