@@ -193,19 +193,22 @@ def _pick(what: str, having: dict[str, _T], name: str | None) -> tuple[str, _T]:
     found = next(iter(having), None) if name is None else name
     if found is None or found not in having:
         names = ", ".join(having) or "none"
-        raise KeyError(f"the robot has no {what} {found or ''}; it has: {names}")
+        missing = what if found is None else f"{what} {found!r}"
+        raise KeyError(f"the robot has no {missing}; it has: {names}")
     return found, having[found]
 
 
 def laser_band(description: RobotDescription) -> tuple[float, float]:
     """Lowest and highest point above the floor that the robot's laser sees, m.
 
-    Of a scanner of its own both are the height of its plane.
+    Of a scanner of its own both are the height of its plane. Of a robot without a laser they are
+    the floor and its own height: all that it could drive into.
 
     Raises:
-        KeyError: the robot has no laser.
-        Failure: FRAME_UNKNOWN, its frame is none of the robot's.
+        Failure: FRAME_UNKNOWN, the laser's frame is none of the robot's.
     """
+    if not any(isinstance(sensor, LaserSensor) for sensor in description.sensors.values()):
+        return 0.0, description.height
     _, laser = description.laser()
     if laser.band is not None:
         return laser.band

@@ -37,12 +37,15 @@ class Service:
     """Subclass it; `update` runs before the tree, at `rate` Hz of the world's clock.
 
     publishes: read-only keys that trees see as `$@<service>.<key>`, with their types.
+    needs: services that run before it. senses: kinds of sensors that the robot must have, such as
+    `laser`; a run with a robot that lacks one is refused.
     An exception in a service ends the run: the robot must not go on without it.
     """
 
     rate: ClassVar[float] = 20.0
     publishes: ClassVar[Mapping[str, type]] = {}
     needs: ClassVar[tuple[str, ...]] = ()
+    senses: ClassVar[tuple[str, ...]] = ()
 
     def start(self, context: ServiceContext) -> None:
         """Called once, before the first update."""

@@ -103,7 +103,7 @@ def launch(
         needed = _services(kinds, registry)
         planned = _planned(document, options, kinds)
         recorder = _recorder(options, stack)
-        world = _open(document, options, registry, kinds)
+        world = _open(document, options, registry, kinds, needed)
         if world is not None and not options.keep_world:
             stack.callback(world.close)
         stage = Stage(planned, world, options.seed, stack)
@@ -163,6 +163,7 @@ def _open(
     options: Options,
     registry: Registry,
     kinds: Mapping[str, type[Skill]],
+    needed: Mapping[str, type[Service]],
 ) -> World | None:
     name = world_of(document, options.world)
     if name is None:
@@ -175,6 +176,7 @@ def _open(
     entry = registry.worlds[name]
     description = registry.description(options.robot or entry.default_robot)
     _check_uses(kinds, description)
+    _check_sensors(needed, description)
     return entry.open(description, options.seed, referee=options.referee)
 
 
@@ -185,6 +187,17 @@ def _check_uses(kinds: Mapping[str, type[Skill]], description: RobotDescription)
                 description.resolve_use(use)
             except KeyError as error:
                 raise LaunchError(f"{name} cannot run on {description.name}: {error}") from None
+
+
+def _check_sensors(needed: Mapping[str, type[Service]], description: RobotDescription) -> None:
+    having = {sensor.kind for sensor in description.sensors.values()}
+    for name, service in needed.items():
+        for kind in service.senses:
+            if kind not in having:
+                raise LaunchError(
+                    f"the service {name!r} needs a {kind}, and {description.name} has none; its "
+                    f"sensors: {', '.join(description.sensors) or 'none'}"
+                )
 
 
 def _services(kinds: Mapping[str, type[Skill]], registry: Registry) -> dict[str, type[Service]]:

@@ -13,7 +13,7 @@ from momantu_bt.robot_simulation import BaseJoints
 from momantu_bt.robots.cache import keep_urdf
 from momantu_bt.robots.errors import PartError
 from momantu_bt.robots.inertia import inertia_remarks
-from momantu_bt.robots.joining import VIRTUAL_JOINTS, Joining
+from momantu_bt.robots.joining import KEPT, VIRTUAL_JOINTS, Joining
 from momantu_bt.robots.meshes import locate_meshes, replace_meshes, users_folder, write_paths
 from momantu_bt.robots.naming import add_namespace
 from momantu_bt.robots.parts import LoadedPart, load_part, shown
@@ -83,8 +83,9 @@ def _is_whole(robot: RobotFile, parts: list[LoadedPart]) -> bool:
     own, *others = parts
     drive = robot.base.drive
     changed = own.source.xacro or own.source.namespace or own.meshes
+    unread = any(element.tag not in KEPT for element in own.root)
     added = others or robot.mounts or robot.frames or (drive is not None and drive.joints is None)
-    return not (changed or added)
+    return not (changed or unread or added)
 
 
 def _unfit(part: LoadedPart) -> Iterator[PartError]:

@@ -24,7 +24,8 @@ VIRTUAL_JOINTS = BaseJoints(x="base_x_joint", y="base_y_joint", yaw="base_yaw_jo
 _VIRTUAL_LINKS = ("base_origin", "base_x_link", "base_y_link")
 _FAR, _FAST = "1000", "10"
 """m and m/s; limits of the added slides, beyond every room and every base."""
-_KEPT = ("link", "joint", "material", "transmission", "gazebo")
+KEPT = ("link", "joint", "material")
+"""Elements of a URDF that count here; transmissions and extensions of other programs do not."""
 
 
 class Joining:
@@ -61,7 +62,7 @@ class Joining:
     def _take(self, part: LoadedPart) -> Iterator[PartError]:
         for element in part.root:
             tag = str(element.tag)
-            if tag not in _KEPT:
+            if tag not in KEPT:
                 continue
             if tag in ("link", "joint", "material"):
                 text = etree.tostring(element, method="c14n").decode().strip()

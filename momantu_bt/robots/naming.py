@@ -8,14 +8,14 @@ from lxml import etree
 
 
 def add_namespace(root: etree._Element, namespace: str) -> None:
-    """Rename every link, joint, material and transmission of a URDF in place."""
+    """Rename every link, joint and material of a URDF in place."""
     for element, attribute in _names(root):
         element.set(attribute, f"{namespace}_{element.get(attribute)}")
 
 
 def _names(root: etree._Element) -> Iterator[tuple[etree._Element, str]]:
     """Every place where a URDF defines or uses a name: (element, attribute)."""
-    for tag in ("link", "joint", "material", "transmission"):
+    for tag in ("link", "joint", "material"):
         for element in root.findall(tag):
             yield element, "name"
     for joint in root.findall("joint"):
@@ -25,10 +25,3 @@ def _names(root: etree._Element) -> Iterator[tuple[etree._Element, str]]:
     for material in root.findall("link/visual/material"):
         if material.get("name"):
             yield material, "name"
-    for transmission in root.findall("transmission"):
-        for tag in ("joint", "actuator", "leftActuator", "rightActuator"):
-            for element in transmission.findall(tag):
-                yield element, "name"
-    for gazebo in root.findall("gazebo"):
-        if gazebo.get("reference"):
-            yield gazebo, "reference"

@@ -34,6 +34,7 @@ class LocalizationService(Service):
         "sigma_yaw": float,
         "pose": Pose2D,
     }
+    senses = ("laser",)
 
     def start(self, context: ServiceContext) -> None:
         """Read the map and begin around the site's start pose."""

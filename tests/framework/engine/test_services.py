@@ -125,6 +125,26 @@ def test_a_service_that_is_not_installed(run_yaml, installed):
     assert str(error.value) == said
 
 
+@pytest.mark.parametrize("sense", ["laser", "lidar"])
+def test_a_robot_without_the_sensor_that_a_service_needs_is_refused(run_yaml, sense):
+    class Asking(Skill):
+        """Needs a service that needs a sensor."""
+
+        needs = ("eyes",)
+
+        def run(self, robot) -> Run:
+            yield "asking"
+
+    eyes = kind()
+    eyes.senses = (sense,)
+    tree, world = "trees: {Main: asking}", ScriptedWorld()
+    if sense == "laser":
+        assert run_yaml(tree, Asking, services={"eyes": eyes}, world=world).status == "SUCCESS"
+        return
+    with pytest.raises(LaunchError, match="'eyes' needs a lidar, and small has none; its sensors"):
+        run_yaml(tree, Asking, services={"eyes": eyes}, world=world)
+
+
 def test_a_service_gets_the_sites_parameters_and_a_random_of_its_own():
     first, second = kind()(), kind()()
     robot, site = ScriptedRobot(), scripted_site()

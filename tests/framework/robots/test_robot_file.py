@@ -186,6 +186,10 @@ def test_a_laser_of_its_own_sees_a_plane(carter: Write) -> None:
     assert laser_band(robot) == pytest.approx((0.3, 0.3))
 
 
+def test_without_a_laser_everything_below_the_robots_height_counts(carter: Write) -> None:
+    assert laser_band(read_robot(carter())) == (0.0, 0.9)
+
+
 def test_names_of_a_robots_files_mean_something_elsewhere(carter: Write, tmp_path: Path) -> None:
     file = carter()
     robot = read_robot(file)
