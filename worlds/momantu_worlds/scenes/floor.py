@@ -192,7 +192,7 @@ class _Room:
     ) -> None:
         self.unknown = unknown
         self._world = world
-        self._standing = standing_rectangles(world)
+        self._standing, self._floor = standing_rectangles(world), floor_extent(world)
         self._tops = [Rectangle(table.pose, table.size) for table in tables.values()]
         doors = world.all_doorways.values()
         self._doors = [(np.array(door.at), door.clear) for door in doors]
@@ -221,7 +221,7 @@ class _Room:
         """Whether a disc still gets from the start everywhere."""
         obstacles = [*self._standing, *map(self.footprint, pieces), *self._tops]
         cell = COARSE if self.unknown.passage >= WIDE else FINE
-        center, size = floor_extent(self._world)
+        center, size = self._floor
         return passages(obstacles, center, size, self.unknown.passage, cell).connects(self._stops)
 
 

@@ -21,6 +21,8 @@ MOST_PIECES = 200
 """Parts of one file that are convex pieces of their own; more are one piece."""
 HULL_POINTS = 60
 """Of a convex piece; few, so that contacts are found quickly."""
+KEPT = 256
+"""Meshes that are kept in memory: a world asks for each several times in one episode."""
 FLAT = 1e-4
 """m; a piece thinner than this is thickened to it, for a convex body has a volume."""
 Z_FROM_Y = np.array([(1.0, 0.0, 0.0), (0.0, 0.0, -1.0), (0.0, 1.0, 0.0)])
@@ -49,7 +51,26 @@ def mesh_parts(
     Raises:
         WorldError: the file cannot be read, is too large, or holds no triangles.
     """
-    pieces = _placed(use, file, standing)
+    return _parts(use, _state(file), standing, color)
+
+
+def mesh_size(use: MeshUse, file: Path) -> tuple[float, float, float]:
+    """Its extents as it is used, m; raises as `mesh_parts`."""
+    return use.size if use.size is not None else _size(use, _state(file))
+
+
+@dataclass(frozen=True, slots=True)
+class _State:
+    """A file as it is now, so that nothing is kept of what it was."""
+
+    file: Path
+    changed: int
+    size: int
+
+
+@lru_cache(maxsize=KEPT)
+def _parts(use: MeshUse, state: _State, standing: bool, color: Color | None) -> tuple[Part, ...]:
+    pieces = _placed(use, state, standing)
     seen = [
         Part(Mesh(vertices, p.triangles, p.uv, p.texture), color=color or p.color, collision=False)
         for p, vertices in pieces
@@ -58,11 +79,9 @@ def mesh_parts(
     return (*seen, *_touched(use.collision, points))
 
 
-def mesh_size(use: MeshUse, file: Path) -> tuple[float, float, float]:
-    """Its extents as it is used, m; raises as `mesh_parts`."""
-    if use.size is not None:
-        return use.size
-    x, y, z = np.ptp(np.concatenate([v for _, v in _placed(use, file, standing=True)]), axis=0)
+@lru_cache(maxsize=KEPT)
+def _size(use: MeshUse, state: _State) -> tuple[float, float, float]:
+    x, y, z = np.ptp(np.concatenate([v for _, v in _placed(use, state, standing=True)]), axis=0)
     return float(x), float(y), float(z)
 
 
@@ -102,9 +121,9 @@ def _spread(count: int) -> Array:
     return np.concatenate([cube, np.column_stack([ring * np.cos(angle), ring * np.sin(angle), z])])
 
 
-def _placed(use: MeshUse, file: Path, standing: bool) -> list[tuple[MeshPiece, Array]]:
+def _placed(use: MeshUse, state: _State, standing: bool) -> list[tuple[MeshPiece, Array]]:
     """Each piece, and its vertices as the world has them, m."""
-    pieces = read_mesh(file)
+    pieces = _read(state)
     turn = Z_FROM_Y if use.up == "y" else np.eye(3)
     turned = [use.scale * (piece.vertices @ turn.T) for piece in pieces]
     everything = np.concatenate(turned)
@@ -116,21 +135,22 @@ def _placed(use: MeshUse, file: Path, standing: bool) -> list[tuple[MeshPiece, A
     return [(p, (v - foot) * factor) for p, v in zip(pieces, turned, strict=True)]
 
 
-def read_mesh(file: Path) -> tuple[MeshPiece, ...]:
-    """The pieces of a mesh file, in its own frame and units; raises as `mesh_parts`."""
+def _state(file: Path) -> _State:
     try:
         stat = file.stat()
     except OSError as error:
         raise WorldError(f"the mesh file {file} cannot be read: {error.strerror}") from error
     if stat.st_size > MOST_BYTES:
         raise WorldError(f"the mesh file {file} has {stat.st_size} bytes; at most {MOST_BYTES}")
-    return _read(file, stat.st_mtime_ns, stat.st_size)
+    return _State(file, stat.st_mtime_ns, stat.st_size)
 
 
-@lru_cache(maxsize=64)
-def _read(file: Path, changed: int, size: int) -> tuple[MeshPiece, ...]:
+@lru_cache(maxsize=KEPT)
+def _read(state: _State) -> tuple[MeshPiece, ...]:
+    """The pieces of a mesh file, in its own frame and units."""
     import trimesh
 
+    file = state.file
     try:
         scene = trimesh.load_scene(file, process=False)
         pieces = tuple(_pieces(scene))

@@ -13,6 +13,9 @@ from momantu_worlds.scenes.world_building import Door, Doorway, Room, Walls
 
 SAME_LINE, SAME_TURN = 0.005, 1e-3
 """m, rad; edges of two rooms that are no farther apart than this are one wall."""
+BUCKET, BUCKET_TURN = 0.5, 0.01
+"""m, rad; steps in which lines are sorted. Far from the origin a turn moves an offset: with what
+counts as the same line it is less than a step up to 500 m away."""
 ON_WALL = 0.05
 """m; how far from the faces of a wall a door's point may lie and still mean this wall."""
 LEAF = 0.04
@@ -156,30 +159,42 @@ def _beside(wall: _Wall, door: Door) -> bool:
 
 
 def _walls(rooms: Mapping[str, Room]) -> Iterator[_Wall]:
-    lines: list[_Line] = []
+    lines = _Lines()
     for name, room in rooms.items():
         for a, b in pairwise((*room.corners, room.corners[0])):
-            line = _line(lines, a, b)
+            line = lines.through(a, b)
             start, end = sorted((line.along(a), line.along(b)))
             line.stretches.append((start, end, name))
     counts: dict[str, int] = {}
-    for line in lines:
+    for line in lines.found:
         for start, end, room_name in _joined(line.stretches):
             counts[room_name] = number = counts.get(room_name, 0) + 1
             yield _Wall(f"wall_{room_name}_{number}", line, start, end)
 
 
-def _line(lines: list[_Line], a: tuple[float, float], b: tuple[float, float]) -> _Line:
-    angle = math.atan2(b[1] - a[1], b[0] - a[0]) % math.pi
-    if angle > math.pi - SAME_TURN:
-        angle = 0.0
-    for line in lines:
-        on = abs(line.across(a)) <= SAME_LINE and abs(line.across(b)) <= SAME_LINE
-        if on and abs(line.angle - angle) <= SAME_TURN:
-            return line
-    fresh = _Line(angle, a[1] * math.cos(angle) - a[0] * math.sin(angle))
-    lines.append(fresh)
-    return fresh
+class _Lines:
+    """The lines of all edges, each once, in the order in which they were met."""
+
+    def __init__(self) -> None:
+        self.found: list[_Line] = []
+        self._alike: dict[tuple[int, int], list[_Line]] = {}
+
+    def through(self, a: tuple[float, float], b: tuple[float, float]) -> _Line:
+        """The line through two points: one of those there are, or a new one."""
+        angle = math.atan2(b[1] - a[1], b[0] - a[0]) % math.pi
+        if angle > math.pi - SAME_TURN:
+            angle = 0.0
+        offset = a[1] * math.cos(angle) - a[0] * math.sin(angle)
+        turn, away = round(angle / BUCKET_TURN), round(offset / BUCKET)
+        near = ((turn + i, away + j) for i in (0, -1, 1) for j in (0, -1, 1))
+        for line in (line for key in near for line in self._alike.get(key, ())):
+            on = abs(line.across(a)) <= SAME_LINE and abs(line.across(b)) <= SAME_LINE
+            if on and abs(line.angle - angle) <= SAME_TURN:
+                return line
+        fresh = _Line(angle, offset)
+        self.found.append(fresh)
+        self._alike.setdefault((turn, away), []).append(fresh)
+        return fresh
 
 
 def _joined(stretches: list[tuple[float, float, str]]) -> Iterator[tuple[float, float, str]]:

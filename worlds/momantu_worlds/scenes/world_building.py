@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Annotated, Self
 
 from pydantic import Field, model_validator
@@ -78,6 +79,8 @@ class Room(Part):
         half = (self.corner is None) != (self.size is None)
         if half or rectangle == (self.outline is not None):
             raise ValueError("write corner and size, or an outline")
+        if any(a == b for a, b in pairwise((*self.corners, self.corners[0]))):
+            raise ValueError("two corners of the outline in turn are the same")
         return self
 
     @property
