@@ -359,3 +359,31 @@ def test_what_is_flush_with_the_floor_is_lifted_to_be_seen(imported, box):
     }
     assert tops["carpet"] == pytest.approx(0.003)
     assert tops["boards"] == pytest.approx(0.001)
+
+
+def test_bodies_of_nested_models_have_short_names(imported):
+    inner = f"<link name='link'>{CAN.format(mass=1)}</link>"
+    shelf = f"<model name='shelf'><static>1</static>{inner}</model>"
+    pair = f"<model name='pair'><link name='a'>{CAN.format(mass=1)}</link>"
+    pair += f"<link name='b'>{CAN.format(mass=1)}</link></model>"
+    found = imported(
+        f"{GROUND}<model name='house'>{shelf}{pair}</model><model name='box_7'>{shelf}</model>"
+    )
+    assert [b.name for b in found.world.bodies] == ["shelf", "pair_a", "pair_b", "box_7"]
+
+
+def test_a_top_of_several_pieces_is_one_surface(imported, box):
+    """Two boards side by side are a table; two far apart are not."""
+    board = """<collision name='{n}'><pose>{x} 0 0.7 0 0 0</pose><geometry><box>
+      <size>0.6 1 0.04</size></box></geometry></collision>"""
+    for apart, width in ((0.6, 1.2), (2.0, 0.6)):
+        boards = board.format(n="a", x=0) + board.format(n="b", x=apart)
+        inside = f"<model name='m'><static>1</static><link name='l'>{boards}</link></model>"
+        (surface,) = imported(GROUND + inside).world.site.surfaces.values()
+        assert sorted(surface.top.size) == pytest.approx(sorted((width, 1.0)), abs=1e-3)
+
+
+def test_a_machine_on_a_wall_is_no_robot(imported):
+    joint = "<joint name='w' type='fixed'><parent>world</parent><child>base</child></joint>"
+    rover = ROBOT.format(*[CAN.format(mass=1)] * 3).replace("</model>", joint + "</model>")
+    assert [body.name for body in imported(GROUND + rover).world.bodies] == ["rover"]

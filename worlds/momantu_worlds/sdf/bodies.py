@@ -137,10 +137,14 @@ class BodyMaker:
         return kept
 
     def _name(self, model: PlacedModel, group: Group) -> str:
+        """The outermost model's name if that is one body, else the innermost's, and the link's."""
         first = group.links[0]
-        whole = len(group.links) == sum(len(one.links) for one in model.everything())
-        words = model.path if whole else (*first.path, first.link.name)
-        return self.unique("_".join(words))
+        if len(group.links) == sum(len(one.links) for one in model.everything()):
+            return self.unique(model.model.name)
+        inner = next(one for one in model.everything() if one.path == first.path)
+        own = [placed for placed in group.links if placed.path == first.path]
+        link = [] if len(own) == len(inner.links) else [first.link.name]
+        return self.unique("_".join([first.path[-1], *link]))
 
     def unique(self, said: str) -> str:
         """A name as world files have them, that nothing else has."""

@@ -11,7 +11,8 @@ from momantu_worlds.sdf.model import Joint
 
 _INNER = "::"
 JOINTS_OF_A_ROBOT = 2
-"""A model with as many joints that move, and with sensors or plugins, is a robot; a door is not."""
+"""A model with as many joints that move, and with sensors or plugins, is a robot; a door is not,
+nor what is fixed to the world."""
 
 
 @dataclass(slots=True)
@@ -27,6 +28,8 @@ def is_robot(model: PlacedModel) -> bool:
     if model.model.static:
         return False
     inner = list(model.everything())
+    if any(WORLD in (joint.parent, joint.child) for one in inner for joint in one.joints):
+        return False
     moving = sum(joint.moves for one in inner for joint in one.joints)
     driven = any(one.model.plugins for one in inner)
     senses = any(placed.link.sensors for one in inner for placed in one.links)

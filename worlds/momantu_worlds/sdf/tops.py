@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
@@ -25,6 +26,9 @@ HEADROOM = 0.3
 """m; free height that a hand needs above a top."""
 
 
+_Face: TypeAlias = tuple[float, Array]
+
+
 @dataclass(frozen=True, slots=True)
 class Top:
     """A level rectangle. pose: of its middle in the map. size: along its own x and y, m."""
@@ -41,26 +45,37 @@ class Top:
 
 def best_top(body: ImportedBody, others: Sequence[Array]) -> Top | None:
     """The largest top of a body with room above it; others: hulls (n, 3) of everything still."""
-    found = [top for hull in body.hulls() if (top := _top_of(hull)) is not None]
+    faces = sorted(filter(None, map(_face_of, body.hulls())), key=lambda face: face[0])
+    level: list[list[_Face]] = []
+    for face in faces:
+        if level and face[0] - level[-1][-1][0] < LEVEL:
+            level[-1].append(face)
+        else:
+            level.append([face])
+    groups = [[face] for face in faces] + [many for many in level if len(many) > 1]
+    found = [top for group in groups if (top := _top_of(group)) is not None]
     free = [top for top in found if _has_room(top, others)]
     return max(free, key=lambda top: (round(top.area, 6), -top.height), default=None)
 
 
-def _top_of(hull: Array) -> Top | None:
+def _face_of(hull: Array) -> _Face | None:
+    """Height and points (n, 2) of the level upper side of a hull, m; None if it has none."""
+    height = float(hull[:, 2].max())
+    upper = hull[hull[:, 2] > height - LEVEL, :2]
+    return (height, upper) if LOWEST <= height <= HIGHEST and len(upper) > 2 else None
+
+
+def _top_of(faces: Sequence[_Face]) -> Top | None:
+    """The rectangle around faces of one height, if they fill it and it is large enough."""
     import cv2
 
-    height = float(hull[:, 2].max())
-    if not LOWEST <= height <= HIGHEST:
-        return None
-    upper = hull[hull[:, 2] > height - LEVEL, :2]
-    if len(upper) < 3:
-        return None
-    middle = upper.mean(axis=0)
-    outline = cv2.convexHull((upper - middle).astype(np.float32))
-    (x, y), (width, depth), angle = cv2.minAreaRect(outline)
+    height = max(face[0] for face in faces)
+    middle = np.concatenate([face[1] for face in faces]).mean(axis=0)
+    outlines = [cv2.convexHull((face[1] - middle).astype(np.float32)) for face in faces]
+    (x, y), (width, depth), angle = cv2.minAreaRect(np.concatenate(outlines))
     if min(width, depth) < NARROWEST or width * depth < SMALLEST:
         return None
-    if cv2.contourArea(outline) < COVERED * width * depth:
+    if sum(map(cv2.contourArea, outlines)) < COVERED * width * depth:
         return None
     yaw = math.radians(angle)
     while yaw > math.pi / 4:
