@@ -25,6 +25,11 @@ SLACK = 0.004
 """m between palm and object: half of what the detection is wrong by, the rest only pushes."""
 PAD_SHARE = 0.012
 """m of the pads' length that must lie beyond the object's axis, so that they close on it."""
+FACE_SHARE = 0.035
+"""m of a box's flat faces that the pads must cover, wherever its axis is: flat faces, unlike a
+cylinder's, do not slide out of them. More than half of a usual pad."""
+BEYOND_PENALTY = 20.0
+"""s per metre that the axis lies beyond the pads' middle: what is held there wants to swing."""
 OPENING = 0.014
 """m by which the open gripper must be wider than the object."""
 TOP_PENALTY = 3.0
@@ -84,6 +89,7 @@ def _from_side(
     thing: DetectedObject, hand: EndEffector, palm: Array, direction: float, width: float
 ) -> Iterator[Grasp]:
     surface = _surface(thing)
+    farthest = _farthest(thing, hand, direction)
     for tilt, share in product(TILTS, HEIGHTS):
         x = np.array(
             [
@@ -96,25 +102,30 @@ def _from_side(
         rotation = np.stack([x, y, np.cross(x, y)], axis=1)
         centre = np.array([0.0, 0.0, (share - 0.5) * thing.size[2]])
         back = _setback(surface, centre, rotation, hand, palm)
-        if back is None:
+        if back > farthest:
             continue
         penalty = TILT_PENALTY * tilt + OFF_CENTRE_PENALTY * (share - HEIGHTS[0])
+        penalty += BEYOND_PENALTY * max(0.0, back - (hand.pad_length / 2 - PAD_SHARE))
         yield Grasp(Transform.from_rotation(rotation, centre - back * x), width, penalty)
+
+
+def _farthest(thing: DetectedObject, hand: EndEffector, direction: float) -> float:
+    """How far the grasp frame may stay behind the object's axis at most, m."""
+    if thing.shape == "cylinder":
+        return hand.pad_length / 2 - PAD_SHARE
+    along = abs(math.cos(direction)) * thing.size[0] + abs(math.sin(direction)) * thing.size[1]
+    return along / 2 + hand.pad_length / 2 - FACE_SHARE
 
 
 def _setback(
     surface: Array, centre: Array, rotation: Array, hand: EndEffector, palm: Array
-) -> float | None:
-    """How far the grasp frame stays behind the object's axis so that the palm clears it, m.
-
-    None if the pads would then no longer reach past the axis.
-    """
+) -> float:
+    """How far the grasp frame stays behind the object's axis so that the palm clears it, m."""
     local = (surface - centre) @ rotation
     reach_y, reach_z = np.abs(palm[:, 1]).max(), np.abs(palm[:, 2]).max()
     before = local[(np.abs(local[:, 1]) <= reach_y) & (np.abs(local[:, 2]) <= reach_z)]
     deepest = -float(before[:, 0].min()) if len(before) else 0.0
-    back = max(0.0, deepest - (hand.hand_clearance - SLACK))
-    return back if back <= hand.pad_length / 2 - PAD_SHARE else None
+    return max(0.0, deepest - (hand.hand_clearance - SLACK))
 
 
 def _from_above(

@@ -86,6 +86,24 @@ def test_a_box_is_held_across_narrow_faces(size: tuple[float, float, float]) -> 
         assert grasp.width <= HAND.max_width - 0.014
 
 
+@pytest.mark.parametrize("size", [(0.05, 0.15, 0.14), (0.12, 0.07, 0.14)])
+def test_a_deep_box_is_held_level_by_enough_of_its_faces(size: tuple[float, float, float]) -> None:
+    level = [g for g in grasps("box", size) if abs(g.object_from_grasp.rotation[2, 0]) < 0.01]
+    assert level
+    for grasp in level:
+        corners = grasp.object_from_grasp.inverse().apply(object_corners(thing("box", size)))
+        near, far = corners[:, 0].min(), corners[:, 0].max()
+        assert near >= -HAND.hand_clearance
+        pad = HAND.pad_length / 2
+        assert min(far, pad) - max(near, -pad) >= 0.035 - 1e-9
+
+
+def test_the_deeper_a_box_reaches_beyond_the_pads_the_less_it_is_liked() -> None:
+    least = [min(g.penalty for g in grasps("box", (0.05, y, 0.14))) for y in (0.06, 0.10, 0.15)]
+    assert least == sorted(least)
+    assert least[0] < least[-1]
+
+
 def test_what_is_wider_than_the_gripper_has_no_grasps() -> None:
     assert grasps("cylinder", (0.12, 0.12, 0.1)) == []
     assert grasps("box", (0.12, 0.12, 0.1)) == []

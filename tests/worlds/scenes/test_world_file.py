@@ -41,7 +41,7 @@ CASES = [
     ("  thickness: 15 cm", "  thickness: -1", "-1\n", ["greater than 0"]),
     ("  thickness: 15 cm", "  thickness: .inf", ".inf", ["not a number that can be read"]),
     ("  friction: 0.9", "  friction: 100", "100", ["less than or equal to 1"]),
-    ("  mass: 0.4 kg\n", "", "name: can", ["item needs a key 'mass'"]),
+    ("  kind: can\n", "", "name: can", ["item needs a key 'kind'"]),
     ("    kind: desk\n", "    kind: throne\n", "throne", ["'throne' is not possible", "'desk'"]),
     ("  id: 1 ", "  id: 400 ", "id: 400", ["tag.id", "less than 30"]),
     ("moved: {least: 2, most: 5}", "moved: {least: 6, most: 5}", "{least: 6", ["more than most"]),

@@ -4,22 +4,23 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from momantu_bt.geometry import Transform
-from momantu_worlds.scenes.bodies import Body, Cylinder
-from momantu_worlds.scenes.solids import box_tops
+from momantu_worlds.scenes.bodies import Body, Cylinder, Part
+from momantu_worlds.scenes.solids import box_tops, outline
 
 
 class Upright:
-    """The cylinder that an item is, standing on its origin."""
+    """The least upright cylinder around all of an item that collides, standing on its origin."""
 
     def __init__(self, body: Body) -> None:
-        shape = next(
-            (p.geometry for p in body.parts if p.collision and isinstance(p.geometry, Cylinder)),
-            None,
-        )
-        if shape is None:
-            raise ValueError(f"the item {body.name!r} has no cylinder to judge it by")
-        self.radius, self.height = shape.radius, shape.height
+        parts = [part for part in body.parts if part.collision]
+        if not parts:
+            raise ValueError(f"the item {body.name!r} has nothing solid to judge it by")
+        self.radius = max(_reach(part) for part in parts)
+        levels = [level for part in parts for level in _levels(part)]
+        self.height = max(levels) - min(levels)
 
     def distance(self, map_from_item: Transform, map_from_link: Transform) -> float:
         """From a link's origin to the nearest point of the item, m."""
@@ -27,6 +28,24 @@ class Upright:
         beside = max(0.0, math.hypot(x, y) - self.radius)
         above = max(0.0, abs(z - self.height / 2) - self.height / 2)
         return math.hypot(beside, above)
+
+
+def _reach(part: Part) -> float:
+    """The farthest that an upright part stands out from its body's axis, m."""
+    if isinstance(part.geometry, Cylinder):
+        x, y, _ = part.body_from_part.position
+        return math.hypot(x, y) + part.geometry.radius
+    corners = part.body_from_part.apply(outline(part))
+    return float(np.hypot(corners[:, 0], corners[:, 1]).max())
+
+
+def _levels(part: Part) -> tuple[float, float]:
+    """Heights between which a part lies in its body's frame, m."""
+    if isinstance(part.geometry, Cylinder):
+        z, half = float(part.body_from_part.position[2]), part.geometry.height / 2
+        return z - half, z + half
+    heights = part.body_from_part.apply(outline(part))[:, 2]
+    return float(heights.min()), float(heights.max())
 
 
 class Top:

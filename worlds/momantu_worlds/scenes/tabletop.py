@@ -54,14 +54,8 @@ def place_objects(
 ) -> tuple[PlacedThing, ...]:
     """The item and all named objects, each whole on its top; those of the file first come first."""
     placed: list[PlacedThing] = []
-    if world.item is not None:
-        item = world.item
-        size = (2 * item.radius, 2 * item.radius, item.height)
-        thing = Thing(item.kind, size, item.mass, item.color)
-        spot = Spot(item.name, item.on, item.at, item.shift, item.radius + RIM)
-        at = next(_on_top(tables, seed, spot))
-        placed.append(PlacedThing(item.name, thing, item.on, at, item.friction))
-    for name, note in world.objects.items():
+    item = {} if world.item is None else {world.item.name: world.item}
+    for name, note in {**item, **world.objects}.items():
         placed.append(_placed_object(world, seed, tables, name, note, placed, tags))
     return tuple(placed)
 
@@ -90,7 +84,8 @@ def _placed_object(
 
 def _thing_of(note: ObjectNote, seed: int, name: str) -> Thing:
     """What the file says of an object, and of the rest what its kind usually is."""
-    draw, paint = seeded(seed, "object", name), seeded(seed, "paint", name)
+    draw = seeded(seed, "object", name)
+    paint = seeded(seed, "paint", name) if note.color is None else None
     thing = draw_thing(note.kind, draw, paint, size=note.extent, color=note.color)
     return thing if note.mass is None else replace(thing, mass=note.mass)
 
@@ -179,11 +174,11 @@ def draw_distractor(
     paint: np.random.Generator | None,
     sought: Thing | None,
 ) -> Thing:
-    """A thing of some usual size, weight and look; a can is never like one that is sought."""
-    if kind != "can" or sought is None or sought.kind != "can":
+    """A thing of some usual size, weight and look, never like one that is sought."""
+    if sought is None or sought.kind != kind:
         return draw_thing(kind, draw, paint)
     color = COLORS[int(draw.integers(len(COLORS)))]
-    size = _other_can(sought, draw)
+    size = _other_size(sought, draw)
     mass = sought.mass * (size[0] ** 2 * size[2]) / (sought.size[0] ** 2 * sought.size[2])
     color = sought.color if draw.random() < 0.5 else color
     look = None if paint is None else draw_look(kind, color, paint)
@@ -191,16 +186,16 @@ def draw_distractor(
 
 
 OTHER_SIZE = 0.22
-"""relative; another can differs from the item by more than 20 % in radius or height."""
+"""relative; another thing of the item's kind is more than 20 % wider or higher, or less so."""
 
 
-def _other_can(sought: Thing, draw: np.random.Generator) -> tuple[float, float, float]:
+def _other_size(sought: Thing, draw: np.random.Generator) -> tuple[float, float, float]:
     factors = draw.uniform(0.85, 1.15, 2)
     larger = bool(draw.random() < 0.5)
     factor = draw.uniform(1 + OTHER_SIZE, 1.38) if larger else draw.uniform(0.68, 1 - OTHER_SIZE)
     factors[int(draw.integers(2))] = factor
-    edge = sought.size[0] * float(factors[0])
-    return edge, edge, sought.height * float(factors[1])
+    wide, high = (float(factor) for factor in factors)
+    return sought.size[0] * wide, sought.size[1] * wide, sought.height * high
 
 
 class _Crowd:

@@ -112,7 +112,7 @@ class _Names:
         """What stands on which surface."""
         world = self._world
         if world.item is not None:
-            yield ("item", "on"), world.item.on
+            yield from ((("item", "on"), top) for top in world.item.tops)
         if world.tag is not None and world.tag.on is not None:
             yield ("tag", "on"), world.tag.on
         for name, note in world.objects.items():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal, Self
+from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
@@ -26,26 +26,12 @@ GRIP = 0.6
 """Friction of an object that says nothing of its own: painted metal or plastic on wood."""
 
 
-class Item(Part):
-    """What is brought: an upright can on a table."""
-
-    name: Name
-    kind: Literal["can"]
-    on: Name
-    at: Point
-    shift: NotNegative = 0.0
-    radius: Size
-    height: Size
-    mass: Mass
-    friction: Friction
-    color: Rgb
-
-
 class ObjectNote(Part):
-    """A loose object on a table or board. What is not said of its looks is drawn from the seed.
+    """A loose object on a table or board. What is not said of it is drawn from the seed.
 
     on: one surface, or several of which an episode takes one. at: where on it, in its own frame;
     anywhere on it when not said. size: of a box; radius and height: of everything round.
+    color: it has the usual paint of its kind in this colour, not one of many patterns.
     """
 
     kind: ObjectKind
@@ -85,6 +71,12 @@ class ObjectNote(Part):
         if self.radius is None or self.height is None:
             return None
         return 2 * self.radius, 2 * self.radius, self.height
+
+
+class Item(ObjectNote):
+    """What is brought, where nothing else of the file is asked for by the goal."""
+
+    name: Name
 
 
 class TagNote(Part):

@@ -1,0 +1,88 @@
+"""Anything loose may be what is brought: it is placed, judged, and nothing else is like it."""
+
+from typing import Any
+
+import pytest
+from momantu_worlds.scenes.bodies import Body
+from momantu_worlds.scenes.layout import Layout
+from momantu_worlds.scenes.loading import load_world
+from momantu_worlds.scenes.objects import OBJECT_KINDS, ObjectKind, Thing
+from momantu_worlds.scenes.standing import Upright
+from momantu_worlds.scenes.variation import vary
+from momantu_worlds.scenes.world_file import WorldFile
+from momantu_worlds.scenes.world_objects import Item
+from momantu_worlds.worlds import four_rooms
+
+from momantu_bt.geometry import Transform
+
+SIZES: dict[str, tuple[float, float, float]] = {
+    "can": (0.07, 0.07, 0.13),
+    "bottle": (0.068, 0.068, 0.24),
+    "box": (0.06, 0.10, 0.14),
+    "mug": (0.08, 0.08, 0.09),
+    "bowl": (0.13, 0.13, 0.06),
+}
+
+
+def world_with(item: dict[str, Any]) -> WorldFile:
+    """four_rooms with another item."""
+    world = load_world(four_rooms.path)
+    given = {"name": "thing", "on": "table_a", "at": (-0.19, 0.54), "shift": 0.15, **item}
+    assert world.goal is not None
+    goal = world.goal.model_copy(update={"item": "thing"})
+    return world.model_copy(update={"item": Item.model_validate(given), "goal": goal})
+
+
+def sizes(kind: ObjectKind) -> dict[str, Any]:
+    x, _, z = SIZES[kind]
+    return {"size": SIZES[kind]} if kind == "box" else {"radius": x / 2, "height": z}
+
+
+def drawn(item: dict[str, Any], seed: int) -> Layout:
+    return vary(world_with(item), seed)
+
+
+@pytest.mark.parametrize("kind", OBJECT_KINDS)
+def test_the_item_is_judged_by_the_cylinder_around_it(kind: ObjectKind) -> None:
+    thing = Thing(kind, SIZES[kind], 0.3, (0.5, 0.5, 0.5))
+    body = Body("thing", kind, Transform(), thing.parts(), static=False, mass=0.3)
+    around = Upright(body)
+    assert around.height == pytest.approx(thing.height)
+    assert around.radius == pytest.approx(thing.reach, abs=0.002)
+    beside = Transform((around.radius + 0.2, 0.0, thing.height / 2))
+    assert around.distance(Transform(), beside) == pytest.approx(0.2)
+
+
+def test_a_body_of_air_is_no_item() -> None:
+    with pytest.raises(ValueError, match="'ghost' has nothing solid"):
+        Upright(Body("ghost", "can", Transform(), ()))
+
+
+@pytest.mark.parametrize("kind", OBJECT_KINDS)
+def test_an_item_has_the_sizes_that_are_given(kind: ObjectKind) -> None:
+    placed = drawn({"kind": kind, **sizes(kind)}, 0).objects[0]
+    assert placed.name == "thing"
+    assert placed.thing.size == pytest.approx(SIZES[kind])
+
+
+@pytest.mark.parametrize("kind", OBJECT_KINDS)
+def test_an_item_without_sizes_is_drawn_anew_in_every_episode(kind: ObjectKind) -> None:
+    found = {drawn({"kind": kind}, seed).objects[0].thing.size for seed in range(5)}
+    assert len(found) == 5
+
+
+@pytest.mark.parametrize("kind", OBJECT_KINDS)
+def test_nothing_of_its_kind_is_like_it(kind: ObjectKind) -> None:
+    likes = 0
+    for seed in range(12):
+        for placed in drawn({"kind": kind, **sizes(kind)}, seed).things:
+            if placed.thing.kind == kind:
+                likes += 1
+                ratios = [a / b for a, b in zip(placed.thing.size, SIZES[kind], strict=True)]
+                assert max(abs(ratio - 1.0) for ratio in ratios) > 0.20
+    assert likes > 0
+
+
+def test_a_box_with_a_radius_is_refused_with_what_it_has() -> None:
+    with pytest.raises(ValueError, match="a box has a size, no radius and height"):
+        world_with({"kind": "box", "radius": 0.03, "height": 0.1})
