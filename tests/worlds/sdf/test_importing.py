@@ -372,6 +372,17 @@ def test_bodies_of_nested_models_have_short_names(imported):
     assert [b.name for b in found.world.bodies] == ["shelf", "pair_a", "pair_b", "box_7"]
 
 
+def test_a_still_body_stands_where_its_own_model_does(imported, box):
+    """So that a person moves it by moving its `at`."""
+    inside = box("shelf", "1 1 1", "0 3 0 0 0 0") + box("desk", "1 1 1", "0 6 0 0 0 0")
+    house = f"<model name='house'><static>1</static><pose>2 0 1 0 0 0</pose>{inside}</model>"
+    bodies = by_name(imported(GROUND + house))
+    assert bodies["shelf"].at.position == pytest.approx([2, 3, 1])
+    assert bodies["desk"].at.position == pytest.approx([2, 6, 1])
+    points = np.concatenate(list(bodies["shelf"].hulls()))
+    assert points.mean(axis=0) == pytest.approx([2, 3, 1])
+
+
 def test_a_top_of_several_pieces_is_one_surface(imported, box):
     """Two boards side by side are a table; two far apart are not."""
     board = """<collision name='{n}'><pose>{x} 0 0.7 0 0 0</pose><geometry><box>

@@ -61,7 +61,7 @@ class BodyMaker:
     def body(self, model: PlacedModel, group: Group) -> Iterator[ImportedBody]:
         """The body of a group; several when it has too many parts; none when nothing is left."""
         first = group.links[0]
-        at = model.world_from_model if group.still else first.world_from_link
+        at = _frame_of(model, group) if group.still else first.world_from_link
         parts = list(joined(self._parts(model, group, at)))
         if not parts:
             if any(self._had_shapes(placed) for placed in group.links):
@@ -154,6 +154,14 @@ class BodyMaker:
             name, count = f"{stem}_{count}", count + 1
         self._names.add(name)
         return name
+
+
+def _frame_of(model: PlacedModel, group: Group) -> Transform:
+    """The frame of the innermost model that has all links of a group, in the world's."""
+    first = group.links[0]
+    if any(placed.path != first.path for placed in group.links):
+        return model.world_from_model
+    return next(one for one in model.everything() if one.path == first.path).world_from_model
 
 
 def plain_name(said: str) -> str:
