@@ -110,19 +110,19 @@ def test_links_that_are_fixed_to_each_other_never_push() -> None:
         for name, link in simulator.model.links.items()
         if link.collision_shapes
     }
-    # the deck carries bracket and mast; the arm's foot stands on the bracket, its shoulder turns
+    # the deck carries column and mast; the arm's foot stands on the plate, its shoulder turns
     for one, other in (
-        ("chassis_link", "bracket_link"),
+        ("chassis_link", "column_link"),
         ("chassis_link", "mast_link"),
-        ("bracket_link", "arm_link_base"),
-        ("bracket_link", "arm_link_1"),
+        ("plate_link", "arm_link_base"),
+        ("plate_link", "arm_link_1"),
         ("arm_camera_link", "arm_link_5"),
     ):
         assert groups[one] & groups[other]
     for one, other in (
         ("arm_link_1", "arm_link_3"),
         ("arm_link_2", "chassis_link"),
-        ("arm_finger_1", "arm_finger_2"),
-        ("arm_finger_tip_1", "arm_link_6"),
+        ("arm_finger_2", "arm_finger_3"),
+        ("arm_finger_tip_2", "arm_link_6"),
     ):
         assert not groups[one] & groups[other]

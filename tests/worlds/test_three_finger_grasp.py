@@ -170,4 +170,4 @@ def test_stopping_the_gripper_keeps_its_grip_and_opening_lets_go() -> None:
     for _ in range(40):
         simulator.robot.command("gripper", GripperCommand(ROBOT.end_effector.max_width, FORCE))
         simulator.step()
-    assert simulator.truth.pose("thing").position[2] < 0.8
+    assert simulator.truth.pose("thing").position[2] < 0.82
