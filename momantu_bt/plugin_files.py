@@ -8,7 +8,9 @@ from typing import Any
 
 from momantu_bt.plugins import ROBOTS, WORLD_FILES, WORLDS, PluginError, installed, load
 
-ENDINGS = (".yaml", ".yml")
+GEOMETRY = (".urdf", ".xacro")
+"""How files end that a robot file names, and that somebody may take for one."""
+ENDINGS = (".yaml", ".yml", *GEOMETRY)
 """A name that ends so, or has a slash in it, is a path."""
 _USUAL = {ROBOTS: "robot.yaml", WORLDS: "world.yaml"}
 
@@ -32,16 +34,19 @@ def from_file(group: str, name: str) -> Any:
     """
     path = Path(name)
     what = "robot" if group == ROBOTS else "world"
+    if path.is_dir():
+        path /= _USUAL[group]
     if not path.exists():
         beside = sorted(p.name for p in path.parent.glob("*.y*ml")) if path.parent.is_dir() else []
         there = f"; files there: {', '.join(beside)}" if beside else ""
         raise PluginError(f"there is no {what} file {path}{there}")
     if group == ROBOTS:
+        if path.suffix in GEOMETRY:
+            setup = f"momantu-bt robots setup {path}"
+            raise PluginError(f"{path} is no robot file, but a URDF; `{setup}` makes one of it")
         from momantu_bt.robots import read_robot
 
         return lambda: read_robot(path)
-    if path.is_dir():
-        path /= _USUAL[WORLDS]
     readers, ending = installed(WORLD_FILES), path.suffix.removeprefix(".")
     if ending not in readers:
         kinds = ", ".join(f".{each}" for each in readers) or "none"

@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import importlib.util
 import json
+import os
 import os.path
 import platform
 from collections.abc import Iterable, Iterator, Mapping
@@ -23,6 +24,7 @@ from momantu_bt import plugins
 from momantu_bt.engine.build import skills_in
 from momantu_bt.plugin_files import by_path
 from momantu_bt.record.versions import LIBRARIES
+from momantu_bt.robots.meshes import MESHES
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.named_world import NO_WORLD, world_of
 from momantu_bt.tree.registry import Registry
@@ -68,7 +70,7 @@ def made_of(
     if by_path(plugins.WORLDS, world):
         found |= _digests("world", _files_of_world(registry.worlds[world]))
         found["the world"] = registry.worlds[world].name
-    if robot is not None and by_path(plugins.ROBOTS, robot):
+    if robot is not None and (by_path(plugins.ROBOTS, robot) or MESHES in os.environ):
         description = registry.description(robot)
         found |= _digests("robot", description.files)
         found["the robot"] = description.name

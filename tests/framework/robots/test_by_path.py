@@ -11,6 +11,7 @@ import pytest
 from momantu_bt import plugin_files, plugins
 from momantu_bt.bench.made_of import difference, made_of
 from momantu_bt.cli import main
+from momantu_bt.robots import read_robot
 from momantu_bt.tree.load import load
 from momantu_bt.tree.registry import Registry
 
@@ -54,6 +55,42 @@ def test_a_path_without_a_file_is_told_what_lies_there(
 ) -> None:
     assert main(["robots", "show", str(carter().parent / "robto.yaml")]) == 2
     assert "files there: robot.yaml" in capsys.readouterr().err
+
+
+def test_a_urdf_is_no_robot_file_and_the_way_to_one_is_told(
+    carter: Write, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(carter().parent)
+    assert main(["robots", "show", "cart.urdf"]) == 2
+    assert "`momantu-bt robots setup cart.urdf` makes one of it" in capsys.readouterr().err
+
+
+def test_a_folder_without_a_robot_file_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "other.yaml").touch()
+    assert main(["robots", "show", str(tmp_path)]) == 2
+    said = capsys.readouterr().err
+    assert "there is no robot file" in said
+    assert "files there: other.yaml" in said
+
+
+def test_a_users_meshes_count_in_a_benchs_key_of_a_named_robot(
+    carter: Write, tmp_path: Path, tree: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    meshes = tmp_path / "meshes" / "carter" / "cart"
+    meshes.mkdir(parents=True)
+    (meshes / "mast.stl").write_bytes(b"solid")
+    file = carter()
+    registry = Registry(robots={"carter": lambda: read_robot(file)})
+    document = load(tree, Registry.installed()).document
+    plain = made_of(document, registry, robot="carter")
+    monkeypatch.setenv("MOMANTU_BT_MESHES", str(tmp_path / "meshes"))
+    own = made_of(document, registry, robot="carter")
+    (meshes / "mast.stl").write_bytes(b"changed")
+    assert not any(name.startswith("the robot's file") for name in plain)
+    (changed,) = difference(own, made_of(document, registry, robot="carter"))
+    assert changed.endswith("mast.stl")
 
 
 def test_a_broken_robot_file_is_an_error_of_the_check_with_its_own_place(
