@@ -64,7 +64,7 @@ def command(pose: Pose2D, goal: Pose2D, limits: BaseLimits) -> tuple[float, floa
     """Next (m/s, rad/s) towards the goal; None at the goal's line, where the base must stop."""
     x, y, yaw = float(pose.x), float(pose.y), float(pose.yaw)
     goal_x, goal_y, goal_yaw = float(goal.x), float(goal.y), float(goal.yaw)
-    v, w = _law(x, y, yaw, goal_x, goal_y, goal_yaw, limits.angular)
+    v, w = _law(x, y, yaw, goal_x, goal_y, goal_yaw, limits.angular, _top(limits))
     return None if v == 0.0 else (float(v), float(w))
 
 
@@ -79,13 +79,32 @@ def simulate(
     """Where the law leads from a pose and a measured (m/s, rad/s), and how much room it leaves."""
     start = np.array([pose.x, pose.y, pose.yaw, *speed], dtype=np.float64)
     end = np.array([goal.x, goal.y, goal.yaw], dtype=np.float64)
-    bounds = np.array([limits.angular, limits.linear_acceleration, limits.angular_acceleration])
+    bounds = np.array(
+        [
+            limits.angular,
+            limits.linear_acceleration,
+            limits.angular_acceleration,
+            _top(limits),
+        ]
+    )
     return Arrival(*_simulate(start, end, bounds, costmap.field, costmap.frame, discs))
+
+
+def _top(limits: BaseLimits) -> float:
+    """Fastest that the base goes on its approach, m/s."""
+    return min(TOP_SPEED, limits.linear)
 
 
 @numba.njit(cache=True)
 def _law(
-    x: float, y: float, yaw: float, goal_x: float, goal_y: float, goal_yaw: float, fastest: float
+    x: float,
+    y: float,
+    yaw: float,
+    goal_x: float,
+    goal_y: float,
+    goal_yaw: float,
+    fastest: float,
+    top: float,
 ) -> tuple[float, float]:
     dx = goal_x - x
     dy = goal_y - y
@@ -99,7 +118,7 @@ def _law(
     pull = FOLLOW * (delta - math.atan(-TURN_IN * theta))
     pull += (1.0 + TURN_IN / (1.0 + (TURN_IN * theta) ** 2)) * math.sin(delta)
     curvature = -pull / max(distance, 0.15)
-    v = TOP_SPEED / (1.0 + SLOW_IN_CURVES * curvature * curvature)
+    v = top / (1.0 + SLOW_IN_CURVES * curvature * curvature)
     v = min(v, math.sqrt(2.0 * BRAKE * ahead), EASE * ahead + CREEP)
     if abs(v * curvature) > fastest:
         v = fastest / abs(curvature)
@@ -117,7 +136,7 @@ def _simulate(
     stopping = False
     for i in range(int(LONGEST / STEP)):
         if not stopping:
-            to_v, to_w = _law(x, y, yaw, goal[0], goal[1], goal[2], bounds[0])
+            to_v, to_w = _law(x, y, yaw, goal[0], goal[1], goal[2], bounds[0], bounds[3])
             stopping = to_v == 0.0
             if not stopping and to_v < CRAWL:
                 break

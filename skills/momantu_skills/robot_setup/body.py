@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
+import coal
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 from scipy.spatial import QhullError
 
 from momantu_bt.geometry import Array
-from momantu_skills.manipulation.hulls import link_hulls, part_points
+from momantu_skills.manipulation.hulls import convex, link_hulls, part_points
 from momantu_skills.manipulation.shapes import BodyShapes
 from momantu_skills.manipulation.urdf import UrdfSource, base_urdf
 from momantu_skills.robot_setup.skeleton import SetupError, Skeleton
@@ -70,6 +71,10 @@ class Body:
         for name, i in self.index.items():
             q[i] = posture[name] if name in posture else self._rest(name)
         return self.follow(q)
+
+    def named(self, q: Array) -> dict[str, float]:
+        """Joints (nq,) by name."""
+        return {name: float(q[i]) for name, i in self.index.items()}
 
     def follow(self, q: Array) -> Array:
         """Joints (nq,) with those that follow others where they follow; changed in place."""
@@ -163,6 +168,13 @@ class Contacts:
         """Of the nearest pair at joints (nq,), m; below 0 where shapes pass through each other."""
         pin.computeDistances(self.body.pin, self._data, self._geometry, self._shapes, q)
         return min((float(r.min_distance) for r in self._shapes.distanceResults), default=np.inf)
+
+
+def hulls_meet(one: Array, other: Array) -> bool:
+    """Whether the convex hulls of corners (n, 3) and (m, 3) meet."""
+    request, result = coal.CollisionRequest(), coal.CollisionResult()
+    still = coal.Transform3s.Identity()
+    return bool(coal.collide(convex(one), still, convex(other), still, request, result))
 
 
 def placed(points: Array, pose: Array) -> Array:

@@ -12,6 +12,7 @@ from momantu_skills.manipulation.collision import CollisionWorld, body_pairs
 from momantu_skills.manipulation.model import ArmModel
 from momantu_skills.robot_setup.base import ABOVE, Stand
 from momantu_skills.robot_setup.body import Body
+from momantu_skills.robot_setup.cells import cuts_of, swallowed
 from momantu_skills.robot_setup.remarks import Remark
 
 OUTSIDE = 0.01
@@ -188,6 +189,29 @@ def _forces(description: RobotDescription, body: Body) -> Iterator[Remark]:
                 f"write `drives: {{{weak[0]}: {{force: …}}}}`, Nm or N",
                 ("actuators", name),
             )
+
+
+def check_hulls(description: RobotDescription, body: Body) -> Iterator[Remark]:
+    """Links that lie in the hull of a long mesh: a simulator pushes them out."""
+    if description.simulation is None:
+        return
+    cut = description.simulation.convex_cells
+    met: dict[tuple[str, str], list[str]] = {}
+    for pose, link, long in swallowed(
+        body, description.named_poses, description.ignored_collisions
+    ):
+        if long not in cut and pose not in met.setdefault((link, long), []):
+            met[link, long].append(pose)
+    for (link, long), poses in met.items():
+        cuts = ", ".join(f"{name}: {list(at)}" for name, at in cuts_of(body, long).items())
+        yield Remark(
+            "error",
+            "hull-swallows",
+            f"{link} lies in the convex hull of {long}, for which a simulator takes it, in "
+            f"{in_poses(poses)}",
+            f"cut the mesh: write `{long}: {{{cuts}}}` under `convex_cells`, or ignore the pair",
+            ("simulation",),
+        )
 
 
 def check_looks(description: RobotDescription) -> Iterator[Remark]:

@@ -58,6 +58,7 @@ def check_robot(description: RobotDescription) -> list[Finding]:
     from momantu_skills.robot_setup.body import Body
     from momantu_skills.robot_setup.check_body import (
         check_footprint,
+        check_hulls,
         check_limits,
         check_looks,
         check_poses,
@@ -76,6 +77,7 @@ def check_robot(description: RobotDescription) -> list[Finding]:
             *check_poses(description, ArmModel(description)),
             *check_footprint(description, body, stand),
             *check_limits(description, body),
+            *check_hulls(description, body),
             *check_looks(description),
             *check_sensors(description, body),
             *check_hand(description, body),

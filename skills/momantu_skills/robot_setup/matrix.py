@@ -14,10 +14,12 @@ from itertools import combinations
 import numpy as np
 
 from momantu_bt.geometry import Array
-from momantu_skills.robot_setup.body import Body, Contacts
+from momantu_skills.robot_setup.body import Body, Contacts, hulls_meet, placed
 
 SAMPLES = 10_000
 """Random postures: a pair that meets in one of a thousand is missed in one of 20,000 set-ups."""
+FEW = 20
+"""Postures in which neighbours that overlap show themselves."""
 ALWAYS = 0.95
 """Share of the postures in which a pair meets because its shapes overlap for good."""
 
@@ -37,12 +39,14 @@ class CollisionMatrix:
     """Every pair of links that have shapes, in the order of the URDF.
 
     why: of each pair. share: of the random postures in which it met, 0 for adjacent pairs.
-    samples: how many postures were tried.
+    samples: how many postures were tried. overlapping: adjacent pairs that are no parent and child
+    and whose hulls meet; planning never checks them, and a simulator would push them apart.
     """
 
     why: Mapping[tuple[str, str], Why]
     share: Mapping[tuple[str, str], float]
     samples: int
+    overlapping: tuple[tuple[str, str], ...] = ()
 
     def pairs(self, *reasons: Why) -> tuple[tuple[str, str], ...]:
         """The pairs of which one of the reasons holds."""
@@ -50,8 +54,8 @@ class CollisionMatrix:
 
     @property
     def ignored(self) -> tuple[tuple[str, str], ...]:
-        """Pairs whose meeting says nothing, beyond those that share a joint."""
-        return self.pairs(Why.DEFAULT, Why.ALWAYS)
+        """Pairs whose meeting says nothing, beyond parents and their children."""
+        return (*self.overlapping, *self.pairs(Why.DEFAULT, Why.ALWAYS))
 
     @property
     def checked(self) -> tuple[tuple[str, str], ...]:
@@ -81,7 +85,25 @@ def sample_matrix(
     for pair, default, count in zip(apart, at_rest, met, strict=True):
         share[pair] = float(count) / samples
         why[pair] = _why(bool(default), share[pair])
-    return CollisionMatrix(why, share, samples)
+    near = [pair for pair in every if why[pair] is Why.ADJACENT and not _related(body, pair)]
+    draws = [body.configuration({}), *body.random_configurations(FEW, seed)]
+    return CollisionMatrix(why, share, samples, tuple(p for p in near if _overlap(body, p, draws)))
+
+
+def _related(body: Body, pair: tuple[str, str]) -> bool:
+    """Whether one link carries the other."""
+    above = [body.skeleton.above(link) for link in pair]
+    return any(j is not None and j.parent in pair for j in above)
+
+
+def _overlap(body: Body, pair: tuple[str, str], draws: Iterable[Array]) -> bool:
+    """Whether the hulls of two links meet in one of some postures (nq,)."""
+    one, other = pair
+    for q in draws:
+        poses = body.link_poses(body.named(q), pair)
+        if hulls_meet(placed(body.hulls[one], poses[one]), placed(body.hulls[other], poses[other])):
+            return True
+    return False
 
 
 def _count(contacts: Contacts, postures: Array) -> Array:

@@ -14,6 +14,7 @@ from momantu_skills.robot_setup.arm_ik import LimbSolver
 from momantu_skills.robot_setup.arms import Limbs, find_limbs, own_chain
 from momantu_skills.robot_setup.base import BaseFrame, Stand, find_base, find_stand, planar
 from momantu_skills.robot_setup.body import Body
+from momantu_skills.robot_setup.cells import cuts_of, swallowed
 from momantu_skills.robot_setup.fingers import find_hands
 from momantu_skills.robot_setup.grasp import Grasp, find_grasp
 from momantu_skills.robot_setup.limits import FoundLimit, find_limits, plain_limits
@@ -52,6 +53,7 @@ class Proposal:
     poses: dict[str, FoundPose]
     reach: Reach
     height: float
+    cells: dict[str, dict[str, tuple[float, ...]]]
     notes: tuple[str, ...]
 
 
@@ -102,6 +104,7 @@ def _propose(prepared: Prepared, samples: int, seed: int) -> Proposal:
         poses,
         find_reach(solver, stand),
         _height(body, stand, poses),
+        _cells(body, poses, matrix),
         (*prepared.notes, *limbs.notes),
     )
 
@@ -181,6 +184,15 @@ def _poses(
     pairs = matrix.pairs(Why.SOMETIMES, Why.NEVER)
     finder = PoseFinder(body, limbs, stand, pairs, eye, seed)
     return find_poses(finder, hand, view)
+
+
+def _cells(
+    body: Body, poses: dict[str, FoundPose], matrix: CollisionMatrix
+) -> dict[str, dict[str, tuple[float, ...]]]:
+    """Cuts of long links whose hull other links lie in."""
+    postures = {name: pose.joints for name, pose in poses.items()}
+    found = swallowed(body, postures, matrix.ignored)
+    return {link: cuts_of(body, link) for link in dict.fromkeys(long for _, _, long in found)}
 
 
 def _height(body: Body, stand: Stand, poses: dict[str, FoundPose]) -> float:

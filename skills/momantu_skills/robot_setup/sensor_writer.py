@@ -69,6 +69,9 @@ def sensor_lines(proposal: Proposal) -> Iterator[str]:
         yield f"  {name}:"
         lines = {"camera": _camera, "laser": _laser, "lidar": _lidar, "wrench": _wrench}
         yield from (f"    {line}" for line in lines[sensor.kind](name, sensor, proposal))
+    if proposal.grasp is not None and not any(s.kind == "wrench" for s in names.values()):
+        yield "  # Look at it: no force sensor was found. Where joint efforts tell the hand's load,"
+        yield "  # add `wrench: {kind: wrench, frame: LINK}`: with it, things are set down softly."
     source = _scan_source(names)
     if source is not None:
         yield "  # Guessed: made from the lidar. Look at it: the robot must stay out of the band."

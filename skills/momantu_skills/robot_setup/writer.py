@@ -11,6 +11,7 @@ import numpy as np
 
 from momantu_bt.geometry import Transform
 from momantu_skills.robot_setup.grasp import APART, STRONGEST, Grasp
+from momantu_skills.robot_setup.matrix import Why
 from momantu_skills.robot_setup.proposal import Proposal
 from momantu_skills.robot_setup.reach import HEIGHTS
 from momantu_skills.robot_setup.sensor_writer import sensor_frames, sensor_lines
@@ -328,7 +329,7 @@ def _ignored(proposal: Proposal) -> Iterator[str]:
         f"Measured in {matrix.samples} random postures: {told or 'no pairs'}. Pairs that share a "
         "joint are never checked. Pairs that never met are: a check costs little, and random "
         "postures prove nothing. These overlap for good, where every joint stands at rest, or "
-        "where the hand is closed:"
+        "where the hand is closed; neighbours would be pushed apart by a simulator:"
     )
     if not matrix.ignored:
         yield "ignored_collisions: []"
@@ -336,7 +337,8 @@ def _ignored(proposal: Proposal) -> Iterator[str]:
     yield "ignored_collisions:"
     for one, other in matrix.ignored:
         why, share = matrix.why[one, other], matrix.share[one, other]
-        yield f"  - [{one}, {other}]    # {why.value}, met in {share:.0%}"
+        said = f"{why.value}, met in {share:.0%}" if why is not Why.ADJACENT else "neighbours"
+        yield f"  - [{one}, {other}]    # {said}"
 
 
 def _simulation(proposal: Proposal) -> Iterator[str]:
@@ -352,6 +354,12 @@ def _simulation(proposal: Proposal) -> Iterator[str]:
     yield f"  floor_links: [{', '.join(proposal.stand.grounded)}]"
     yield f"  finger_links: [{', '.join(fingers)}]"
     yield "  finger_friction: 1.0"
+    if proposal.cells:
+        yield "  # Measured: other links lie in the hulls around these meshes. Guessed: even cuts."
+        yield "  convex_cells:"
+        for link, cuts in proposal.cells.items():
+            inside = ", ".join(f"{n}: [{', '.join(map(number, at))}]" for n, at in cuts.items())
+            yield f"    {link}: {{{inside}}}"
 
 
 def number(value: float, digits: int = 4) -> str:

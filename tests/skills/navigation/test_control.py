@@ -174,3 +174,13 @@ def test_backing_away_from_a_touch_is_allowed() -> None:
     touching = np.array([[0.29, 0.0]])
     assert safe_share((-0.2, 0.0), (0.0, 0.0), LIMITS, DISC, touching) == 1.0
     assert safe_share((0.2, 0.0), (0.0, 0.0), LIMITS, DISC, touching) == 0.0
+
+
+def test_the_approach_keeps_a_slow_base_slow() -> None:
+    slow = LIMITS.model_copy(update={"linear": 0.3})
+    goal = Pose2D(4.0, 0.0, 0.0)
+    for start in (Pose2D(0.0, 0.0, 0.0), Pose2D(2.0, 0.5, 0.3)):
+        quick, wanted = (approach.command(start, goal, limits) for limits in (LIMITS, slow))
+        assert quick is not None
+        assert wanted is not None
+        assert quick[0] > 0.3 >= wanted[0] > 0.0

@@ -52,6 +52,15 @@ def test_fetch_is_fine() -> None:
     assert check_robot(fetch()) == []
 
 
+def test_a_torso_that_is_not_cut_swallows_the_arm() -> None:
+    robot = fetch()
+    assert robot.simulation is not None
+    whole = robot.simulation.model_copy(update={"convex_cells": {}})
+    finding = only(check_robot(robot.model_copy(update={"simulation": whole})), "hull-swallows")
+    assert "wrist_flex_link lies in the convex hull of torso_lift_link" in finding.message
+    assert "torso_lift_link: {x: [" in finding.cure
+
+
 def test_a_joint_without_force_is_told(rolling_proposal: Proposal, tmp_path: Path) -> None:
     (tmp_path / "robot.yaml").write_text(robot_file(rolling_proposal, tmp_path))
     finding = only(check_robot(read_robot(tmp_path)), "no-force")
