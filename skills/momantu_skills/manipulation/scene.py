@@ -24,6 +24,7 @@ from momantu_skills.manipulation.surroundings import (
     cells_of,
     merged,
     same_surface,
+    shelved,
     support_around,
     support_of_plane,
     within,
@@ -204,9 +205,10 @@ class Scene:
         base_from_odom = state.odom_from_base.inverse()
         around = self.surroundings if cut is None else self.surroundings.without(*cut)
         cells = around.cells
-        for support in around.supports:
+        seen = len(around.supports)
+        supports = shelved((*around.supports, *self._unseen(state.odom_from_base)))
+        for support in supports[:seen]:
             cells = cells[~self._covered(cells, support)]
-        supports = (*around.supports, *self._unseen(state.odom_from_base))
         attached = None if held is None else Attached(self.held_corners(held))
         return CollisionWorld(
             self.body,
@@ -234,8 +236,13 @@ class Scene:
         ]
 
     def _covered(self, cells: Array, support: Support) -> NDArray[np.bool_]:
-        """(n,) which cells are the support's own: inside its outline, not above its top."""
+        """(n,) which cells are the support's own: inside its outline, not above its top.
+
+        Those below it belong to it too, unless it is a board, below which other things stand.
+        """
         low = cells[:, 2] < support.height + self.config.surface_band + self.config.voxel / 2
+        if support.board:
+            low &= cells[:, 2] > support.height - support.depth
         return np.asarray(low & within(cells[:, :2], support.outline, self.config.voxel))
 
 

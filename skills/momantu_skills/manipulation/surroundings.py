@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,23 +28,36 @@ TOLD_WRONG = 0.12
 BESIDE = 0.37
 """m outside a known surface at which the middle of a seen patch still belongs to it."""
 SUPPORT_DEPTH = 0.5
-"""m below a support's top that no arm goes: nothing reaches under a table here."""
+"""m below a support's top that no arm goes: nothing reaches under a table."""
+BOARD_DEPTH = 0.06
+"""m below the top of a board that hangs over another surface: its thickness, and noise."""
+BOARDS_APART = 0.2
+"""m of height from which on two surfaces one above the other are two boards, not one badly seen."""
 LEAST_CELLS = 6
 """Raster cells below which a patch of points is no surface."""
 
 
 @dataclass(frozen=True, eq=False)
 class Support:
-    """A horizontal top that things stand on. outline: (k, 2) convex, odom, m; height: odom z, m."""
+    """A horizontal top that things stand on. outline: (k, 2) convex, odom, m; height: odom z, m.
+
+    board: it hangs over another surface, and an arm may reach in between.
+    """
 
     outline: Array
     height: float
+    board: bool = False
+
+    @property
+    def depth(self) -> float:
+        """How far below the top no arm goes, m."""
+        return BOARD_DEPTH if self.board else SUPPORT_DEPTH
 
     def obstacle(self, base_from_odom: Transform, name: str) -> Obstacle:
         """The solid below the top, in base, wider than the outline by `EDGE`."""
         wide = _wider(self.outline, EDGE)
         low = np.column_stack([wide, np.full(len(wide), self.height)])
-        corners = np.vstack([low, low - (0.0, 0.0, SUPPORT_DEPTH)])
+        corners = np.vstack([low, low - (0.0, 0.0, self.depth)])
         return Obstacle(name, base_from_odom.apply(corners), support=True)
 
 
@@ -160,6 +174,21 @@ def within(points: Array, outline: Array, margin: float = 0.0) -> NDArray[np.boo
         edge = (b - a) / max(float(np.linalg.norm(b - a)), 1e-9)
         inside &= (points - a) @ np.array([edge[1], -edge[0]]) <= margin
     return inside
+
+
+def shelved(supports: Sequence[Support]) -> tuple[Support, ...]:
+    """The same, those that hang over another of them as boards."""
+    return tuple(
+        replace(upper, board=any(_hangs_over(upper, lower) for lower in supports))
+        for upper in supports
+    )
+
+
+def _hangs_over(upper: Support, lower: Support) -> bool:
+    if upper.height - lower.height < BOARDS_APART:
+        return False
+    middles = upper.outline.mean(axis=0)[None], lower.outline.mean(axis=0)[None]
+    return bool(within(middles[0], lower.outline)[0] or within(middles[1], upper.outline)[0])
 
 
 def support_of_plane(plane: SupportPlane) -> Support:

@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from momantu_skills.manipulation.config import SceneConfig
 from momantu_skills.manipulation.surroundings import (
+    BOARD_DEPTH,
     EDGE,
     SUPPORT_DEPTH,
     Support,
@@ -18,6 +19,7 @@ from momantu_skills.manipulation.surroundings import (
     known_support,
     merged,
     same_surface,
+    shelved,
     support_around,
     within,
 )
@@ -195,3 +197,21 @@ def test_a_table_within_its_tolerance_is_the_known_one(
 def test_a_shelf_above_or_below_is_not(place: Pose2D, dz: float) -> None:
     known = known_support(Surface(place, (0.8, 1.6), 0.7, (math.pi,)), Transform())
     assert not same_surface(Support(outline_of(place, (0.8, 1.6)), 0.7 + dz), known)
+
+
+def test_only_what_hangs_over_another_surface_is_a_board() -> None:
+    below = Support(outline_of(Pose2D(0.0, 0.0, 0.0), (0.6, 1.2)), 0.6)
+    above = Support(outline_of(Pose2D(0.05, 0.3, 0.0), (0.5, 0.5)), 1.1)
+    beside = Support(outline_of(Pose2D(2.0, 0.0, 0.0), (0.6, 1.2)), 1.1)
+    badly_seen = Support(outline_of(Pose2D(0.0, 0.0, 0.0), (0.6, 1.2)), 0.7)
+    assert [s.board for s in shelved((below, above, beside))] == [False, True, False]
+    assert [s.board for s in shelved((above, below))] == [True, False]
+    assert not any(s.board for s in shelved((below, badly_seen)))
+
+
+def test_under_a_board_there_is_room_for_an_arm() -> None:
+    outline = outline_of(Pose2D(0.0, 0.0, 0.0), (0.6, 1.2))
+    _, board = shelved((Support(outline, 0.6), Support(outline, 1.1)))
+    corners = board.obstacle(Transform(), "board").corners
+    assert corners[:, 2].max() == pytest.approx(1.1)
+    assert corners[:, 2].min() == pytest.approx(1.1 - BOARD_DEPTH)
