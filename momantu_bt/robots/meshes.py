@@ -103,7 +103,7 @@ def _candidates(name: str, path: Path, folder: Path) -> Iterator[Path]:
         yield path.parent / plain
         yield folder / plain
         return
-    plain = plain.removeprefix("package://")
+    plain = plain.removeprefix("package://").lstrip("/")
     package, _, inside = plain.partition("/")
     for root in (path.parent, folder):
         yield root / plain

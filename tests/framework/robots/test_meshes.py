@@ -27,6 +27,7 @@ def mesh_files(robot: Path, link: str, tag: str) -> list[str]:
         ("meshes/hull.stl", "carter/meshes/hull.stl"),
         ("package://arm_description/meshes/hull.stl", "carter/arm_description/meshes/hull.stl"),
         ("package://carter/hull.stl", "carter/hull.stl"),
+        ("package:///carter/hull.stl", "carter/hull.stl"),
     ],
 )
 def test_a_mesh_is_found(carter: Write, tmp_path: Path, name: str, where: str) -> None:
