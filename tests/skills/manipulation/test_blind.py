@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from momantu_skills.manipulation.blind import blind_spot
+from momantu_skills.manipulation.blind import blind_spot, planned_in_sight
 from momantu_skills.manipulation.floor_plan import FAR, FloorPlan
 from momantu_skills.manipulation.looked import KEPT, Looks
 from momantu_skills.manipulation.surroundings import Support
@@ -15,6 +15,7 @@ from momantu_skills.manipulation.surroundings import Support
 from momantu_bt.failure import FRAME_UNKNOWN, Failure
 from momantu_bt.geometry import Transform
 from momantu_bt.messages import CameraImage
+from momantu_bt.skill import Compute
 from momantu_bt.world import Site
 
 TABLE = Support(np.array([(0.5, -1.0), (1.3, -1.0), (1.3, 1.0), (0.5, 1.0)]), 0.7)
@@ -119,3 +120,70 @@ def test_the_floor_plan_tells_how_far_what_the_map_knows_is(tmp_path: Any) -> No
 
     frames.lookup = lost
     assert plan.distance(np.array([(0.55, 1.0, 0.3)])) == pytest.approx([FAR])
+
+
+class Turning:
+    """An arm beside a camera that turns wherever it is told to, or nowhere."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, *, turns: bool, eye_in_hand: bool) -> None:
+        self.arm = arm(looks(AHEAD))
+        self.arm.robot = SimpleNamespace(description=SimpleNamespace(eye_in_hand=eye_in_hand))
+        self.arm.skill = None
+        self.arm.service.observe = self._observe
+        self.looked: list[np.ndarray] = []
+        self._turns = turns
+        monkeypatch.setattr("momantu_skills.perception.looking.look_at", self._look_at)
+
+    def _look_at(self, skill: Any, robot: Any, point: np.ndarray) -> Any:
+        if not self._turns:
+            raise Failure("OUT_OF_VIEW", "the head does not turn that far")
+        self.looked.append(point)
+        yield "look"
+
+    def _observe(self, robot: Any) -> None:
+        x, y, _ = self.looked[-1]
+        turn = np.arctan2(y, x)
+        pose = Transform((0.0, 0.0, 0.0), (np.cos(turn / 2), 0.0, 0.0, np.sin(turn / 2)))
+        self.arm.scene.looks.add(picture(), pose @ AHEAD)
+
+    def plan(self, made: Any) -> tuple[Any, int]:
+        """The plan that comes of it, and how often it was made."""
+        count = 0
+
+        def plan() -> Any:
+            nonlocal count
+            count += 1
+            return made
+
+        going, answer = planned_in_sight(self.arm, plan, lambda way: way, 0.2), None
+        while True:
+            try:
+                step = going.send(answer)
+            except StopIteration as end:
+                return end.value, count
+            answer = step.function() if isinstance(step, Compute) else None
+
+
+BLIND = way((0.6, 0.0, 0.8), (0.6, 0.95, 0.8))
+
+
+def test_a_blind_way_is_looked_at_and_planned_anew(monkeypatch: pytest.MonkeyPatch) -> None:
+    turning = Turning(monkeypatch, turns=True, eye_in_hand=False)
+    assert turning.plan(BLIND) == (BLIND, 2)
+    assert len(turning.looked) == 1
+
+
+def test_a_way_in_sight_is_taken_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    turning = Turning(monkeypatch, turns=True, eye_in_hand=False)
+    straight = way((0.6, 0.0, 0.8), (1.2, 0.4, 0.8))
+    assert turning.plan(straight) == (straight, 1)
+    assert turning.looked == []
+
+
+@pytest.mark.parametrize(("turns", "eye_in_hand"), [(False, False), (True, True)])
+def test_what_cannot_be_looked_at_stays_in_doubt(
+    monkeypatch: pytest.MonkeyPatch, turns: bool, eye_in_hand: bool
+) -> None:
+    turning = Turning(monkeypatch, turns=turns, eye_in_hand=eye_in_hand)
+    assert turning.plan(BLIND) == (BLIND, 1)
+    assert turning.looked == []
