@@ -9,6 +9,7 @@ import pytest
 import trimesh
 from hypothesis import given
 from hypothesis import strategies as st
+from momantu_worlds.scenes.boards import BOARDED, board, boarded
 from momantu_worlds.scenes.bodies import Box, Cylinder, Hull, Mesh, Part
 from momantu_worlds.scenes.furniture import CATALOGUE, furniture, usual_size
 from momantu_worlds.scenes.lathe import lathe, shell_pieces
@@ -133,3 +134,15 @@ def test_a_tag_has_a_black_border_and_a_white_margin():
 def test_an_unknown_tag_is_refused(tag_id):
     with pytest.raises(ValueError, match="known: 0 to 29"):
         tag_cells(tag_id)
+
+
+@pytest.mark.parametrize("kind", BOARDED)
+def test_boards_lie_where_they_are_wanted_within_their_frame(kind):
+    size, tops = (0.5, 1.8, 1.7), (0.4, 0.8, 1.6)
+    frame = boarded(kind, size, None, ())
+    whole = boarded(kind, size, None, tops)
+    assert len(whole) == len(frame) + len(tops)
+    heights = [points(board(kind, size, top, None))[:, 2].max() for top in tops]
+    assert heights == pytest.approx(tops)
+    low, high = extent(list(whole))
+    assert np.all(high - low <= np.array(size) + 1e-9)

@@ -8,13 +8,14 @@ from types import MappingProxyType
 
 from momantu_bt.geometry import Transform
 from momantu_bt.world import Site
+from momantu_worlds.scenes.boards import boarded
 from momantu_worlds.scenes.bodies import Body, BodyTop, Box, Episode, Gap, Goal, Part, Picture
-from momantu_worlds.scenes.furniture import Size3, boarded, furniture
+from momantu_worlds.scenes.furniture import furniture
 from momantu_worlds.scenes.given_bodies import given_bodies
 from momantu_worlds.scenes.layout import FRICTION, Layout, PlacedTag, PlacedThing
 from momantu_worlds.scenes.mesh_files import mesh_parts
 from momantu_worlds.scenes.obstacles import floor_extent
-from momantu_worlds.scenes.parts import block
+from momantu_worlds.scenes.parts import Size3, block
 from momantu_worlds.scenes.surfaces import board_part, carriers
 from momantu_worlds.scenes.tag36h11 import picture_edge, tag_picture
 from momantu_worlds.scenes.wall_runs import LEAF

@@ -6,25 +6,19 @@ Every kind stands on z = 0 around its own origin and shows its front to +x. `siz
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from itertools import product
 from types import MappingProxyType
 from typing import TypeAlias
 
+from momantu_worlds.scenes.boards import BOARD, RACK, SHELF, rack, shelf
 from momantu_worlds.scenes.bodies import Color, Part
-from momantu_worlds.scenes.parts import block, column, shade
+from momantu_worlds.scenes.parts import Size3, block, column, shade
 
-Size3: TypeAlias = tuple[float, float, float]
 Maker: TypeAlias = Callable[[Size3, Color], tuple[Part, ...]]
 
-BOARD = 0.03
-"""m; thickness of boards and panels."""
 LEG = 0.05
 """m; thickness of table legs."""
-POST = 0.05
-"""m; thickness of a rack's posts."""
-_DECK: Color = (0.73, 0.64, 0.50)
-"""Of a rack's boards: chipboard, whatever its posts are painted in."""
 
 
 def table(size: Size3, color: Color) -> tuple[Part, ...]:
@@ -84,66 +78,6 @@ def sofa(size: Size3, color: Color) -> tuple[Part, ...]:
         block((depth, arm, 0.72 * height), (0, (width - arm) / 2, 0.36 * height), dark),
         block((depth, arm, 0.72 * height), (0, (arm - width) / 2, 0.36 * height), dark),
     )
-
-
-def shelf(size: Size3, color: Color) -> tuple[Part, ...]:
-    """Sides, a back and boards about every 0.38 m, open to the front."""
-    height = size[2]
-    boards = max(2, round(height / 0.38) + 1)
-    gap = (height - BOARD) / (boards - 1)
-    middles = (BOARD / 2 + i * gap for i in range(boards))
-    return (*_shelf_frame(size, color), *(_shelf_board(size, m, color) for m in middles))
-
-
-def rack(size: Size3, color: Color) -> tuple[Part, ...]:
-    """Four posts with boards about every 0.5 m, open to the front and to the back."""
-    height = size[2]
-    boards = max(2, round(height / 0.5))
-    middles = (BOARD / 2 + 0.1 + i * (height - 0.1 - BOARD) / (boards - 1) for i in range(boards))
-    return (*_rack_frame(size, color), *(_rack_board(size, m, color) for m in middles))
-
-
-def _shelf_frame(size: Size3, color: Color) -> tuple[Part, ...]:
-    depth, width, height = size
-    inner = width - 2 * BOARD
-    return (
-        block((depth, BOARD, height), (0, (width - BOARD) / 2, height / 2), color),
-        block((depth, BOARD, height), (0, (BOARD - width) / 2, height / 2), color),
-        block((0.01, inner, height), (0.005 - depth / 2, 0, height / 2), shade(color, 0.8)),
-    )
-
-
-def _shelf_board(size: Size3, middle: float, color: Color) -> Part:
-    depth, width, _ = size
-    return block((depth - 0.01, width - 2 * BOARD, BOARD), (0.005, 0, middle), color)
-
-
-def _rack_frame(size: Size3, color: Color) -> tuple[Part, ...]:
-    depth, width, height = size
-    at_x, at_y = (depth - POST) / 2, (width - POST) / 2
-    return tuple(
-        block((POST, POST, height), (a * at_x, b * at_y, height / 2), color)
-        for a, b in product((-1, 1), (-1, 1))
-    )
-
-
-def _rack_board(size: Size3, middle: float, color: Color) -> Part:
-    """A board between the posts at its ends."""
-    depth, width, _ = size
-    return block((depth, width - 2 * POST, BOARD), (0, 0, middle), _DECK)
-
-
-def boarded(kind: str, size: Size3, color: Color | None, tops: Iterable[float]) -> tuple[Part, ...]:
-    """A shelf or rack with boards whose tops are at these heights, m."""
-    frame, _ = BOARDED[kind]
-    own = color or CATALOGUE[kind][2]
-    return (*frame(size, own), *(board(kind, size, top, color) for top in tops))
-
-
-def board(kind: str, size: Size3, top: float, color: Color | None) -> Part:
-    """One board of a shelf or rack, its top at a height, m."""
-    _, make = BOARDED[kind]
-    return make(size, top - BOARD / 2, color or CATALOGUE[kind][2])
 
 
 def crate(size: Size3, color: Color) -> tuple[Part, ...]:
@@ -247,8 +181,8 @@ CATALOGUE: Mapping[str, tuple[Maker, Size3, Color]] = MappingProxyType(
         "desk": (desk, (0.8, 1.5, 0.72), (0.66, 0.50, 0.34)),
         "chair": (chair, (0.45, 0.45, 0.90), (0.30, 0.36, 0.44)),
         "sofa": (sofa, (0.85, 1.90, 0.80), (0.42, 0.47, 0.50)),
-        "shelf": (shelf, (0.35, 1.60, 1.90), (0.62, 0.52, 0.42)),
-        "rack": (rack, (0.60, 2.40, 1.80), (0.20, 0.34, 0.56)),
+        "shelf": (shelf, (0.35, 1.60, 1.90), SHELF),
+        "rack": (rack, (0.60, 2.40, 1.80), RACK),
         "crate": (crate, (0.45, 0.55, 0.50), (0.70, 0.55, 0.36)),
         "cabinet": (cabinet, (0.45, 1.20, 0.90), (0.55, 0.56, 0.58)),
         "counter": (counter, (0.60, 1.80, 0.88), (0.80, 0.79, 0.76)),
@@ -259,11 +193,6 @@ CATALOGUE: Mapping[str, tuple[Maker, Size3, Color]] = MappingProxyType(
     }
 )
 """Kind -> how to make it, its usual size and its usual colour."""
-
-BOARDED: Mapping[
-    str, tuple[Callable[[Size3, Color], tuple[Part, ...]], Callable[[Size3, float, Color], Part]]
-] = MappingProxyType({"shelf": (_shelf_frame, _shelf_board), "rack": (_rack_frame, _rack_board)})
-"""Kinds whose boards a world file may place: how to make the frame, and one board."""
 
 
 def furniture(kind: str, size: Size3 | None = None, color: Color | None = None) -> tuple[Part, ...]:

@@ -8,9 +8,9 @@ import numpy as np
 
 from momantu_bt.geometry import Pose2D
 from momantu_bt.world import WorldError
-from momantu_worlds.scenes.furniture import Size3
 from momantu_worlds.scenes.given_bodies import given_bodies
 from momantu_worlds.scenes.mesh_files import mesh_size
+from momantu_worlds.scenes.parts import Size3
 from momantu_worlds.scenes.plane_geometry import Rectangle
 from momantu_worlds.scenes.prisms import tightest_prism
 from momantu_worlds.scenes.solids import outline

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TypeAlias
 
 from momantu_bt.geometry import Transform
 from momantu_worlds.scenes.bodies import Box, Color, Cylinder, Part
+
+Size3: TypeAlias = tuple[float, float, float]
+"""Extents along x, y and z, m."""
 
 
 def block(

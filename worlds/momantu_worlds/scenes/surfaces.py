@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from momantu_bt.geometry import Pose2D
+from momantu_worlds.scenes.boards import board
 from momantu_worlds.scenes.bodies import Box, Part
-from momantu_worlds.scenes.furniture import board
 from momantu_worlds.scenes.layout import PlacedTable
 from momantu_worlds.scenes.world_file import WorldFile
 from momantu_worlds.scenes.world_furniture import Piece, Table

@@ -8,7 +8,9 @@ from pydantic import Field, model_validator
 
 from momantu_bt.descriptions.quantities import Size
 from momantu_bt.geometry import Pose2D
-from momantu_worlds.scenes.furniture import BOARDED, Size3, usual_size
+from momantu_worlds.scenes.boards import BOARDED
+from momantu_worlds.scenes.furniture import usual_size
+from momantu_worlds.scenes.parts import Size3
 from momantu_worlds.scenes.world_values import (
     Name,
     NotNegative,
