@@ -41,6 +41,7 @@ class DescriptionError(WorldError):
     """What the file describes, as a person would say it."""
 
     def __init__(self, path: Path, text: str, problems: Iterable[Problem]) -> None:
+        self.path, self.text = path, text
         self.problems = tuple(sorted(problems, key=lambda p: (p.line, p.column)))
         lines = text.splitlines()
         shown = []

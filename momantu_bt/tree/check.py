@@ -6,15 +6,13 @@ from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
 
-from momantu_bt.descriptions.reading import DescriptionError
 from momantu_bt.messages import RobotState
-from momantu_bt.plugin_files import near_file
-from momantu_bt.plugins import ROBOTS, WORLDS, PluginError
 from momantu_bt.tree.catalogue import ScriptText
 from momantu_bt.tree.check_codes import check_handlers
 from momantu_bt.tree.check_guards import check_guards
 from momantu_bt.tree.check_keys import check_keys
 from momantu_bt.tree.check_nodes import check_node, check_tree_ports
+from momantu_bt.tree.check_surroundings import look_up_surroundings
 from momantu_bt.tree.check_trees import (
     callees_first,
     check_given_names,
@@ -25,12 +23,10 @@ from momantu_bt.tree.check_trees import (
 )
 from momantu_bt.tree.keys import Key, literal_type
 from momantu_bt.tree.model import Document, Literal, Node, Place, Reference, Scope, Tree
-from momantu_bt.tree.named_world import world_of
-from momantu_bt.tree.problems import Problem, Problems, TooManyProblems, valid_names
+from momantu_bt.tree.problems import Problem, Problems, TooManyProblems
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.script import parse
 from momantu_bt.tree.signatures import Context
-from momantu_bt.world import WorldError
 
 ROBOT_KEY = "robot"
 """`$@robot.…`: what every run publishes of its robot."""
@@ -74,7 +70,7 @@ def _check(context: Context, world: str | None, robot: str | None) -> None:
         message = "no tree is left to run: those that there are cannot be read"
         context.problems.error("no-trees", _start(document), message, "see the other problems")
         return
-    _look_up(context, world, robot)
+    look_up_surroundings(context, world, robot)
     for tree in document.trees.values():
         check_tree_ports(context, tree)
         _check_tree_name(context, tree)
@@ -89,56 +85,6 @@ def _check(context: Context, world: str | None, robot: str | None) -> None:
         check_handlers(context, order)
         check_guards(context, order, frozenset({ROBOT_KEY, *context.registry.services}))
         check_keys(context, order, _root_keys(context))
-
-
-def _look_up(context: Context, world: str | None, robot: str | None) -> None:
-    """The world's site and the robot's description; reports where there are none."""
-    name = world_of(context.document, world)
-    if name is not None:
-        place = context.document.world_place if world is None else None
-        default = _look_up_world(context, name, place or _start(context.document))
-        robot = robot or default
-    if robot is not None:
-        _look_up_robot(context, robot)
-
-
-def _look_up_world(context: Context, name: str, place: Place) -> str | None:
-    """Sets the context's site; returns the robot that the world is meant for."""
-    worlds = context.registry.worlds
-    if name not in worlds:
-        hint = near_file(WORLDS, name) or valid_names(name, worlds, "worlds")
-        context.problems.error("unknown-world", place, f"no world is called {name!r}", hint)
-        return None
-    try:
-        entry = worlds[name]
-        context.site = entry.site()
-        return entry.default_robot
-    except (PluginError, DescriptionError) as error:
-        context.problems.error("broken-world", place, str(error))
-        return None
-    except Exception as error:  # a plug-in's code, which may raise anything
-        message = f"the world {name!r} cannot be read: {type(error).__name__}: {error}"
-        context.problems.error("broken-world", place, message)
-        return None
-
-
-def _look_up_robot(context: Context, name: str) -> None:
-    robots, place = context.registry.robots, _start(context.document)
-    if name not in robots:
-        hint = near_file(ROBOTS, name) or valid_names(name, robots, "robots")
-        context.problems.error("unknown-robot", place, f"no robot is called {name!r}", hint)
-        return
-    try:
-        context.description = context.registry.description(name)
-    except (PluginError, DescriptionError) as error:
-        context.problems.error("broken-robot", place, str(error))
-    except WorldError as error:
-        # its files are not installed, as without the extra [worlds]; trees are checked all the same
-        message = f"poses and actuators of {name!r} are not checked: {error}"
-        context.problems.warning("robot-not-installed", place, message)
-    except Exception as error:  # a plug-in's code, which may raise anything
-        message = f"the robot {name!r} cannot be read: {type(error).__name__}: {error}"
-        context.problems.error("broken-robot", place, message)
 
 
 def _start(document: Document) -> Place:

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from momantu_bt.descriptions.reading import DescriptionError, Problem
 from momantu_bt.tree.load import TreeError, TreeNotFound, load, read_values
 from momantu_bt.tree.lookup import bundled, find
 from momantu_bt.tree.model import Literal
@@ -99,6 +100,35 @@ def test_another_world_or_robot_by_argument(folder: Path, registry: Registry) ->
         load("fetch_it.yaml", registry, world="moon")
     with pytest.raises(TreeError, match="no robot is called 'r2'"):
         load("fetch_it.yaml", registry, robot="r2")
+
+
+def test_what_the_command_line_names_is_told_there(folder: Path, registry: Registry) -> None:
+    with pytest.raises(TreeError) as error:
+        load("fetch_it.yaml", registry, world="moon", robot="r2")
+    told = [(p.code, str(p.place), p.place.length) for p in error.value.problems]
+    assert told == [("unknown-robot", "--robot:1:1", 2), ("unknown-world", "--world:1:1", 4)]
+    assert error.value.source["--world"] == "moon"
+
+
+def test_a_wrong_description_is_told_in_its_own_lines(folder: Path, registry: Registry) -> None:
+    file, text = folder / "w.yaml", "momantu_world: 1\nname: 7\nrooms: many\n"
+
+    class Wrong:
+        default_robot = "toy"
+
+        def site(self) -> None:
+            found = [Problem(3, 8, "expected rooms"), Problem(2, 7, "expected a name")]
+            raise DescriptionError(file, text, found)
+
+    wrong = Registry(registry.skills, {"rooms": Wrong()}, registry.robots)  # type: ignore
+    with pytest.raises(TreeError) as error:
+        load("fetch_it.yaml", wrong)
+    told = [(p.code, str(p.place), p.message) for p in error.value.problems]
+    assert told == [
+        ("broken-world", f"{file}:2:7", "expected a name"),
+        ("broken-world", f"{file}:3:8", "expected rooms"),
+    ]
+    assert error.value.source[str(file)] == text
 
 
 def test_a_world_that_cannot_be_read_is_one_problem(folder: Path, registry: Registry) -> None:
