@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
 
@@ -23,6 +23,10 @@ TOP_TURNS = 12
 """Directions of the fingers when they come from above."""
 SLACK = 0.004
 """m between palm and object: half of what the detection is wrong by, the rest only pushes."""
+OUT = 0.006
+"""m farther out at each try to get the open fingers clear of the object."""
+ROOM = 0.004
+"""m between open fingers and object: what the detection is wrong by."""
 PAD_SHARE = 0.012
 """m of the pads' length that must lie beyond the object's axis, so that they close on it."""
 FACE_SHARE = 0.035
@@ -53,19 +57,23 @@ class Grasp:
     penalty: float
 
 
-def grasps_for(thing: DetectedObject, hand: EndEffector, palm: Array) -> list[Grasp]:
+def grasps_for(
+    thing: DetectedObject, hand: EndEffector, palm: Array, fingers: Sequence[Array] = ()
+) -> list[Grasp]:
     """Every grasp worth trying, in a fixed order; empty when the object is too wide.
 
-    palm: corners (n, 3) of the hand's body in the grasp frame, m.
+    palm: corners (n, 3) of the hand's body in the grasp frame, m. fingers: planes (k, 4) around
+    each open finger there, outward normal and offset: towards their knuckles fingers may leave
+    less room than between the pads, and then they hold the object farther out.
     """
     found: list[Grasp] = []
     for width, direction, top in _approaches(thing):
         if width > hand.max_width - OPENING:
             continue
         if top:
-            found += _from_above(thing, hand, direction, width)
+            found += _from_above(thing, hand, fingers, direction, width)
         else:
-            found += _from_side(thing, hand, palm, direction, width)
+            found += _from_side(thing, hand, palm, fingers, direction, width)
     return [flipped for grasp in found for flipped in (grasp, _flipped(grasp))]
 
 
@@ -86,7 +94,12 @@ def _approaches(thing: DetectedObject) -> Iterator[tuple[float, float, bool]]:
 
 
 def _from_side(
-    thing: DetectedObject, hand: EndEffector, palm: Array, direction: float, width: float
+    thing: DetectedObject,
+    hand: EndEffector,
+    palm: Array,
+    fingers: Sequence[Array],
+    direction: float,
+    width: float,
 ) -> Iterator[Grasp]:
     surface = _surface(thing)
     farthest = _farthest(thing, hand, direction)
@@ -101,8 +114,9 @@ def _from_side(
         y = np.array([-math.sin(direction), math.cos(direction), 0.0])
         rotation = np.stack([x, y, np.cross(x, y)], axis=1)
         centre = np.array([0.0, 0.0, (share - 0.5) * thing.size[2]])
-        back = _setback(surface, centre, rotation, hand, palm)
-        if back > farthest:
+        local = (surface - centre) @ rotation
+        back = _outwards(local, fingers, _setback(local, hand, palm), farthest)
+        if back is None:
             continue
         penalty = TILT_PENALTY * tilt + OFF_CENTRE_PENALTY * (share - HEIGHTS[0])
         penalty += BEYOND_PENALTY * max(0.0, back - (hand.pad_length / 2 - PAD_SHARE))
@@ -117,25 +131,46 @@ def _farthest(thing: DetectedObject, hand: EndEffector, direction: float) -> flo
     return along / 2 + hand.pad_length / 2 - FACE_SHARE
 
 
-def _setback(
-    surface: Array, centre: Array, rotation: Array, hand: EndEffector, palm: Array
-) -> float:
-    """How far the grasp frame stays behind the object's axis so that the palm clears it, m."""
-    local = (surface - centre) @ rotation
+def _setback(local: Array, hand: EndEffector, palm: Array) -> float:
+    """How far the grasp frame stays behind the object's axis so that the palm clears it, m.
+
+    local: points (n, 3) of the object, in the grasp frame if it were on the axis.
+    """
     reach_y, reach_z = np.abs(palm[:, 1]).max(), np.abs(palm[:, 2]).max()
     before = local[(np.abs(local[:, 1]) <= reach_y) & (np.abs(local[:, 2]) <= reach_z)]
     deepest = -float(before[:, 0].min()) if len(before) else 0.0
     return max(0.0, deepest - (hand.hand_clearance - SLACK))
 
 
+def _outwards(local: Array, fingers: Sequence[Array], back: float, farthest: float) -> float | None:
+    """`back`, or more where open fingers would be in the object; None beyond `farthest`, m."""
+    while back <= farthest:
+        moved = local + np.array((back, 0.0, 0.0))
+        inside = (
+            (moved @ planes[:, :3].T + planes[:, 3] < ROOM).all(axis=1).any() for planes in fingers
+        )
+        if not any(inside):
+            return back
+        back += OUT
+    return None
+
+
 def _from_above(
-    thing: DetectedObject, hand: EndEffector, direction: float, width: float
+    thing: DetectedObject,
+    hand: EndEffector,
+    fingers: Sequence[Array],
+    direction: float,
+    width: float,
 ) -> Iterator[Grasp]:
     x = np.array([0.0, 0.0, -1.0])
     y = np.array([-math.sin(direction), math.cos(direction), 0.0])
     rotation = np.stack([x, y, np.cross(x, y)], axis=1)
-    depth = min(hand.hand_clearance - SLACK, thing.size[2] / 2)
-    centre = np.array([0.0, 0.0, thing.size[2] / 2 - depth])
+    deepest = min(hand.hand_clearance - SLACK, thing.size[2] / 2)
+    centre = np.array([0.0, 0.0, thing.size[2] / 2 - deepest])
+    back = _outwards((_surface(thing) - centre) @ rotation, fingers, 0.0, deepest)
+    if back is None:
+        return
+    centre[2] += back
     yield Grasp(Transform.from_rotation(rotation, centre), width, TOP_PENALTY)
 
 

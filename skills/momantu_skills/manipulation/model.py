@@ -9,6 +9,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
+from scipy.spatial import ConvexHull
 
 from momantu_bt.frames import Joint, KinematicTree
 from momantu_bt.geometry import Array, Transform
@@ -197,6 +198,24 @@ class ArmModel:
             corners.append(own if link == effector.frame else own @ place[:3, :3].T + place[:3, 3])
         found = np.vstack(corners) if corners else np.zeros((1, 3))
         return np.asarray(found - (effector.grasp_offset, 0.0, 0.0))
+
+    @cached_property
+    def open_fingers(self) -> tuple[Array, ...]:
+        """Planes (k, 4) around each link of the fingers, opened wide, in the grasp frame, m.
+
+        Outward normal and offset: a point is inside where all are negative.
+        """
+        effector = self.description.end_effector
+        joint = self.pin.frames[self.frame_ids[effector.frame]].parentJoint
+        poses = self.link_poses(self.posture({}, effector.max_width))
+        grasp = Transform.from_matrix(poses[effector.frame]) @ self.tip_from_grasp
+        found = []
+        for link in effector.touch_links:
+            moves = self.pin.frames[self.pin.getFrameId(link)].parentJoint != joint
+            if moves and link in self.hulls:
+                pose = grasp.inverse() @ Transform.from_matrix(poses[link])
+                found.append(ConvexHull(pose.apply(self.hulls[link])).equations)
+        return tuple(found)
 
     @cached_property
     def grasp_from_camera(self) -> Transform | None:

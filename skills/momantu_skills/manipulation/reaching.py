@@ -25,10 +25,12 @@ POSTURES = 3
 """Postures kept per grasp, the quickest to reach."""
 ENOUGH = 5
 """Grasps with which a way is searched: the planner takes the first it can reach."""
-TESTED = 900
+TESTED = 1800
 """Postures whose approach and lift are tested at most."""
 CUT = (0.025, 0.025, 0.03)
 """m around the object in which cells are its own: detection error and a cell's diagonal."""
+BESIDE = 0.003
+"""m between the open hand and the object until it closes: less than the palm keeps."""
 SKIN = 0.004
 """m around the object that the hand keeps on its way to it."""
 
@@ -87,7 +89,8 @@ def reachable(arm: Arm, thing: DetectedObject, lift: float) -> list[Reach]:
         Failure: NO_GRASP, with how many grasps failed at which step.
     """
     effector = arm.scene.model.description.end_effector
-    grasps = grasps_for(thing, effector, arm.scene.model.palm)
+    model = arm.scene.model
+    grasps = grasps_for(thing, effector, model.palm, model.open_fingers)
     if not grasps:
         raise Failure(
             "NO_GRASP",
@@ -148,17 +151,20 @@ class _Check:
         self._cut = cut
         margin = arm.hand.near_margin
         self._open = arm.scene.world(self._state, None, margin, width=arm.open_width, cut=cut)
+        self._around = _around(arm, self._state, thing)
         self.lost = {"hand collides": 0, "approach": 0, "lift": 0}
 
     def __call__(self, grasp: Grasp, q: Array, cost: float) -> Reach | None:
         arm = self._arm
-        if not self._open.free(q):
+        if not (self._open.free(q) and self._around.free(q)):
             self.lost["hand collides"] += 1
             return None
         base_from_tip = arm.group.tip_pose(q)
         back = base_from_tip @ Transform((-arm.hand.approach, 0.0, 0.0))
         approach = arm.line(q, back)
-        if approach is None or not self._open.path_free(approach):
+        if approach is None or not (
+            self._open.path_free(approach) and self._around.path_free(approach)
+        ):
             self.lost["approach"] += 1
             return None
         x, y, z = base_from_tip.position
@@ -184,6 +190,14 @@ class _Check:
         """How many postures failed where, for a message."""
         counts = ", ".join(f"{n} at {where}" for where, n in self.lost.items() if n)
         return counts or "no posture of the arm reaches any of them"
+
+
+def _around(arm: Arm, state: RobotState, thing: DetectedObject) -> CollisionWorld:
+    """The object alone, as something that an open hand must not touch before it closes."""
+    base_from_object = state.odom_from_base.inverse() @ thing.pose.transform
+    solid = Obstacle("target", base_from_object.apply(object_corners(thing)))
+    posture = arm.scene.model.configuration(state, arm.open_width)
+    return CollisionWorld(arm.scene.body, posture, [solid], margin=BESIDE)
 
 
 def _cut(thing: DetectedObject) -> tuple[float, float, float]:

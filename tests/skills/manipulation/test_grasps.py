@@ -9,12 +9,13 @@ from hypothesis import strategies as st
 from momantu_skills.manipulation.grasps import Grasp, grasps_for
 from momantu_skills.manipulation.model import arm_model
 from momantu_skills.manipulation.solids import object_corners
-from momantu_worlds.robots import fetch
+from momantu_worlds.robots import fetch, kinova_jackal
 
 from momantu_bt.geometry import Pose, Transform
 from momantu_bt.messages import DetectedObject
 
 HAND = fetch().end_effector
+FETCH, KINOVA = arm_model(fetch()), arm_model(kinova_jackal())
 PALM = arm_model(fetch()).hulls[HAND.frame]
 
 
@@ -121,3 +122,33 @@ def test_every_grasp_has_its_twin_turned_by_half_a_turn() -> None:
 def test_level_grasps_are_preferred_to_those_from_above() -> None:
     best = min(grasps("cylinder", (0.07, 0.07, 0.13)), key=lambda grasp: grasp.penalty)
     assert abs(best.object_from_grasp.rotation[2, 0]) < 1e-9
+
+
+@settings(max_examples=5, deadline=None)
+@given(CANS, st.sampled_from(["cylinder", "box"]))
+def test_open_fingers_are_nowhere_in_the_object(can: tuple[float, float], shape: str) -> None:
+    size = (can[0], can[0], can[1])
+    corners = object_corners(thing(shape, size))
+    for model in (FETCH, KINOVA):
+        hand = model.description.end_effector
+        found = grasps_for(thing(shape, size), hand, model.palm, model.open_fingers)
+        weights = np.random.default_rng(0).dirichlet(np.full(len(corners), 0.1), 300)
+        points = weights @ corners
+        for grasp in found[::29]:
+            local = grasp.object_from_grasp.inverse().apply(points)
+            for planes in model.open_fingers:
+                depth = (local @ planes[:, :3].T + planes[:, 3]).max(axis=1)
+                assert float(depth.min()) > -1e-3
+
+
+def test_parallel_fingers_change_nothing() -> None:
+    model = arm_model(fetch())
+    for shape, size in (("cylinder", (0.07, 0.07, 0.13)), ("box", (0.05, 0.07, 0.12))):
+        plain = grasps(shape, size)
+        found = grasps_for(thing(shape, size), HAND, PALM, model.open_fingers)
+        assert [g.object_from_grasp for g in found] == [g.object_from_grasp for g in plain]
+
+
+def test_fingers_that_leave_no_room_leave_no_grasp() -> None:
+    everywhere = np.array([[1.0, 0, 0, -1], [-1, 0, 0, -1], [0, 1, 0, -1], [0, -1, 0, -1]])
+    assert grasps_for(thing("cylinder", (0.07, 0.07, 0.13)), HAND, PALM, [everywhere]) == []
