@@ -24,7 +24,8 @@ TALL = 0.3
 """m above a surface up to which things stand on it that the hand could knock over."""
 BESIDE = 0.15
 """m along the floor to what the map knows within which the hand may meet it: half a hand's width,
-and what furniture stands beside its place. How high it is no map tells."""
+and what furniture stands beside its place. How high it is no map tells; high above a surface, so
+far within its edges, the hand meets nothing, but a wall may stand at an edge."""
 BEHIND = (0.0, 0.08)
 """m behind the place between the pads: the points of the hand that are asked about."""
 EVERY = 4
@@ -72,13 +73,12 @@ def blind_spot(arm: Arm, transit: Sequence[JointTrajectory]) -> Array | None:
     None: nowhere.
     """
     points = _hand_along(arm, transit)
-    over, low = np.zeros((2, len(points)), dtype=np.bool_)
+    inner, low = np.zeros((2, len(points)), dtype=np.bool_)
     for support in (*arm.scene.surroundings.supports, *arm.scene.known):
         above = points[:, 2] - support.height
-        inside = within(points[:, :2], support.outline)
-        over |= inside & (above > 0.0)
-        low |= inside & (above > 0.0) & (above < TALL)
-    beside = ~over & (arm.service.floor_plan.distance(points) < BESIDE)
+        inner |= within(points[:, :2], support.outline, -BESIDE) & (above > 0.0)
+        low |= within(points[:, :2], support.outline) & (above > 0.0) & (above < TALL)
+    beside = ~inner & (arm.service.floor_plan.distance(points) < BESIDE)
     doubtful = points[(low | beside) & ~arm.scene.looks.show(points)]
     return None if len(doubtful) < ALONG else np.asarray(doubtful[len(doubtful) // 2])
 

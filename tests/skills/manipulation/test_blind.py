@@ -92,6 +92,13 @@ def test_below_a_table_and_high_above_it_nothing_stands(height: float) -> None:
     assert blind_spot(arm(looks(AHEAD)), way((0.6, 0.0, height), (0.6, 0.95, height))) is None
 
 
+def test_high_above_an_edge_a_wall_may_stand() -> None:
+    along_the_edge = way((1.25, 0.0, 1.1), (1.25, 0.99, 1.1))
+    unseen = arm(looks(), known=0.0)
+    assert blind_spot(unseen, along_the_edge) is not None
+    assert blind_spot(unseen, way((0.9, 0.0, 1.1), (0.9, 0.8, 1.1))) is None
+
+
 def test_unseen_air_counts_beside_what_the_map_knows() -> None:
     aside = way((0.1, -0.4, 0.8), (0.1, -0.9, 0.8))
     assert blind_spot(arm(looks(AHEAD)), aside) is None
