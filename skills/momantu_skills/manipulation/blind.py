@@ -46,13 +46,12 @@ def planned_in_sight(
     """A plan whose way was looked at where it leads unseen, as far as the camera can be turned.
 
     way: of a plan, one trajectory after the other. thinking: s that one planning is given. A
-    camera that the hand carries comes along its way itself, and looking elsewhere would lead the
-    hand elsewhere first; then the plan is just made.
+    camera that the hand carries is brought to where it sees the way, and the plan begins there.
     """
     from momantu_skills.perception.looking import look_at
 
     made: P = yield from compute(plan, thinking)
-    for _ in range(0 if arm.robot.description.eye_in_hand else FURTHER):
+    for _ in range(FURTHER):
         doubtful = blind_spot(arm, way(made))
         if doubtful is None:
             break

@@ -132,9 +132,9 @@ def test_the_floor_plan_tells_how_far_what_the_map_knows_is(tmp_path: Any) -> No
 class Turning:
     """An arm beside a camera that turns wherever it is told to, or nowhere."""
 
-    def __init__(self, monkeypatch: pytest.MonkeyPatch, *, turns: bool, eye_in_hand: bool) -> None:
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, *, turns: bool) -> None:
         self.arm = arm(looks(AHEAD))
-        self.arm.robot = SimpleNamespace(description=SimpleNamespace(eye_in_hand=eye_in_hand))
+        self.arm.robot = None
         self.arm.skill = None
         self.arm.service.observe = self._observe
         self.looked: list[np.ndarray] = []
@@ -175,22 +175,19 @@ BLIND = way((0.6, 0.0, 0.8), (0.6, 0.95, 0.8))
 
 
 def test_a_blind_way_is_looked_at_and_planned_anew(monkeypatch: pytest.MonkeyPatch) -> None:
-    turning = Turning(monkeypatch, turns=True, eye_in_hand=False)
+    turning = Turning(monkeypatch, turns=True)
     assert turning.plan(BLIND) == (BLIND, 2)
     assert len(turning.looked) == 1
 
 
 def test_a_way_in_sight_is_taken_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    turning = Turning(monkeypatch, turns=True, eye_in_hand=False)
+    turning = Turning(monkeypatch, turns=True)
     straight = way((0.6, 0.0, 0.8), (1.2, 0.4, 0.8))
     assert turning.plan(straight) == (straight, 1)
     assert turning.looked == []
 
 
-@pytest.mark.parametrize(("turns", "eye_in_hand"), [(False, False), (True, True)])
-def test_what_cannot_be_looked_at_stays_in_doubt(
-    monkeypatch: pytest.MonkeyPatch, turns: bool, eye_in_hand: bool
-) -> None:
-    turning = Turning(monkeypatch, turns=turns, eye_in_hand=eye_in_hand)
+def test_what_cannot_be_looked_at_stays_in_doubt(monkeypatch: pytest.MonkeyPatch) -> None:
+    turning = Turning(monkeypatch, turns=False)
     assert turning.plan(BLIND) == (BLIND, 1)
     assert turning.looked == []
