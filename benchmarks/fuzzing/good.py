@@ -6,6 +6,8 @@ import json
 import re
 from pathlib import Path
 
+from momantu_bt.tree.lookup import bundled
+
 _ROOT = Path(__file__).resolve().parent.parent.parent
 _CASES = _ROOT / "tests" / "framework" / "engine" / "conformance_cases.jsonl"
 _EXAMPLE = re.compile(r"^```xml\n(<root.*?)^```", re.MULTILINE | re.DOTALL)
@@ -13,7 +15,7 @@ _EXAMPLE = re.compile(r"^```xml\n(<root.*?)^```", re.MULTILINE | re.DOTALL)
 
 def good_trees() -> dict[str, list[str]]:
     """Texts by the suffix of their files: bundled trees, those of the docs, BehaviorTree.CPP's."""
-    yaml = [path.read_text(encoding="utf-8") for path in sorted(_ROOT.glob("trees/**/*.yaml"))]
+    yaml = [path.read_text(encoding="utf-8") for path in sorted(bundled().values())]
     pages = [path.read_text(encoding="utf-8") for path in sorted(_ROOT.glob("docs/**/*.md"))]
     xml = [example for page in pages for example in _EXAMPLE.findall(page)]
     cases = _CASES.read_text(encoding="utf-8").splitlines()

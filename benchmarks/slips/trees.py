@@ -11,6 +11,7 @@ from momantu_bt.messages import VALUE_TYPES
 from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue import SUBTREE, CodeText
 from momantu_bt.tree.check import check
+from momantu_bt.tree.lookup import bundled
 from momantu_bt.tree.model import Document, Node, Place
 from momantu_bt.tree.problems import Problem, Problems, TreeError
 from momantu_bt.tree.registry import Registry
@@ -23,7 +24,7 @@ from slips.yaml import SLIPS
 
 ROOT = Path(__file__).resolve().parents[2]
 GOOD_TREES = (
-    *sorted((ROOT / "trees").rglob("*.yaml")),
+    *sorted(bundled().values()),
     *sorted((ROOT / "tests" / "framework" / "tree" / "good_trees").glob("*.yaml")),
 )
 

@@ -26,7 +26,7 @@ def check(
     Exit code 0: nothing was found; 1: something was; 2: the file cannot be read.
 
     Examples:
-      momantu-bt robots check fetch
+      momantu-bt robots check my_robot
       momantu-bt robots check robots/my_robot/robot.yaml
       momantu-bt robots check my_robot/ --json
     """

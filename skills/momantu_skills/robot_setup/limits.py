@@ -18,7 +18,7 @@ POSTURES = 200
 USABLE = 0.5
 """Share of a joint's effort that is left for accelerating beside gravity and friction."""
 GENTLE = {"prismatic": 0.3, "revolute": 1.5, "continuous": 1.5}
-"""m/s2, rad/s2; the most that is proposed: it served Fetch's arm well."""
+"""m/s2, rad/s2; the most that is proposed: arms of usual weight bear it."""
 LIGHT = 2.0
 """Heads and fingers may do this many times as much."""
 USUAL_SPEED = {"prismatic": 0.05, "revolute": 1.0, "continuous": 1.0}

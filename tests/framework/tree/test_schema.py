@@ -11,6 +11,7 @@ from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue import MODIFIERS, SPELLED
 from momantu_bt.tree.check import check as check_document
 from momantu_bt.tree.codes import codes, explanation
+from momantu_bt.tree.lookup import bundled
 from momantu_bt.tree.problems import Problem, TreeError, errors
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.schema import tree_schema
@@ -20,7 +21,7 @@ from momantu_bt.tree.yaml.format import read
 from momantu_bt.tree.yaml.raw import plain_value
 from momantu_bt.tree.yaml.source import YamlSyntaxError, compose
 
-TREES = sorted((Path(__file__).parents[3] / "trees").rglob("*.yaml"))
+TREES = sorted(bundled().values())
 HEADER = "momantu_bt: 1\nworld: rooms\ntrees:\n  Main:\n"
 GOOD = """
     - reset_pose: home

@@ -6,13 +6,13 @@ from pathlib import Path
 
 import pytest
 
-from momantu_bt.tree.lookup import bundled_folder
+from momantu_bt.tree.lookup import bundled
 from momantu_bt.tree.model import Beside, Document
 from momantu_bt.tree.yaml.format import read
 from momantu_bt.tree.yaml.source import compose_with_remarks
 from momantu_bt.tree.yaml.writer import write
 
-BUNDLED = sorted((bundled_folder() or Path()).rglob("*.yaml"))
+BUNDLED = sorted(bundled().values())
 
 TEXT = """\
 # 1 the file

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from momantu_bt.tree.convert import meaning
-from momantu_bt.tree.lookup import bundled_folder
+from momantu_bt.tree.lookup import bundled
 from momantu_bt.tree.model import Document, Literal, Node, Place
 from momantu_bt.tree.script import canonical
 from momantu_bt.tree.yaml.format import read
@@ -16,7 +16,7 @@ from momantu_bt.tree.yaml.scalars import CannotWrite, literal, script_spelling
 from momantu_bt.tree.yaml.source import YamlSyntaxError, compose
 from momantu_bt.tree.yaml.writer import write
 
-BUNDLED = sorted((bundled_folder() or Path()).rglob("*.yaml"))
+BUNDLED = sorted(bundled().values())
 NASTY = ("yes", "010", "5", "-1", "1e3", "0x1F", "true", "null", "~", "", " a ", "a: b", "a:", "#")
 NASTY += ("a #b", "x\ny", "\t", "{x}", "[a, b]", "$", "$5", "${x}", "'", '"', 'it\'s "so"', "\\n")
 NASTY += (

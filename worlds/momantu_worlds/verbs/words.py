@@ -94,6 +94,7 @@ WORDS: Mapping[str, str] = MappingProxyType(
         "Item.kind": "What it is.",
         "Item.on": "The surface that it stands on.",
         "Item.at": "[x, y] on the surface, in the surface's own frame.",
+        "Item.yaw": "How it is turned on the surface.",
         "Light.ambient": "[least, most] light from everywhere.",
         "Light.sun": "[least, most] strength of the sun; its direction varies too.",
         "Light.lamp": "[least, most] strength of each lamp.",
