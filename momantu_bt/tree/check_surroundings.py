@@ -45,19 +45,19 @@ def _look_up_world(context: Context, name: str, place: Place) -> str | None:
     worlds = context.registry.worlds
     if name not in worlds:
         hint = near_file(WORLDS, name) or valid_names(name, worlds, "worlds")
-        _object(context, "unknown-world", place, name, f"no world is called {name!r}", hint)
+        _error("unknown-world", context, place, name, f"no world is called {name!r}", hint)
         return None
     try:
         entry = worlds[name]
         context.site = entry.site()
         return entry.default_robot
     except DescriptionError as error:
-        _quote(context, "broken-world", error)
+        _broken("broken-world", context, error)
     except PluginError as error:
-        _object(context, "broken-world", place, name, str(error))
+        _error("broken-world", context, place, name, str(error))
     except Exception as error:  # a plug-in's code, which may raise anything
         message = f"the world {name!r} cannot be read: {type(error).__name__}: {error}"
-        _object(context, "broken-world", place, name, message)
+        _error("broken-world", context, place, name, message)
     return None
 
 
@@ -65,25 +65,25 @@ def _look_up_robot(context: Context, name: str, place: Place) -> None:
     robots = context.registry.robots
     if name not in robots:
         hint = near_file(ROBOTS, name) or valid_names(name, robots, "robots")
-        _object(context, "unknown-robot", place, name, f"no robot is called {name!r}", hint)
+        _error("unknown-robot", context, place, name, f"no robot is called {name!r}", hint)
         return
     try:
         context.description = context.registry.description(name)
     except DescriptionError as error:
-        _quote(context, "broken-robot", error)
+        _broken("broken-robot", context, error)
     except PluginError as error:
-        _object(context, "broken-robot", place, name, str(error))
+        _error("broken-robot", context, place, name, str(error))
     except WorldError as error:
         # its files are not installed, as without the extra [worlds]; trees are checked all the same
         message = f"poses and actuators of {name!r} are not checked: {error}"
         context.problems.warning("robot-not-installed", place, message)
     except Exception as error:  # a plug-in's code, which may raise anything
         message = f"the robot {name!r} cannot be read: {type(error).__name__}: {error}"
-        _object(context, "broken-robot", place, name, message)
+        _error("broken-robot", context, place, name, message)
 
 
-def _object(
-    context: Context, code: str, place: Place, name: str, message: str, hint: str = ""
+def _error(
+    code: str, context: Context, place: Place, name: str, message: str, hint: str = ""
 ) -> None:
     """Report a world or robot; one that the command line names is shown as it was given there."""
     if place.file in (WORLD_OPTION, ROBOT_OPTION):
@@ -91,7 +91,7 @@ def _object(
     context.problems.error(code, place, message, hint)
 
 
-def _quote(context: Context, code: str, error: DescriptionError) -> None:
+def _broken(code: str, context: Context, error: DescriptionError) -> None:
     """Report what is wrong in a file that describes a world or a robot, in its own lines."""
     file = str(error.path)
     context.document.source[file] = error.text

@@ -99,7 +99,7 @@ def test_a_broken_robot_file_is_an_error_of_the_check_with_its_own_place(
     file = carter(robot=("height:", "hight:"))
     assert main(["check", tree, "--robot", str(file)]) == 2
     shown = capsys.readouterr().err
-    assert "robot.yaml:21:1: unknown key 'hight'" in shown
+    assert "robot.yaml:21:1: error: unknown key 'hight'" in shown
     assert "did you mean 'height'" in shown
 
 
