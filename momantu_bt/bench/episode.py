@@ -20,7 +20,7 @@ import momantu_bt.cli.threads  # noqa: F401 - before numpy, which the next impor
 from momantu_bt.bench.process import EXIT_IMPOSSIBLE, EXIT_REFUSED
 from momantu_bt.bench.spec import EpisodeSpec, Row
 from momantu_bt.fault import FaultError
-from momantu_bt.record.files import write_whole
+from momantu_bt.files import write_whole
 
 if TYPE_CHECKING:
     from momantu_bt.engine.executor import Executor, Observer
@@ -157,8 +157,8 @@ def _refusals() -> tuple[type[Exception], ...]:
     from momantu_bt.engine.launch import LaunchError
     from momantu_bt.engine.makers import BuildError
     from momantu_bt.engine.services import ServiceCycleError
+    from momantu_bt.files import OutputError
     from momantu_bt.plugins import PluginClash, PluginError
-    from momantu_bt.record.files import OutputError
     from momantu_bt.tree.lookup import TreeNotFound
     from momantu_bt.tree.problems import TreeError
     from momantu_bt.world import WorldError

@@ -14,7 +14,7 @@ from pathlib import Path
 from types import TracebackType
 
 from momantu_bt.bench.spec import Row
-from momantu_bt.record.files import OutputError
+from momantu_bt.files import OutputError
 
 RESULTS, LOCK = "results.jsonl", ".lock"
 

@@ -206,7 +206,7 @@ def guarded(start: Callable[[], int]) -> int:
     from momantu_bt.engine.launch import LaunchError
     from momantu_bt.engine.makers import BuildError
     from momantu_bt.fault import FaultError
-    from momantu_bt.record.files import OutputError
+    from momantu_bt.files import OutputError
 
     wrong = (ArgumentError, SeedsError, FaultError, StoreError, EngineError)
     try:

@@ -81,7 +81,7 @@ def compare(
     def start() -> int:
         from momantu_bt.bench.seeds import parse_seeds
         from momantu_bt.cli.given import given_values
-        from momantu_bt.record.files import check_writable
+        from momantu_bt.files import check_writable
 
         chosen = choose(record, RECORD, "--record")
         board = given_values(set_ or [], values)

@@ -103,8 +103,8 @@ def _chosen(timeline: Timeline, at: float | None, node: str | None, failure: int
 
 
 def _write_page(recording: Recording, path: Path) -> int:
+    from momantu_bt.files import OutputError
     from momantu_bt.page import write_page
-    from momantu_bt.record.files import OutputError
 
     try:
         write_page(recording, path)

@@ -119,7 +119,7 @@ def _guarded(start: Callable[[], Report]) -> int:
     from momantu_bt.engine.makers import BuildError
     from momantu_bt.engine.services import ServiceCycleError
     from momantu_bt.fault import FaultError
-    from momantu_bt.record.files import OutputError
+    from momantu_bt.files import OutputError
 
     try:
         return start().exit_code
@@ -203,7 +203,7 @@ def _breakpoints(
 
 
 def _check_outputs(wanted: _Outputs) -> None:
-    from momantu_bt.record.files import check_writable
+    from momantu_bt.files import check_writable
 
     for path in (wanted.report, wanted.video):
         if path is not None:

@@ -9,7 +9,7 @@ from typing import Annotated, Any, TypeAlias
 
 import typer
 
-from momantu_bt.record.files import OutputError, check_writable, write_whole
+from momantu_bt.files import OutputError, check_writable, write_whole
 
 EXIT_WRONG_INPUT = 2
 

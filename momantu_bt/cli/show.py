@@ -11,6 +11,7 @@ import typer
 from momantu_bt.drawing.boxes import pictures
 from momantu_bt.drawing.difference import difference
 from momantu_bt.drawing.wires import Wire, wire_lines, wires
+from momantu_bt.files import OutputError, write_whole
 from momantu_bt.tree.load import load
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.named_world import world_of
@@ -107,6 +108,6 @@ def _write(text: str, output: Path | None) -> None:
         typer.echo(text, nl=False)
         return
     try:
-        output.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise typer.BadParameter(f"{output} cannot be written: {error.strerror}") from None
+        write_whole(output, text)
+    except OutputError as error:
+        raise typer.BadParameter(str(error)) from None

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from momantu_bt import plugins
-from momantu_bt.record.files import OutputError, write_whole
+from momantu_bt.files import OutputError, write_whole
 from momantu_bt.skill import Skill
 from momantu_bt.tree.skill_page import pages as pages_of
 

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from momantu_bt.cli.naming import robot_of, world_of
-from momantu_bt.record.files import OutputError, check_writable, write_whole
+from momantu_bt.files import OutputError, check_writable, write_whole
 from momantu_bt.world import PreviewableWorld, WorldError
 
 EXIT_WRONG_INPUT, EXIT_NO_WORLD = 2, 3

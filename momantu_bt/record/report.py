@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from momantu_bt.failure import FailureValue
+from momantu_bt.files import write_whole
 from momantu_bt.messages import plain
-from momantu_bt.record.files import write_whole
 from momantu_bt.world import Incident
 
 SUCCESS, FAILURE, INTERRUPTED, ERROR = "SUCCESS", "FAILURE", "INTERRUPTED", "ERROR"

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import json
-import os
-import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+
+from momantu_bt.files import write_whole
 
 if TYPE_CHECKING:
     from momantu_skills.robot_setup.proposal import Proposal
@@ -58,9 +58,10 @@ def setup(
         return _in_the_way(path)
     text, fill_in = _text(proposal, folder)
     try:
-        _write(path, text)
+        folder.mkdir(parents=True, exist_ok=True)
+        write_whole(path, text)
     except OSError as error:
-        return _refuse(f"{path} cannot be written: {error.strerror}")
+        return _refuse(f"{folder} cannot be written: {error}")
     wrong = _read_again(path)
     if as_json:
         typer.echo(json.dumps(_plain(proposal, path, fill_in, wrong), indent=2))
@@ -82,20 +83,6 @@ def _text(proposal: Proposal, folder: Path) -> tuple[str, tuple[str, ...]]:
     from momantu_skills.robot_setup.writer import missing, robot_file
 
     return robot_file(proposal, folder), missing(proposal)
-
-
-def _write(path: Path, text: str) -> None:
-    """Whole or not at all."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8") as file:
-            file.write(text)
-        Path(name).chmod(0o644)
-        Path(name).replace(path)
-    except OSError:
-        Path(name).unlink(missing_ok=True)
-        raise
 
 
 def _read_again(path: Path) -> str:

@@ -11,10 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from lxml import etree
 
+from momantu_bt.files import OutputError
 from momantu_bt.page import write_page
 from momantu_bt.page.data import page_data
 from momantu_bt.page.page import SCRIPTS, as_json, page_text
-from momantu_bt.record.files import OutputError
 
 EVIL = "</script><script>alert(1)</script><!--<img src=x onerror=alert(1)>&amp;'\"\u2028\ud800"
 EVIL += " @script@"

@@ -12,9 +12,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from momantu_bt.failure import FailureValue
+from momantu_bt.files import OutputError, check_writable, write_whole
 from momantu_bt.geometry import Pose2D
 from momantu_bt.record.chain import chain_text
-from momantu_bt.record.files import OutputError, check_writable, write_whole
 from momantu_bt.record.folder import prepare_folder
 from momantu_bt.record.report import Lie, NodeReport, Report, SkillClaims
 

@@ -4,11 +4,12 @@ import dataclasses
 
 import pytest
 from momantu_worlds.robots import fetch
-from momantu_worlds.scenes import kept, loading
+from momantu_worlds.scenes import loading
 from momantu_worlds.scenes.loading import load_world, nominal, nominal_site, world_path
 from momantu_worlds.scenes.maps import MOST_KEPT, with_maps
 from momantu_worlds.scenes.sites import kept_nominal
 
+from momantu_bt.files import write_whole
 from momantu_bt.robot import laser_band
 from momantu_bt.vulkan.places import CACHE_VARIABLE
 from momantu_bt.world import WorldError
@@ -128,14 +129,14 @@ def test_a_missing_world_file_is_a_world_error(tmp_path):
 
 def test_files_are_written_whole_or_not_at_all(tmp_path, monkeypatch):
     file = tmp_path / "a.txt"
-    kept.put(file, b"one")
+    write_whole(file, b"one")
 
     def fails(self, target):
         raise OSError("no")
 
     monkeypatch.setattr(type(file), "replace", fails)
     with pytest.raises(OSError, match="no"):
-        kept.put(file, b"two")
+        write_whole(file, b"two")
     assert file.read_bytes() == b"one"
     assert list(tmp_path.iterdir()) == [file]
 

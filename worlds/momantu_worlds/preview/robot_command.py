@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import os
-import tempfile
 from pathlib import Path
 from typing import Annotated
 
 import typer
+
+from momantu_bt.files import OutputError, write_whole
 
 EXIT_WRONG_INPUT, EXIT_NO_WORLD = 2, 3
 
@@ -42,11 +42,11 @@ def preview(
     try:
         from momantu_worlds.preview.robot_sheet import robot_sheet
 
-        _write(path, robot_sheet(description))
+        write_whole(path, robot_sheet(description))
     except WorldError as error:
         return _complain(str(error), EXIT_NO_WORLD)
-    except OSError as error:
-        return _complain(f"{path} cannot be written: {error.strerror}", EXIT_WRONG_INPUT)
+    except OutputError as error:
+        return _complain(str(error), EXIT_WRONG_INPUT)
     typer.echo(f"{path}: {description.name}, {len(description.named_poses)} poses")
     return 0
 
@@ -54,16 +54,3 @@ def preview(
 def _complain(message: str, code: int) -> int:
     typer.echo(f"momantu-bt: {message}", err=True)
     return code
-
-
-def _write(path: Path, data: bytes) -> None:
-    """Whole or not at all."""
-    handle, name = tempfile.mkstemp(dir=path.absolute().parent, prefix=f".{path.name}.")
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(data)
-        Path(name).chmod(0o644)
-        Path(name).replace(path)
-    except OSError:
-        Path(name).unlink(missing_ok=True)
-        raise

@@ -15,12 +15,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from momantu_bt.files import write_whole
 from momantu_bt.geometry import Array, Pose2D
 from momantu_bt.world import WorldError
 from momantu_worlds.scenes.building import piece_parts, table_parts
 from momantu_worlds.scenes.coverage import Standing, covered, standing_of
 from momantu_worlds.scenes.given_bodies import given_bodies
-from momantu_worlds.scenes.kept import put
 from momantu_worlds.scenes.obstacles import DOORSTEP, floor_extent, wall_rectangles
 from momantu_worlds.scenes.plane_geometry import in_outline
 from momantu_worlds.scenes.world_file import WorldFile
@@ -128,7 +128,7 @@ def save_plan(plan: FloorPlan, yaml_file: Path) -> None:
     """Write a plan as map_server's YAML beside a binary PGM of the same name."""
     picture = yaml_file.with_suffix(".pgm")
     rows, columns = plan.pixels.shape
-    put(picture, f"P5\n{columns} {rows}\n255\n".encode() + plan.pixels.tobytes())
+    write_whole(picture, f"P5\n{columns} {rows}\n255\n".encode() + plan.pixels.tobytes())
     text = (
         f"image: {picture.name}\n"
         f"resolution: {plan.resolution:g}\n"
@@ -137,7 +137,7 @@ def save_plan(plan: FloorPlan, yaml_file: Path) -> None:
         f"occupied_thresh: {OCCUPIED_ABOVE}\n"
         f"free_thresh: {FREE_BELOW}\n"
     )
-    put(yaml_file, text.encode())
+    write_whole(yaml_file, text)
 
 
 def cells_of(plan: FloorPlan, x: float, y: float) -> tuple[int, int]:

@@ -9,9 +9,10 @@ from dataclasses import replace
 from pathlib import Path
 from shutil import rmtree
 
+from momantu_bt.files import kept_folder
 from momantu_bt.world import Site, WorldError
-from momantu_worlds.scenes import kept
 from momantu_worlds.scenes.floor_plan import draw_plans, save_plan
+from momantu_worlds.scenes.kept import digest
 from momantu_worlds.scenes.world_file import WorldFile
 
 MOST_KEPT = 16
@@ -36,8 +37,8 @@ def with_maps(site: Site, world: WorldFile, band: tuple[float, float], robot_hei
 
 
 def _drawn(world: WorldFile, band: tuple[float, float], robot_height: float) -> tuple[Path, Path]:
-    made_of = kept.digest([repr((band, robot_height)), *_contents(world)])
-    folder = kept.folder("maps") / f"{world.name}-{made_of}"
+    made_of = digest([repr((band, robot_height)), *_contents(world)])
+    folder = kept_folder("maps") / f"{world.name}-{made_of}"
     files = folder / "map.yaml", folder / "overhang.yaml"
     if not all(file.is_file() for file in files):
         folder.mkdir(exist_ok=True)

@@ -13,10 +13,11 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from momantu_bt.files import kept_folder, write_whole
 from momantu_bt.geometry import Pose2D
 from momantu_bt.messages import ObjectClass, plain
 from momantu_bt.world import Site, Surface
-from momantu_worlds.scenes import kept
+from momantu_worlds.scenes.kept import digest
 
 if TYPE_CHECKING:
     from momantu_worlds.scenes.world_file import WorldFile
@@ -63,7 +64,7 @@ def keep(nominal: Nominal, text: bytes) -> None:
     data = {name: plain(getattr(nominal.site, name)) for name in FIELDS}
     with suppress(OSError):
         content = json.dumps({"robot": nominal.robot, "site": data}, indent=1) + "\n"
-        kept.put(_place(text), content.encode())
+        write_whole(_place(text), content)
 
 
 def kept_nominal(text: bytes) -> Nominal | None:
@@ -76,7 +77,7 @@ def kept_nominal(text: bytes) -> Nominal | None:
 
 
 def _place(text: bytes) -> Path:
-    return kept.folder("sites") / f"{kept.digest([text])}.json"
+    return kept_folder("sites") / f"{digest([text])}.json"
 
 
 def _read(data: dict[str, Any]) -> Site:

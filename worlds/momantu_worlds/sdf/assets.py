@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import os
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -13,6 +12,7 @@ from typing import Any
 import numpy as np
 import trimesh
 
+from momantu_bt.files import write_whole
 from momantu_bt.geometry import Array
 from momantu_worlds.sdf.meshes import Piece
 
@@ -67,16 +67,6 @@ class Assets:
         path = f"{self.folder}/{stem}-{digest}.glb"
         self._files[path] = content
         return path
-
-
-def write_whole(file: Path, content: bytes) -> None:
-    """Write a file whole or not at all; raises OSError."""
-    draft = file.with_name(f".{file.name}.{os.getpid()}.part")
-    try:
-        draft.write_bytes(content)
-        draft.replace(file)
-    finally:
-        draft.unlink(missing_ok=True)
 
 
 def _seen(piece: Piece, color: tuple[float, ...] | None) -> Any:

@@ -7,10 +7,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
+from momantu_bt.files import write_whole
 from momantu_bt.geometry import Pose2D, Transform
 from momantu_bt.world import WorldError
 from momantu_worlds.scenes.world_reader import parse_world
-from momantu_worlds.sdf.assets import Assets, write_whole
+from momantu_worlds.sdf.assets import Assets
 from momantu_worlds.sdf.bodies import BodyMaker, ImportedBody, plain_name
 from momantu_worlds.sdf.findings import Fate, Findings, Place, SdfError
 from momantu_worlds.sdf.frames import PlacedModel
@@ -51,7 +52,7 @@ class Import:
         try:
             count = self.assets.write(output)
             parse_world(self.text, output)  # a file that the reader refuses is not left behind
-            write_whole(output, self.text.encode())
+            write_whole(output, self.text)
         except OSError as error:
             raise WorldError(f"{output} cannot be written: {error.strerror or error}") from error
         return count

@@ -27,16 +27,16 @@ def schema(
     Examples:
       momantu-bt worlds schema -o world.schema.json
     """
-    from momantu_worlds.scenes.kept import put
+    from momantu_bt.files import write_whole
 
     text = json.dumps(world_schema(), indent=2) + "\n"
     if out is None:
         typer.echo(text, nl=False)
         return 0
     try:
-        put(out, text.encode())
+        write_whole(out, text)
     except OSError as error:
-        typer.echo(f"momantu-bt: {out} cannot be written: {error.strerror}", err=True)
+        typer.echo(f"momantu-bt: {error}", err=True)
         return EXIT_WRONG_INPUT
     typer.echo(f"schema: {out}; begin a world file with `# yaml-language-server: $schema={out}`")
     return 0
