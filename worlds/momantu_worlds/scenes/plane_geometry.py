@@ -135,18 +135,11 @@ class Passages:
 
     def reachable(self, start: tuple[float, float]) -> NDArray[np.bool_]:
         """Cells that the disc gets to from a point, by steps to four neighbours."""
-        reached = np.zeros_like(self.free)
-        rows, columns = self.free.shape
-        flat, seen = self.free.ravel().tolist(), bytearray(rows * columns)
-        row, column = self.index(start)
-        stack = [row * columns + column]
-        while stack:
-            at = stack.pop()
-            if seen[at] or not flat[at]:
-                continue
-            seen[at] = 1
-            stack += (at + 1, at - 1, at + columns, at - columns)
-        reached.ravel()[:] = np.frombuffer(seen, dtype=np.uint8) != 0
+        import cv2  # here, since reading a world file needs none of it
+
+        _, region = cv2.connectedComponents(self.free.astype(np.uint8), connectivity=4)
+        here = region[self.index(start)]
+        reached: NDArray[np.bool_] = (region == here) & (here != 0)
         return reached
 
     def nearest_free(self, point: tuple[float, float]) -> tuple[float, float]:
