@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
@@ -116,8 +117,11 @@ class PlanningScene(Protocol):
         """Take over what the robot's camera shows now: what an arm may meet."""
         ...
 
-    def footprint(self, state: RobotState) -> Array:
-        """Convex outline (k, 2) of base, arm and held object on the floor, base frame, m."""
+    def footprint(self, state: RobotState, below: float = math.inf) -> Array:
+        """Convex outline (k, 2) of base, arm and held object on the floor, base frame, m.
+
+        below: parts of arm and load that keep above this height, m, are left out.
+        """
         ...
 
     def is_robot(self, points: Array, state: RobotState) -> Any:

@@ -15,6 +15,7 @@ from momantu_bt.service import Localization
 from momantu_bt.skill import Failure, In, Needs, Run, Skill
 
 if TYPE_CHECKING:
+    from momantu_bt.world import Surface
     from momantu_skills.navigation.config import NavigationConfig
     from momantu_skills.navigation.trip import Destination
     from momantu_skills.navigation.vehicle import Vehicle
@@ -76,7 +77,9 @@ class Navigate(Skill):
             from momantu_skills.manipulation.tucking import take_in
 
             yield from take_in(self, robot, self.planning_scene)
-        vehicle = Vehicle(self, robot, self.localization, self.planning_scene, config)
+        surface = self._surface()
+        top = 0.0 if surface is None else surface.height
+        vehicle = Vehicle(self, robot, self.localization, self.planning_scene, config, top)
         destination = self._going = self._destination(vehicle, robot.description.working)
         mppi = Mppi(robot.description.base, config, self.random)
         yield from travel(vehicle, mppi, destination, recovery=self.recovery)
@@ -92,8 +95,7 @@ class Navigate(Skill):
         if failure is None and self.within_reach_of is not None:
             target, stand = self.within_reach_of, self._going.chosen
             x, y, _ = self.frames.lookup(ODOM, target.frame).apply(target.position)
-            there = self.frames.lookup(MAP, target.frame).apply(target.position)
-            away = stand.distance_to(Pose2D(float(there[0]), float(there[1])))
+            away = stand.distance_to(Pose2D(*self._point(target)))
             farthest = max(away, robot.description.working.reach[2])
             return BaseNear((float(x), float(y)), farthest + self.tolerance)
         if failure is None or (failure.code in self.failures and self.within_reach_of is None):
@@ -129,6 +131,21 @@ class Navigate(Skill):
                 "BAD_GOAL", f"no place {self.in_front_of!r}; places: {', '.join(known) or 'none'}"
             )
 
+    def _surface(self) -> Surface | None:
+        """The surface that is driven up to."""
+        from momantu_skills.navigation.goals import surface_at
+
+        if self.within_reach_of is not None:
+            return surface_at(self._point(self.within_reach_of), self.site.surfaces.values())
+        return self.site.surfaces.get(self.in_front_of or "")
+
+    def _point(self, pose: Pose) -> tuple[float, float]:
+        """(x, y) in the map of a pose, as the map's place is believed now."""
+        there = pose.position
+        if pose.frame != MAP:
+            there = self.frames.lookup(MAP, pose.frame).apply(there)
+        return float(there[0]), float(there[1])
+
     def _destination(self, vehicle: Vehicle, working: Working) -> Destination:
         from momantu_skills.navigation.goals import Stand, before_surface, within_reach
         from momantu_skills.navigation.trip import Destination
@@ -140,14 +157,10 @@ class Navigate(Skill):
             return Destination(lambda: stands, tolerance, side=self.side)
         target = self.within_reach_of
         if target is not None:
-            frame = target.frame
+            point = self._point
 
             def reachable() -> list[Stand]:
-                there = target.position
-                if frame != "map":
-                    there = self.frames.lookup("map", frame).apply(there)
-                point = (float(there[0]), float(there[1]))
-                return within_reach(point, surfaces.values(), vehicle.pose(), working)
+                return within_reach(point(target), surfaces.values(), vehicle.pose(), working)
 
             return Destination(reachable, tolerance, side=self.side, in_odom=True)
         pose = self.goal if self.goal is not None else self.site.places[str(self.in_front_of)]

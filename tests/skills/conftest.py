@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from momantu_skills.manipulation.mask import floor_outline
 from momantu_skills.manipulation.service import PlanningSceneService
 from momantu_worlds.robots import fetch
 
@@ -141,16 +142,22 @@ def _blind(robot: ScriptedRobot) -> CameraImage:
 
 
 class FlatScene:
-    """A planning scene whose footprint is the base's, and to which nothing is the robot."""
+    """A planning scene whose footprint is the base's, and to which nothing is the robot.
+
+    load: height of the lowest point and corners (n, 2) of something that sticks out, base frame.
+    """
 
     held = None
     last_contact = -math.inf
 
     def __init__(self, outline: Sequence[tuple[float, float]]) -> None:
         self.outline = np.array(outline)
+        self.load: tuple[float, np.ndarray] | None = None
 
-    def footprint(self, state: RobotState) -> np.ndarray:
-        return self.outline
+    def footprint(self, state: RobotState, below: float = math.inf) -> np.ndarray:
+        if self.load is None or self.load[0] >= below:
+            return self.outline
+        return floor_outline(np.vstack([self.outline, self.load[1]]))
 
     def is_robot(self, points: np.ndarray, state: RobotState) -> np.ndarray:
         return np.zeros(len(points), dtype=bool)

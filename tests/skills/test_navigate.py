@@ -101,6 +101,24 @@ def test_a_desk_that_was_moved_towards_the_robot_is_not_touched(flat: Any, drive
     _arrived(drive(world, in_front_of="desk"), world, FRONT, slack=0.12)
 
 
+@pytest.mark.parametrize(("lowest", "over"), [(0.6, False), (0.8, True)])
+def test_only_what_hangs_higher_than_a_surface_reaches_over_it(
+    flat: Any, flat_scene: Any, lowest: float, over: bool
+) -> None:
+    """A load sticks out 25 cm before the base; the desk's top is at 0.7 m."""
+    world, stick = flat(), 0.25
+    scene = flat_scene(world)
+    front = scene.outline[:, 0].max() + stick
+    scene.load = (lowest, np.array([[front, -0.05], [front, 0.05]]))
+    services = {"localization": LocalizationService(), "planning_scene": scene}
+    inputs = {"within_reach_of": Pose(Pose2D(3.75, 0.2, 0.0).transform(0.7), "map", 0.0)}
+    result = run_skill(Navigate, world=world, services=services, inputs=inputs, max_time=150.0)
+    assert result.status == "SUCCESS", result.explain()
+    tip = world.robot.truth.x + front
+    assert (tip > 3.6) == over, f"the desk's edge is at 3.6 m, the load at {tip}"
+    assert world.robot.nearest > 0.02
+
+
 def test_at_the_goal_already_it_hardly_moves(flat: Any, drive: Drive) -> None:
     world = flat(FRONT)
     result = drive(world, goal=FRONT)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TypeAlias
 
 import numpy as np
@@ -146,7 +147,9 @@ class Scene:
 
     # the robot's own body
 
-    def footprint(self, state: RobotState, held: HeldObject | None) -> Array:
+    def footprint(
+        self, state: RobotState, held: HeldObject | None, below: float = math.inf
+    ) -> Array:
         """See `PlanningScene.footprint`."""
         poses = self.model.link_poses(self.model.configuration(state))
         corners = [
@@ -156,6 +159,7 @@ class Scene:
         if held is not None:
             tip = poses[self.model.description.end_effector.frame]
             corners.append(self.held_corners(held) @ tip[:3, :3].T + tip[:3, 3])
+        corners = [each for each in corners if each[:, 2].min() < below]
         outline = np.array([(x, y, 0.0) for x, y in self.model.description.footprint])
         everything = np.vstack([*corners, outline])
         return floor_outline(everything[everything[:, 2] < self.model.description.height])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -103,9 +104,12 @@ class PlanningSceneService(Service):
             return ()
         return tuple(known_support(s, odom_from_map) for s in self.site.surfaces.values())
 
-    def footprint(self, state: RobotState) -> Array:
-        """Convex outline (k, 2) of base, arm and held object on the floor, base frame, m."""
-        return self.scene.footprint(state, self.held)
+    def footprint(self, state: RobotState, below: float = math.inf) -> Array:
+        """Convex outline (k, 2) of base, arm and held object on the floor, base frame, m.
+
+        below: parts of arm and load that keep above this height, m, are left out.
+        """
+        return self.scene.footprint(state, self.held, below)
 
     def is_robot(self, points: Array, state: RobotState) -> Any:
         """(n,) bool: which points (n, 3) in base frame lie on the robot or on what it holds."""

@@ -90,15 +90,13 @@ def within_reach(
     approached as near as the surface lets: its near side, at least, is within reach.
     """
     stands: list[Stand] = []
-    for surface in surfaces:
+    surface = surface_at(target, surfaces)
+    if surface is not None:
         here = surface.map_from_surface.inverse() @ Pose2D(*target)
-        beyond = max(abs(here.x) - surface.size[0] / 2, abs(here.y) - surface.size[1] / 2)
-        if beyond < ON_SURFACE:
-            square = list(_square_stands(surface, here, base, working))
-            stands = [stand for away, stand in square if away <= working.reach[2]]
-            nearest = min((away for away, _ in square), default=0.0)
-            stands = stands or [stand for away, stand in square if away <= nearest + AS_NEAR]
-            break
+        square = list(_square_stands(surface, here, base, working))
+        stands = [stand for away, stand in square if away <= working.reach[2]]
+        nearest = min((away for away, _ in square), default=0.0)
+        stands = stands or [stand for away, stand in square if away <= nearest + AS_NEAR]
     if not stands:
         for k in range(RING):
             yaw = wrap_angle(2.0 * math.pi * k / RING)
@@ -109,6 +107,16 @@ def within_reach(
             )
             stands.append(Stand(pose, k, pose.distance_to(base)))
     return sorted(stands, key=lambda stand: stand.cost)
+
+
+def surface_at(target: tuple[float, float], surfaces: Iterable[Surface]) -> Surface | None:
+    """The first surface that a point (x, y) of the map lies on, or nearly so."""
+    for surface in surfaces:
+        here = surface.map_from_surface.inverse() @ Pose2D(*target)
+        beyond = max(abs(here.x) - surface.size[0] / 2, abs(here.y) - surface.size[1] / 2)
+        if beyond < ON_SURFACE:
+            return surface
+    return None
 
 
 def _square_stands(

@@ -98,7 +98,7 @@ def quickest_retreat(vehicle: Vehicle, goal: Pose2D, distance: float) -> Retreat
 def _arrival(
     vehicle: Vehicle, pose: Pose2D, speed: tuple[float, float], goal: Pose2D
 ) -> approach.Arrival:
-    return approach.simulate(pose, speed, goal, vehicle.limits, vehicle.costmap, vehicle.base_discs)
+    return approach.simulate(pose, speed, goal, vehicle.limits, vehicle.costmap, vehicle.low_discs)
 
 
 def _margin(vehicle: Vehicle, goal: Pose2D) -> float:

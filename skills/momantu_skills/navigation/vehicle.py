@@ -28,6 +28,8 @@ OUTLINE_CHANGE = 0.01
 """m by which the footprint must change before its discs are computed anew."""
 TURN_BETWEEN_LOOKS = 0.8
 """rad of turning that counts like `depth_every` metres: about half of a camera's view."""
+HANDS_OVER = 0.03
+"""m above a surface's nominal top that arm and load must keep to count as being over it."""
 AT_REST = 0.01
 """m/s and rad/s below which the base stands."""
 
@@ -37,7 +39,8 @@ class Vehicle:
 
     The laser is taken to be fixed to the base.
 
-    base_discs: of the base alone, which every obstacle meets. discs: of arm and load as well.
+    base_discs: of the base alone, which every obstacle meets. low_discs: with what hangs lower of
+    arm and load than the surface that is driven up to. discs: with all of arm and load.
     """
 
     def __init__(
@@ -47,7 +50,9 @@ class Vehicle:
         localization: Localization,
         scene: PlanningScene,
         config: NavigationConfig,
+        top: float = 0.0,
     ) -> None:
+        """top: height of the surface that is driven up to, m; arms reach over it."""
         site, description = skill.site, robot.description
         if site.map_file is None:
             raise ValueError(f"site {site.name!r} has no map_file to drive in")
@@ -59,9 +64,10 @@ class Vehicle:
         self._frames, self._clock = skill.frames, skill.clock
         self._base_frame = description.base_frame
         outline = np.array(description.footprint)
-        self.base_discs = self.discs = discs(outline)
+        self.base_discs = self.low_discs = self.discs = discs(outline)
         self.half_width = half_width(outline)
-        self._outline = outline
+        self._outline = self._low_outline = outline
+        self._low = top + HANDS_OVER
         self._posture: Array | None = None
         self._base_from_laser: Transform | None = None
         self._sees = any(isinstance(s, CameraSensor) for s in description.sensors.values())
@@ -115,12 +121,12 @@ class Vehicle:
             return
         self._posture = state.positions
         outline = np.asarray(self._scene.footprint(state))
-        same = outline.shape == self._outline.shape
-        if same and float(np.abs(outline - self._outline).max()) < OUTLINE_CHANGE:
-            return
-        self._outline = outline
-        self.discs = discs(outline)
-        self.half_width = half_width(outline)
+        if not _same(outline, self._outline):
+            self._outline, self.discs = outline, discs(outline)
+            self.half_width = half_width(outline)
+        low = np.asarray(self._scene.footprint(state, self._low))
+        if not _same(low, self._low_outline):
+            self._low_outline, self.low_discs = low, discs(low)
 
     def _look_due(self, pose: Pose2D) -> bool:
         if not self._sees:
@@ -202,8 +208,12 @@ class Vehicle:
             yield from self._command(BaseVelocity(0.0, 0.0), phase)
 
     def room(self, pose: Pose2D, *, whole: bool) -> float:
-        """Room at a pose, m: of the base alone, or with arm and load (`whole`)."""
-        return self.costmap.room(pose, self.discs if whole else self.base_discs)
+        """Room at a pose, m: with all of arm and load (`whole`), or what hangs low of them."""
+        return self.costmap.room(pose, self.discs if whole else self.low_discs)
+
+
+def _same(outline: Array, other: Array) -> bool:
+    return outline.shape == other.shape and float(np.abs(outline - other).max()) < OUTLINE_CHANGE
 
 
 def _moved(map_from_base: Pose2D, points: Array) -> Array:

@@ -137,6 +137,17 @@ def test_the_footprint_covers_base_arm_and_what_is_held(tabletop: Any, scene_of:
         assert (edges[:, 0] * after[:, 1] - edges[:, 1] * after[:, 0] > -1e-12).all()
 
 
+def test_the_footprint_below_a_height_is_of_what_hangs_lower(tabletop: Any, scene_of: Any) -> None:
+    robot = tabletop(pose="carry")
+    service, state = scene_of(robot), robot.state()
+    service.holding.claim(HELD, 0.07, 0.0)
+    held = robot.odom_from_hand.position[2] - HELD.object.size[2] / 2
+    base = np.array(robot.description.footprint)[:, 0].max()
+    front = [service.footprint(state, below)[:, 0].max() for below in (0.0, held + 0.02, math.inf)]
+    assert front[0] == pytest.approx(base, abs=1e-9)
+    assert front[0] < front[1] == front[2]
+
+
 def test_an_outline_is_convex_and_holds_every_corner() -> None:
     corners = np.random.default_rng(0).normal(size=(50, 3))
     outline = floor_outline(corners)

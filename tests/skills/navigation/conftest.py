@@ -39,7 +39,7 @@ class Obedient:
             cells[rows, round(x0 / 0.05) : round(x1 / 0.05)] = OCCUPIED
         self.config, self.limits = NavigationConfig(), LIMITS
         self.costmap = Costmap(GridMap(cells, 0.05, (0.0, 0.0)), None, self.config)
-        self.base_discs = discs(OUTLINE)
+        self.base_discs = self.low_discs = discs(OUTLINE)
         reach = np.array([[0.25 + arm - 0.05, 0.0, 0.05]]) if arm else np.empty((0, 3))
         self.discs = np.vstack([self.base_discs, reach])
         self.half_width = half_width(OUTLINE)
@@ -67,7 +67,7 @@ class Obedient:
         self.least = min(self.least, self.room(self.pose(), whole=False))
 
     def room(self, pose: Pose2D, *, whole: bool) -> float:
-        return self.costmap.room(pose, self.discs if whole else self.base_discs)
+        return self.costmap.room(pose, self.discs if whole else self.low_discs)
 
     def drive(self, linear: float, angular: float, phase: str) -> Generator[str, None, None]:
         self.phases.append(phase)
