@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Mapping
-from typing import Annotated, TypeAlias
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any, TypeAlias
 
-from pydantic import BeforeValidator, Field, WithJsonSchema
+from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic_core import core_schema
 
 LENGTH: Mapping[str, float] = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 ANGLE: Mapping[str, float] = {"rad": 1.0, "deg": math.pi / 180.0}
@@ -31,110 +33,77 @@ def unit_of(value: object) -> str | None:
     return None if match is None else match[2]
 
 
-def reader(what: str, units: Mapping[str, float]) -> Callable[[object], object]:
-    """A function that turns a number, or a text with one of these units, into a number in SI."""
-    known = ", ".join(units)
-
-    def read(value: object) -> object:
-        if isinstance(value, bool) or not isinstance(value, int | float | str):
-            raise ValueError(f"expected {what} such as '2 {next(iter(units))}', found {value!r}")
-        if not isinstance(value, str):
-            return float(value)
-        match = _QUANTITY.fullmatch(value)
-        if match is None:
-            raise ValueError(f"{value!r} is not {what}; write a number and one of: {known}")
-        if match[2] not in units:
-            raise ValueError(f"{match[2]!r} is not a unit of {what}; units: {known}")
-        return float(match[1]) * units[match[2]]
-
-    return read
-
-
 UNITS_KEY = "x-units"
 """In a JSON Schema: the units that a quantity may be written with, the first that of a number."""
 _NUMBER = r"[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?"
 
 
-def _written(units: Mapping[str, float], **bounds: float) -> WithJsonSchema:
-    """What an editor is told of a quantity: a number in SI, or a text with one of these units."""
-    names = "|".join(re.escape(unit) for unit in units)
-    text = {"type": "string", "pattern": rf"^\s*{_NUMBER}\s*({names})\s*$"}
-    return WithJsonSchema({"anyOf": [{"type": "number", **bounds}, text], UNITS_KEY: list(units)})
+@dataclass(frozen=True, eq=False)
+class Quantity:
+    """Has pydantic read a field as a quantity: a number in SI, or a text with one of the units.
+
+    what: its name in messages. units: each in SI, the first is that of a bare number. gt, ge:
+    what it must be above, or at least, in SI.
+    """
+
+    what: str
+    units: Mapping[str, float]
+    gt: float | None = None
+    ge: float | None = None
+
+    def read(self, value: object) -> float:
+        """The number in SI; ValueError for anything else than a number or a text with a unit."""
+        known = ", ".join(self.units)
+        if isinstance(value, bool) or not isinstance(value, int | float | str):
+            example = f"2 {next(iter(self.units))}"
+            raise ValueError(f"expected {self.what} such as '{example}', found {value!r}")
+        if not isinstance(value, str):
+            return float(value)
+        match = _QUANTITY.fullmatch(value)
+        if match is None:
+            raise ValueError(f"{value!r} is not {self.what}; write a number and one of: {known}")
+        if match[2] not in self.units:
+            raise ValueError(f"{match[2]!r} is not a unit of {self.what}; units: {known}")
+        return float(match[1]) * self.units[match[2]]
+
+    def __get_pydantic_core_schema__(
+        self, source: type, handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        """How pydantic reads it."""
+        number = core_schema.float_schema(allow_inf_nan=False, gt=self.gt, ge=self.ge)
+        return core_schema.no_info_before_validator_function(self.read, number)
+
+    def __get_pydantic_json_schema__(
+        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        """What an editor is told of it."""
+        names = "|".join(re.escape(unit) for unit in self.units)
+        text = {"type": "string", "pattern": rf"^\s*{_NUMBER}\s*({names})\s*$"}
+        bounds = {"exclusiveMinimum": self.gt, "minimum": self.ge}
+        number = {"type": "number", **{k: v for k, v in bounds.items() if v is not None}}
+        return {"anyOf": [number, text], UNITS_KEY: list(self.units)}
 
 
-Length: TypeAlias = Annotated[
-    float,
-    BeforeValidator(reader("a length", LENGTH)),
-    Field(allow_inf_nan=False),
-    _written(LENGTH),
-]
-Angle: TypeAlias = Annotated[
-    float, BeforeValidator(reader("an angle", ANGLE)), Field(allow_inf_nan=False), _written(ANGLE)
-]
-Mass: TypeAlias = Annotated[
-    float,
-    BeforeValidator(reader("a mass", MASS)),
-    Field(gt=0),
-    _written(MASS, exclusiveMinimum=0),
-]
-Force: TypeAlias = Annotated[
-    float,
-    BeforeValidator(reader("a force", FORCE)),
-    Field(gt=0),
-    _written(FORCE, exclusiveMinimum=0),
-]
-Time: TypeAlias = Annotated[
-    float, BeforeValidator(reader("a time", TIME)), Field(ge=0), _written(TIME, minimum=0)
-]
-Size: TypeAlias = Annotated[
-    float,
-    BeforeValidator(reader("a length", LENGTH)),
-    Field(gt=0, allow_inf_nan=False),
-    _written(LENGTH, exclusiveMinimum=0),
-]
+Length: TypeAlias = Annotated[float, Quantity("a length", LENGTH)]
+Size: TypeAlias = Annotated[float, Quantity("a length", LENGTH, gt=0)]
 """A length above zero."""
-LinearSpeed: TypeAlias = Annotated[
-    float,
-    BeforeValidator(reader("a speed", LINEAR_SPEED)),
-    Field(gt=0),
-    _written(LINEAR_SPEED, exclusiveMinimum=0),
-]
-AngularSpeed: TypeAlias = Annotated[
-    float,
-    BeforeValidator(reader("a turning speed", ANGULAR_SPEED)),
-    Field(gt=0),
-    _written(ANGULAR_SPEED, exclusiveMinimum=0),
-]
-JointSpeed: TypeAlias = Annotated[
-    float,
-    BeforeValidator(reader("a joint's speed", JOINT_SPEED)),
-    Field(gt=0),
-    _written(JOINT_SPEED, exclusiveMinimum=0),
-]
+Angle: TypeAlias = Annotated[float, Quantity("an angle", ANGLE)]
+Mass: TypeAlias = Annotated[float, Quantity("a mass", MASS, gt=0)]
+Force: TypeAlias = Annotated[float, Quantity("a force", FORCE, gt=0)]
+Time: TypeAlias = Annotated[float, Quantity("a time", TIME, ge=0)]
+LinearSpeed: TypeAlias = Annotated[float, Quantity("a speed", LINEAR_SPEED, gt=0)]
+AngularSpeed: TypeAlias = Annotated[float, Quantity("a turning speed", ANGULAR_SPEED, gt=0)]
+JointSpeed: TypeAlias = Annotated[float, Quantity("a joint's speed", JOINT_SPEED, gt=0)]
 """rad/s of a joint that turns, m/s of one that slides."""
 LinearAcceleration: TypeAlias = Annotated[
-    float,
-    BeforeValidator(reader("an acceleration", LINEAR_ACCELERATION)),
-    Field(gt=0),
-    _written(LINEAR_ACCELERATION, exclusiveMinimum=0),
+    float, Quantity("an acceleration", LINEAR_ACCELERATION, gt=0)
 ]
 AngularAcceleration: TypeAlias = Annotated[
-    float,
-    BeforeValidator(reader("a turning acceleration", ANGULAR_ACCELERATION)),
-    Field(gt=0),
-    _written(ANGULAR_ACCELERATION, exclusiveMinimum=0),
+    float, Quantity("a turning acceleration", ANGULAR_ACCELERATION, gt=0)
 ]
 JointAcceleration: TypeAlias = Annotated[
-    float,
-    BeforeValidator(reader("a joint's acceleration", JOINT_ACCELERATION)),
-    Field(gt=0),
-    _written(JOINT_ACCELERATION, exclusiveMinimum=0),
+    float, Quantity("a joint's acceleration", JOINT_ACCELERATION, gt=0)
 ]
 """rad/s2 of a joint that turns, m/s2 of one that slides."""
-JointPosition: TypeAlias = Annotated[
-    float,
-    BeforeValidator(reader("a joint's position", {**ANGLE, **LENGTH})),
-    Field(allow_inf_nan=False),
-    _written({**ANGLE, **LENGTH}),
-]
+JointPosition: TypeAlias = Annotated[float, Quantity("a joint's position", {**ANGLE, **LENGTH})]
 """rad of a joint that turns, m of one that slides."""

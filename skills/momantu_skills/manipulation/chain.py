@@ -102,6 +102,20 @@ def _error(r, p, target):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
+def _stepped(q, jacobian, e, lower, upper, weights):  # type: ignore[no-untyped-def]
+    """Joints (n,) after one damped, weighted step against an error (k,), within their limits."""
+    weighted = jacobian * weights
+    system = weighted @ jacobian.T
+    for i in range(len(e)):
+        system[i, i] += DAMPING
+    step = weighted.T @ np.linalg.solve(system, e)
+    largest = np.max(np.abs(step))
+    if largest > LONGEST_STEP:
+        step *= LONGEST_STEP / largest
+    return np.minimum(np.maximum(q + step, lower), upper)
+
+
+@njit(cache=True)
 def descend(  # type: ignore[no-untyped-def]
     origins, axes, slides, tip, lower, upper, weights, target, q, rounds, near, turn
 ):
@@ -119,15 +133,7 @@ def descend(  # type: ignore[no-untyped-def]
             and np.sqrt(e[3] ** 2 + e[4] ** 2 + e[5] ** 2) < turn
         ):
             return q, True
-        weighted = jacobian * weights
-        system = weighted @ jacobian.T
-        for i in range(6):
-            system[i, i] += DAMPING
-        step = weighted.T @ np.linalg.solve(system, e)
-        largest = np.max(np.abs(step))
-        if largest > LONGEST_STEP:
-            step *= LONGEST_STEP / largest
-        q = np.minimum(np.maximum(q + step, lower), upper)
+        q = _stepped(q, jacobian, e, lower, upper, weights)
     return q, False
 
 
@@ -236,15 +242,7 @@ def point(  # type: ignore[no-untyped-def]
                 turning[0, i] = w[0] - along * way[0] + (way[1] * v[2] - way[2] * v[1]) / length
                 turning[1, i] = w[1] - along * way[1] + (way[2] * v[0] - way[0] * v[2]) / length
                 turning[2, i] = w[2] - along * way[2] + (way[0] * v[1] - way[1] * v[0]) / length
-            weighted = turning * weights
-            system = weighted @ turning.T
-            for i in range(3):
-                system[i, i] += DAMPING
-            step = weighted.T @ np.linalg.solve(system, e)
-            largest = np.max(np.abs(step))
-            if largest > LONGEST_STEP:
-                step *= LONGEST_STEP / largest
-            q = np.minimum(np.maximum(q + step, lower), upper)
+            q = _stepped(q, turning, e, lower, upper, weights)
         found[k] = q
         r, p, _ = forward(origins, axes, slides, tip, q)
         _, left[k], _, _ = _off_ray(r, p, ray, target)

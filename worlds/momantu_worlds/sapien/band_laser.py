@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array, Transform
-from momantu_bt.messages import LaserScan, PointCloud, frozen
+from momantu_bt.messages import LaserScan, PointCloud
 from momantu_bt.robot import LaserSensor
+from momantu_worlds.sapien.laser import angle_step, scan_of
 
 
 class BandLaser:
@@ -33,16 +34,7 @@ class BandLaser:
 
     def read(self, stamp: float) -> LaserScan:
         """A scan of now."""
-        sensor = self._sensor
-        return LaserScan(
-            stamp,
-            sensor.frame,
-            sensor.angle_min,
-            (sensor.angle_max - sensor.angle_min) / (sensor.beams - 1),
-            sensor.range_min,
-            sensor.range_max,
-            np.asarray(frozen(self._nearest(self._cloud().points))),
-        )
+        return scan_of(self._sensor, stamp, self._nearest(self._cloud().points))
 
     def _nearest(self, points: NDArray[np.float32]) -> Array:
         """Distance (beams,) to the nearest point of each sector, m; range_max where none is."""
@@ -52,8 +44,8 @@ class BandLaser:
         in_base = in_base[(in_base[:, 2] >= low) & (in_base[:, 2] <= high)]
         x, y, _ = self._laser_from_base.apply(in_base).T
         distances = np.hypot(x, y)
-        step = (sensor.angle_max - sensor.angle_min) / (sensor.beams - 1)
-        sectors = np.rint((np.arctan2(y, x) - sensor.angle_min) / step).astype(np.int64)
+        sectors = np.rint((np.arctan2(y, x) - sensor.angle_min) / angle_step(sensor))
+        sectors = sectors.astype(np.int64)
         seen = (sectors >= 0) & (sectors < sensor.beams)
         seen &= (distances >= sensor.range_min) & (distances <= sensor.range_max)
         ranges = np.full(sensor.beams, sensor.range_max)

@@ -47,15 +47,7 @@ class Laser:
         lost = random.random(sensor.beams) < errors.drop_out
         ranges[lost | (ranges > sensor.range_max)] = sensor.range_max
         ranges = np.maximum(ranges, sensor.range_min)
-        return LaserScan(
-            stamp,
-            sensor.frame,
-            sensor.angle_min,
-            (sensor.angle_max - sensor.angle_min) / (sensor.beams - 1),
-            sensor.range_min,
-            sensor.range_max,
-            np.asarray(frozen(ranges)),
-        )
+        return scan_of(sensor, stamp, ranges)
 
     def exact(self) -> Array:
         """Distances (beams,) without errors, m; infinite where nothing is hit."""
@@ -67,6 +59,24 @@ class Laser:
             if len(segments):
                 ranges = np.minimum(ranges, _to_segments(pose.position, directions, segments))
         return ranges
+
+
+def scan_of(sensor: LaserSensor, stamp: float, ranges: Array) -> LaserScan:
+    """The message of a scanner's distances (beams,), m."""
+    return LaserScan(
+        stamp,
+        sensor.frame,
+        sensor.angle_min,
+        angle_step(sensor),
+        sensor.range_min,
+        sensor.range_max,
+        np.asarray(frozen(ranges)),
+    )
+
+
+def angle_step(sensor: LaserSensor) -> float:
+    """Angle between two neighbouring beams, rad."""
+    return (sensor.angle_max - sensor.angle_min) / (sensor.beams - 1)
 
 
 def _to_segments(origin: Array, directions: Array, segments: Array) -> Array:

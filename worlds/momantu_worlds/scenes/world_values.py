@@ -6,7 +6,7 @@ from typing import Annotated, TypeAlias
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
 
-from momantu_bt.descriptions.quantities import ANGLE, LENGTH, Angle, Length, Size, reader
+from momantu_bt.descriptions.quantities import ANGLE, LENGTH, Angle, Length, Quantity, Size
 from momantu_bt.geometry import Pose2D, Transform
 
 Channel: TypeAlias = Annotated[float, Field(ge=0, le=1)]
@@ -37,7 +37,7 @@ Turn: TypeAlias = Annotated[Angle, Field(ge=0)]
 """rad."""
 
 _POSE = "expected [x, y, z], [x, y, z, yaw] or [x, y, z, roll, pitch, yaw]"
-_length, _angle = reader("a length", LENGTH), reader("an angle", ANGLE)
+_length, _angle = Quantity("a length", LENGTH).read, Quantity("an angle", ANGLE).read
 
 
 def _six(value: object) -> object:
