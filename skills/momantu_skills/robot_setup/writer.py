@@ -10,7 +10,14 @@ from pathlib import Path
 import numpy as np
 
 from momantu_bt.geometry import Transform
-from momantu_skills.robot_setup.grasp import APART, STRONGEST, Grasp
+from momantu_skills.robot_setup.arm_writer import (
+    actuator_lines,
+    end_effector_lines,
+    group_lines,
+    limit_lines,
+    pose_lines,
+)
+from momantu_skills.robot_setup.file_text import comment, number, path_text
 from momantu_skills.robot_setup.matrix import Why
 from momantu_skills.robot_setup.proposal import Proposal
 from momantu_skills.robot_setup.reach import HEIGHTS
@@ -24,13 +31,6 @@ MOST_UP = 2
 """Folders that a relative path goes up at most."""
 FLOOR_LINK = "base_footprint"
 """The frame that is put on the floor where the URDF has none there."""
-POSES = {
-    "home": "Folded for driving: within the footprint as far as it goes, the camera ahead.",
-    "ready": "Before work at a table: the camera looks at it.",
-    "carry": "The hand level, what it holds upright if it was gripped from the side.",
-    "look_around": "The camera looks far, the arm out of its picture.",
-}
-"""What the poses are for."""
 
 
 def robot_file(proposal: Proposal, folder: Path) -> str:
@@ -42,12 +42,12 @@ def robot_file(proposal: Proposal, folder: Path) -> str:
         _footprint(proposal),
         _working(proposal),
         _base(proposal),
-        _actuators(proposal),
-        _joint_limits(proposal),
+        actuator_lines(proposal),
+        limit_lines(proposal),
         sensor_lines(proposal),
-        _groups(proposal),
-        _end_effector(proposal),
-        _named_poses(proposal),
+        group_lines(proposal),
+        end_effector_lines(proposal),
+        pose_lines(proposal),
         _ignored(proposal),
         _simulation(proposal),
     )
@@ -92,7 +92,7 @@ def _head(proposal: Proposal) -> Iterator[str]:
     yield "# Measured: found in the URDF's geometry. From the URDF: copied. Guessed: look at it."
     yield "# FILL IN: could not be found; the file cannot be read before it is there."
     for note in proposal.notes:
-        yield from _wrapped(f"Note: {note}.")
+        yield from comment(f"Note: {note}.")
     yield "momantu_robot: 1"
     yield f"name: {proposal.name}"
 
@@ -100,7 +100,7 @@ def _head(proposal: Proposal) -> Iterator[str]:
 def _parts(proposal: Proposal, folder: Path) -> Iterator[str]:
     path = _path(proposal.prepared.source.resolve(), folder.resolve())
     yield "parts:"
-    yield f"  {proposal.name}: {{{proposal.prepared.kind}: {_text(path)}}}"
+    yield f"  {proposal.name}: {{{proposal.prepared.kind}: {path_text(path)}}}"
     if _put_on_floor(proposal):
         height, base = number(-proposal.stand.floor), proposal.base.frame
         link = "" if base == proposal.prepared.skeleton.root else f", link: {base}"
@@ -109,7 +109,7 @@ def _parts(proposal: Proposal, folder: Path) -> Iterator[str]:
         yield "mounts:"
         yield f"  {proposal.name}: {{on: {FLOOR_LINK}, xyz: [0, 0, {height}]{link}}}"
     elif abs(proposal.stand.floor) > ON_FLOOR:
-        yield from _wrapped(
+        yield from comment(
             f"Look at it: the robot's lowest point lies {number(proposal.stand.floor)} m from the "
             "base frame, which must lie on the floor."
         )
@@ -168,7 +168,7 @@ def _working(proposal: Proposal) -> Iterator[str]:
         text = f"Measured: inverse kinematics of level and pitched grasps on tables {tables} high."
     else:
         text = f"Guessed: no grasp on tables {tables} high was reached beyond the footprint."
-    yield from _wrapped(text)
+    yield from comment(text)
     yield "working:"
     yield f"  stand_off: {number(reach.stand_off)}    # the footprint's front and 13 cm"
     yield f"  look_off: {number(reach.look_off)}"
@@ -196,136 +196,11 @@ def _base(proposal: Proposal) -> Iterator[str]:
     yield f"    torque: {number(round(torque, 1))}"
 
 
-def _actuators(proposal: Proposal) -> Iterator[str]:
-    limbs = proposal.limbs
-    yield "actuators:"
-    yield "  base: {kind: base}"
-    if limbs.arm is None:
-        yield "  # FILL IN: arm: {kind: joints, joints: [shoulder_joint, elbow_joint, …]}"
-    for limb in (limbs.arm, *limbs.others, limbs.head):
-        if limb is not None and limb.joints:
-            yield from _joints(limb.name, "joints", limb.joints)
-    if limbs.rest:
-        yield "  # Joints that belong to nothing above: held still, so that they do not dangle."
-        yield from _joints("rest", "joints", limbs.rest)
-    for limb in (limbs.arm, *limbs.others):
-        if limb is not None and limb.name in proposal.grasps:
-            yield from _joints(
-                gripper_name(limb.name), "gripper", tuple(proposal.grasps[limb.name].opening)
-            )
-    if proposal.grasp is None:
-        yield "  # FILL IN: gripper: {kind: gripper, joints: [left_finger_joint, …]}"
-
-
-def gripper_name(limb: str) -> str:
-    """The actuator of the hand at a limb's end."""
-    return limb.replace("arm", "gripper", 1)
-
-
-def _joints(name: str, kind: str, joints: tuple[str, ...]) -> Iterator[str]:
-    if sum(map(len, joints)) < 50:
-        yield f"  {name}: {{kind: {kind}, joints: [{', '.join(joints)}]}}"
-        return
-    yield f"  {name}:"
-    yield f"    kind: {kind}"
-    yield "    joints:"
-    yield from (f"      - {joint}" for joint in joints)
-
-
-def _joint_limits(proposal: Proposal) -> Iterator[str]:
-    if not proposal.limits:
-        yield "# FILL IN: joint_limits: {shoulder_joint: {velocity: 1.0, acceleration: 1.5}}"
-        yield "joint_limits: {}"
-        return
-    yield "# Positions and speeds from the URDF. Accelerations measured: half of the effort by the"
-    yield "# greatest inertia, and not more than an arm does gently."
-    yield "joint_limits:"
-    for name, found in proposal.limits.items():
-        limit = found.limit
-        values = limit.model_dump(exclude_none=True)
-        inside = ", ".join(f"{key}: {number(value, 5)}" for key, value in values.items())
-        guessed = f"    # guessed: {'; '.join(found.guessed)}" if found.guessed else ""
-        yield f"  {name}: {{{inside}}}{guessed}"
-
-
-def _groups(proposal: Proposal) -> Iterator[str]:
-    limbs = [limb for limb in (proposal.limbs.arm, *proposal.limbs.others) if limb is not None]
-    if not limbs:
-        yield "# FILL IN: groups: {arm: {joints: [shoulder_joint, …], tip: hand_link}}"
-        yield "groups: {}"
-        return
-    yield "groups:"
-    for limb in limbs:
-        grasp = proposal.grasps.get(limb.name)
-        tip = limb.tip if grasp is None else _grasp_frame(proposal, limb.name, grasp)
-        yield f"  {limb.name}:"
-        yield "    joints:"
-        yield from (f"      - {joint}" for joint in limb.joints)
-        yield f"    tip: {tip}"
-
-
-def _grasp_frame(proposal: Proposal, limb: str, grasp: Grasp) -> str:
-    if grasp.link_from_grasp is None:
-        return grasp.link
-    return "grasp" if limb == "arm" else f"{limb}_grasp"
-
-
-def _end_effector(proposal: Proposal) -> Iterator[str]:
-    grasp, arm = proposal.grasp, proposal.limbs.arm
-    if grasp is None or arm is None or arm.hand is None:
-        yield "# FILL IN: a frame whose x points out along the fingers, y the closing direction"
-        yield "# end_effector: {actuator: gripper, frame: hand, max_width: 0.1, max_force: 20,"
-        yield "#   pad_length: 0.03, pad_height: 0.02, hand_clearance: 0.03, touch_links: [hand]}"
-        return
-    hand = arm.hand
-    touch = [link for link in hand.links if proposal.prepared.skeleton.links[link].shapes]
-    yield "# Measured: opening and pads by the distance of the fingers' hulls."
-    if hand.single:
-        yield "# Look at it: one jaw closes against the palm; its widths are those of its tip."
-    if grasp.thinnest > APART:
-        yield f"# Look at it: closed, the fingers are {number(grasp.thinnest, 3)} m apart; the row"
-        yield "# for width 0 lies beyond the joint's limit."
-    yield "end_effector:"
-    yield f"  actuator: {gripper_name(arm.name)}"
-    yield f"  frame: {_grasp_frame(proposal, arm.name, grasp)}"
-    yield f"  grasp_offset: {number(grasp.offset)}"
-    yield f"  max_width: {number(grasp.max_width)}"
-    force = "by the URDF's efforts" if grasp.force_known else "guessed: the URDF has no effort"
-    yield f"  max_force: {number(grasp.max_force)}    # {force}, at most {STRONGEST:g} N"
-    yield f"  pad_length: {number(grasp.pad_length)}"
-    yield f"  pad_height: {number(grasp.pad_height)}"
-    yield f"  hand_clearance: {number(grasp.hand_clearance)}"
-    yield f"  touch_links: [{', '.join(touch)}]"
-    yield "  opening:    # rows [width, joint position]"
-    for joint, rows in grasp.opening.items():
-        pairs = ", ".join(f"[{number(w, 5)}, {number(q, 5)}]" for w, q in rows)
-        yield f"    {joint}: [{pairs}]"
-
-
-def _named_poses(proposal: Proposal) -> Iterator[str]:
-    if not proposal.poses:
-        yield "# FILL IN: named_poses: home, ready, carry and look_around, joint by joint"
-        yield "named_poses: {}"
-        return
-    yield "# Found by search, free of self-collision where nothing else is said."
-    yield "named_poses:"
-    for name, pose in proposal.poses.items():
-        yield f"  # {POSES[name]}"
-        said = [f"the arm reaches {number(pose.outside, 2)} m out of the footprint"]
-        if pose.clear is not None:
-            said.append(f"links keep {number(pose.clear)} m")
-        if pose.covered > 0:
-            said.append(f"{pose.covered:.0%} of the arm is in the camera's picture")
-        yield from _wrapped(f"{'; '.join((*said, *pose.notes))}.", "  ")
-        yield f"  {name}:"
-        yield from (f"    {joint}: {number(value, 5)}" for joint, value in pose.joints.items())
-
-
 def _ignored(proposal: Proposal) -> Iterator[str]:
     matrix = proposal.matrix
     counts = {why: len(matrix.pairs(why)) for why in dict.fromkeys(matrix.why.values())}
     told = ", ".join(f"{count} {why.value}" for why, count in counts.items())
-    yield from _wrapped(
+    yield from comment(
         f"Measured in {matrix.samples} random postures: {told or 'no pairs'}. Pairs that share a "
         "joint are never checked. Pairs that never met are: a check costs little, and random "
         "postures prove nothing. These overlap for good, where every joint stands at rest, or "
@@ -360,25 +235,3 @@ def _simulation(proposal: Proposal) -> Iterator[str]:
         for link, cuts in proposal.cells.items():
             inside = ", ".join(f"{n}: [{', '.join(map(number, at))}]" for n, at in cuts.items())
             yield f"    {link}: {{{inside}}}"
-
-
-def number(value: float, digits: int = 4) -> str:
-    """A number as a person writes it."""
-    text = f"{value:.{digits}f}".rstrip("0").rstrip(".")
-    return "0" if text in ("-0", "") else text
-
-
-def _text(value: str) -> str:
-    """A path as YAML takes it."""
-    plain = all(letter.isalnum() or letter in "/._-" for letter in value)
-    return value if plain else '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
-
-
-def _wrapped(text: str, indent: str = "", width: int = 98) -> Iterator[str]:
-    line = f"{indent}#"
-    for word in text.split():
-        if len(line) + 1 + len(word) > width and line != f"{indent}#":
-            yield line
-            line = f"{indent}#"
-        line += f" {word}"
-    yield line
