@@ -24,18 +24,34 @@ TICK = 0.05
 
 
 @dataclass(frozen=True, slots=True)
+class Overhang:
+    """A solid that hangs over a surface, such as the next board of a shelf.
+
+    map_from_overhang: its middle on the floor plan. size: (x, y) extent, m. bottom, top: heights
+    above the floor between which it lies, m.
+    """
+
+    map_from_overhang: Pose2D
+    size: tuple[float, float]
+    bottom: float
+    top: float
+
+
+@dataclass(frozen=True, slots=True)
 class Surface:
     """A named table or shelf, as a person would describe it.
 
     map_from_surface: centre of its top on the floor plan. size: (x, y) extent of the top, m.
     height: of the top above the floor, m. sides: the directions, as angles in the surface's own
-    frame (rad), from which it can be approached; the first is preferred.
+    frame (rad), from which it can be approached; the first is preferred. over: what hangs over it
+    and is no surface itself.
     """
 
     map_from_surface: Pose2D
     size: tuple[float, float]
     height: float
     sides: tuple[float, ...]
+    over: tuple[Overhang, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

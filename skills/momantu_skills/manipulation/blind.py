@@ -30,6 +30,8 @@ BEHIND = (0.0, 0.08)
 """m behind the place between the pads: the points of the hand that are asked about."""
 EVERY = 4
 """Points of a trajectory from one that is asked about to the next: about 0.16 s."""
+STAYED = 0.02
+"""rad or m that the arm may have moved and a plan still begin where it is."""
 ALONG = 3
 """Points of the hand's way that must be in doubt to be worth a look: one may be noise."""
 
@@ -55,14 +57,20 @@ def planned_in_sight(
         doubtful = blind_spot(arm, way(made))
         if doubtful is None:
             break
+        start, seen = arm.joints, True
         try:
             yield from look_at(arm.skill, arm.robot, doubtful)
         except Failure as failure:
             if failure.code != "OUT_OF_VIEW":
                 raise
-            break
+            if np.abs(arm.joints - start).max() < STAYED:
+                break
+            seen = False
+            yield from arm.settle()
         arm.service.observe(arm.robot)
         made = yield from compute(plan, thinking)
+        if not seen:
+            break
     return made
 
 

@@ -200,6 +200,9 @@ def _free(arm: Arm, world: CollisionWorld, postures: Array, point: Array) -> lis
         camera = eye.tip_matrix(q[index])[:3, 3]
         if _hidden(camera, point, cells) or not world.free(q):
             continue
+        ends = arm.state.odom_from_base.apply(np.vstack([camera, point]))
+        if any(solid.between(*ends) for solid in arm.scene.overhead):
+            continue
         if not arm.scene.hides(_between(camera, point), q):
             found.append(q)
             if len(found) == ENOUGH:

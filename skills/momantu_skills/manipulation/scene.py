@@ -18,6 +18,7 @@ from momantu_skills.manipulation.config import SceneConfig
 from momantu_skills.manipulation.looked import Looks
 from momantu_skills.manipulation.mask import LinkMask, floor_outline
 from momantu_skills.manipulation.model import arm_model
+from momantu_skills.manipulation.overhead import Overhead, hanging
 from momantu_skills.manipulation.solids import object_corners
 from momantu_skills.manipulation.surroundings import (
     Support,
@@ -56,6 +57,7 @@ class Scene:
         self.surroundings = Surroundings()
         self.points: Array = np.empty((0, 3))
         self.known: tuple[Support, ...] = ()
+        self.overhead: tuple[Overhead, ...] = ()
         self.looks = Looks()
         self._mask = LinkMask(self.model.hulls, config.robot_padding)
 
@@ -219,6 +221,7 @@ class Scene:
             self.model.configuration(state, width),
             obstacles=[
                 *(s.obstacle(base_from_odom, f"support {i}") for i, s in enumerate(supports)),
+                *hanging(self.overhead, base_from_odom, FORGET),
                 *extra,
             ],
             cells=cells,

@@ -19,7 +19,6 @@ from momantu_skills.manipulation.holding import Holding
 if TYPE_CHECKING:
     from momantu_skills.manipulation.floor_plan import FloorPlan
     from momantu_skills.manipulation.scene import Scene
-    from momantu_skills.manipulation.surroundings import Support
 
 
 class PlanningSceneService(Service):
@@ -84,25 +83,29 @@ class PlanningSceneService(Service):
 
         What the newest picture shows replaces what older ones showed of the same region.
         """
-        self.scene.known = self._known()
+        self._take_over_site()
         self.scene.observe(robot, self.frames, self.held)
 
     def support(self, plane: SupportPlane) -> None:
         """Take over a measured surface."""
-        self.scene.known = self._known()
+        self._take_over_site()
         self.scene.add_support(plane)
 
-    def _known(self) -> tuple[Support, ...]:
-        """The site's surfaces in odom; none while nobody knows where the robot is."""
+    def _take_over_site(self) -> None:
+        """The site's surfaces, and what hangs over them; none while nobody knows where it is."""
+        from momantu_skills.manipulation.overhead import overhead_of
         from momantu_skills.manipulation.surroundings import known_support
 
+        self.scene.known = self.scene.overhead = ()
         try:
             odom_from_map = self.frames.lookup(ODOM, MAP)
         except Failure as failure:
             if failure.code != FRAME_UNKNOWN:
                 raise
-            return ()
-        return tuple(known_support(s, odom_from_map) for s in self.site.surfaces.values())
+            return
+        surfaces = self.site.surfaces.values()
+        self.scene.known = tuple(known_support(s, odom_from_map) for s in surfaces)
+        self.scene.overhead = tuple(o for s in surfaces for o in overhead_of(s, odom_from_map))
 
     def footprint(self, state: RobotState, below: float = math.inf) -> Array:
         """Convex outline (k, 2) of base, arm and held object on the floor, base frame, m.

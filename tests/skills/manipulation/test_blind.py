@@ -137,17 +137,23 @@ class Turning:
         self.arm.robot = None
         self.arm.skill = None
         self.arm.service.observe = self._observe
+        self.arm.joints = np.zeros(2)
+        self.arm.settle = lambda: iter(())
         self.looked: list[np.ndarray] = []
+        self.strays = 0.0
         self._turns = turns
         monkeypatch.setattr("momantu_skills.perception.looking.look_at", self._look_at)
 
     def _look_at(self, skill: Any, robot: Any, point: np.ndarray) -> Any:
         if not self._turns:
+            self.arm.joints = self.arm.joints + self.strays
             raise Failure("OUT_OF_VIEW", "the head does not turn that far")
         self.looked.append(point)
         yield "look"
 
     def _observe(self, robot: Any) -> None:
+        if not self.looked:
+            return
         x, y, _ = self.looked[-1]
         turn = np.arctan2(y, x)
         pose = Transform((0.0, 0.0, 0.0), (np.cos(turn / 2), 0.0, 0.0, np.sin(turn / 2)))
@@ -190,4 +196,13 @@ def test_a_way_in_sight_is_taken_at_once(monkeypatch: pytest.MonkeyPatch) -> Non
 def test_what_cannot_be_looked_at_stays_in_doubt(monkeypatch: pytest.MonkeyPatch) -> None:
     turning = Turning(monkeypatch, turns=False)
     assert turning.plan(BLIND) == (BLIND, 1)
+    assert turning.looked == []
+
+
+def test_an_arm_that_was_held_up_on_its_way_to_look_plans_from_where_it_is(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    turning = Turning(monkeypatch, turns=False)
+    turning.strays = 0.4
+    assert turning.plan(BLIND) == (BLIND, 2)
     assert turning.looked == []

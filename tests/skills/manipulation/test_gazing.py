@@ -10,12 +10,15 @@ import pytest
 from momantu_skills.look import Look
 from momantu_skills.manipulation.collision import CollisionWorld, Obstacle
 from momantu_skills.manipulation.model import arm_model
+from momantu_skills.manipulation.overhead import overhead_of
 from momantu_skills.manipulation.solids import object_corners
 
 from momantu_bt.geometry import Pose, Pose2D, Transform
 from momantu_bt.messages import DetectedObject, GripperCommand, JointTrajectory
 from momantu_bt.testing import ScriptedRobot, eye_in_hand_robot, run_skill
 from momantu_bt.testing.painting import Block, Painter, Solid
+from momantu_bt.testing.world import scripted_site
+from momantu_bt.world import Overhang, Surface
 
 TABLE = Block((0.8, 1.4, 0.72), (1.0, 0.0, 0.36))
 """Its edge is 0.6 m before the robot's middle."""
@@ -158,6 +161,31 @@ def test_what_stands_between_is_looked_round(scene_of: Any) -> None:
     way = point - camera
     length = float(np.linalg.norm(way))
     assert float(screen.hit(camera, way[None] / length)[0]) > length
+
+
+@pytest.mark.parametrize(
+    ("start", "x", "depth", "bottom"),
+    [("home", 0.9, 1.2, 0.985), ("look_around", 0.95, 0.7, 0.935)],
+)
+def test_what_hangs_over_a_table_is_looked_below(
+    scene_of: Any, start: str, x: float, depth: float, bottom: float
+) -> None:
+    """No picture shows the board: the site tells of it, and the arm keeps off it."""
+    robot = watcher(start)
+    scene, point = scene_of(robot), np.array((0.85, 0.0, 0.72))
+    over = Overhang(Pose2D(x, 0.0, 0.0), (depth, 1.4), bottom, bottom + 0.03)
+    table = Surface(Pose2D(1.0, 0.0, 0.0), (0.8, 1.4), 0.72, (math.pi,), (over,))
+    (board,) = overhead_of(table, Transform())
+    scene.site = scripted_site(surfaces={"table": table})
+    scene.frames.set_map_from_odom(Transform(), 0.0)
+    result = look(robot, scene, point)
+    assert result.status == "SUCCESS", result.explain()
+    eye = arm_model(robot.description).eye
+    camera = eye.tip_pose(np.array([robot.joints[n] for n in eye.names])).position
+    assert not board.between(camera, point)
+    body, solid = scene.scene, board.obstacle(Transform(), "board")
+    world = CollisionWorld(body.body, body.model.configuration(robot.state()), [solid])
+    assert all(world.path_free(way) for way in ways(robot))
 
 
 @pytest.mark.parametrize("point", [(0.0, 0.0, 0.15), (-0.1, 0.0, 0.02), (60.0, 0.0, 1.0)])

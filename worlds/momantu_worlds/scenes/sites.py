@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 from momantu_bt.files import kept_folder, write_whole
 from momantu_bt.geometry import Pose2D
 from momantu_bt.messages import ObjectClass, plain
-from momantu_bt.world import Site, Surface
+from momantu_bt.world import Overhang, Site, Surface
 from momantu_worlds.scenes.kept import digest
 
 if TYPE_CHECKING:
@@ -38,11 +38,14 @@ class Nominal:
 
 def site_of(world: WorldFile, start: Pose2D) -> Site:
     """The site: nominal surfaces, places and object classes, and a rough start pose."""
+    from momantu_worlds.scenes.overhangs import overhangs
     from momantu_worlds.scenes.surfaces import nominal_surfaces
 
+    tops = nominal_surfaces(world)
+    over = overhangs(world, tops)
     surfaces = {
-        name: Surface(top.pose, top.size, top.height, top.sides)
-        for name, top in nominal_surfaces(world).items()
+        name: Surface(top.pose, top.size, top.height, top.sides, over[name])
+        for name, top in tops.items()
     }
     notes = world.site
     begin = world.start
@@ -87,6 +90,7 @@ def _read(data: dict[str, Any]) -> Site:
             (entry["size"][0], entry["size"][1]),
             entry["height"],
             tuple(entry["sides"]),
+            tuple(_overhang(one) for one in entry["over"]),
         )
         for surface, entry in data["surfaces"].items()
     }
@@ -99,3 +103,8 @@ def _read(data: dict[str, Any]) -> Site:
         objects=MappingProxyType({o: ObjectClass(**e) for o, e in data["objects"].items()}),
         services=MappingProxyType(data["services"]),
     )
+
+
+def _overhang(entry: dict[str, Any]) -> Overhang:
+    x, y = entry["size"]
+    return Overhang(Pose2D(**entry["map_from_overhang"]), (x, y), entry["bottom"], entry["top"])
