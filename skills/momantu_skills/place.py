@@ -62,13 +62,14 @@ class Place(Skill):
             arm, lambda: self._plan(arm, held), lambda plan: plan.transit, THINKING
         )
         self._spot = plan.odom_from_object
+        before = arm.scene.surroundings.cells
         for trajectory in plan.transit:
             yield from arm.follow(trajectory, "carrying")
         self._still_held(held)
         yield from self._lower(arm, plan, held)
         yield from self._let_go(arm, held)
         yield from self._draw_back(arm, plan)
-        yield from self._look_again(arm, plan, held)
+        yield from self._look_again(arm, plan, held, before)
 
     def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
         """It stands on its spot, whether that is said or denied; or that something is held."""
@@ -160,15 +161,21 @@ class Place(Skill):
             raise Failure("ARM_STUCK", "the hand cannot draw back along its fingers from here")
         yield from arm.follow(arm.trajectory(path, arm.hand.lift_speed), "drawing back")
 
-    def _look_again(self, arm: Arm, plan: PlacePlan, held: HeldObject) -> Run:
-        """It must stand upright where it was set down."""
-        from momantu_skills.manipulation.looks import standing
+    def _look_again(self, arm: Arm, plan: PlacePlan, held: HeldObject, before: Array) -> Run:
+        """It must stand upright where it was set down, or a little beside, where it slipped to.
+
+        before: cells (n, 3) in odom that were occupied before; they are not what was set down.
+        """
+        from momantu_skills.manipulation.looks import beside, standing, unseen_before
         from momantu_skills.manipulation.solids import object_corners
 
         pose = plan.odom_from_object
         yield from self._look(arm, pose.position, [pose.apply(object_corners(held.object))])
         bottom = float(pose.position[2] - held.object.size[2] / 2)
         seen = standing(arm.scene.points, pose, held.object, bottom)
+        found = beside(unseen_before(arm.scene.points, before), pose, held.object, bottom)
+        if found is not None and float(np.linalg.norm(found.position - pose.position)) > BESIDE:
+            self._spot, seen = found, "upright"
         what, where = held.object.category, np.round(pose.position, 3).tolist()
         if seen == "toppled":
             raise Failure("TOPPLED", f"the {what} lies where it was set down", position=where)

@@ -13,7 +13,7 @@ from momantu_bt.claim import Holding, SetDown
 from momantu_bt.geometry import Pose, Transform
 from momantu_bt.messages import SupportPlane
 from momantu_bt.testing import run_skill
-from momantu_bt.testing.painting import Block
+from momantu_bt.testing.painting import Block, Round
 
 HAND_FROM_CAN = Transform((0.007, 0.0, 0.0))
 """Gripped from the side: upright while the hand is level."""
@@ -155,6 +155,26 @@ def test_what_is_gone_from_the_spot_is_lost(holding: Any) -> None:
     result = place(robot, scene)
     assert result.code == "LOST"
     assert "not where" in result.failure.message
+
+
+@pytest.mark.parametrize("slipped", [-0.03, 0.03])
+def test_what_slipped_in_the_hand_stands_a_little_beside(holding: Any, slipped: float) -> None:
+    robot, scene = holding()
+    robot.hold(HAND_FROM_CAN @ Transform((0.0, slipped, 0.0)))
+    result = place(robot, scene)
+    assert result.status == "SUCCESS", result.explain()
+    claim = result.claim()
+    assert isinstance(claim, SetDown)
+    off = robot.can.position[:2] - (0.7, 0.0)
+    assert np.linalg.norm(off) == pytest.approx(abs(slipped), abs=0.008)
+    assert np.linalg.norm(claim.odom_from_object.position - robot.can.position) < claim.tolerance
+
+
+def test_what_stands_beside_all_along_is_not_what_was_set_down(holding: Any) -> None:
+    robot, scene = holding()
+    robot.others = [Round((0.7, 0.15, 0.72), 0.13, 0.035)]
+    robot.stays_hidden = True
+    assert place(robot, scene).code == "LOST"
 
 
 def test_what_lies_there_has_toppled(holding: Any) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.messages import DetectedObject
@@ -19,6 +20,20 @@ AROUND = 0.12
 """m around a spot in which a toppled object still lies."""
 LYING = 0.75
 """Share of the height below which what stands there has fallen over."""
+THIN = 0.01
+"""m; half of the least width that a thing which stands has."""
+STEP = 0.004
+"""m between two places that are tried."""
+CLOSE = 0.03
+"""m around an outline in which it must stand alone."""
+STRAY = 0.1
+"""Share of the points that may lie there all the same: depth noise."""
+MISFIT = 0.006
+"""m from an outline that its points lie in the mean, at most."""
+FEW = 8
+"""Points that show a top where the hand hides most of it."""
+KNOWN = 0.03
+"""m around what was seen before in which nothing counts as new: a cell and a half."""
 
 
 def points_of(points: Array, pose: Transform, thing: DetectedObject, support: float) -> Array:
@@ -57,3 +72,59 @@ def standing(points: Array, pose: Transform, thing: DetectedObject, support: flo
         if float(np.quantile(near[:, 2], 0.98)) < support + LYING * (top - support)
         else "gone"
     )
+
+
+def unseen_before(points: Array, before: Array) -> Array:
+    """Those of points (n, 3) that lie apart from everything (m, 3) that was seen earlier."""
+    if not len(before) or not len(points):
+        return points
+    apart, _ = cKDTree(before).query(points, distance_upper_bound=KNOWN)
+    return np.asarray(points[~np.isfinite(apart)])
+
+
+def beside(
+    points: Array, pose: Transform, thing: DetectedObject, support: float
+) -> Transform | None:
+    """Where points (n, 3) show the object upright a little beside its spot, or None.
+
+    It slips while the fingers close and open. pose: `odom_from_object` at the spot. That was free
+    for it, so nothing else has its middle within the object's outline there. What is taken for it
+    has its height and outline, and stands alone.
+    """
+    half = np.array(thing.size) / 2
+    local, rise = pose.inverse().apply(points)[:, :2], points[:, 2] - support
+    reach = float(half[:2].min()) + THIN
+    around = np.linalg.norm(local, axis=1) < reach + float(np.hypot(*half[:2])) + AROUND / 2
+    around &= rise > ABOVE
+    local, rise = local[around], rise[around]
+    body = rise < thing.size[2] + TOP
+    if body.sum() < SOME:
+        return None
+    shifts = _shifts(reach)
+    out = _outside(local[body] - shifts[:, None], half[:2], thing.shape)
+    side = rise[body] < thing.size[2] - ABOVE
+    misfit = np.minimum(np.where(side, np.abs(out), np.maximum(out, 0.0)), CLOSE)
+    best = int(np.argmin(misfit.mean(axis=1)))
+    own, close = out[best] <= INSIDE, out[best] < CLOSE
+    higher = _outside(local[~body] - shifts[best], half[:2], thing.shape) <= INSIDE
+    seen = own.sum() >= SOME and (own & (rise[body] > thing.size[2] - TOP)).sum() >= FEW
+    alone = (close & ~own).sum() <= STRAY * own.sum() and higher.sum() < FEW
+    if not (seen and alone and misfit[best][close].mean() < MISFIT):
+        return None
+    return pose @ Transform((*shifts[best], 0.0))
+
+
+def _shifts(reach: float) -> Array:
+    """Places (k, 2) at most `reach` m from a spot."""
+    steps = np.arange(-reach, reach + STEP / 2, STEP)
+    places = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
+    return np.asarray(places[np.linalg.norm(places, axis=1) <= reach])
+
+
+def _outside(flat: Array, half: Array, shape: str) -> Array:
+    """How far points (..., 2) lie outside an upright object's outline, m; negative within."""
+    if shape == "cylinder":
+        return np.asarray(np.linalg.norm(flat, axis=-1) - half.max())
+    over = np.abs(flat) - half
+    inside = np.minimum(over.max(axis=-1), 0.0)
+    return np.asarray(np.linalg.norm(np.maximum(over, 0.0), axis=-1) + inside)
