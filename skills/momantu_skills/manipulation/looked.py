@@ -13,8 +13,6 @@ from momantu_bt.messages import CameraImage
 
 KEPT = 12
 """Pictures whose views are remembered: those of a search and of two looks at a grasp."""
-NEAREST = 0.2
-"""m from the camera; nearer than that it measures nothing."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,6 +20,7 @@ class _Look:
     odom_from_camera: Transform
     intrinsics: Array
     shape: tuple[int, int]
+    nearest: float
 
     def shows(self, points: Array) -> NDArray[np.bool_]:
         own = self.odom_from_camera.inverse().apply(points)
@@ -30,7 +29,7 @@ class _Look:
         v = own[:, 1] / z * self.intrinsics[1, 1] + self.intrinsics[1, 2]
         height, width = self.shape
         inside = (u >= 0) & (u < width) & (v >= 0) & (v < height)
-        return np.asarray(inside & (own[:, 2] > NEAREST))
+        return np.asarray(inside & (own[:, 2] > self.nearest))
 
 
 class Looks:
@@ -39,10 +38,11 @@ class Looks:
     def __init__(self) -> None:
         self._looks: deque[_Look] = deque(maxlen=KEPT)
 
-    def add(self, image: CameraImage, odom_from_camera: Transform) -> None:
-        """Remember a picture's view."""
+    def add(self, image: CameraImage, odom_from_camera: Transform, nearest: float) -> None:
+        """Remember a picture's view. nearest: depth from which on the camera measures, m."""
         height, width = image.depth.shape
-        self._looks.append(_Look(odom_from_camera, image.intrinsics, (height, width)))
+        look = _Look(odom_from_camera, image.intrinsics, (height, width), nearest)
+        self._looks.append(look)
 
     def show(self, points: Array) -> NDArray[np.bool_]:
         """(n,) which points (n, 3) in odom lay in the view of one of the pictures."""

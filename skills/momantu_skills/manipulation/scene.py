@@ -69,7 +69,8 @@ class Scene:
         base = self.model.description.base_frame
         odom_from_camera = frames.lookup(ODOM, image.frame, image.stamp)
         odom_from_base = frames.lookup(ODOM, base, image.stamp)
-        self.looks.add(image, odom_from_camera)
+        nearest = self.model.description.camera()[1].min_depth
+        self.looks.add(image, odom_from_camera, nearest)
         self.points = self._seen(robot, image, odom_from_camera, odom_from_base, held)
         new = cells_of(self.points, odom_from_camera.position, FLOOR_BAND, self.config)
         old = self.surroundings.cells

@@ -31,10 +31,14 @@ def picture() -> CameraImage:
     return CameraImage(0.0, "eye", np.zeros((100, 100, 3), np.uint8), depth, intrinsics)
 
 
+NEAREST = 0.25
+"""m; depth from which on that camera measures."""
+
+
 def looks(*cameras: Transform) -> Looks:
     taken = Looks()
     for camera in cameras:
-        taken.add(picture(), camera)
+        taken.add(picture(), camera, NEAREST)
     return taken
 
 
@@ -68,6 +72,12 @@ def test_a_point_is_shown_when_it_lies_in_the_cone_of_a_picture(
     assert looks(AHEAD).show(inside).all()
     assert not looks(AHEAD).show(outside).any()
     assert not looks().show(inside).any()
+
+
+@given(st.floats(0.0, 0.8), st.floats(-0.9, 0.9))
+def test_nearer_than_it_measures_a_camera_shows_nothing(x: float, across: float) -> None:
+    shown = looks(AHEAD).show(np.array([(x, across * x, 0.8)]))
+    assert bool(shown[0]) == (x > NEAREST)
 
 
 def test_only_the_newest_pictures_count() -> None:
@@ -157,7 +167,7 @@ class Turning:
         x, y, _ = self.looked[-1]
         turn = np.arctan2(y, x)
         pose = Transform((0.0, 0.0, 0.0), (np.cos(turn / 2), 0.0, 0.0, np.sin(turn / 2)))
-        self.arm.scene.looks.add(picture(), pose @ AHEAD)
+        self.arm.scene.looks.add(picture(), pose @ AHEAD, NEAREST)
 
     def plan(self, made: Any) -> tuple[Any, int]:
         """The plan that comes of it, and how often it was made."""
