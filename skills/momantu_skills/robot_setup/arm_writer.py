@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from momantu_skills.robot_setup.file_text import comment, number
+from momantu_skills.robot_setup.file_text import comment, listed, number, scalar
 from momantu_skills.robot_setup.grasp import APART, STRONGEST, Grasp
 from momantu_skills.robot_setup.proposal import Proposal
 
@@ -46,12 +46,12 @@ def gripper_name(limb: str) -> str:
 
 def _joints(name: str, kind: str, joints: tuple[str, ...]) -> Iterator[str]:
     if sum(map(len, joints)) < 50:
-        yield f"  {name}: {{kind: {kind}, joints: [{', '.join(joints)}]}}"
+        yield f"  {name}: {{kind: {kind}, joints: {listed(joints)}}}"
         return
     yield f"  {name}:"
     yield f"    kind: {kind}"
     yield "    joints:"
-    yield from (f"      - {joint}" for joint in joints)
+    yield from (f"      - {scalar(joint)}" for joint in joints)
 
 
 def limit_lines(proposal: Proposal) -> Iterator[str]:
@@ -66,9 +66,9 @@ def limit_lines(proposal: Proposal) -> Iterator[str]:
     for name, found in proposal.limits.items():
         limit = found.limit
         values = limit.model_dump(exclude_none=True)
-        inside = ", ".join(f"{key}: {number(value, 5)}" for key, value in values.items())
+        inside = ", ".join(f"{key}: {number(value, 9)}" for key, value in values.items())
         guessed = f"    # guessed: {'; '.join(found.guessed)}" if found.guessed else ""
-        yield f"  {name}: {{{inside}}}{guessed}"
+        yield f"  {scalar(name)}: {{{inside}}}{guessed}"
 
 
 def group_lines(proposal: Proposal) -> Iterator[str]:
@@ -84,8 +84,8 @@ def group_lines(proposal: Proposal) -> Iterator[str]:
         tip = limb.tip if grasp is None else _grasp_frame(proposal, limb.name, grasp)
         yield f"  {limb.name}:"
         yield "    joints:"
-        yield from (f"      - {joint}" for joint in limb.joints)
-        yield f"    tip: {tip}"
+        yield from (f"      - {scalar(joint)}" for joint in limb.joints)
+        yield f"    tip: {scalar(tip)}"
 
 
 def _grasp_frame(proposal: Proposal, limb: str, grasp: Grasp) -> str:
@@ -112,7 +112,7 @@ def end_effector_lines(proposal: Proposal) -> Iterator[str]:
         yield "# for width 0 lies beyond the joint's limit."
     yield "end_effector:"
     yield f"  actuator: {gripper_name(arm.name)}"
-    yield f"  frame: {_grasp_frame(proposal, arm.name, grasp)}"
+    yield f"  frame: {scalar(_grasp_frame(proposal, arm.name, grasp))}"
     yield f"  grasp_offset: {number(grasp.offset)}"
     yield f"  max_width: {number(grasp.max_width)}"
     force = "by the URDF's efforts" if grasp.force_known else "guessed: the URDF has no effort"
@@ -120,11 +120,11 @@ def end_effector_lines(proposal: Proposal) -> Iterator[str]:
     yield f"  pad_length: {number(grasp.pad_length)}"
     yield f"  pad_height: {number(grasp.pad_height)}"
     yield f"  hand_clearance: {number(grasp.hand_clearance)}"
-    yield f"  touch_links: [{', '.join(touch)}]"
+    yield f"  touch_links: {listed(touch)}"
     yield "  opening:    # rows [width, joint position]"
     for joint, rows in grasp.opening.items():
         pairs = ", ".join(f"[{number(w, 5)}, {number(q, 5)}]" for w, q in rows)
-        yield f"    {joint}: [{pairs}]"
+        yield f"    {scalar(joint)}: [{pairs}]"
 
 
 def pose_lines(proposal: Proposal) -> Iterator[str]:
@@ -144,4 +144,6 @@ def pose_lines(proposal: Proposal) -> Iterator[str]:
             said.append(f"{pose.covered:.0%} of the arm is in the camera's picture")
         yield from comment(f"{'; '.join((*said, *pose.notes))}.", "  ")
         yield f"  {name}:"
-        yield from (f"    {joint}: {number(value, 5)}" for joint, value in pose.joints.items())
+        yield from (
+            f"    {scalar(joint)}: {number(value, 5)}" for joint, value in pose.joints.items()
+        )

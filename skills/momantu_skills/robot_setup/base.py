@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
+from scipy.spatial import ConvexHull, QhullError
 
 from momantu_bt.geometry import Array
 from momantu_skills.robot_setup.body import Body
@@ -21,7 +20,9 @@ ON_FLOOR = 0.03
 OVER_FLOOR = 0.05
 """m; links of the base that reach this far down may touch an uneven floor."""
 CORNERS = 12
-"""Corners of a footprint around a round base."""
+"""Corners that a footprint has at most: as many as go around a round base."""
+THIN = 1e-3
+"""m; a side that can be left out while the footprint grows by less is left out."""
 WHEEL = 0.5
 """m; a wheel with its fork is smaller."""
 LEVEL = 0.2
@@ -42,13 +43,15 @@ class Stand:
 
     A robot whose lowest shape lies above its base frame has wheels without shapes.
     fixed: links of the base itself. wheels: links that roll. grounded: those of both that reach
-    down to the floor. footprint: (k, 2), m, or None where
-    the base has no shape. floor: m, 0 where the base frame lies on the floor.
+    down to the floor. low: (n, 2) corners of what stands there, up to ABOVE. footprint: (k, 2), m,
+    around those, or None where the base has no shape. floor: m, 0 where the base frame lies on
+    the floor.
     """
 
     fixed: tuple[str, ...]
     wheels: tuple[str, ...]
     grounded: tuple[str, ...]
+    low: Array
     footprint: Array | None
     floor: float
     mass: float
@@ -125,9 +128,10 @@ def find_stand(body: Body) -> Stand:
     )
     points = body.points((*fixed, *wheels), {})
     low = points[points[:, 2] < floor + ABOVE]
+    low = low if len(low) else points
     mass = sum(skeleton.links[link].mass for link in below)
     grounded = tuple(link for link in (*fixed, *wheels) if _touches(body, link, floor))
-    return Stand(fixed, wheels, grounded, outline(low if len(low) else points), floor, mass)
+    return Stand(fixed, wheels, grounded, low[:, :2], outline(low), floor, mass)
 
 
 def _touches(body: Body, link: str, floor: float) -> bool:
@@ -153,42 +157,52 @@ def _rolls(body: Body, joint: SetupJoint, floor: float) -> bool:
 def outline(points: Array) -> Array | None:
     """Convex outline (k, 2) of points (n, 3) seen from above, counter-clockwise, in whole mm.
 
-    Around a round base it is a polygon of CORNERS sides that encloses it. None for no area.
+    It encloses them, with CORNERS sides at most. None for no area.
     """
     if len(points) < 3:
         return None
     try:
         flat = points[:, :2]
-        corners = _plain(flat[ConvexHull(flat).vertices])
-        if len(corners) > CORNERS:
-            corners = _around(corners)
+        corners = _enclosing(flat[ConvexHull(flat).vertices])
     except QhullError:
         return None
     return np.sign(corners) * np.ceil(np.abs(corners) * 1000 - 1e-6) / 1000
 
 
-def _plain(corners: Array) -> Array:
-    """Without corners that lie within 1 mm of the line between their neighbours."""
-    kept = list(range(len(corners)))
-    changed = True
-    while changed and len(kept) > 3:
-        changed = False
-        for i, k in enumerate(kept):
-            a, b = corners[kept[i - 1]], corners[kept[(i + 1) % len(kept)]]
-            along = (b - a) / max(float(np.linalg.norm(b - a)), 1e-12)
-            off = abs(float(along[0] * (corners[k] - a)[1] - along[1] * (corners[k] - a)[0]))
-            if off < 1e-3:
-                kept.pop(i)
-                changed = True
-                break
-    return corners[kept]
+def _enclosing(corners: Array) -> Array:
+    """A polygon around a convex one (n, 2) that has few sides and is hardly larger.
+
+    One side after the other goes, and its neighbours are made longer until they meet: always the
+    side by which that reaches out least, while there are too many or it is by less than THIN.
+    """
+    while len(corners) > 3:
+        tips, heights = _without_sides(corners)
+        least = int(np.argmin(heights))
+        if not np.isfinite(heights[least]):
+            break
+        if len(corners) <= CORNERS and heights[least] >= THIN:
+            break
+        corners = np.roll(corners, -least, axis=0)
+        corners = np.vstack([tips[least], corners[2:]])
+    return corners
 
 
-def _around(corners: Array) -> Array:
-    """A polygon of CORNERS sides around corners (n, 2)."""
-    angles = 2 * math.pi * (np.arange(CORNERS)) / CORNERS
-    normals = np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    reach = (corners @ normals.T).max(axis=0)
-    sides = np.column_stack([normals, -reach])
-    points = HalfspaceIntersection(sides, corners.mean(axis=0)).intersections
-    return np.asarray(points[ConvexHull(points).vertices])
+def _without_sides(corners: Array) -> tuple[Array, Array]:
+    """Where the neighbours of each side meet, (n, 2), and how far beyond it, (n,).
+
+    Infinitely far where they do not.
+    """
+    ends = np.roll(corners, -1, axis=0)
+    way = ends - corners
+    before, after = np.roll(way, 1, axis=0), np.roll(way, -1, axis=0)
+    turn = _cross(before, after)
+    meet = turn > 1e-12
+    reach = _cross(way, after) / np.where(meet, turn, 1.0)
+    tips = corners + reach[:, None] * before
+    length = np.maximum(np.linalg.norm(way, axis=1), 1e-12)
+    heights = _cross(tips - corners, way) / length
+    return tips, np.where(meet, heights, np.inf)
+
+
+def _cross(one: Array, other: Array) -> Array:
+    return np.asarray(one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0])

@@ -90,10 +90,10 @@ def check_footprint(description: RobotDescription, body: Body, stand: Stand) -> 
     if stand.footprint is not None:
         outline = np.array(description.footprint)
         planes = _half_planes(outline)
-        beyond = (stand.footprint @ planes[:, :2].T - planes[:, 2]).max(axis=1)
+        beyond = (stand.low @ planes[:, :2].T - planes[:, 2]).max(axis=1)
         worst = int(np.argmax(beyond))
         if beyond[worst] > OUTSIDE:
-            x, y = stand.footprint[worst]
+            x, y = stand.low[worst]
             yield Remark(
                 "error",
                 "footprint-too-small",

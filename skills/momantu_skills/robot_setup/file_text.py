@@ -1,8 +1,13 @@
-"""Texts of a robot file: numbers, paths, comments."""
+"""Texts of a robot file: numbers, names, paths, comments."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import json
+from collections.abc import Iterable, Iterator
+from functools import cache
+
+from ruamel.yaml import YAML
+from ruamel.yaml.error import YAMLError
 
 
 def number(value: float, digits: int = 4) -> str:
@@ -11,10 +16,20 @@ def number(value: float, digits: int = 4) -> str:
     return "0" if text in ("-0", "") else text
 
 
-def path_text(value: str) -> str:
-    """A path as YAML takes it."""
-    plain = all(letter.isalnum() or letter in "/._-" for letter in value)
-    return value if plain else '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
+@cache
+def scalar(value: str) -> str:
+    """A name or a path as YAML takes it: quoted where it would be read as anything else."""
+    yaml = YAML(typ="safe", pure=True)
+    try:
+        plain = all(yaml.load(text) == [value] for text in (f"[{value}]", f"- {value}"))
+    except YAMLError:
+        plain = False
+    return value if plain else json.dumps(value, ensure_ascii=False)
+
+
+def listed(names: Iterable[str]) -> str:
+    """Names as a list in one line."""
+    return f"[{', '.join(map(scalar, names))}]"
 
 
 def comment(text: str, indent: str = "", width: int = 98) -> Iterator[str]:

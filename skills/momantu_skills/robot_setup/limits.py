@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from decimal import ROUND_DOWN, Context
 
 import numpy as np
 import pinocchio as pin
@@ -25,6 +26,8 @@ USUAL_SPEED = {"prismatic": 0.05, "revolute": 1.0, "continuous": 1.0}
 """m/s, rad/s where the URDF gives none."""
 SLOWEST = 0.01
 """m/s2, rad/s2; below this a proposal helps nobody."""
+FOUR_DIGITS = Context(prec=4, rounding=ROUND_DOWN)
+"""How speeds and accelerations are written."""
 
 
 @dataclass(frozen=True)
@@ -67,7 +70,7 @@ def _limit(body: Body, name: str, inertia: Array, light: bool) -> FoundLimit:
         acceleration = most
         guessed.append("acceleration (no effort or no inertia in the URDF)")
     velocity = joint.velocity
-    if not velocity or velocity < 0:
+    if not velocity:
         velocity = USUAL_SPEED[joint.kind]
         guessed.append("velocity (none in the URDF)")
     lower, upper = _positions(joint, guessed)
@@ -105,4 +108,5 @@ def _inside(value: float, *, up: bool) -> float:
 
 
 def _short(value: float) -> float:
-    return float(f"{value:.4g}")
+    """Four digits, rounded towards 0: a joint is never proposed to go faster than it can."""
+    return float(FOUR_DIGITS.create_decimal(repr(value)))

@@ -25,6 +25,8 @@ from momantu_skills.robot_setup.skeleton import (
 SOLIDS = ("box", "cylinder", "sphere", "mesh")
 HALF_TURN = "3.14159"
 """rad; the range that a hinge without limits is looked at in."""
+LEAST_ROOM = 1e-4
+"""rad or m; a joint with less is taken as fixed, as are slides without limits."""
 
 
 @dataclass(frozen=True)
@@ -127,9 +129,20 @@ def _mend_joint(joint: etree._Element, notes: _Notes) -> None:
         far = HALF_TURN if kind in TURNING else "0"
         limit.set("lower", limit.get("lower", f"-{far}"))
         limit.set("upper", limit.get("upper", far))
+    if limit is not None and _is_stuck(kind, limit):
+        notes.lines.append(f"the limits of the joint {name} leave it no room; taken as fixed")
+        joint.set("type", "fixed")
     if limit is not None:
         for what in ("effort", "velocity"):
             limit.set(what, limit.get(what, "0"))
+
+
+def _is_stuck(kind: str, limit: etree._Element) -> bool:
+    """Whether a joint cannot move; a hinge from 0 to 0 is one whose limits nobody gave."""
+    if kind not in ("revolute", "prismatic"):
+        return False
+    room = float(limit.get("upper", "0")) - float(limit.get("lower", "0"))
+    return room < LEAST_ROOM and (kind == "prismatic" or room > 0)
 
 
 def _mend_shape(

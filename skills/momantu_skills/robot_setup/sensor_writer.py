@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 
 from momantu_bt.geometry import Transform
+from momantu_skills.robot_setup.file_text import scalar
 from momantu_skills.robot_setup.proposal import OPTICAL_FROM_LINK, Proposal
 from momantu_skills.robot_setup.sensors import FoundSensor
 
@@ -92,7 +93,7 @@ def _camera(name: str, sensor: FoundSensor, proposal: Proposal) -> Iterator[str]
     carrier = proposal.carriers.get(sensor.link, "")
     width, height = sensor.size or USUAL_SIZE
     yield "kind: camera"
-    yield f"frame: {sensor.link if sensor.optical else f'{name}_optical_frame'}"
+    yield f"frame: {scalar(sensor.link) if sensor.optical else f'{name}_optical_frame'}"
     if carrier:
         yield f"carrier: {carrier}"
     yield f"width: {width}"
@@ -105,7 +106,7 @@ def _camera(name: str, sensor: FoundSensor, proposal: Proposal) -> Iterator[str]
 def _laser(name: str, sensor: FoundSensor, proposal: Proposal) -> Iterator[str]:
     low, high = sensor.angles or (None, None)
     yield "kind: laser"
-    yield f"frame: {sensor.link}"
+    yield f"frame: {scalar(sensor.link)}"
     yield _or_guess("angle_min", low, USUAL_ANGLES[0])
     yield _or_guess("angle_max", high, USUAL_ANGLES[1])
     yield _or_guess("beams", sensor.beams, USUAL_BEAMS)
@@ -119,7 +120,7 @@ def _lidar(name: str, sensor: FoundSensor, proposal: Proposal) -> Iterator[str]:
     guess = "" if sensor.rings else "    # guessed"
     beams = min(sensor.beams, MOST_COLUMNS) if sensor.beams else None
     yield "kind: lidar"
-    yield f"frame: {sensor.link}"
+    yield f"frame: {scalar(sensor.link)}"
     yield f"elevations: [{', '.join(f'{ring:g}' for ring in rings)}]{guess}"
     yield _or_guess("columns", beams, USUAL_COLUMNS)
     yield _or_guess("range_min", sensor.near, 0.5)
@@ -128,7 +129,7 @@ def _lidar(name: str, sensor: FoundSensor, proposal: Proposal) -> Iterator[str]:
 
 def _wrench(name: str, sensor: FoundSensor, proposal: Proposal) -> Iterator[str]:
     yield "kind: wrench"
-    yield f"frame: {sensor.link}"
+    yield f"frame: {scalar(sensor.link)}"
 
 
 def _or_guess(key: str, found: float | None, usual: float) -> str:

@@ -37,6 +37,20 @@ NO_FRAME = re.compile(r"screw|mount|bracket|cable|laser_?pointer|projector|butto
 PREFERRED = re.compile(r"rgb|color", re.IGNORECASE)
 """Of a camera's several optical frames, the one in which a registered picture is given."""
 
+PICTURE = (0.01, 3.09)
+"""rad; widths of pictures that a lens draws flat."""
+PIXELS = (1, 100_000)
+BEAMS = (2, 100_000)
+RINGS = (1, 4096)
+TURN = (-2 * math.pi, 2 * math.pi)
+"""rad; directions of the first and the last beam."""
+STEEP = (-math.pi / 2, math.pi / 2)
+"""rad; elevations of rings."""
+NEAR, FAR = (0.0, 5.0), (0.6, 10_000.0)
+"""m; at which lasers begin and end to measure."""
+SECTOR = 0.01
+"""rad; a laser that sweeps less is none."""
+
 
 @dataclass(frozen=True)
 class FoundSensor:
@@ -128,7 +142,7 @@ def _sensor(element: etree._Element, link: str, skeleton: Skeleton) -> FoundSens
 
 
 def _camera(element: etree._Element, link: str, skeleton: Skeleton) -> FoundSensor:
-    width, height = _number(element, ".//width"), _number(element, ".//height")
+    width, height = (_number(element, f".//{side}", *PIXELS) for side in ("width", "height"))
     optical = [n for n in skeleton.rigid(link) if OPTICAL.search(n) and n in _near(skeleton, link)]
     frame = _best_frame("camera", optical) if optical else link
     return FoundSensor(
@@ -136,10 +150,8 @@ def _camera(element: etree._Element, link: str, skeleton: Skeleton) -> FoundSens
         frame,
         written=True,
         optical=bool(OPTICAL.search(frame)),
-        fov=_number(element, ".//horizontal_fov"),
+        fov=_number(element, ".//horizontal_fov", *PICTURE),
         size=(int(width), int(height)) if width and height else None,
-        near=_number(element, ".//clip/near"),
-        far=_number(element, ".//clip/far"),
     )
 
 
@@ -150,27 +162,36 @@ def _near(skeleton: Skeleton, link: str) -> set[str]:
 
 
 def _laser(element: etree._Element, link: str) -> FoundSensor:
-    low, high = (_number(element, f".//horizontal/{side}_angle") for side in ("min", "max"))
-    rings = int(_number(element, ".//vertical/samples") or 1)
-    down, up = (_number(element, f".//vertical/{side}_angle") or 0.0 for side in ("min", "max"))
-    beams = _number(element, ".//horizontal/samples")
+    low, high = (_number(element, f".//horizontal/{end}_angle", *TURN) for end in ("min", "max"))
+    rings = int(_number(element, ".//vertical/samples", *RINGS) or 1)
+    down, up = (
+        _number(element, f".//vertical/{side}_angle", *STEEP) or 0.0 for side in ("min", "max")
+    )
+    beams = _number(element, ".//horizontal/samples", *BEAMS)
+    near, far = _number(element, ".//range/min", *NEAR), _number(element, ".//range/max", *FAR)
+    if near is not None and far is not None and near >= far:
+        near, far = None, None
+    swept = low is not None and high is not None and high - low > SECTOR
     step = (up - down) / max(rings - 1, 1)
     return FoundSensor(
         "lidar" if rings > 1 else "laser",
         link,
         written=True,
-        near=_number(element, ".//range/min"),
-        far=_number(element, ".//range/max"),
-        angles=(low, high) if low is not None and high is not None and low < high else None,
-        beams=int(beams) if beams and beams >= 2 else None,
+        near=near,
+        far=far,
+        angles=(low, high) if low is not None and high is not None and swept else None,
+        beams=int(beams) if beams else None,
         rings=tuple(round(down + i * step, 6) for i in range(rings)) if rings > 1 else None,
     )
 
 
-def _number(element: etree._Element, path: str) -> float | None:
+def _number(
+    element: etree._Element, path: str, least: float = -math.inf, most: float = math.inf
+) -> float | None:
+    """A number at a path; None where there is none, or one that no such sensor has."""
     found = element.find(path)
     try:
         value = float(found.text or "") if found is not None else math.nan
     except ValueError:
         return None
-    return value if math.isfinite(value) else None
+    return value if math.isfinite(value) and least <= value <= most else None

@@ -185,9 +185,9 @@ def _joint(element: etree._Element) -> SetupJoint:
         child = element.find(tag)
         return default if child is None else str(child.get(name, default))
 
-    def number(tag: str, name: str) -> float | None:
-        text = attribute(tag, name, "")
-        return float(text) if text else None
+    def limit(name: str) -> float | None:
+        text = attribute("limit", name, "")
+        return _bound(element.get("name", ""), name, text) if text else None
 
     return SetupJoint(
         name=element.get("name", ""),
@@ -198,12 +198,24 @@ def _joint(element: etree._Element) -> SetupJoint:
             _three(attribute("origin", "xyz", "0 0 0")), _three(attribute("origin", "rpy", "0 0 0"))
         ),
         axis=_three(attribute("axis", "xyz", "1 0 0")),
-        lower=number("limit", "lower"),
-        upper=number("limit", "upper"),
-        velocity=number("limit", "velocity"),
-        effort=number("limit", "effort"),
+        lower=limit("lower"),
+        upper=limit("upper"),
+        velocity=limit("velocity"),
+        effort=limit("effort"),
         mimic=_mimic(element),
     )
+
+
+def _bound(joint: str, name: str, text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    signed = name in ("lower", "upper")
+    if not math.isfinite(value) or (value < 0 and not signed):
+        wanted = "a number" if signed else "a number of 0 or more"
+        raise ValueError(f"the joint {joint} has {name}={text!r}; write {wanted}")
+    return value
 
 
 def _mimic(element: etree._Element) -> Mimic | None:

@@ -17,7 +17,7 @@ from momantu_skills.robot_setup.arm_writer import (
     limit_lines,
     pose_lines,
 )
-from momantu_skills.robot_setup.file_text import comment, number, path_text
+from momantu_skills.robot_setup.file_text import comment, listed, number, scalar
 from momantu_skills.robot_setup.matrix import Why
 from momantu_skills.robot_setup.proposal import Proposal
 from momantu_skills.robot_setup.reach import HEIGHTS
@@ -100,10 +100,10 @@ def _head(proposal: Proposal) -> Iterator[str]:
 def _parts(proposal: Proposal, folder: Path) -> Iterator[str]:
     path = _path(proposal.prepared.source.resolve(), folder.resolve())
     yield "parts:"
-    yield f"  {proposal.name}: {{{proposal.prepared.kind}: {path_text(path)}}}"
+    yield f"  {proposal.name}: {{{proposal.prepared.kind}: {scalar(path)}}}"
     if _put_on_floor(proposal):
         height, base = number(-proposal.stand.floor), proposal.base.frame
-        link = "" if base == proposal.prepared.skeleton.root else f", link: {base}"
+        link = "" if base == proposal.prepared.skeleton.root else f", link: {scalar(base)}"
         yield f"# Measured: {base} lies {height} m above the robot's lowest point; a base frame is"
         yield "# put on the floor below it."
         yield "mounts:"
@@ -113,7 +113,7 @@ def _parts(proposal: Proposal, folder: Path) -> Iterator[str]:
             f"Look at it: the robot's lowest point lies {number(proposal.stand.floor)} m from the "
             "base frame, which must lie on the floor."
         )
-    yield f"base_frame: {base_frame(proposal)}"
+    yield f"base_frame: {scalar(base_frame(proposal))}"
 
 
 def _path(source: Path, folder: Path) -> str:
@@ -136,7 +136,7 @@ def _frames(proposal: Proposal) -> Iterator[str]:
     for name, (link, place) in frames.items():
         turns = ", ".join(number(v) for v in _rpy(place))
         shift = ", ".join(number(v) for v in place.position)
-        yield f"  {name}: {{on: {link}, xyz: [{shift}], rpy: [{turns}]}}"
+        yield f"  {name}: {{on: {scalar(link)}, xyz: [{shift}], rpy: [{turns}]}}"
 
 
 def _rpy(place: Transform) -> tuple[float, float, float]:
@@ -190,7 +190,7 @@ def _base(proposal: Proposal) -> Iterator[str]:
     yield f"  # Guessed: the wheels push with a third of the weight of {number(stand.mass, 1)} kg."
     yield "  drive:"
     if proposal.virtual is not None:
-        x, y, yaw = proposal.virtual
+        x, y, yaw = map(scalar, proposal.virtual)
         yield f"    joints: {{x: {x}, y: {y}, yaw: {yaw}}}"
     yield f"    force: {number(round(force))}"
     yield f"    torque: {number(round(torque, 1))}"
@@ -213,7 +213,7 @@ def _ignored(proposal: Proposal) -> Iterator[str]:
     for one, other in matrix.ignored:
         why, share = matrix.why[one, other], matrix.share[one, other]
         said = f"{why.value}, met in {share:.0%}" if why is not Why.ADJACENT else "neighbours"
-        yield f"  - [{one}, {other}]    # {said}"
+        yield f"  - {listed((one, other))}    # {said}"
 
 
 def _simulation(proposal: Proposal) -> Iterator[str]:
@@ -226,12 +226,12 @@ def _simulation(proposal: Proposal) -> Iterator[str]:
         fingers = [n for n in fingers if skeleton.links[n].shapes]
     yield "# What a simulator must know beside all this. Friction is guessed: rubber pads."
     yield "simulation:"
-    yield f"  floor_links: [{', '.join(proposal.stand.grounded)}]"
-    yield f"  finger_links: [{', '.join(fingers)}]"
+    yield f"  floor_links: {listed(proposal.stand.grounded)}"
+    yield f"  finger_links: {listed(fingers)}"
     yield "  finger_friction: 1.0"
     if proposal.cells:
         yield "  # Measured: other links lie in the hulls around these meshes. Guessed: even cuts."
         yield "  convex_cells:"
         for link, cuts in proposal.cells.items():
             inside = ", ".join(f"{n}: [{', '.join(map(number, at))}]" for n, at in cuts.items())
-            yield f"    {link}: {{{inside}}}"
+            yield f"    {scalar(link)}: {{{inside}}}"

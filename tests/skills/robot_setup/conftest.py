@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import pytest
+from momantu_skills.robot_setup.base import find_base
+from momantu_skills.robot_setup.body import Body
+from momantu_skills.robot_setup.prepare import Placed, prepare
 from momantu_skills.robot_setup.proposal import Proposal, propose
 
 MASS = (
@@ -46,6 +50,15 @@ def joint(
         f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>'
         f'<origin xyz="{xyz}" rpy="{rpy}"/><axis xyz="{axis}"/>{bounds}{extra}</joint>'
     )
+
+
+def body_of(*elements: str) -> Body:
+    """What a URDF of these links and joints is worked on as."""
+    with TemporaryDirectory() as folder:
+        source = Path(folder) / "given.urdf"
+        source.write_text(f'<robot name="given">{"".join(elements)}</robot>')
+        prepared = prepare(source, Path(folder))
+        return Body(prepared.skeleton, Placed(prepared.urdf, find_base(prepared.skeleton).frame))
 
 
 def rolling() -> str:

@@ -89,7 +89,7 @@ def test_a_footprint_that_the_wheels_leave(wrong: Wrong, rolling_proposal: Propo
     corners = "".join(f"  - [{x:g}, {y:g}]\n" for x, y in outline)
     small = "  - [0.25, -0.2]\n  - [0.25, 0.2]\n  - [-0.25, 0.2]\n  - [-0.25, -0.2]\n"
     finding = only(wrong((corners, small)), "footprint-too-small")
-    assert "0.021 m" in finding.message
+    assert "0.020 m" in finding.message
     large = small.replace("0.2]", "0.3]")
     assert only(wrong((corners, large)), "footprint-too-large").severity == "warning"
 
