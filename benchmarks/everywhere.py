@@ -32,6 +32,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--jobs", default="2")
     parser.add_argument("--out", type=Path, default=Path("runs/everywhere"))
     told = parser.parse_args(arguments)
+    told.out.mkdir(parents=True, exist_ok=True)
     rows = [HEAD]
     for world, robot in told.pairs:
         folder = told.out / f"{world}-{robot}"

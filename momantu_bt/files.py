@@ -46,6 +46,8 @@ def check_writable(path: Path) -> None:
             raise OutputError(f"{path} cannot be written: there is no folder {folder}")
         probe.touch()
         probe.unlink()
+    except OutputError:
+        raise
     except OSError as error:
         raise OutputError(
             f"{path} cannot be written: {error.strerror or error}; choose a folder that is yours"
