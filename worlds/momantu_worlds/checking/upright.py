@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import cv2
@@ -18,7 +19,13 @@ FROM_ABOVE = 0.002
 FALL = 3.0
 """m; how far below a body it is looked for something that carries it."""
 TIPPING = 0.003
-"""m; how far beyond what carries it the middle of a body may be."""
+"""m; how far beyond what carries it the middle of a body may be, and how closely its outline is
+looked at."""
+MOST_STEPS = 1000
+"""Along the outline of what is large."""
+WITHIN, COARSE = (0.0, 0.25, 0.5, 0.75), 8
+"""Shares of the outline, and of its steps, at which it is looked below the inside: a tray may stand
+on a narrow foot."""
 
 
 def upright(scenario: Scenario) -> Iterator[Remark]:
@@ -52,9 +59,29 @@ def upright(scenario: Scenario) -> Iterator[Remark]:
 
 
 def _lowest(scenario: Scenario, body: Body) -> Array:
-    """Points (n, 3) at the bottom of a body."""
-    points = np.concatenate([solid.vertices for solid in scenario.solids[body.name]])
-    return np.asarray(points[points[:, 2] <= points[:, 2].min() + FLUSH])
+    """Points (n, 3) all over the bottom of a body."""
+    solids = scenario.solids[body.name]
+    height = min(float(solid.box[0][2]) for solid in solids) + FLUSH
+    return np.concatenate([_bottom(s.vertices[s.vertices[:, 2] <= height]) for s in solids])
+
+
+def _bottom(corners: Array) -> Array:
+    """Points (n, 3) along the outline of corners (m, 3) that lie level, and within it."""
+    if len(corners) < 3:
+        return corners
+    order = cv2.convexHull(corners[:, :2].astype(np.float32), returnPoints=False)[:, 0]
+    edges = np.roll(corners[order], -1, axis=0) - corners[order]
+    lengths = np.linalg.norm(edges, axis=1)
+    step = max(TIPPING, float(lengths.sum()) / MOST_STEPS)
+    outline = np.concatenate(
+        [
+            corner + np.linspace(0.0, 1.0, math.ceil(length / step) + 1)[:-1, None] * edge
+            for corner, edge, length in zip(corners[order], edges, lengths, strict=True)
+        ]
+    )
+    middle = outline.mean(axis=0)
+    within = [middle + share * (outline[::COARSE] - middle) for share in WITHIN]
+    return np.concatenate([corners, outline, *within])
 
 
 def _falls(scenario: Scenario, body: Body, points: Array) -> tuple[Array, list[str]]:
