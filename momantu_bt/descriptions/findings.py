@@ -88,7 +88,9 @@ class _Findings:
         """What kinds there are of a thing whose kind is missing or unknown."""
         key = str(finding["ctx"]["discriminator"]).strip("'")
         union = _inner(self._schema_at(place[:-1]), place[-1])
-        kinds = ", ".join(union.get("discriminator", {}).get("mapping", ()))
+        members = (union, *union.get("anyOf", ()))  # what may be left out is one of nothing and it
+        mappings = (member.get("discriminator", {}).get("mapping", {}) for member in members)
+        kinds = ", ".join(kind for mapping in mappings for kind in mapping)
         given = _item(self._reading.value(place), key)
         if given is None:
             place_of, words = place, f"{self._dotted(place)} needs a key {key!r}"

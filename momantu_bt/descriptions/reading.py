@@ -160,6 +160,9 @@ class Reading:
                 self._complain(key_node, f"{key!r} is here twice; first in line {first}")
                 continue
             self._keys[(*place, key)] = key_node
+            if value_node.start_mark.index == value_node.end_mark.index:
+                # what is not there stands where the next thing does: its key tells more
+                self._places[(*place, key)] = key_node
             found[key] = self._plain(value_node, (*place, key), depth + 1)
         return found
 
