@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Generator
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from momantu_bt.claim import Claim
@@ -30,6 +31,8 @@ BRAKE = 1.5
 """rad/s2 of planned braking."""
 DONE = 0.03
 """rad."""
+PATIENCE = 1.0
+"""s that something may stand in the way of a turn before the other way round is tried."""
 
 
 class Relocalize(Skill):
@@ -96,25 +99,42 @@ class Relocalize(Skill):
             yield "look"
 
     def _turn(self, robot: Robot, angle: float) -> Run:
-        """Turn by odometry, as far as the newest scan leaves room; bounded in time."""
+        """Turn by odometry, as far as the newest scan leaves arm and base room, then the other way.
+
+        Bounded in time: what stands there may go away, or not.
+        """
         discs = self._discs(robot)
-        state = robot.state()
-        before, turned = state.odom_from_base.yaw, 0.0
         end = self.clock.now() + 2.0 * angle / RATE
+        for way in (1.0, -1.0):
+            if (yield from self._turn_to(robot, angle, way, discs, end)):
+                return
+
+    def _turn_to(
+        self, robot: Robot, angle: float, way: float, discs: np.ndarray, end: float
+    ) -> Generator[str, None, bool]:
+        """Whether the turn towards one side was ended by its angle or its time, not by a hit."""
+        before, turned = robot.state().odom_from_base.yaw, 0.0
+        free = self.clock.now()
         while angle - turned > DONE and self.clock.now() < end:
-            rate = min(RATE, math.sqrt(2.0 * BRAKE * (angle - turned)))
-            robot.command("base", BaseVelocity(0.0, rate * self._share(robot, rate, discs)))
+            rate = way * min(RATE, math.sqrt(2.0 * BRAKE * (angle - turned)))
+            share = self._share(robot, rate, discs)
+            free = self.clock.now() if share else free
+            if self.clock.now() - free > PATIENCE:
+                return False
+            robot.command("base", BaseVelocity(0.0, rate * share))
             yield "turn"
             yaw = robot.state().odom_from_base.yaw
-            turned += (yaw - before + math.pi) % (2.0 * math.pi) - math.pi
+            turned += way * ((yaw - before + math.pi) % (2.0 * math.pi) - math.pi)
             before = yaw
+        return True
 
     def _discs(self, robot: Robot) -> np.ndarray:
+        """Of base, arm and load (m, 3): the walls that a scan shows are as high as they are."""
         import numpy as np
 
         from momantu_skills.navigation.footprint import discs
 
-        return discs(np.array(robot.description.footprint))
+        return discs(np.asarray(self.planning_scene.footprint(robot.state())))
 
     def _share(self, robot: Robot, rate: float, discs: np.ndarray) -> float:
         from momantu_bt.robot import read_laser

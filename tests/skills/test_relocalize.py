@@ -1,7 +1,10 @@
 """relocalize: mends a doubtful estimate, finds itself from nowhere, or says that it cannot."""
 
+import math
+from collections.abc import Callable
 from typing import Any
 
+import numpy as np
 import pytest
 from momantu_skills.navigation.confidence import is_localized
 from momantu_skills.navigation.service import LocalizationService
@@ -12,17 +15,32 @@ from momantu_bt.geometry import Pose2D
 from momantu_bt.testing import ScriptedRobot
 from momantu_bt.testing.skill_run import SkillResult, run_skill
 
+Found = tuple[SkillResult, LocalizationService]
+Relocate = Callable[..., Found]
 
-def _run(world: Any, **inputs: Any) -> tuple[SkillResult, LocalizationService]:
+
+@pytest.fixture
+def relocalize(flat_scene: Any) -> Relocate:
+    """`relocalize(world, **inputs)` with localization and a planning scene."""
+
+    def run(world: Any, scene: Any = None, **inputs: Any) -> Found:
+        return _run(world, scene or flat_scene(world), **inputs)
+
+    return run
+
+
+def _run(world: Any, scene: Any, on_tick: Any = None, **inputs: Any) -> Found:
     service = LocalizationService()
-    services = {"localization": service, "planning_scene": object()}
-    result = run_skill(Relocalize, world=world, services=services, inputs=inputs, max_time=60.0)
+    services = {"localization": service, "planning_scene": scene}
+    result = run_skill(
+        Relocalize, world=world, services=services, inputs=inputs, max_time=60.0, on_tick=on_tick
+    )
     return result, service
 
 
-def test_a_small_error_is_mended_without_moving(flat: Any) -> None:
+def test_a_small_error_is_mended_without_moving(flat: Any, relocalize: Relocate) -> None:
     world = flat(Pose2D(-2.0, 0.0, 0.0), believed=Pose2D(-1.8, 0.2, 0.2))
-    result, service = _run(world)
+    result, service = relocalize(world)
     assert result.status == "SUCCESS", result.explain()
     assert result.phases == ("look",)
     assert service.map_from_base.distance_to(world.robot.truth) < 0.05
@@ -36,24 +54,24 @@ def test_a_small_error_is_mended_without_moving(flat: Any) -> None:
     ],
 )
 def test_in_the_wrong_room_it_searches_the_whole_map(
-    flat: Any, truth: Pose2D, believed: Pose2D
+    flat: Any, relocalize: Relocate, truth: Pose2D, believed: Pose2D
 ) -> None:
     world = flat(truth, believed=believed)
-    result, service = _run(world)
+    result, service = relocalize(world)
     assert result.status == "SUCCESS", result.explain()
     assert service.map_from_base.distance_to(world.robot.truth) < 0.05
     assert is_localized(service)
     assert world.robot.nearest > 0.0
 
 
-def test_everywhere_begins_with_the_whole_map(flat: Any) -> None:
-    result, service = _run(flat(Pose2D(3.0, 1.8, 2.0)), everywhere=True)
+def test_everywhere_begins_with_the_whole_map(flat: Any, relocalize: Relocate) -> None:
+    result, service = relocalize(flat(Pose2D(3.0, 1.8, 2.0)), everywhere=True)
     assert result.status == "SUCCESS", result.explain()
     assert service.map_from_base.distance_to(result.robot.truth) < 0.05  # type: ignore[attr-defined]
     assert "turn" in result.phases
 
 
-def test_not_localized_where_the_map_is_of_another_place(flat: Any) -> None:
+def test_not_localized_where_the_map_is_of_another_place(flat: Any, relocalize: Relocate) -> None:
     """The laser sees a narrow cell that is not on the map."""
     world = flat(Pose2D(20.0, 20.0, 0.0), believed=Pose2D(-2.0, 0.0, 0.0))
     world.robot.boxes += [
@@ -62,26 +80,53 @@ def test_not_localized_where_the_map_is_of_another_place(flat: Any) -> None:
         (19.2, 19.2, 20.8, 19.3),
         (19.2, 20.7, 20.8, 20.8),
     ]
-    result, _ = _run(world)
+    result, _ = relocalize(world)
     assert result.code == "NOT_LOCALIZED", result.explain()
     assert result.duration < 30.0
     assert abs(world.robot.angular) < 0.01
 
 
-def test_it_does_not_turn_into_what_stands_beside_it(flat: Any) -> None:
+def test_it_does_not_turn_into_what_stands_beside_it(flat: Any, relocalize: Relocate) -> None:
     """A rectangular base between two boards, where its corners would touch."""
     world = flat(
         Pose2D(-2.0, 0.0, 0.0),
         believed=Pose2D(3.0, 2.0, 0.0),
         hidden=[(-2.3, 0.24, -1.7, 0.26), (-2.3, -0.26, -1.7, -0.24)],
     )
-    result, _ = _run(world)
+    result, _ = relocalize(world)
     assert world.robot.nearest > 0.0, result.explain()
 
 
-def test_the_base_is_claimed_to_be_where_it_is_believed_to_be(flat: Any) -> None:
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_an_arm_that_sticks_out_is_not_turned_into_a_wall(
+    flat: Any, flat_scene: Any, relocalize: Relocate, side: float
+) -> None:
+    """The wall stands beside what sticks out, on one side; the other way round there is room."""
+    wall = sorted((0.15 * side, 0.25 * side))
+    start = Pose2D(-2.0, 0.0, 0.0)
+    world = flat(start, believed=Pose2D(3.0, 2.0, 0.0), hidden=[(-1.6, wall[0], -1.3, wall[1])])
+    scene = flat_scene(world)
+    tip = scene.outline[:, 0].max() + 0.3
+    scene.load = (0.5, np.array([[tip, -0.03], [tip, 0.03]]))
+    ahead: list[float] = []
+
+    def note(*_: Any) -> None:
+        arm = np.array([[scene.outline[:, 0].max() + 0.05 * k, 0.0] for k in range(7)])
+        c, s = math.cos(world.robot.truth.yaw), math.sin(world.robot.truth.yaw)
+        places = arm @ np.array([[c, s], [-s, c]]) + (world.robot.truth.x, world.robot.truth.y)
+        ahead.append(float(world.robot.distance(places).min()))
+
+    result, _service = relocalize(world, scene, on_tick=note)
+    assert min(ahead) > 0.0, result.explain()
+    turned = [goal.angular for _, name, goal in world.robot.commands if name == "base" and goal]
+    assert min(turned) < 0.0 < max(turned)
+
+
+def test_the_base_is_claimed_to_be_where_it_is_believed_to_be(
+    flat: Any, relocalize: Relocate
+) -> None:
     world = flat(Pose2D(-2.0, 0.0, 0.0), believed=Pose2D(-1.8, 0.2, 0.2))
-    result, service = _run(world)
+    result, service = relocalize(world)
     claim = result.claim()
     assert isinstance(claim, BaseAt)
     assert claim.map_from_base == service.map_from_base
