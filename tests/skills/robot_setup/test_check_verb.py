@@ -151,6 +151,41 @@ def test_an_opening_that_does_not_fit_the_fingers(wrong: Wrong) -> None:
     assert "0.024 m, the fingers' hulls are 0.012 m apart" in finding.message
 
 
+def test_an_opening_beyond_the_range_of_its_joint(wrong: Wrong) -> None:
+    found = wrong(("left_slide: [[0, 0], [0.08, 0.04]]", "left_slide: [[0, 0], [0.08, 0.09]]"))
+    beyond = next(finding for finding in found if finding.code == "opening-beyond-limits")
+    assert "left_slide asks for 0.09, and its range is 0 to 0.04" in beyond.message
+
+
+def test_fingers_that_stand_still(wrong: Wrong) -> None:
+    found = wrong(("[0.08, 0.04]", "[0.08, 0.00004]"))
+    still = next(finding for finding in found if finding.code == "fingers-do-not-move")
+    assert still.severity == "error"
+
+
+def test_a_grasp_frame_beside_the_pads(wrong: Wrong, rolling_proposal: Proposal) -> None:
+    assert rolling_proposal.grasp is not None
+    place = rolling_proposal.grasp.link_from_grasp
+    assert place is not None
+    *_, ahead = place.position
+    found = wrong((f"{ahead:.4f}".rstrip("0") + "], rpy: [0, -1.5708", "0.5], rpy: [0, -1.5708"))
+    assert "no-pads-at-grasp" in {finding.code for finding in found}
+
+
+def test_a_pose_that_leaves_a_joint_open(wrong: Wrong) -> None:
+    found = wrong(("    flex: -2\n    roll: 0.162\n    head_pan: 0\n", "    head_pan: 0\n"))
+    open_poses = [finding for finding in found if finding.code == "pose-incomplete"]
+    assert len(open_poses) == 4
+    assert "the pose home leaves flex, roll open" in open_poses[0].message
+
+
+def test_a_hand_that_meets_itself_when_closed(wrong: Wrong) -> None:
+    pair = "[left_finger, right_finger]"
+    line = f"ignored_collisions:\n  - {pair}    # default, met in 0%"
+    finding = only(wrong((line, "ignored_collisions: []")), "closed-hand-collides")
+    assert f"write {pair}" in finding.cure
+
+
 def test_links_that_nobody_sees(rolling_proposal: Proposal, tmp_path: Path) -> None:
     text = rolling_proposal.prepared.source.read_text()
     (tmp_path / "bare.urdf").write_text(text.replace("visual>", "ignored>"))
