@@ -15,14 +15,18 @@ class OutputError(OSError):
     """A file cannot be written where the user wants it; the message says why."""
 
 
-def write_whole(path: Path, content: str | bytes) -> None:
+def write_whole(path: Path, content: str | bytes, *, folders: bool = False) -> None:
     """Write a file under another name, then rename it.
+
+    folders: make the folders above it, too, where they are missing.
 
     Raises:
         OutputError: the folder is missing or read-only, or the disk is full.
     """
     draft = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
+        if folders:
+            path.parent.mkdir(parents=True, exist_ok=True)
         draft.write_bytes(content.encode() if isinstance(content, str) else content)
         draft.replace(path)
     except OSError as error:

@@ -29,10 +29,9 @@ def pages(
     chosen = names or list(plugins.installed(plugins.SKILLS))
     skills: dict[str, type[Skill]] = {name: plugins.load(plugins.SKILLS, name) for name in chosen}
     try:
-        folder.mkdir(parents=True, exist_ok=True)
         for file, text in pages_of(skills).items():
-            write_whole(folder / file, text)
-    except (OSError, OutputError) as error:
+            write_whole(folder / file, text, folders=True)
+    except OutputError as error:
         typer.echo(f"momantu-bt: {error}", err=True)
         return EXIT_WRONG_INPUT
     typer.echo(f"{len(skills)} pages and an index in {folder}")

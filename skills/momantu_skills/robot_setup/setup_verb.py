@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from momantu_bt.files import write_whole
+from momantu_bt.files import OutputError, write_whole
 
 if TYPE_CHECKING:
     from momantu_skills.robot_setup.proposal import Proposal
@@ -58,10 +58,9 @@ def setup(
         return _in_the_way(path)
     text, fill_in = _text(proposal, folder)
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        write_whole(path, text)
-    except OSError as error:
-        return _refuse(f"{folder} cannot be written: {error}")
+        write_whole(path, text, folders=True)
+    except OutputError as error:
+        return _refuse(str(error))
     wrong = _read_again(path)
     if as_json:
         typer.echo(json.dumps(_plain(proposal, path, fill_in, wrong), indent=2))

@@ -182,6 +182,16 @@ def test_what_cannot_be_written_is_said_before_and_after_in_one_sentence(tmp_pat
     assert sorted(tmp_path.iterdir()) == before
 
 
+def test_folders_are_made_where_that_is_asked_for_or_refused_in_one_sentence(tmp_path):
+    write_whole(tmp_path / "a" / "b" / "c.txt", "text", folders=True)
+    assert (tmp_path / "a" / "b" / "c.txt").read_text() == "text"
+    (tmp_path / "file").write_text("in the way")
+    with pytest.raises(OutputError) as refused:
+        write_whole(tmp_path / "file" / "b" / "c.txt", "text", folders=True)
+    assert str(refused.value).count("cannot be written") == 1
+    assert str(refused.value).startswith(str(tmp_path / "file"))
+
+
 def test_a_record_in_the_place_of_a_file_is_told_from_an_old_record(tmp_path):
     (tmp_path / "file").write_text("mine")
     with pytest.raises(OutputError, match="is a file; choose another folder"):

@@ -49,12 +49,10 @@ class Assets:
         """Write everything below the folder of `beside`; returns how many files.
 
         Raises:
-            OSError: it cannot be written there.
+            OutputError: it cannot be written there.
         """
-        if self._files:
-            (beside.parent / self.folder).mkdir(exist_ok=True)
         for path, content in self._files.items():
-            write_whole(beside.parent / path, content)
+            write_whole(beside.parent / path, content, folders=True)
         return len(self._files)
 
     def _keep(self, name: str, meshes: Sequence[Any]) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from momantu_bt.files import write_whole
+from momantu_bt.files import OutputError, write_whole
 from momantu_bt.geometry import Pose2D, Transform
 from momantu_bt.world import WorldError
 from momantu_worlds.scenes.world_reader import parse_world
@@ -53,8 +53,8 @@ class Import:
             count = self.assets.write(output)
             parse_world(self.text, output)  # a file that the reader refuses is not left behind
             write_whole(output, self.text)
-        except OSError as error:
-            raise WorldError(f"{output} cannot be written: {error.strerror or error}") from error
+        except OutputError as error:
+            raise WorldError(str(error)) from error
         return count
 
 
