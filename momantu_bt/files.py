@@ -8,7 +8,7 @@ from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
-from momantu_bt.vulkan.places import cache_folder
+from momantu_bt.cache import cache_folder
 
 
 class OutputError(OSError):

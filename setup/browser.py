@@ -13,8 +13,8 @@ import subprocess
 import tempfile
 from pathlib import Path
 
+from momantu_bt.cache import cache_folder
 from momantu_bt.vulkan.apt import AptError, PrivateApt, this_system
-from momantu_bt.vulkan.places import cache_folder
 
 VARIABLE = "MOMANTU_BROWSER"
 """Names another browser."""

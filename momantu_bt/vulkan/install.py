@@ -18,9 +18,10 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
+from momantu_bt.cache import cache_folder
 from momantu_bt.vulkan.apt import AptError, PrivateApt, System, this_system
 from momantu_bt.vulkan.choice import Choice, VulkanMissingError, choose, machine_state, remembered
-from momantu_bt.vulkan.places import cache_folder, driver_folder
+from momantu_bt.vulkan.places import driver_folder
 from momantu_bt.vulkan.private import MANIFEST
 
 WINDOW_PACKAGE = "libx11-6"

@@ -10,6 +10,7 @@ from momantu_bt.claim import BaseAt, Claim, GripperOpen, Holding
 from momantu_bt.failure import Failure, FailureValue
 from momantu_bt.geometry import Pose2D
 from momantu_bt.robot import Robot
+from momantu_bt.service import Localization, PlanningScene
 from momantu_bt.skill import In, Needs, Run, Skill
 
 NEAR = 1.5
@@ -38,8 +39,8 @@ class Check(Skill):
         "NOT_OPEN": "the gripper is not open",
         "BAD_QUESTION": "the site has no such place",
     }
-    localization: Any = Needs()
-    planning_scene: Any = Needs()
+    localization: Localization = Needs()
+    planning_scene: PlanningScene = Needs()
 
     @classmethod
     def rehearsal(cls, seed: int) -> Mapping[str, Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from momantu_bt.claim import CameraOn, Claim
 from momantu_bt.failure import FailureValue
@@ -11,6 +11,9 @@ from momantu_bt.frames import ODOM
 from momantu_bt.geometry import Array, Pose
 from momantu_bt.robot import CAMERA_CARRIER, Robot
 from momantu_bt.skill import Failure, In, Needs, Run, Skill
+
+if TYPE_CHECKING:
+    from momantu_skills.manipulation.service import PlanningSceneService
 
 AHEAD = 3.0
 """m before the base, at the camera's own height."""
@@ -33,7 +36,7 @@ class Look(Skill):
         "OUT_OF_VIEW": "the camera's carrier cannot turn that far, or is stuck",
     }
     uses = {CAMERA_CARRIER}
-    planning_scene: Any = Needs()
+    planning_scene: PlanningSceneService = Needs()
     one_of = (("at", "surface", "direction"),)
 
     @classmethod

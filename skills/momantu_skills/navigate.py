@@ -16,6 +16,7 @@ from momantu_bt.skill import Failure, In, Needs, Run, Skill
 
 if TYPE_CHECKING:
     from momantu_bt.world import Surface
+    from momantu_skills.manipulation.service import PlanningSceneService
     from momantu_skills.navigation.config import NavigationConfig
     from momantu_skills.navigation.trip import Destination
     from momantu_skills.navigation.vehicle import Vehicle
@@ -53,7 +54,7 @@ class Navigate(Skill):
     one_of: ClassVar = (("in_front_of", "goal", "within_reach_of"),)
 
     localization: Localization = Needs()
-    planning_scene: Any = Needs()
+    planning_scene: PlanningSceneService = Needs()
 
     @classmethod
     def rehearsal(cls, seed: int) -> Mapping[str, Any]:

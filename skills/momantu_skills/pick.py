@@ -15,6 +15,7 @@ from momantu_bt.skill import Compute, In, Needs, Run, Skill
 if TYPE_CHECKING:
     from momantu_skills.manipulation.arm import Arm
     from momantu_skills.manipulation.reaching import PickPlan
+    from momantu_skills.manipulation.service import PlanningSceneService
 
 THINKING = 0.4
 """s that choosing a grasp and planning are given: twice the median."""
@@ -49,7 +50,7 @@ class Pick(Skill):
         "ARM_STUCK": "the arm or the gripper does not follow its commands",
     }
     uses = {ARM, "gripper", CAMERA_CARRIER}
-    planning_scene: Any = Needs()
+    planning_scene: PlanningSceneService = Needs()
 
     def run(self, robot: Robot) -> Run:
         """The whole skill; each step is a method below."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from momantu_bt.skill import In, Needs, Run, Skill
 if TYPE_CHECKING:
     from momantu_skills.manipulation.arm import Arm
     from momantu_skills.manipulation.placing import PlacePlan
+    from momantu_skills.manipulation.service import PlanningSceneService
 
 THINKING = 0.4
 """s that choosing a spot and planning are given: twice the median."""
@@ -41,7 +42,7 @@ class Place(Skill):
         "ARM_STUCK": "the arm or the gripper does not follow its commands",
     }
     uses = {ARM, "gripper", CAMERA_CARRIER}
-    planning_scene: Any = Needs()
+    planning_scene: PlanningSceneService = Needs()
 
     def __init__(self) -> None:
         """Start without a spot."""

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 from momantu_bt.claim import Claim, GripperOpen, Holding
 from momantu_bt.failure import FailureValue
 from momantu_bt.robot import ARM, Robot
 from momantu_bt.skill import In, Needs, Run, Skill
+
+if TYPE_CHECKING:
+    from momantu_skills.manipulation.service import PlanningSceneService
 
 OPEN = 0.01
 """m short of its widest at which the gripper still counts as open: gauge and control."""
@@ -28,7 +31,7 @@ class Release(Skill):
         "ARM_STUCK": "the arm does not follow on its way back",
     }
     uses = {"gripper", ARM}
-    planning_scene: Any = Needs()
+    planning_scene: PlanningSceneService = Needs()
 
     def run(self, robot: Robot) -> Run:
         """Open, wait until it is, draw back."""

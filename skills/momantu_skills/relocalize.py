@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Generator
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from momantu_bt.claim import Claim
 from momantu_bt.failure import FailureValue
@@ -15,6 +15,8 @@ from momantu_bt.skill import Failure, In, Needs, Run, Skill
 
 if TYPE_CHECKING:
     import numpy as np
+
+    from momantu_skills.manipulation.service import PlanningSceneService
 
 WIDEN = (0.35, 0.35)
 """m and rad by which the estimate is doubted at first: the most that a robot usually drifts."""
@@ -51,7 +53,7 @@ class Relocalize(Skill):
     uses: ClassVar = {"base", CAMERA_CARRIER}
 
     localization: Localization = Needs()
-    planning_scene: Any = Needs()
+    planning_scene: PlanningSceneService = Needs()
 
     def run(self, robot: Robot) -> Run:
         """Local first, then global; each is judged at rest."""

@@ -15,6 +15,7 @@ from momantu_bt.skill import Compute, In, Needs, Run, Skill, compute
 
 if TYPE_CHECKING:
     from momantu_skills.manipulation.arm import Arm
+    from momantu_skills.manipulation.service import PlanningSceneService
 
 THINKING = 0.2
 """s that planning is given: several times its median."""
@@ -39,7 +40,7 @@ class ResetPose(Skill):
         "ARM_STUCK": "the arm does not follow its trajectory",
     }
     uses = {ARM, CAMERA_CARRIER}
-    planning_scene: Any = Needs()
+    planning_scene: PlanningSceneService = Needs()
 
     def run(self, robot: Robot) -> Run:
         """Look, plan, move; the camera turns at the same time."""

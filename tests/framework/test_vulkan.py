@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from momantu_bt.cache import CACHE_VARIABLE
 from momantu_bt.vulkan import apt, choice, install, places, private
 from momantu_bt.vulkan.choice import Choice, VulkanMissingError
 from momantu_bt.vulkan.probe import ProbeResult, Way
@@ -20,7 +21,7 @@ from momantu_bt.vulkan.use import apply
 @pytest.fixture(autouse=True)
 def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """An empty cache folder, and no driver named by the environment."""
-    monkeypatch.setenv(places.CACHE_VARIABLE, str(tmp_path / "cache"))
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path / "cache"))
     monkeypatch.delenv(private.ICD_VARIABLE, raising=False)
     monkeypatch.setenv("LP_NUM_THREADS", "1")
     return tmp_path / "cache"
@@ -55,14 +56,6 @@ def probing(monkeypatch: pytest.MonkeyPatch, works: Way | None) -> list[Way]:
 
     monkeypatch.setattr(choice, "probe", probe)
     return calls
-
-
-def test_the_cache_folder_follows_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(places.CACHE_VARIABLE, "/somewhere")
-    assert places.cache_folder() == Path("/somewhere")
-    monkeypatch.delenv(places.CACHE_VARIABLE)
-    monkeypatch.setenv("XDG_CACHE_HOME", "/base")
-    assert places.cache_folder() == Path("/base/momantu-bt")
 
 
 def test_a_machine_that_renders_is_probed_once(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -112,7 +105,7 @@ def test_a_cache_that_cannot_be_written_costs_only_the_memory(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     (tmp_path / "taken").write_text("")
-    monkeypatch.setenv(places.CACHE_VARIABLE, str(tmp_path / "taken"))
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path / "taken"))
     probing(monkeypatch, Way.SYSTEM)
     state = choice.machine_state()
     assert choice.choose(state).way is Way.SYSTEM

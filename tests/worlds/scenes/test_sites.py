@@ -9,9 +9,9 @@ from momantu_worlds.scenes.loading import load_world, nominal, nominal_site, wor
 from momantu_worlds.scenes.maps import MOST_KEPT, with_maps
 from momantu_worlds.scenes.sites import kept_nominal
 
+from momantu_bt.cache import CACHE_VARIABLE
 from momantu_bt.files import write_whole
 from momantu_bt.robot import laser_band
-from momantu_bt.vulkan.places import CACHE_VARIABLE
 from momantu_bt.world import WorldError
 
 PATH = world_path("four_rooms")
