@@ -14,6 +14,7 @@ from momantu_bt.robots.cache import keep_urdf
 from momantu_bt.robots.errors import PartError
 from momantu_bt.robots.inertia import inertia_remarks
 from momantu_bt.robots.joining import KEPT, VIRTUAL_JOINTS, Joining
+from momantu_bt.robots.limits import complete_limits
 from momantu_bt.robots.meshes import locate_meshes, replace_meshes, users_folder, write_paths
 from momantu_bt.robots.naming import add_namespace
 from momantu_bt.robots.parts import LoadedPart, load_part, shown
@@ -50,8 +51,8 @@ def assemble(robot: RobotFile, folder: Path) -> Assembled:
     files = {name: path for part in parts for name, path in part.files.items()}
     meshes = _meshes(parts, folder)
     files |= {shown(path, folder): path for found in meshes for path in found.values()}
-    if _is_whole(robot, parts):
-        own = parts[0]
+    own, limits = parts[0], robot.joint_limits
+    if _is_whole(robot, parts) and not complete_limits(own.root.findall("joint"), limits):
         return Assembled(own.root, own.path, (own.path.parent,), files, joints)
     for part, found in zip(parts, meshes, strict=True):
         write_paths(part, found)
@@ -59,6 +60,7 @@ def assemble(robot: RobotFile, folder: Path) -> Assembled:
             add_namespace(part.root, part.source.namespace)
     joining = Joining(robot, parts)
     _raise(list(joining.join()))
+    complete_limits(joining.root.findall("joint"), limits)
     etree.cleanup_namespaces(joining.root)
     etree.indent(joining.root)
     path = keep_urdf(robot.name, etree.tostring(joining.root, encoding="utf-8"))
@@ -79,7 +81,7 @@ def load_parts(robot: RobotFile, folder: Path) -> list[LoadedPart]:
 
 
 def _is_whole(robot: RobotFile, parts: list[LoadedPart]) -> bool:
-    """Whether the first part's file is the whole robot as it is."""
+    """Whether the first part's file is the whole robot, with the limits that it has."""
     own, *others = parts
     drive = robot.base.drive
     changed = own.source.xacro or own.source.namespace or own.meshes

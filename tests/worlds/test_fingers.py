@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -89,6 +91,17 @@ def test_forces_are_the_urdfs_where_the_description_gives_none() -> None:
     assert [gains[f"arm_joint_{i}"].force for i in (1, 2, 6)] == [40.0, 80.0, 20.0]
     weak = robot.simulation.model_copy(update={"drives": {"arm_joint_2": JointGains(force=5.0)}})
     assert arm_gains(robot, weak, PHYSICS)["arm_joint_2"].force == 5.0
+
+
+def test_an_effort_of_0_limits_nothing(tmp_path: Path) -> None:
+    robot = kinova_jackal()
+    assert robot.simulation is not None
+    text = robot.urdf.read_text(encoding="utf-8")
+    assert 'effort="40"' in text
+    (tmp_path / "idle.urdf").write_text(text.replace('effort="40"', 'effort="0"'), encoding="utf-8")
+    idle = robot.model_copy(update={"urdf": tmp_path / "idle.urdf"})
+    gains = arm_gains(idle, robot.simulation, PHYSICS)
+    assert [gains[f"arm_joint_{i}"].force for i in (1, 2)] == [math.inf, 80.0]
 
 
 @pytest.mark.parametrize("closing", [1.0, -1.0])

@@ -59,11 +59,12 @@ def with_own(own: JointGains | None, usual: Gains) -> Gains:
 
 
 def _efforts(description: RobotDescription) -> dict[str, float]:
-    """The URDF's effort limits, by joint."""
+    """The URDF's effort limits, by joint; one of 0 is one that nobody gave."""
     root = etree.fromstring(description.urdf.read_bytes())
     efforts: dict[str, float] = {}
     for joint in root.findall("joint"):
         limit = joint.find("limit")
-        if limit is not None and limit.get("effort") is not None:
-            efforts[str(joint.get("name"))] = float(str(limit.get("effort")))
+        effort = 0.0 if limit is None else float(limit.get("effort", "0"))
+        if effort > 0.0:
+            efforts[str(joint.get("name"))] = effort
     return efforts
