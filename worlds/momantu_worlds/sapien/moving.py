@@ -29,7 +29,7 @@ class MovingBody:
     def cut(self, origin: Array, reach: float) -> Array:
         """Segments (k, 2, 2) in the map where the plane z = origin[2] cuts the body.
 
-        None when it lies wholly above or below, or farther away than `reach` from `origin`, m.
+        No segment where it lies wholly above or below, or farther than `reach` m from `origin`.
         """
         pose = self._entity.pose
         position = np.asarray(pose.p, dtype=np.float64)
