@@ -20,6 +20,9 @@ class Physics:
     velocity_iterations: int = 1
     contact_offset: float = 0.005
     """m; half the default of 0.02 and less, or resting things report contacts at a distance."""
+    persistent_contacts: bool = False
+    """Whether contact points are kept from step to step. Kept ones give energy to what rocks on its
+    edge: a bottle that is let go leaning by two degrees then rocks until it falls."""
     arm_stiffness: float = 1e4
     arm_damping: float = 1e3
     """Nm/rad and Nm s/rad (N/m, N s/m for the torso): below 1 mrad of lag, well damped."""

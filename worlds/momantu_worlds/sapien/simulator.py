@@ -25,11 +25,6 @@ from momantu_worlds.scenes.bodies import Body, Episode
 START_POSE = "home"
 """The named pose in which an episode begins."""
 
-ANGULAR_DAMPING = 0.05
-"""1/s; PhysX's own."""
-LYING_DAMPING = 5.0
-"""1/s; without rolling resistance a lying cylinder starts to roll from the solver's noise alone."""
-
 
 class Simulator:
     """Physics, robot and ground truth of one episode.
@@ -134,17 +129,13 @@ class Simulator:
         self.truth.forget(name)
         self.scene.remove_entity(addition.entity)
 
-    def put(self, name: str, map_from_body: Transform, *, lying: bool = False) -> None:
-        """Set a loose body somewhere else, at rest.
-
-        lying: it lies on its round side, and loses its spin as a thing on a real table does.
-        """
+    def put(self, name: str, map_from_body: Transform) -> None:
+        """Set a loose body somewhere else, at rest."""
         entity = self.truth.entity(name)
         entity.set_pose(pose_of(map_from_body))
         part = entity.find_component_by_type(sapien.physx.PhysxRigidDynamicComponent)
         part.set_linear_velocity([0.0, 0.0, 0.0])
         part.set_angular_velocity([0.0, 0.0, 0.0])
-        part.set_angular_damping(LYING_DAMPING if lying else ANGULAR_DAMPING)
         part.wake_up()
 
     def state_bytes(self) -> bytes:
@@ -169,6 +160,7 @@ def _simulation_of(description: RobotDescription) -> SimulationModel:
 
 def _new_scene(physics: Physics, render: bool) -> Any:
     """A scene with our settings, which SAPIEN keeps globally: they are set before each build."""
+    sapien.physx.set_scene_config(enable_pcm=physics.persistent_contacts)
     body = sapien.physx.PhysxBodyConfig()
     body.solver_position_iterations = physics.position_iterations
     body.solver_velocity_iterations = physics.velocity_iterations

@@ -36,7 +36,7 @@ class KnockedOver:
         for i in range(DIRECTIONS):
             pose = self._tipped(top, start + 2 * math.pi * i / DIRECTIONS)
             if self._free(top, pose):
-                self._stage.move_item(pose, lying=True)
+                self._stage.move_item(pose)
                 return
         raise FaultError(
             f"{self._fault.name}: {self._stage.goal.item} has no room to lie on {top.name}"

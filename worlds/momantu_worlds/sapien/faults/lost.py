@@ -41,7 +41,7 @@ class Lost:
             for i in range(DIRECTIONS):
                 pose = self._laid(distance, start + 2 * math.pi * i / DIRECTIONS)
                 if self._free(pose):
-                    stage.move_item(pose, lying=True)
+                    stage.move_item(pose)
                     return
         raise FaultError(f"{self._fault.name}: the floor around the robot is full")
 

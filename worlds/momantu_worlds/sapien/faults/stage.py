@@ -126,9 +126,9 @@ class Stage:
         )
         return [prism for prism in found if prism is not None]
 
-    def move_item(self, map_from_item: Transform, *, lying: bool = False) -> None:
+    def move_item(self, map_from_item: Transform) -> None:
         """Take the item elsewhere, at rest; it is not the robot that let go of it."""
-        self.simulator.put(self.goal.item, map_from_item, lying=lying)
+        self.simulator.put(self.goal.item, map_from_item)
         if self.referee is not None:
             self.referee.taken(self.goal.item)
 
