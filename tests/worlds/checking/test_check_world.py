@@ -1,6 +1,7 @@
 """A whole world checked: findings of several episodes are one, at their place in the file."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from momantu_worlds.checking.run import check_world
@@ -15,13 +16,24 @@ PATH = world_path("four_rooms")
 LINES = PATH.read_text(encoding="utf-8").splitlines()
 
 
-def test_four_rooms_has_one_crate_that_reaches_into_a_wall() -> None:
-    findings = check_world(PATH, lambda seed: draw_episode("four_rooms", seed), fetch(), range(3))
+def test_a_crate_that_reaches_into_a_wall_is_told_once_for_all_seeds(tmp_path: Path) -> None:
+    pushed = tmp_path / "pushed.yaml"
+    text = PATH.read_text(encoding="utf-8")
+    crate = "crate_corridor: {kind: crate, at: [-8.20, "
+    assert f"{crate}1.35," in text
+    pushed.write_text(text.replace(f"{crate}1.35,", f"{crate}1.40,"), encoding="utf-8")
+    findings = check_world(pushed, lambda seed: draw_episode(pushed, seed), fetch(), range(3))
     (finding,) = findings
-    assert (finding.severity, finding.code, finding.file) == ("warning", "overlap", PATH)
+    assert (finding.severity, finding.code, finding.file) == ("warning", "overlap", pushed)
     assert "crate_corridor overlaps wall_corridor_north_west by 3.8 cm" in finding.message
     assert LINES[finding.line - 1].startswith("  crate_corridor:")
     assert finding.seeds == (1, 2)
+
+
+@pytest.mark.parametrize("world", ["four_rooms", "small_flat", "warehouse"])
+def test_nothing_is_wrong_with_a_world_that_comes_along(world: str) -> None:
+    path = world_path(world)
+    assert check_world(path, lambda seed: draw_episode(world, seed), fetch(), range(6)) == []
 
 
 def test_the_worst_episode_words_a_finding_and_one_that_cannot_be_is_told() -> None:
