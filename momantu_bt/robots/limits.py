@@ -9,6 +9,7 @@ from lxml import etree
 from momantu_bt.robot_parts import JointLimit
 
 LIMITED = ("revolute", "prismatic")
+"""Types of joints that have a range."""
 
 
 def complete_limits(joints: Iterable[etree._Element], limits: Mapping[str, JointLimit]) -> bool:
