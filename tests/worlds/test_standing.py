@@ -28,7 +28,7 @@ TABLE = Body(
 CAN = (0.035, 0.13, 0.4, 6.0)
 BOTTLE = (0.03, 0.25, 0.6, 3.0)
 PEN_POT = (0.02, 0.1, 0.1, 5.0)
-"""Radius and height, m; mass, kg; by how far it leans at most, degrees: a quarter of falling, or less."""
+"""Radius and height, m; mass, kg; by how far it leans at most, degrees: a quarter of falling."""
 
 
 def cylinder(name: str, radius: float, height: float, mass: float, pose: Transform) -> Body:
