@@ -9,6 +9,7 @@ from lxml import etree
 
 from momantu_bt.descriptions.names import nearest
 from momantu_bt.robots.errors import PartError
+from momantu_bt.robots.limits import LIMITED
 from momantu_bt.robots.parts import LoadedPart, line_of
 
 JOINT_TYPES = ("fixed", "revolute", "continuous", "prismatic")
@@ -56,8 +57,24 @@ def _of_joint(joint: etree._Element, links: list[str], carried: dict[str, str]) 
     axis = None if kind == "fixed" else joint.find("axis")
     if axis is not None and _numbers(axis.get("xyz", "1 0 0")) == [0.0, 0.0, 0.0]:
         yield f"the joint {name!r} has the axis 0 0 0"
+    yield from _of_limit(joint, f"the joint {name!r}")
+
+
+def _of_limit(joint: etree._Element, said: str) -> Iterator[str]:
+    limit = joint.find("limit")
+    if limit is None:
+        return
+    numbers = {}
     for attribute in ("lower", "upper", "velocity", "effort"):
-        yield from _unreadable(joint.find("limit"), attribute, 1, f"the joint {name!r}")
+        yield from _unreadable(limit, attribute, 1, said)
+        numbers[attribute] = next(iter(_numbers(limit.get(attribute, "0"))), 0.0)
+    low, high = numbers["lower"], numbers["upper"]
+    if joint.get("type") in LIMITED and low > high:
+        yield f"{said} goes from lower={low:g} to upper={high:g}; lower must not be above upper"
+    for attribute in ("velocity", "effort"):
+        if numbers[attribute] < 0.0:
+            value = f"{numbers[attribute]:g}"
+            yield f"{said} has the limit {attribute}={value}; write it without the sign"
 
 
 def _of_link(link: etree._Element) -> Iterator[str]:

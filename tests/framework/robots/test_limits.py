@@ -21,7 +21,6 @@ EMPTY = {
     "none": "",
     "no ends": '<limit velocity="1" effort="50"/>',
     "from 0 to 0": '<limit lower="0" upper="0" velocity="1" effort="50"/>',
-    "the wrong way round": '<limit lower="1" upper="-1" velocity="1" effort="50"/>',
 }
 GIVEN = JointLimit(lower=-1.0, upper=0.5, velocity=0.7, acceleration=1.0)
 ENDLESS = JointLimit(velocity=0.7, acceleration=1.0)

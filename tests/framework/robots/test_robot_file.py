@@ -106,6 +106,15 @@ URDF_WRONG: list[tuple[str, tuple[str, str], str]] = [
         "box whose size is not above 0",
     ),
     ("arm", ('<axis xyz="0 0 1"/>', '<axis xyz="0 0 0"/>'), "'turn' has the axis 0 0 0"),
+    (
+        "arm",
+        ('lower="-2" upper="2"', 'lower="2" upper="-2"'),
+        "'turn' goes from lower=2 to upper=-2; lower must not be above upper",
+    ),
+    ("arm", ('lower="-2" upper="2" ', 'lower="1" '), "from lower=1 to upper=0; lower must not"),
+    ("arm", ('lower="-2"', 'lower="low"'), "limit has lower='low'; expected a number"),
+    ("arm", ('velocity="1" effort="50"/>', 'velocity="-1"/>'), "the limit velocity=-1; write it"),
+    ("arm", ('effort="50"', 'effort="-50"'), "the limit effort=-50; write it without"),
     ("arm", ("${size / 2}", "${sise / 2}"), "xacro cannot expand .*arm.urdf.xacro: .*sise"),
     (
         "arm",
@@ -127,6 +136,10 @@ def test_a_mistake_in_a_urdf_is_told_with_its_file(
 ) -> None:
     with pytest.raises(RobotFileError, match=words):
         read_robot(carter(**{part: change}))
+
+
+def test_what_programs_write_for_a_joint_without_ends_is_no_mistake(carter: Write) -> None:
+    read_robot(carter(arm=('<limit velocity="1"', '<limit lower="0" upper="-1" velocity="1"')))
 
 
 def test_links_in_a_ring_are_no_tree(carter: Write) -> None:
