@@ -17,6 +17,7 @@ import typer
 import momantu_bt.cli.threads  # noqa: F401 - before numpy, which the next imports load
 from momantu_bt import __version__, plugins
 from momantu_bt.cli.subverbs import add_command, with_subverbs
+from momantu_bt.cli.usage import usage_message
 from momantu_bt.world import WorldError
 
 EXIT_OK = 0
@@ -131,9 +132,9 @@ def _explain(error: Exception) -> int:
         return _say(str(error), EXIT_WRONG_INPUT)
     if isinstance(error, WorldError):
         return _say(str(error), EXIT_NO_WORLD)
-    usage = getattr(error, "format_message", None)
+    usage = usage_message(error)
     if usage is not None:
-        return _say(f"{usage()} See momantu-bt --help.", EXIT_WRONG_INPUT)
+        return _say(usage, EXIT_WRONG_INPUT)
     if os.environ.get(TRACEBACK):
         raise error
     return _say(

@@ -66,6 +66,13 @@ def test_help_of_a_verb_has_examples_on_lines_of_their_own(
         (["check", "nowhere.yaml"], "there is no file nowhere.yaml"),
         (["show", "bring_objct"], "did you mean bring_object?"),
         (["skills", "show", "navgate"], "did you mean 'navigate'?"),
+        (["worlds", "four_rooms"], "knows check, "),
+        (["worlds", "four_rooms"], " To see one: momantu-bt worlds show four_rooms. See "),
+        (["robots", "chek", "x"], "Did you mean 'check'"),
+        (["run", "--sede", "3", "x"], "--sede (Possible options: --seed, "),
+        (["run", "--sede", "3", "x"], ". See momantu-bt run --help."),
+        (["robots", "show"], "Missing argument 'name'. See momantu-bt robots show --help."),
+        (["robots", "show", "a", "b"], "(b). See momantu-bt robots show --help."),
     ],
 )
 def test_wrong_arguments(
