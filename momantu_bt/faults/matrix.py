@@ -59,6 +59,8 @@ def rows_like(patterns: str) -> tuple[Row, ...]:
     for pattern in wanted:
         if pattern != "all" and not any(fnmatchcase(name, pattern) for name in KINDS):
             hint = valid_names(pattern, KINDS, "faults")
+            if own := [name for name in KINDS if name.startswith(f"{pattern}.")]:
+                hint = f"{pattern}.* are {', '.join(own)}"
             raise FaultError(f"no fault is called {pattern!r}; {hint}")
     return tuple(
         row for row in rows() if any(p == "all" or fnmatchcase(row.kind.name, p) for p in wanted)

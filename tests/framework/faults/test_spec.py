@@ -132,6 +132,8 @@ def test_rows_by_pattern():
     }
     with pytest.raises(FaultError, match=r"did you mean camera\.dead"):
         rows_like("camera.ded")
+    with pytest.raises(FaultError, match=r"laser\.\* are laser.dead, laser.stuck, laser.blocked"):
+        rows_like("camera.dead, laser")
 
 
 @pytest.mark.parametrize(
