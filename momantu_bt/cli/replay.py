@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -89,8 +90,11 @@ def _chosen(timeline: Timeline, at: float | None, node: str | None, failure: int
     if failure is not None:
         found = failures(timeline.recording)
         if not 1 <= abs(failure) <= len(found):
-            raise SeekError(f"there is no failure {failure}; the record has {len(found)}")
+            counted = f"{len(found)}; 1 is the first, -1 the last" if found else "none"
+            raise SeekError(f"there is no failure {failure}; the record has {counted}")
         return found[failure - 1 if failure > 0 else failure].index
+    if at is not None and math.isnan(at):
+        raise SeekError("nan is no time; write seconds, such as 42.5")
     start = -1 if at is None else timeline.at(at)
     if node is None:
         return len(timeline) - 1 if at is None else start

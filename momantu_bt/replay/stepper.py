@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 
 from momantu_bt.replay.moment import Moment
@@ -183,6 +184,10 @@ class Stepper:
             self._to_node(following, "no later change of")
             return
         try:
-            self._go(self.timeline.at(float(typed.removesuffix("s"))))
+            time = float(typed.removesuffix("s"))
         except ValueError:
+            time = math.nan
+        if math.isnan(time):
             self.said = f"{typed!r} is no time; write seconds, such as 42.5"
+        else:
+            self._go(self.timeline.at(time))
