@@ -65,6 +65,9 @@ class _Notes:
     def all(self) -> tuple[str, ...]:
         if not self.missing:
             return tuple(self.lines)
+        if len(self.missing) == 1:
+            said = f"the collision mesh {self.missing[0]} was not found and is left out: its link "
+            return (*self.lines, f"{said}has no shape until the file lies where the URDF says")
         names = ", ".join(self.missing[:3]) + (", …" if len(self.missing) > 3 else "")
         return (
             *self.lines,
