@@ -74,7 +74,7 @@ def _of_limit(joint: etree._Element, said: str) -> Iterator[str]:
     for attribute in ("velocity", "effort"):
         if numbers[attribute] < 0.0:
             value = f"{numbers[attribute]:g}"
-            yield f"{said} has the limit {attribute}={value}; write it without the sign"
+            yield f"{said} has the limit {attribute}={value}; write one above 0, or 0 for none"
 
 
 def _of_link(link: etree._Element) -> Iterator[str]:

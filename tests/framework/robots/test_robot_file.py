@@ -113,8 +113,12 @@ URDF_WRONG: list[tuple[str, tuple[str, str], str]] = [
     ),
     ("arm", ('lower="-2" upper="2" ', 'lower="1" '), "from lower=1 to upper=0; lower must not"),
     ("arm", ('lower="-2"', 'lower="low"'), "limit has lower='low'; expected a number"),
-    ("arm", ('velocity="1" effort="50"/>', 'velocity="-1"/>'), "the limit velocity=-1; write it"),
-    ("arm", ('effort="50"', 'effort="-50"'), "the limit effort=-50; write it without"),
+    (
+        "arm",
+        ('velocity="1" effort="50"/>', 'velocity="-1"/>'),
+        "the limit velocity=-1; write one above 0",
+    ),
+    ("arm", ('effort="50"', 'effort="-50"'), "the limit effort=-50; write one above 0"),
     ("arm", ("${size / 2}", "${sise / 2}"), "xacro cannot expand .*arm.urdf.xacro: .*sise"),
     (
         "arm",
