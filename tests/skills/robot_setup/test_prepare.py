@@ -18,10 +18,8 @@ BOX = '<collision><geometry><box size="1 1 1"/></geometry></collision>'
 def given(tmp_path: Path) -> Given:
     """What becomes of a URDF of two links, `a` carrying `b`."""
 
-    def make(
-        kind: str = "revolute", limit: str = "", shapes: str = BOX, name: str = "r.urdf"
-    ) -> Prepared:
-        source, folder = tmp_path / name, tmp_path / "cleaned"
+    def make(kind: str = "revolute", limit: str = "", shapes: str = BOX) -> Prepared:
+        source, folder = tmp_path / "r.urdf", tmp_path / "cleaned"
         folder.mkdir(exist_ok=True)
         joint = f'<joint name="j" type="{kind}"><parent link="a"/><child link="b"/>{limit}</joint>'
         links = f'<link name="a">{shapes}</link><link name="b"/>'
