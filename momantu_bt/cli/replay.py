@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -67,7 +66,7 @@ def replay(
     chosen = (at, node, failure) != (None, None, None)
     try:
         index = _chosen(timeline, at, node, failure)
-    except SeekError as error:
+    except (SeekError, ValueError) as error:
         complain(error)
         return EXIT_WRONG_ARGUMENTS
     if chosen or json_:
@@ -93,8 +92,6 @@ def _chosen(timeline: Timeline, at: float | None, node: str | None, failure: int
             counted = f"{len(found)}; 1 is the first, -1 the last" if found else "none"
             raise SeekError(f"there is no failure {failure}; the record has {counted}")
         return found[failure - 1 if failure > 0 else failure].index
-    if at is not None and math.isnan(at):
-        raise SeekError("nan is no time; write seconds, such as 42.5")
     start = -1 if at is None else timeline.at(at)
     if node is None:
         return len(timeline) - 1 if at is None else start

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 
 from momantu_bt.replay.moment import Moment
@@ -184,10 +183,6 @@ class Stepper:
             self._to_node(following, "no later change of")
             return
         try:
-            time = float(typed.removesuffix("s"))
+            self._go(self.timeline.at(float(typed.removesuffix("s"))))
         except ValueError:
-            time = math.nan
-        if math.isnan(time):
             self.said = f"{typed!r} is no time; write seconds, such as 42.5"
-        else:
-            self._go(self.timeline.at(time))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from bisect import bisect_right
 from functools import lru_cache
 
@@ -38,7 +39,13 @@ class Timeline:
         return self._built(range(len(self))[index])
 
     def at(self, time: float) -> int:
-        """The index of the last tick that is not later than a time, s; the first one's before."""
+        """The index of the last tick that is not later than a time, s; the first one's before.
+
+        Raises:
+            ValueError: the time is not a number.
+        """
+        if math.isnan(time):
+            raise ValueError("nan is no time; write seconds, such as 42.5")
         return max(0, bisect_right(self.times, time + _SLACK) - 1)
 
     def _build(self, index: int) -> Moment:
