@@ -5,9 +5,9 @@
     python benchmarks/fingerprints.py --out mine.json      # write a table instead of comparing
     python benchmarks/fingerprints.py --against mine.json  # compare with a table of your own
 
-The table is fingerprints.json beside this file. A fingerprint holds for one version of the numerical
-libraries on one kind of processor: where the table does not fit your machine, write your own from
-the commit before your change. A change of structure must leave every line as it was.
+The table is fingerprints.json beside this file. A fingerprint holds for one version of the
+numerical libraries on one kind of processor: where the table does not fit your machine, write your
+own from the commit before your change. A change of structure must leave every line as it was.
 """
 
 from __future__ import annotations

@@ -1,0 +1,41 @@
+"""Exit codes, and the base of every error that a person is told.
+
+The command line prints such an error without a stack trace and ends with its exit code; only `main`
+does so. Anything else that is raised is a mistake in the program: exit code INTERNAL.
+"""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from typing import ClassVar
+
+
+class ExitCode(IntEnum):
+    """What a command line ends with."""
+
+    SUCCESS = 0
+    """The tree succeeded and no referee denies it; the command did what was asked."""
+    FAILURE = 1
+    """The tree failed, the referee denies its success, or a check found something wrong."""
+    WRONG_INPUT = 2
+    """A file or an argument is wrong; nothing was started."""
+    NO_WORLD = 3
+    """The world could not start."""
+    INTERNAL = 4
+    """A mistake in the program."""
+    INTERRUPTED = 130
+    """Ctrl-C or SIGTERM."""
+
+
+class MomantuError(Exception):
+    """Something that a person has to mend: the message says where, what was expected, what to do.
+
+    exit_code: what the command line ends with when this error reaches it.
+    hint: one more line, printed below the message.
+    """
+
+    exit_code: ClassVar[ExitCode] = ExitCode.WRONG_INPUT
+
+    def __init__(self, *arguments: object, hint: str | None = None) -> None:
+        super().__init__(*arguments)
+        self.hint = hint

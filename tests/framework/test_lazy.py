@@ -1,0 +1,78 @@
+import importlib
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from momantu_bt.lazy import lazily
+
+
+@pytest.fixture
+def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """A package `slow_tools` with modules that note in `sys` when they run."""
+    folder = tmp_path / "slow_tools"
+    folder.mkdir()
+    (folder / "__init__.py").write_text("")
+    (folder / "saw.py").write_text(
+        "import sys\nsys.sawn = getattr(sys, 'sawn', 0) + 1\n"
+        "from slow_tools import blade\nTEETH = 24\n"
+    )
+    (folder / "blade.py").write_text("import sys\nsys.blades = True\n")
+    (folder / "broken.py").write_text("raise RuntimeError('no blade')\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr(sys, "sawn", 0, raising=False)
+    monkeypatch.setattr(sys, "blades", False, raising=False)
+    yield folder
+    for name in [name for name in sys.modules if name.startswith("slow_tools")]:
+        del sys.modules[name]
+
+
+def test_a_module_runs_once_and_when_it_is_first_used(package: Path) -> None:
+    with lazily():
+        from slow_tools import saw
+    assert sys.sawn == 0  # type: ignore[attr-defined]
+    assert saw.__name__ == "slow_tools.saw"
+    assert saw.__file__ == str(package / "saw.py")
+    assert sys.sawn == 0  # type: ignore[attr-defined]
+    assert saw.TEETH == 24
+    assert saw.TEETH + len(saw.__dict__) > 24
+    assert sys.sawn == 1  # type: ignore[attr-defined]
+
+
+def test_what_a_lazy_module_imports_is_loaded_with_it(package: Path) -> None:
+    with lazily():
+        from slow_tools import saw
+
+        assert saw.TEETH == 24
+        assert sys.blades is True  # type: ignore[attr-defined]
+
+
+def test_everybody_gets_the_same_module(package: Path) -> None:
+    with lazily():
+        from slow_tools import saw
+    again = importlib.import_module("slow_tools.saw")
+    assert again is saw
+    assert again.TEETH == 24
+
+
+def test_a_missing_module_is_told_at_once() -> None:
+    with pytest.raises(ModuleNotFoundError, match="no_such_module"), lazily():
+        import no_such_module  # type: ignore[import-not-found]  # noqa: F401
+
+
+def test_an_error_inside_is_raised_at_each_use(package: Path) -> None:
+    with lazily():
+        from slow_tools import broken
+    for _ in range(2):
+        with pytest.raises(RuntimeError, match="no blade"):
+            _ = broken.ANYTHING
+
+
+def test_imports_after_the_block_are_as_usual(package: Path) -> None:
+    finders = list(sys.meta_path)
+    with lazily():
+        pass
+    assert sys.meta_path == finders
+    importlib.import_module("slow_tools.saw")
+    assert sys.sawn == 1  # type: ignore[attr-defined]
