@@ -19,7 +19,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from momantu_bt.tree.check import check
+from momantu_bt.tree.check.checker import check
 from momantu_bt.tree.load import load, read_file
 from momantu_bt.tree.registry import Registry
 

@@ -6,7 +6,7 @@ import json
 import re
 from pathlib import Path
 
-from momantu_bt.tree.lookup import bundled
+from momantu_bt.tree.files.lookup import bundled
 
 _ROOT = Path(__file__).resolve().parent.parent.parent
 _CASES = _ROOT / "tests" / "framework" / "engine" / "conformance_cases.jsonl"

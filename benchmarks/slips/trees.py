@@ -10,15 +10,15 @@ from pathlib import Path
 from momantu_bt.messages import VALUE_TYPES
 from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue import SUBTREE, CodeText
-from momantu_bt.tree.check import check
-from momantu_bt.tree.lookup import bundled
+from momantu_bt.tree.check.checker import check
+from momantu_bt.tree.check.signatures import Context
+from momantu_bt.tree.files.lookup import bundled
+from momantu_bt.tree.files.xml.format import read as read_xml
+from momantu_bt.tree.files.xml.writer import write as write_xml
+from momantu_bt.tree.files.yaml.format import read as read_yaml
 from momantu_bt.tree.model import Document, Node, Place
 from momantu_bt.tree.problems import Problem, Problems, TreeError
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.signatures import Context
-from momantu_bt.tree.xml.format import read as read_xml
-from momantu_bt.tree.xml.writer import write as write_xml
-from momantu_bt.tree.yaml.format import read as read_yaml
 from slips.xml import XML_SLIPS, Slip
 from slips.yaml import SLIPS
 

@@ -159,7 +159,7 @@ def _refusals() -> tuple[type[Exception], ...]:
     from momantu_bt.engine.services import ServiceCycleError
     from momantu_bt.files import OutputError
     from momantu_bt.plugins import PluginClash, PluginError
-    from momantu_bt.tree.lookup import TreeNotFound
+    from momantu_bt.tree.files.lookup import TreeNotFound
     from momantu_bt.tree.problems import TreeError
     from momantu_bt.world import WorldError
 

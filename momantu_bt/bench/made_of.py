@@ -25,10 +25,10 @@ from momantu_bt.engine.build import skills_in
 from momantu_bt.plugin_files import by_path
 from momantu_bt.record.versions import LIBRARIES
 from momantu_bt.robots.meshes import MESHES
+from momantu_bt.tree.check.named_world import NO_WORLD, world_of
+from momantu_bt.tree.files.settings import Given
 from momantu_bt.tree.model import Document
-from momantu_bt.tree.named_world import NO_WORLD, world_of
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.settings import Given
 
 DIGITS = 16
 _CODE = "the code of "

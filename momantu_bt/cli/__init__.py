@@ -120,7 +120,7 @@ def _never() -> None:
 def _explain(error: Exception) -> int:
     """Say what went wrong in one place, without a stack trace, and choose the exit code."""
     from momantu_bt.descriptions.reading import DescriptionError
-    from momantu_bt.tree.lookup import TreeNotFound
+    from momantu_bt.tree.files.lookup import TreeNotFound
     from momantu_bt.tree.problems import TreeError
 
     if isinstance(error, TreeError):

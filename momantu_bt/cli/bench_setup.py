@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from momantu_bt.bench.plan import Plan
     from momantu_bt.bench.store import Store
     from momantu_bt.faults.matrix import Row as Demand
+    from momantu_bt.tree.files.settings import Given
     from momantu_bt.tree.model import Document
-    from momantu_bt.tree.settings import Given
 
 EXIT_OK, EXIT_INCOMPLETE, EXIT_WRONG_ARGUMENTS, EXIT_INTERRUPTED = 0, 1, 2, 130
 ENGINES = ("local", "ray")
@@ -54,9 +54,9 @@ def plan_of(tree: str, seeds: Sequence[int], how: HowToRun) -> tuple[Plan, Docum
     from momantu_bt.bench.plan import Plan, Wanted
     from momantu_bt.plugin_files import absolute, by_path
     from momantu_bt.plugins import ROBOTS, WORLDS
+    from momantu_bt.tree.check.named_world import world_of
+    from momantu_bt.tree.files.lookup import find
     from momantu_bt.tree.load import load
-    from momantu_bt.tree.lookup import find
-    from momantu_bt.tree.named_world import world_of
     from momantu_bt.tree.registry import Registry
 
     registry = Registry.installed()
@@ -101,9 +101,9 @@ def check_faults(faults: Sequence[str], document: Document, how: HowToRun) -> No
     from momantu_bt.engine.build import skills_in
     from momantu_bt.faults.spec import parse_fault
     from momantu_bt.faults.stage import plan
-    from momantu_bt.tree.named_world import world_of
+    from momantu_bt.tree.check.named_world import world_of
     from momantu_bt.tree.registry import Registry
-    from momantu_bt.tree.substitution import Substitution
+    from momantu_bt.tree.substitute.substitution import Substitution
 
     having = Registry.installed().skills
     skills = {name: having[name] for name in skills_in(document)}
@@ -115,7 +115,7 @@ def check_faults(faults: Sequence[str], document: Document, how: HowToRun) -> No
 def _check_world(document: Document, world: str | None, registry: Any) -> None:
     from momantu_bt.engine.build import skills_in
     from momantu_bt.engine.launch import LaunchError
-    from momantu_bt.tree.named_world import world_of
+    from momantu_bt.tree.check.named_world import world_of
 
     skills = skills_in(document)
     if skills and world_of(document, world) is None:

@@ -27,10 +27,10 @@ from momantu_bt.messages import plain
 from momantu_bt.record.lines import tree_lines
 from momantu_bt.skill import MISSING
 from momantu_bt.tree.model import Document, Node
-from momantu_bt.tree.printing import value_text
 from momantu_bt.tree.problems import nearest, valid_names
 from momantu_bt.tree.script.nodes import part
-from momantu_bt.tree.substitution import Substitution, names, reached
+from momantu_bt.tree.show.printing import value_text
+from momantu_bt.tree.substitute.substitution import Substitution, names, reached
 
 PROMPT = "break> "
 COMMANDS = {

@@ -9,10 +9,10 @@ from typing import Annotated, Any
 
 import typer
 
-from momantu_bt.tree.codes import UnknownCode, codes, explanation
 from momantu_bt.tree.load import Checked, TreeError, TreeNotFound, load
 from momantu_bt.tree.problems import Problem, Severity, show, valid_names
-from momantu_bt.tree.sarif import sarif
+from momantu_bt.tree.show.problem_pages import UnknownCode, codes, explanation
+from momantu_bt.tree.show.sarif import sarif
 
 EXIT_WRONG_INPUT = 2
 MOST_SHOWN = 50

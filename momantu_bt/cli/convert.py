@@ -18,7 +18,7 @@ from momantu_bt.tree.convert import (
     spelling_of,
     write,
 )
-from momantu_bt.tree.lookup import find
+from momantu_bt.tree.files.lookup import find
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.registry import Registry
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from momantu_bt.tree.settings import Given
+    from momantu_bt.tree.files.settings import Given
 
 
 def given_values(settings: Sequence[str], file: Path | None) -> Given:
@@ -18,8 +18,8 @@ def given_values(settings: Sequence[str], file: Path | None) -> Given:
         TreeNotFound, TreeError: the file cannot be read, or is no mapping.
     """
     from momantu_bt.engine.launch import LaunchError
+    from momantu_bt.tree.files.settings import Given
     from momantu_bt.tree.load import read_values
-    from momantu_bt.tree.settings import Given
 
     board = Given() if file is None else read_values(file)
     try:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from momantu_bt.fault import Fault
     from momantu_bt.record.report import Report
     from momantu_bt.tree.model import Document
-    from momantu_bt.tree.substitution import Substitution
+    from momantu_bt.tree.substitute.substitution import Substitution
 
 EXIT_WRONG_ARGUMENTS, EXIT_INTERRUPTED = 2, 130
 VIEW_PORT = 8080
@@ -156,7 +156,7 @@ def _run(
     from momantu_bt.engine.launch import Options, launch
     from momantu_bt.tree.load import load
     from momantu_bt.tree.registry import Registry
-    from momantu_bt.tree.substitution import Substitution, load_substitution
+    from momantu_bt.tree.substitute.substitution import Substitution, load_substitution
 
     registry = Registry.installed()
     board = given_values(settings, values)

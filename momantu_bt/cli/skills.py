@@ -16,7 +16,7 @@ from momantu_bt.cli.skills_schema import schema
 from momantu_bt.cli.skills_test import promises
 from momantu_bt.plugins import SKILLS, load
 from momantu_bt.skill import Skill
-from momantu_bt.tree.skill_page import as_data, as_text
+from momantu_bt.tree.show.skill_page import as_data, as_text
 
 skills = typer.Typer(rich_markup_mode=None, invoke_without_command=True)
 

@@ -10,7 +10,7 @@ import typer
 from momantu_bt import plugins
 from momantu_bt.files import OutputError, write_whole
 from momantu_bt.skill import Skill
-from momantu_bt.tree.skill_page import pages as pages_of
+from momantu_bt.tree.show.skill_page import pages as pages_of
 
 EXIT_WRONG_INPUT = 2
 

@@ -6,8 +6,8 @@ import typer
 
 from momantu_bt.plugins import PluginError
 from momantu_bt.skill import Skill
+from momantu_bt.tree.files.xml.palette import palette
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.xml.palette import palette
 
 
 def print_palette() -> None:

@@ -10,8 +10,8 @@ from momantu_bt.cli.schema_file import Out, put_schema
 from momantu_bt.plugins import ROBOTS, WORLDS, PluginError, load
 from momantu_bt.skill import Skill
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.schema import tree_schema
-from momantu_bt.tree.schema_values import Names
+from momantu_bt.tree.show.schema import tree_schema
+from momantu_bt.tree.show.schema_values import Names
 
 
 def schema(

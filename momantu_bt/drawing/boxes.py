@@ -10,7 +10,9 @@ from dataclasses import dataclass
 from momantu_bt.drawing.wires import Wire, wires
 from momantu_bt.tree.catalogue import BUILT_IN, SUBTREE
 from momantu_bt.tree.model import Document, Handler, Node, Tree
-from momantu_bt.tree.printing import (
+from momantu_bt.tree.problems import cells
+from momantu_bt.tree.registry import Registry
+from momantu_bt.tree.show.printing import (
     below,
     extra_texts,
     handler_text,
@@ -19,8 +21,6 @@ from momantu_bt.tree.printing import (
     title,
     unwrap,
 )
-from momantu_bt.tree.problems import cells
-from momantu_bt.tree.registry import Registry
 
 WIDEST = 56
 """Cells of a terminal that a line in a box takes at most; the rest is cut."""

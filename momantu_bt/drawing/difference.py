@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from momantu_bt.drawing.matching import Unit, match, plain, units
 from momantu_bt.tree.model import Document, Literal, PortValue, Tree
-from momantu_bt.tree.printing import heading, text, title, value_text
+from momantu_bt.tree.show.printing import heading, text, title, value_text
 
 SAME, ADDED, REMOVED, CHANGED = " ", "+", "-", "~"
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from momantu_bt.tree.model import Document, Handler, Literal, Node
-from momantu_bt.tree.printing import below, handler_text, unwrap
+from momantu_bt.tree.show.printing import below, handler_text, unwrap
 
 MOST_COMPARED = 250_000
 """Pairs of children that are compared with each other; longer lists are matched by equality."""

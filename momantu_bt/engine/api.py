@@ -15,7 +15,7 @@ from momantu_bt.record.report import Report
 from momantu_bt.robot import RobotDescription
 from momantu_bt.tree.load import load
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.substitution import Substitution, load_substitution
+from momantu_bt.tree.substitute.substitution import Substitution, load_substitution
 from momantu_bt.world import Site, World
 
 

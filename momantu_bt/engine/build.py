@@ -19,9 +19,9 @@ from momantu_bt.engine.ports import Reader, cell_of, inputs_of, outputs_of, read
 from momantu_bt.skill import Port, Skill
 from momantu_bt.tree.catalogue import AUTOREMAP, BUILT_IN, SUBTREE
 from momantu_bt.tree.model import Document, Literal, Node, PortValue, Reference, Tree
-from momantu_bt.tree.substitution import Substitution, reached
-from momantu_bt.tree.value_words import ConversionError
-from momantu_bt.tree.values import port_of
+from momantu_bt.tree.substitute.substitution import Substitution, reached
+from momantu_bt.tree.values.conversion import port_of
+from momantu_bt.tree.values.words import ConversionError
 
 MAX_DEPTH = 250
 """Nodes within nodes, subtrees counted; each costs two of Python's 1000 frames when ticked."""

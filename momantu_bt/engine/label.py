@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from momantu_bt.tree.model import Literal, Node, PortValue
-from momantu_bt.tree.printing import text
+from momantu_bt.tree.show.printing import text
 
 _SHORT = (str, int, float, bool)
 """Values that fit into a line; of others the wire's name is shown."""

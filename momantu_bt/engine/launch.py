@@ -29,13 +29,13 @@ from momantu_bt.record.report import ERROR, Report
 from momantu_bt.robot import Robot, RobotDescription
 from momantu_bt.service import Service
 from momantu_bt.skill import Skill
-from momantu_bt.tree.check import ROBOT_KEY
+from momantu_bt.tree.check.checker import ROBOT_KEY
+from momantu_bt.tree.check.named_world import world_of
 from momantu_bt.tree.model import Document
-from momantu_bt.tree.named_world import world_of
 from momantu_bt.tree.problems import valid_names
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.substitution import Substitution
-from momantu_bt.tree.values import natural
+from momantu_bt.tree.substitute.substitution import Substitution
+from momantu_bt.tree.values.conversion import natural
 from momantu_bt.world import World
 
 if TYPE_CHECKING:

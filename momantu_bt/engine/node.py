@@ -22,8 +22,8 @@ from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, S
 from momantu_bt.failure import FAILED, SCRIPT_ERROR, Failure, FailureValue
 from momantu_bt.tree.catalogue import BUILT_IN
 from momantu_bt.tree.model import Node
-from momantu_bt.tree.printing import text
 from momantu_bt.tree.script import ScriptError
+from momantu_bt.tree.show.printing import text
 
 PyTreesStatus: TypeAlias = py_trees.common.Status
 

@@ -10,8 +10,8 @@ from momantu_bt.failure import INPUT_MISSING, WRONG_TYPE, Failure
 from momantu_bt.skill import MISSING, Port
 from momantu_bt.tree.model import Literal, PortValue, Reference, Scope, Template
 from momantu_bt.tree.script import ScriptError
-from momantu_bt.tree.value_words import ConversionError
-from momantu_bt.tree.values import convert, part, render
+from momantu_bt.tree.values.conversion import convert, part, render
+from momantu_bt.tree.values.words import ConversionError
 
 Reader: TypeAlias = Callable[[], Any]
 

@@ -13,7 +13,7 @@ from momantu_bt.skill import Skill
 from momantu_bt.tree.catalogue import BUILT_IN, SUBTREE
 from momantu_bt.tree.model import Document, Node
 from momantu_bt.tree.problems import valid_names
-from momantu_bt.tree.substitution import Substitution, names, reached
+from momantu_bt.tree.substitute.substitution import Substitution, names, reached
 
 Skills: TypeAlias = Mapping[str, type[Skill]]
 

@@ -14,8 +14,8 @@ from momantu_bt.faults.phase import parse_phase
 from momantu_bt.skill import Port
 from momantu_bt.tree.problems import cells, valid_names
 from momantu_bt.tree.types import label
-from momantu_bt.tree.value_words import ConversionError
-from momantu_bt.tree.values import convert
+from momantu_bt.tree.values.conversion import convert
+from momantu_bt.tree.values.words import ConversionError
 
 FORM = "COMPONENT.MODE[@PHASE][:name=value,name=value]"
 _FOREVER = ("inf", "for good")

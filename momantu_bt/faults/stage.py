@@ -26,7 +26,7 @@ from momantu_bt.robot import Robot
 from momantu_bt.skill import Skill
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.problems import valid_names
-from momantu_bt.tree.substitution import Substitution
+from momantu_bt.tree.substitute.substitution import Substitution
 from momantu_bt.world import Site, World
 
 

@@ -11,8 +11,8 @@ from momantu_bt.engine.executor import Executor
 from momantu_bt.engine.node import TreeNode
 from momantu_bt.record.codec import dumps, to_json
 from momantu_bt.record.versions import versions
+from momantu_bt.tree.files.settings import SET
 from momantu_bt.tree.model import Document
-from momantu_bt.tree.settings import SET
 from momantu_bt.world import WorldTexts
 
 if TYPE_CHECKING:

@@ -20,9 +20,9 @@ from momantu_bt.record.recording import ChangeRecord, Recording, TickRecord
 from momantu_bt.replay.difference import NOTHING, Difference, first_difference, node_words
 from momantu_bt.replay.outside import RecordedOutside, Untold
 from momantu_bt.replay.rebuild import Rebuilt, rebuild
-from momantu_bt.tree.check import ROBOT_KEY
+from momantu_bt.tree.check.checker import ROBOT_KEY
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.values import natural
+from momantu_bt.tree.values.conversion import natural
 
 _SERVICES = "/service/"
 

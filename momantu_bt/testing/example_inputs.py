@@ -12,7 +12,7 @@ from momantu_bt.geometry import Pose, Pose2D, Transform
 from momantu_bt.messages import DetectedObject, ObjectClass, SupportPlane
 from momantu_bt.robot import RobotDescription
 from momantu_bt.skill import Port, Skill
-from momantu_bt.tree.skill_example import within
+from momantu_bt.tree.show.skill_example import within
 from momantu_bt.tree.types import is_union, origin, without_none
 from momantu_bt.world import Site
 

@@ -7,19 +7,19 @@ from dataclasses import fields, is_dataclass
 from enum import StrEnum
 from pathlib import Path
 
-from momantu_bt.tree.check_nodes import name_first_inputs
-from momantu_bt.tree.files import is_xml
+from momantu_bt.tree.check.nodes import name_first_inputs
+from momantu_bt.tree.check.signatures import Context
+from momantu_bt.tree.files.resolve import resolve
+from momantu_bt.tree.files.text import is_xml
+from momantu_bt.tree.files.xml import writer as xml_writer
+from momantu_bt.tree.files.xml.format import XmlSource
+from momantu_bt.tree.files.yaml import writer as yaml_writer
+from momantu_bt.tree.files.yaml.format import YamlSource
+from momantu_bt.tree.files.yaml.scalars import CannotWrite
 from momantu_bt.tree.load import read_file
 from momantu_bt.tree.model import Document, Node
 from momantu_bt.tree.problems import Problems, TreeError, errors
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.resolve import resolve
-from momantu_bt.tree.signatures import Context
-from momantu_bt.tree.xml import writer as xml_writer
-from momantu_bt.tree.xml.format import XmlSource
-from momantu_bt.tree.yaml import writer as yaml_writer
-from momantu_bt.tree.yaml.format import YamlSource
-from momantu_bt.tree.yaml.scalars import CannotWrite
 
 __all__ = [
     "CannotWrite",

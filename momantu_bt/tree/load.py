@@ -8,14 +8,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from momantu_bt.tree.check import check
-from momantu_bt.tree.files import read_text
-from momantu_bt.tree.includes import read_project
-from momantu_bt.tree.lookup import TreeNotFound, find
+from momantu_bt.tree.check.checker import check
+from momantu_bt.tree.files.includes import read_project
+from momantu_bt.tree.files.lookup import TreeNotFound, find
+from momantu_bt.tree.files.settings import Given
+from momantu_bt.tree.files.text import read_text
 from momantu_bt.tree.model import Document, Literal, Place, Reference, Template
 from momantu_bt.tree.problems import Problem, Problems, TreeError, errors, valid_names
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.settings import Given
 
 WORD = re.compile(r"[^\W\d]\w*")
 """What can be a key in a script."""

@@ -16,8 +16,8 @@ from momantu_bt.record.report import Report
 from momantu_bt.robot import Robot
 from momantu_bt.skill import MISSING, Run, Skill
 from momantu_bt.testing import ScriptedWorld
+from momantu_bt.tree.files.lookup import bundled
 from momantu_bt.tree.load import load
-from momantu_bt.tree.lookup import bundled
 from momantu_bt.tree.registry import Registry
 
 INSTALLED = Registry.installed()

@@ -10,8 +10,8 @@ import trimesh
 from momantu_bt import plugin_files, plugins
 from momantu_bt.bench.made_of import difference, made_of
 from momantu_bt.cli import main
+from momantu_bt.tree.check.named_world import world_of
 from momantu_bt.tree.load import load
-from momantu_bt.tree.named_world import world_of
 from momantu_bt.tree.registry import Registry
 
 TREE = "momantu_bt: 1\n{world}trees:\n  Main:\n    - navigate: home\n"

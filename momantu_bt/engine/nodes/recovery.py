@@ -27,7 +27,7 @@ from momantu_bt.engine.role import Role
 from momantu_bt.engine.status import FAILURE, RUNNING, SUCCESS, Status
 from momantu_bt.engine.tries import with_root_cause, with_tries
 from momantu_bt.failure import FailureValue
-from momantu_bt.tree.printing import text
+from momantu_bt.tree.show.printing import text
 
 ANY = "any"
 """The handler of every code that no other handler names."""

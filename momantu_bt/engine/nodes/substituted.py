@@ -10,7 +10,7 @@ from momantu_bt.engine.node import TreeNode
 from momantu_bt.engine.role import Role
 from momantu_bt.engine.session import CLOCK_SLACK
 from momantu_bt.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS, Status
-from momantu_bt.tree.substitution import Result
+from momantu_bt.tree.substitute.substitution import Result
 
 
 class Substituted(TreeNode):

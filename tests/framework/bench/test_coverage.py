@@ -15,8 +15,8 @@ from momantu_bt.cli import main
 from momantu_bt.engine.build import build
 from momantu_bt.engine.context import Body, RunContext
 from momantu_bt.testing import ManualClock
+from momantu_bt.tree.files.lookup import bundled
 from momantu_bt.tree.load import load, read_file
-from momantu_bt.tree.lookup import bundled
 from momantu_bt.tree.registry import Registry
 
 TREE = """momantu_bt: 1

@@ -10,7 +10,7 @@ import pytest
 from momantu_bt import plugins
 from momantu_bt.cli import main
 from momantu_bt.skill import Skill
-from momantu_bt.tree.lookup import bundled
+from momantu_bt.tree.files.lookup import bundled
 from momantu_bt.tree.types import label
 
 Out = pytest.CaptureFixture[str]

@@ -8,7 +8,7 @@ import pytest
 
 from momantu_bt.cli import main
 from momantu_bt.record.reader import read_record
-from momantu_bt.tree.settings import setting
+from momantu_bt.tree.files.settings import setting
 
 TREE = """
 momantu_bt: 1

@@ -5,9 +5,9 @@ from collections.abc import Callable
 import pytest
 from hypothesis import strategies as st
 
+from momantu_bt.tree.files.yaml.format import read
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.yaml.format import read
 
 EVIL = "\"<&>' \\ ]]> -->|x| #35; `b` %%{init}%% 日本 }{"
 """A text with what means something in one of the languages that pictures are written in."""

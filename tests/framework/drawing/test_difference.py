@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from momantu_bt.drawing import matching
 from momantu_bt.drawing.difference import Marked, difference
+from momantu_bt.tree.files.lookup import bundled
 from momantu_bt.tree.load import load, read_file
-from momantu_bt.tree.lookup import bundled
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.registry import Registry
 

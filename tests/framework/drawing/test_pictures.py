@@ -16,8 +16,8 @@ from momantu_bt.drawing.dot import dot, quoted
 from momantu_bt.drawing.layout import CELL, PAD, Placed, outlines, wrapped
 from momantu_bt.drawing.mermaid import escaped, mermaid
 from momantu_bt.drawing.svg import svg
+from momantu_bt.tree.files.lookup import bundled
 from momantu_bt.tree.load import load
-from momantu_bt.tree.lookup import bundled
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.registry import Registry
 

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from momantu_bt.drawing.wires import Wire, wire_lines, wires
+from momantu_bt.tree.files.lookup import bundled
 from momantu_bt.tree.load import load
-from momantu_bt.tree.lookup import bundled
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.registry import Registry
 

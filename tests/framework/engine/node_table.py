@@ -24,8 +24,8 @@ from momantu_bt.engine.ports import inputs_of
 from momantu_bt.geometry import Pose2D
 from momantu_bt.skill import MISSING
 from momantu_bt.tree.catalogue import BUILT_IN
+from momantu_bt.tree.files.xml.values import attribute_value
 from momantu_bt.tree.model import Literal, Node, Place, PortValue, Reference
-from momantu_bt.tree.xml.values import attribute_value
 from tests.framework.engine.conftest import Bench, Leaf
 
 _ROW = re.compile(r"(?P<head>[^\[]+)\[(?P<kids>[^\]]*)\] (?P<trace>.+)")

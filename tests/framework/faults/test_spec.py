@@ -21,7 +21,7 @@ from momantu_bt.plugins import load as load_plugin
 from momantu_bt.skill import In, Out, Run, Skill
 from momantu_bt.tree.load import load
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.substitution import Substitution
+from momantu_bt.tree.substitute.substitution import Substitution
 
 NOTHING = Substitution()
 

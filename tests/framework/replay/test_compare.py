@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from momantu_bt.failure import FailureValue
 from momantu_bt.replay.compare import compare
 from momantu_bt.replay.difference import same, value_words
-from momantu_bt.tree.settings import Given
+from momantu_bt.tree.files.settings import Given
 
 TREE = """
 values: {letters: RRS, far: 6}

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from momantu_bt.tree.check_trees import MAX_NESTING
+from momantu_bt.tree.check.trees import MAX_NESTING
 from momantu_bt.tree.problems import Problem, Severity
 
 Expect = Callable[..., None]

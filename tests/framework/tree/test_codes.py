@@ -10,14 +10,14 @@ from typing import Any
 import pytest
 
 from momantu_bt.plugins import PluginError
-from momantu_bt.tree.check import check
-from momantu_bt.tree.codes import UnknownCode, codes, explanation, pages_folder
+from momantu_bt.tree.check.checker import check
+from momantu_bt.tree.files.xml import format as xml_format
+from momantu_bt.tree.files.yaml.format import read
 from momantu_bt.tree.load import read_file
 from momantu_bt.tree.problems import Problem, Severity, TreeError
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.substitution import load_substitution
-from momantu_bt.tree.xml import format as xml_format
-from momantu_bt.tree.yaml.format import read
+from momantu_bt.tree.show.problem_pages import UnknownCode, codes, explanation, pages_folder
+from momantu_bt.tree.substitute.substitution import load_substitution
 from momantu_bt.world import WorldError
 
 MARK = "<- wrong"

@@ -7,10 +7,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from momantu_bt.tree.catalogue import BUILT_IN, CONDITIONS
+from momantu_bt.tree.files.yaml.format import read
 from momantu_bt.tree.model import Document, Literal, Place, Reference, Scope, Template
-from momantu_bt.tree.printing import lines, value_text
 from momantu_bt.tree.problems import Problem, Severity, nearest, show, valid_names, within
-from momantu_bt.tree.yaml.format import read
+from momantu_bt.tree.show.printing import lines, value_text
 
 ODD = st.text(alphabet="a é日本😀\u0301ｱ\t$:{}-", max_size=30)
 

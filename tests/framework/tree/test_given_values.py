@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from momantu_bt.tree.files.settings import SET, Given
 from momantu_bt.tree.load import TreeError, load, read_values
 from momantu_bt.tree.problems import lines_of, show
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.settings import SET, Given
 
 NODES = "[{wait: $pause}, {succeed: , retry: $n}]"
 TREE = f"momantu_bt: 1\nvalues: {{pause: 1 s, n: 2}}\ntrees:\n  Main: {NODES}\n"

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from momantu_bt.tree import includes
-from momantu_bt.tree.check import check
-from momantu_bt.tree.includes import project_folder
+from momantu_bt.tree.check.checker import check
+from momantu_bt.tree.files import includes
+from momantu_bt.tree.files.includes import project_folder
 from momantu_bt.tree.load import TreeError, TreeNotFound, load, read_file
 from momantu_bt.tree.model import Document, Include, Literal
 from momantu_bt.tree.problems import Problem

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from momantu_bt.descriptions.reading import DescriptionError, Problem
+from momantu_bt.tree.files.lookup import bundled, find
 from momantu_bt.tree.load import TreeError, TreeNotFound, load, read_values
-from momantu_bt.tree.lookup import bundled, find
 from momantu_bt.tree.model import Literal
 from momantu_bt.tree.registry import Registry
 from momantu_bt.world import WorldError

@@ -12,14 +12,14 @@ import pytest
 import momantu_bt
 from momantu_bt.record.report import Report
 from momantu_bt.tree.convert import meaning
-from momantu_bt.tree.lookup import bundled
+from momantu_bt.tree.files.lookup import bundled
+from momantu_bt.tree.files.xml import format as xml_format
+from momantu_bt.tree.files.xml import writer as xml_writer
+from momantu_bt.tree.files.yaml import format as yaml_format
+from momantu_bt.tree.files.yaml import writer as yaml_writer
+from momantu_bt.tree.files.yaml.source import compose_with_remarks
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.xml import format as xml_format
-from momantu_bt.tree.xml import writer as xml_writer
-from momantu_bt.tree.yaml import format as yaml_format
-from momantu_bt.tree.yaml import writer as yaml_writer
-from momantu_bt.tree.yaml.source import compose_with_remarks
 
 BUNDLED = sorted(bundled().values())
 CASES = Path(__file__).parent.parent / "engine" / "conformance_cases.jsonl"

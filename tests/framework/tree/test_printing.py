@@ -2,10 +2,10 @@
 
 import pytest
 
+from momantu_bt.tree.files.yaml.format import read
 from momantu_bt.tree.model import Place
-from momantu_bt.tree.printing import lines, text, tree_lines, unwrap
 from momantu_bt.tree.problems import Problem, Severity, show
-from momantu_bt.tree.yaml.format import read
+from momantu_bt.tree.show.printing import lines, text, tree_lines, unwrap
 
 
 def printed(node: str) -> list[str]:

@@ -12,9 +12,9 @@ from momantu_bt.messages import VALUE_TYPES
 from momantu_bt.skill import Port
 from momantu_bt.tree.model import Place, PortDeclaration
 from momantu_bt.tree.types import assignable, label, parse_type
-from momantu_bt.tree.units import UnitError, in_unit, quantity, units_of
-from momantu_bt.tree.value_words import ConversionError
-from momantu_bt.tree.values import convert, natural, port_of
+from momantu_bt.tree.values.conversion import convert, natural, port_of
+from momantu_bt.tree.values.units import UnitError, in_unit, quantity, units_of
+from momantu_bt.tree.values.words import ConversionError
 
 KINDS = ["s", "m", "rad", "Hz", "N", "kg", "m/s", "rad/s"]
 NUMBERS = st.floats(-1e6, 1e6).map(lambda x: round(x, 6))

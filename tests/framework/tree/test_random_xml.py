@@ -9,10 +9,10 @@ import pytest
 import momantu_bt
 from momantu_bt.engine.node import TreeNode
 from momantu_bt.failure import INPUT_MISSING
-from momantu_bt.tree.check import check
+from momantu_bt.tree.check.checker import check
+from momantu_bt.tree.files.xml.format import read
 from momantu_bt.tree.problems import Problem, errors
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.xml.format import read
 
 KEYS = [f"v{i}" for i in range(6)]
 CONTROLS = {

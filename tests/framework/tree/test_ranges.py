@@ -10,12 +10,12 @@ from hypothesis import strategies as st
 import momantu_bt
 from momantu_bt.skill import In, Port, Skill
 from momantu_bt.tree.catalogue import BUILT_IN
-from momantu_bt.tree.check import check as check_document
+from momantu_bt.tree.check.checker import check as check_document
+from momantu_bt.tree.files.yaml.format import read
 from momantu_bt.tree.problems import Problem
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.value_words import ConversionError
-from momantu_bt.tree.values import convert
-from momantu_bt.tree.yaml.format import read
+from momantu_bt.tree.values.conversion import convert
+from momantu_bt.tree.values.words import ConversionError
 
 Expect = Callable[..., None]
 NUMBERS = st.integers(-50, 50)

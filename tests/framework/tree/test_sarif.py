@@ -3,10 +3,10 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from momantu_bt.tree.codes import codes
 from momantu_bt.tree.model import Place
 from momantu_bt.tree.problems import Problem, Severity
-from momantu_bt.tree.sarif import sarif
+from momantu_bt.tree.show.problem_pages import codes
+from momantu_bt.tree.show.sarif import sarif
 
 PLACES = st.builds(
     Place,

@@ -9,17 +9,17 @@ from jsonschema import Draft202012Validator
 
 from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue import MODIFIERS, SPELLED
-from momantu_bt.tree.check import check as check_document
-from momantu_bt.tree.codes import codes, explanation
-from momantu_bt.tree.lookup import bundled
+from momantu_bt.tree.check.checker import check as check_document
+from momantu_bt.tree.files.lookup import bundled
+from momantu_bt.tree.files.yaml.format import read
+from momantu_bt.tree.files.yaml.raw import plain_value
+from momantu_bt.tree.files.yaml.source import YamlSyntaxError, compose
 from momantu_bt.tree.problems import Problem, TreeError, errors
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.schema import tree_schema
-from momantu_bt.tree.schema_values import value_schema
+from momantu_bt.tree.show.problem_pages import codes, explanation
+from momantu_bt.tree.show.schema import tree_schema
+from momantu_bt.tree.show.schema_values import value_schema
 from momantu_bt.tree.types import ValueType
-from momantu_bt.tree.yaml.format import read
-from momantu_bt.tree.yaml.raw import plain_value
-from momantu_bt.tree.yaml.source import YamlSyntaxError, compose
 
 TREES = sorted(bundled().values())
 HEADER = "momantu_bt: 1\nworld: rooms\ntrees:\n  Main:\n"

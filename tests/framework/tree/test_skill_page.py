@@ -10,14 +10,14 @@ import pytest
 
 from momantu_bt.messages import DetectedObject, ObjectClass
 from momantu_bt.skill import In, Out, Skill
-from momantu_bt.tree.check import check
+from momantu_bt.tree.check.checker import check
+from momantu_bt.tree.files.xml.format import read as read_xml
+from momantu_bt.tree.files.yaml.format import read
 from momantu_bt.tree.problems import errors
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.skill_example import Wire, example_ports, xml_example, yaml_example
-from momantu_bt.tree.skill_page import as_data, as_markdown, as_text, pages
+from momantu_bt.tree.show.skill_example import Wire, example_ports, xml_example, yaml_example
+from momantu_bt.tree.show.skill_page import as_data, as_markdown, as_text, pages
 from momantu_bt.tree.types import label
-from momantu_bt.tree.xml.format import read as read_xml
-from momantu_bt.tree.yaml.format import read
 
 DOCS = Path(__file__).parents[3] / "docs" / "skills"
 BUNDLED = {

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
+from momantu_bt.tree.files.yaml.format import read
 from momantu_bt.tree.problems import TreeError
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.substitution import Substitution, load_substitution
-from momantu_bt.tree.yaml.format import read
+from momantu_bt.tree.substitute.substitution import Substitution, load_substitution
 
 TREE = """momantu_bt: 1
 world: rooms

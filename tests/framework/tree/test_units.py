@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from momantu_bt.tree.units import Quantity, UnitError, in_unit, quantity, units_of
+from momantu_bt.tree.values.units import Quantity, UnitError, in_unit, quantity, units_of
 
 _IN_SI = {
     "ms": 1e-3,

@@ -12,8 +12,8 @@ from momantu_bt.messages import VALUE_TYPES, ObjectClass
 from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue import Queue
 from momantu_bt.tree.types import assignable, label, parse_type
-from momantu_bt.tree.value_words import ConversionError
-from momantu_bt.tree.values import convert, natural, render
+from momantu_bt.tree.values.conversion import convert, natural, render
+from momantu_bt.tree.values.words import ConversionError
 
 
 class Colour(Enum):

@@ -6,6 +6,8 @@ from typing import Any
 import pytest
 
 from momantu_bt.tree.catalogue import BUILT_IN, OWN_NODES, XML_CONDITIONS, ScriptText
+from momantu_bt.tree.files.xml.format import read
+from momantu_bt.tree.files.yaml.format import read as read_yaml
 from momantu_bt.tree.model import (
     Document,
     Handler,
@@ -20,8 +22,6 @@ from momantu_bt.tree.model import (
 from momantu_bt.tree.problems import Problem, Severity
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.script import parse
-from momantu_bt.tree.xml.format import read
-from momantu_bt.tree.yaml.format import read as read_yaml
 
 Expect = Callable[..., None]
 OPENING = '<root BTCPP_format="4" xmlns:momantu="urn:momantu-bt:1">\n'

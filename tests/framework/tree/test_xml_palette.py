@@ -6,13 +6,13 @@ from momantu_bt.cli import main
 from momantu_bt.plugins import SKILLS, installed
 from momantu_bt.skill import MISSING, Port
 from momantu_bt.tree.catalogue import BUILT_IN, NAV2_NODES, OWN_NODES
+from momantu_bt.tree.files.xml.format import read
+from momantu_bt.tree.files.xml.models import our_type
+from momantu_bt.tree.files.xml.palette import palette
 from momantu_bt.tree.model import Literal, NodeModel
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.types import label, parse_type
-from momantu_bt.tree.values import convert
-from momantu_bt.tree.xml.format import read
-from momantu_bt.tree.xml.models import our_type
-from momantu_bt.tree.xml.palette import palette
+from momantu_bt.tree.values.conversion import convert
 
 TREE = '<BehaviorTree ID="Main"><AlwaysSuccess/></BehaviorTree></root>'
 

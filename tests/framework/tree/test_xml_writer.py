@@ -3,12 +3,12 @@
 import pytest
 
 from momantu_bt.tree.convert import Spelling, meaning, write
+from momantu_bt.tree.files.xml import format as xml_format
+from momantu_bt.tree.files.xml import writer as xml_writer
+from momantu_bt.tree.files.yaml import format as yaml_format
+from momantu_bt.tree.files.yaml import writer as yaml_writer
+from momantu_bt.tree.files.yaml.scalars import CannotWrite
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.xml import format as xml_format
-from momantu_bt.tree.xml import writer as xml_writer
-from momantu_bt.tree.yaml import format as yaml_format
-from momantu_bt.tree.yaml import writer as yaml_writer
-from momantu_bt.tree.yaml.scalars import CannotWrite
 
 
 def _xml(body: str, registry: Registry | None = None, head: str = "") -> str:

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from momantu_bt.tree.lookup import bundled
+from momantu_bt.tree.files.lookup import bundled
+from momantu_bt.tree.files.yaml.format import read
+from momantu_bt.tree.files.yaml.source import compose_with_remarks
+from momantu_bt.tree.files.yaml.writer import write
 from momantu_bt.tree.model import Beside, Document
-from momantu_bt.tree.yaml.format import read
-from momantu_bt.tree.yaml.source import compose_with_remarks
-from momantu_bt.tree.yaml.writer import write
 
 BUNDLED = sorted(bundled().values())
 

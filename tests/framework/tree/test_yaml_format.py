@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 import pytest
 
+from momantu_bt.tree.files.yaml.format import read
 from momantu_bt.tree.model import Document, Literal, Node, Reference, Scope, Template
-from momantu_bt.tree.yaml.format import read
 
 Expect = Callable[..., None]
 

@@ -7,10 +7,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from momantu_bt.tree.files.yaml.format import read
+from momantu_bt.tree.files.yaml.raw import plain_value
+from momantu_bt.tree.files.yaml.source import (
+    MAX_BYTES,
+    MAX_DEPTH,
+    MAX_NODES,
+    YamlSyntaxError,
+    compose,
+)
 from momantu_bt.tree.problems import TreeError, show
-from momantu_bt.tree.yaml.format import read
-from momantu_bt.tree.yaml.raw import plain_value
-from momantu_bt.tree.yaml.source import MAX_BYTES, MAX_DEPTH, MAX_NODES, YamlSyntaxError, compose
 
 
 def values(text: str) -> Any:

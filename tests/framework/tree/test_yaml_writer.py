@@ -7,14 +7,14 @@ from pathlib import Path
 import pytest
 
 from momantu_bt.tree.convert import meaning
-from momantu_bt.tree.lookup import bundled
+from momantu_bt.tree.files.lookup import bundled
+from momantu_bt.tree.files.yaml.format import read
+from momantu_bt.tree.files.yaml.raw import plain_value
+from momantu_bt.tree.files.yaml.scalars import CannotWrite, literal, script_spelling
+from momantu_bt.tree.files.yaml.source import YamlSyntaxError, compose
+from momantu_bt.tree.files.yaml.writer import write
 from momantu_bt.tree.model import Document, Literal, Node, Place
 from momantu_bt.tree.script import canonical
-from momantu_bt.tree.yaml.format import read
-from momantu_bt.tree.yaml.raw import plain_value
-from momantu_bt.tree.yaml.scalars import CannotWrite, literal, script_spelling
-from momantu_bt.tree.yaml.source import YamlSyntaxError, compose
-from momantu_bt.tree.yaml.writer import write
 
 BUNDLED = sorted(bundled().values())
 NASTY = ("yes", "010", "5", "-1", "1e3", "0x1F", "true", "null", "~", "", " a ", "a: b", "a:", "#")

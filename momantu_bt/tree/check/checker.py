@@ -1,0 +1,136 @@
+"""The checker: everything that is wrong with a document, at once, before the first tick."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from dataclasses import replace
+
+from momantu_bt.messages import RobotState
+from momantu_bt.tree.catalogue import ScriptText
+from momantu_bt.tree.check.guards import check_guards
+from momantu_bt.tree.check.handlers import check_handlers
+from momantu_bt.tree.check.keys.flow_check import check_keys
+from momantu_bt.tree.check.keys.known import Key, literal_type
+from momantu_bt.tree.check.nodes import check_node, check_tree_ports
+from momantu_bt.tree.check.signatures import Context
+from momantu_bt.tree.check.surroundings import look_up_surroundings
+from momantu_bt.tree.check.trees import (
+    callees_first,
+    check_given_names,
+    check_nesting,
+    check_parallel,
+    check_unused,
+    reached,
+)
+from momantu_bt.tree.model import Document, Literal, Node, Place, Reference, Scope, Tree
+from momantu_bt.tree.problems import Problem, Problems, TooManyProblems
+from momantu_bt.tree.registry import Registry
+from momantu_bt.tree.script import parse
+
+ROBOT_KEY = "robot"
+"""`$@robot.…`: what every run publishes of its robot."""
+
+
+def check(
+    document: Document,
+    registry: Registry,
+    *,
+    world: str | None = None,
+    robot: str | None = None,
+    reading: Problems | None = None,
+) -> list[Problem]:
+    """Check a document; on the way names the ports of bare values (`reset_pose: home`).
+
+    world, robot: named on the command line, instead of the file's and the world's own.
+    reading: problems that reading the file has found; they come back with the rest.
+
+    Returns: errors, warnings and hints in the order of the file.
+    """
+    problems = reading if reading is not None else Problems()
+    with suppress(TooManyProblems):  # the last of them says that there are more
+        _check(Context(_concerned(document), registry, problems), world, robot)
+    return problems.sorted()
+
+
+def _concerned(document: Document) -> Document:
+    """The document without included trees that neither its main tree nor an own one runs.
+
+    They are checked where they are run, and with the file that they stand in.
+    """
+    trees, file = document.trees, document.file
+    starts = [n for n, tree in trees.items() if n == document.main or tree.place.file == file]
+    kept = reached(document, starts)
+    return replace(document, trees={name: tree for name, tree in trees.items() if name in kept})
+
+
+def _check(context: Context, world: str | None, robot: str | None) -> None:
+    document = context.document
+    if document.main not in document.trees:
+        message = "no tree is left to run: those that there are cannot be read"
+        context.problems.error("no-trees", _start(document), message, "see the other problems")
+        return
+    look_up_surroundings(context, world, robot)
+    for tree in document.trees.values():
+        check_tree_ports(context, tree)
+        _check_tree_name(context, tree)
+        for node in tree.root.walk():
+            check_node(context, node)
+        check_given_names(context, tree)
+    check_unused(context)
+    shallow = [check_nesting(context, tree) for tree in document.trees.values()]
+    order = callees_first(context)
+    if order is not None and all(shallow):
+        check_parallel(context, order)
+        check_handlers(context, order)
+        check_guards(context, order, frozenset({ROBOT_KEY, *context.registry.services}))
+        check_keys(context, order, _root_keys(context))
+
+
+def _start(document: Document) -> Place:
+    return Place(document.file, 1, 1)
+
+
+def _check_tree_name(context: Context, tree: Tree) -> None:
+    if tree.name in context.registry.skills:
+        message = f"{tree.name!r} is the name of a skill"
+        context.problems.error("bad-name", tree.place, message, "give the tree another name")
+
+
+def _root_keys(context: Context) -> Mapping[str, Key | None]:
+    """Every name that `$@name` can mean; what is known of a value that nothing overwrites."""
+    document = context.document
+    names: dict[str, Key | None] = dict.fromkeys(context.registry.services)
+    names[ROBOT_KEY] = Key(RobotState, _start(document))
+    for name, value in document.values.items():
+        place = document.value_places.get(name, _start(document))
+        names[name] = Key(literal_type(value), place, (value,))
+    for tree in document.trees.values():
+        for node in tree.root.walk():
+            for scope, key, makes in _written_by(context, node):
+                on_root = scope is Scope.ROOT or tree.name == document.main
+                if on_root and (makes or key in names):
+                    names[key] = None
+    return names
+
+
+def _written_by(context: Context, node: Node) -> Iterator[tuple[Scope, str, bool]]:
+    """Keys that a node's outputs and scripts write: board, key, whether it may be a new one."""
+    signature = context.signature(node)
+    ports = signature.ports if signature is not None else {}
+    scripts = list(node.conditions.values())
+    for name, value in node.ports.items():
+        port = ports.get(name)
+        if port is not None and port.direction != "in" and isinstance(value, Reference):
+            yield value.scope, value.key, True
+        elif port is not None and port.type is ScriptText and isinstance(value, Literal):
+            scripts.append(str(value.value))
+    for script in scripts:
+        parsed = parse(script)
+        needed = {variable.key for variable in parsed.needs}
+        for variable in parsed.writes:
+            scope = Scope.ROOT if variable.key.startswith("@") else Scope.LOCAL
+            yield scope, variable.key.removeprefix("@"), variable.key not in needed
+
+
+__all__ = ["ROBOT_KEY", "check"]

@@ -1,0 +1,157 @@
+"""Handlers against what can fail below them: a handler that can never run is an error."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from momantu_bt.failure import (
+    DECLINED,
+    ENGINE_CODES,
+    FAILED,
+    FRAME_UNKNOWN,
+    HALTED,
+    INPUT_MISSING,
+    NO_ANSWER,
+    SCRIPT_ERROR,
+    TIMEOUT,
+    WRONG_TYPE,
+)
+from momantu_bt.tree.catalogue import SUBTREE
+from momantu_bt.tree.check.signatures import Context
+from momantu_bt.tree.language import ANY
+from momantu_bt.tree.model import Handler, Literal, Node, Place, Reference, Tree
+from momantu_bt.tree.problems import nearest, within
+
+_ANY_SKILL = frozenset(ENGINE_CODES) - {TIMEOUT, FAILED, HALTED, SCRIPT_ERROR}
+"""What the engine makes of a skill's end beside the codes that it declares."""
+
+_ANY_BUILT_IN = frozenset({FAILED, INPUT_MISSING, WRONG_TYPE, SCRIPT_ERROR})
+
+Codes = frozenset[str]
+"""Codes, bare and as `pick.SLIPPED`. UNKNOWN stands for any."""
+UNKNOWN = "?"
+_OF_BUILT_IN: Mapping[str, Codes] = {
+    "Ask": frozenset({NO_ANSWER}),
+    "Confirm": frozenset({DECLINED, NO_ANSWER}),
+    "DistanceController": frozenset({FRAME_UNKNOWN}),
+}
+_HANDLED_CODE = Reference("failure", ("code",))
+
+
+def check_handlers(context: Context, order: list[Tree]) -> None:
+    """Every handler of every tree. order: trees after those that they run."""
+    of_tree: dict[str, Codes] = {}
+    for tree in order:
+        of_node: dict[int, Codes] = {}
+        handled = _handled(tree)
+        for node in reversed(list(tree.root.walk())):
+            of_node[id(node)] = _codes(context, node, of_node, of_tree, handled)
+            if node.handlers and node.children:
+                _check(context, node, of_node[id(node.children[0])])
+        of_tree[tree.name] = of_node[id(tree.root)]
+
+
+def _handled(tree: Tree) -> dict[int, Codes]:
+    """What `$failure.code` can be, for each node within a handler; the innermost handler counts."""
+    found: dict[int, Codes] = {}
+    for node in tree.root.walk():
+        for handler in node.handlers:
+            codes = frozenset(UNKNOWN if c == ANY else c.split(".")[-1] for c in handler.codes)
+            below = handler.node.walk() if handler.node is not None else ()
+            found.update((id(each), codes) for each in below)
+    return found
+
+
+def _codes(
+    context: Context,
+    node: Node,
+    of_node: Mapping[int, Codes],
+    of_tree: Mapping[str, Codes],
+    meant: Mapping[int, Codes],
+) -> Codes:
+    below = _joined(*(of_node[id(child)] for child in node.children))
+    handled = _joined(*(of_node[id(h.node)] for h in node.handlers if h.node is not None))
+    if node.type == "Fail":
+        found = _raised(node, meant.get(id(node)))
+    elif node.type == "TestNode":
+        raised = _raised(node, meant.get(id(node))) if "code" in node.ports else frozenset()
+        found = raised | {FAILED, SCRIPT_ERROR}
+    elif node.type == "ElseFail":
+        found = _raised(node, meant.get(id(node))) if below else below
+    else:
+        found = _own(context, node, below, handled, of_tree)
+    if node.conditions:
+        asked = {FAILED, SCRIPT_ERROR} if "fail_if" in node.conditions else {SCRIPT_ERROR}
+        found = _joined(found, frozenset(asked))
+    return frozenset() if node.disabled else found
+
+
+def _joined(*parts: Codes) -> Codes:
+    """All codes of some sets: a set of them itself where it has them all, to copy no big ones."""
+    distinct = set(parts)
+    largest = max(distinct, key=len, default=frozenset())
+    if all(part <= largest for part in distinct):
+        return largest
+    return frozenset().union(*distinct)
+
+
+def _own(
+    context: Context, node: Node, below: Codes, handled: Codes, of_tree: Mapping[str, Codes]
+) -> Codes:
+    if node.type == SUBTREE:
+        return of_tree.get(node.target or "", frozenset({UNKNOWN}))
+    if node.type == "Handle":
+        return _left_over(node, below) | handled
+    if node.type == "ForceSuccess":
+        return frozenset()
+    if node.type == "Timeout":
+        return _joined(below, frozenset({TIMEOUT}))
+    signature = context.signature(node)
+    if signature is None:
+        return frozenset({UNKNOWN})
+    if signature.skill is not None:
+        own = {*signature.skill.failures, *_ANY_SKILL}
+        return frozenset(own | {f"{node.type}.{code}" for code in own})
+    answers = _OF_BUILT_IN.get(node.type, frozenset())
+    return _joined(below, handled, answers, _ANY_BUILT_IN)
+
+
+def _raised(node: Node, handled: Codes | None) -> Codes:
+    code = node.ports.get("code")
+    if code == _HANDLED_CODE and handled is not None:
+        return handled
+    return frozenset({str(code.value) if isinstance(code, Literal) else UNKNOWN})
+
+
+def _left_over(node: Node, below: Codes) -> Codes:
+    caught = {code for handler in node.handlers for code in handler.codes}
+    if ANY in caught:
+        return frozenset()
+    return frozenset(code for code in below if code not in caught)
+
+
+def _check(context: Context, node: Node, possible: Codes) -> None:
+    first: dict[str, Handler] = {}
+    for handler in node.handlers:
+        for code in handler.codes:
+            if code in first:
+                message = f"{code} has a handler already"
+                hint = f"in line {first[code].place.line}; the first one is taken"
+                context.problems.error(
+                    "dead-handler", _place(context, handler, code), message, hint
+                )
+            elif code != ANY and UNKNOWN not in possible and code not in possible:
+                _report_dead(context, handler, code, possible)
+            first.setdefault(code, handler)
+
+
+def _report_dead(context: Context, handler: Handler, code: str, possible: Codes) -> None:
+    bare = sorted(c for c in possible if "." not in c and c not in _ANY_SKILL)
+    near = nearest(code, sorted(possible))
+    message = f"nothing in `try` fails with {code}"
+    hint = f"did you mean {near}?" if near else f"it can fail with: {', '.join(bare) or 'nothing'}"
+    context.problems.error("dead-handler", _place(context, handler, code), message, hint)
+
+
+def _place(context: Context, handler: Handler, code: str) -> Place:
+    return within(handler.place, code, context.document.source)

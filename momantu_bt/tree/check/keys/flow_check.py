@@ -1,0 +1,364 @@
+"""Keys and wires: nothing is read before it is written, and what flows fits where it flows.
+
+Each tree is walked once, with what is surely known before each node; the result is what is
+known after its success and after its failure.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import get_args
+
+from momantu_bt.tree.catalogue import BUILT_IN, PRE_CONDITIONS, SUBTREE, ScriptText
+from momantu_bt.tree.check.keys.changes import KeyChanges
+from momantu_bt.tree.check.keys.flow import FLOWS, After, Walk
+from momantu_bt.tree.check.keys.known import NEVER, Key, Known, both, literal_type, meet
+from momantu_bt.tree.check.keys.reads import Demand, KeyReads, Written, references
+from momantu_bt.tree.check.keys.shared import Call, call_of, shared_keys
+from momantu_bt.tree.check.signatures import Context, Signature
+from momantu_bt.tree.model import Literal, Node, Place, Reference, Scope, Tree
+from momantu_bt.tree.problems import valid_names, within
+from momantu_bt.tree.script import Script, ScriptSyntaxError, parse
+from momantu_bt.tree.script.nodes import Variable
+from momantu_bt.tree.script.types import Mismatch, check_types
+from momantu_bt.tree.types import ValueType, label, origin
+
+
+def check_keys(context: Context, order: list[Tree], root_keys: Mapping[str, Key | None]) -> None:
+    """All keys of all trees. order: each tree after those it runs.
+
+    root_keys: every name that `$@name` can mean, and what is known of it, if anything is.
+    """
+    demands: dict[tuple[str, str], set[Demand]] = {}
+    keys = shared_keys(context, order)
+    if keys is None:
+        return
+    on_root: set[str] = set()
+    checks = [
+        _KeyCheck(KeyReads(context, tree, root_keys, demands, keys, on_root)) for tree in order
+    ]
+    for check in checks:
+        check.run()
+    for check in checks:
+        check.report_unread()
+
+
+class _KeyCheck:
+    def __init__(self, reads: KeyReads) -> None:
+        self.reads, self.context, self.tree = reads, reads.context, reads.tree
+        self.ports = self.context.tree_signature(self.tree).ports
+        self.changes = KeyChanges(self.context, self.tree, reads.keys)
+        self.walk = Walk(self.node, self.changes.removed, self.changes.rewritten)
+
+    def run(self) -> None:
+        after = self.node(self.tree.root, self.start())
+        success, mine = after.passed, self.reads.keys[self.tree.name]
+        mine.success = frozenset(success.keys or ())
+        mine.failure = frozenset(after.failure.keys or ())
+        if self.tree.name == self.context.document.main:
+            self.reads.report_needed()
+        for name, port in self.ports.items():
+            if port.direction != "in":
+                self.reads.seen.add(name)
+            if port.direction == "out":
+                self.output_of_tree(name, success.get(name), success)
+        self.watched()
+
+    def report_unread(self) -> None:
+        """What is written and read nowhere; any tree may read what the main one has."""
+        mine, seen = self.reads.keys[self.tree.name], self.reads.seen
+        if self.tree.name == self.context.document.main:
+            seen = seen | self.reads.seen_on_root
+        for written in self.reads.written:
+            if written.key not in seen and not mine.goes_out(written.key):
+                wire = self.context.wire(written.key, written.place)
+                message = f"nothing reads {wire}, which {written.said} writes"
+                self.context.problems.warning("unread-output", written.place, message)
+
+    def watched(self) -> None:
+        """A key that is watched for changes need not have a value, but something writes it."""
+        given = {written.key for written in self.reads.written} | self.reads.given
+        for watch in self.reads.watched if not self.tree.open else ():
+            if watch.key not in given:
+                message = f"nothing writes ${watch.key}, which {watch.said} watches"
+                hint = valid_names(watch.key, sorted(given), "keys that something writes")
+                self.context.problems.error("read-before-write", watch.place, message, hint)
+
+    def start(self) -> Known:
+        keys: dict[str, Key] = {}
+        document = self.context.document
+        if self.tree.name == document.main:
+            for name, value in document.values.items():
+                place = document.value_places.get(name, self.tree.place)
+                keys[name] = Key(literal_type(value), place, (value,))
+        for name, port in self.ports.items():
+            if port.direction == "in":
+                keys.setdefault(name, Key(port.type, self.tree.ports[name].place))
+        self.reads.given.update(keys, self.ports)
+        return Known(keys)
+
+    def output_of_tree(self, name: str, key: Key | None, success: Known) -> None:
+        place = self.tree.ports[name].place
+        if key is None and success.reached:
+            message = f"the output {name!r} is not written on every way to success"
+            self.context.problems.error("unwritten-output", place, message)
+        for wrong in key.misfits(self.ports[name].type) if key is not None else ():
+            message = f"the output {name!r} is {label(self.ports[name].type)}, "
+            hint = f"line {wrong.place.line} writes it"
+            self.context.problems.error(
+                "wrong-type", place, message + f"but {label(wrong.type)} comes", hint
+            )
+
+    def at_any_tick(self, node: Node, before: Known) -> Known:
+        """What a node reads with its wires: again while its children run, and what those leave."""
+        wired = any(isinstance(value, Reference) for value in node.ports.values())
+        if not wired or not node.children:
+            return before
+        known = before.lacking(self.changes.removed(*node.children))
+        written = (self.changes.rewritten(child) for child in node.children)
+        return known.rewritten(each for changes in written for each in changes)
+
+    def node(self, node: Node, before: Known) -> After:
+        if node.disabled:
+            return After(NEVER, NEVER, before)
+        if not node.conditions:
+            return self.inside(node, before)
+        # `while` and `on_halt` come at any tick, also after something below has taken a key away
+        anytime = before.lacking(self.changes.removed(node))
+        for name in PRE_CONDITIONS:
+            if name in node.conditions:
+                self.condition(node, name, anytime if name == "while" else before)
+        success, failure, skipped = self.inside(node, before)
+        if not node.conditions.keys().isdisjoint(PRE_CONDITIONS):
+            # a condition may fail the node by its value, or because it cannot be evaluated
+            failure = meet(failure, before)
+        if "succeed_if" in node.conditions:
+            success = meet(success, before)
+        if not node.conditions.keys().isdisjoint(("skip_if", "while")):
+            skipped = meet(skipped, anytime)
+        if "on_halt" in node.conditions:
+            self.condition(node, "on_halt", anytime)
+        return self.post_scripts(node, After(success, failure, skipped))
+
+    def condition(self, node: Node, name: str, known: Known) -> Known:
+        place = node.condition_places.get(name, node.place)
+        return self.script(node.conditions[name], known, place)
+
+    def post_scripts(self, node: Node, after: After) -> After:
+        success, failure, skipped = after
+        for name in ("on_success", "after"):
+            if name in node.conditions:
+                failure = meet(failure, success)
+                success = self.condition(node, name, success)
+        for name in ("on_failure", "after"):
+            if name in node.conditions:
+                failure = self.condition(node, name, failure)
+        return After(success, failure, skipped)
+
+    def inside(self, node: Node, before: Known) -> After:
+        signature = self.context.signature(node)
+        if signature is None:
+            for value in node.ports.values():
+                # an unknown node may read or write: what it names is not called unread
+                for reference in references(value):
+                    self.reads.see(reference)
+            return After(before, before)
+        self.reads.inputs(node, signature, self.at_any_tick(node, before))
+        for name, port in signature.ports.items():
+            code = node.ports.get(name)
+            if port.type is ScriptText and isinstance(code, Literal) and node.type != "TestNode":
+                after = self.script(str(code.value), before, node.port_places[name])
+                before = after if node.type == "Script" else before
+        flow = FLOWS.get(node.type)
+        if flow is None:
+            return self.leaf(node, signature, before)
+        if signature.spec is not None and signature.spec.item is not None:
+            return flow(self.with_item(node, signature.spec.item), node, before)
+        return flow(self.walk, node, self.handed_on(node, signature, before))
+
+    def leaf(self, node: Node, signature: Signature, before: Known) -> After:
+        key = node.ports.get("key")
+        if node.type == "UnsetBlackboard":
+            gone = before.lacking([key.key]) if isinstance(key, Reference) else before
+            return After(gone, before)
+        if node.type == SUBTREE:
+            return self.subtree(call_of(self.context, node), signature, before)
+        after = self.outputs(node, signature, before)
+        if node.type == "AlwaysSuccess":
+            return After(after, NEVER)
+        if node.type in ("AlwaysFailure", "Fail"):
+            return After(NEVER, before)
+        if node.type == "TestNode":
+            return self.test_node(node, before)
+        return After(after, before)
+
+    def test_node(self, node: Node, before: Known) -> After:
+        """After the scripts that follow its end; each of them may fail."""
+
+        def then(known: Known, name: str) -> Known:
+            code = node.ports.get(name)
+            if not isinstance(code, Literal):
+                return known
+            return self.script(str(code.value), known, node.port_places[name])
+
+        then(before, "return_status_script")
+        good, bad = then(before, "success_script"), then(before, "failure_script")
+        success = both(good, then(meet(good, bad), "post_script"))
+        status = node.ports.get("return_status", Literal("SUCCESS"))
+        if "return_status_script" in node.ports or not isinstance(status, Literal):
+            return After(success, before, before)
+        ends = {"SUCCESS": After(success, before), "SKIPPED": After(NEVER, before, before)}
+        return ends.get(str(status.value), After(NEVER, before))
+
+    def subtree(self, call: Call, signature: Signature, before: Known) -> After:
+        """A tree that is run: what it needs, and which of the keys it shares have a value then."""
+        inside = self.reads.keys[call.tree.name]
+        self.reads.of_call(call, inside, before)
+        kept = before.lacking(call.local(inside.removed))
+        success = self.outputs(call.node, signature, kept)
+        success = self.known_after(success, call, call.local(inside.success))
+        return After(success, self.known_after(kept, call, call.local(inside.failure)))
+
+    def known_after(self, known: Known, call: Call, shared: Mapping[str, str]) -> Known:
+        """Keys that the tree inside shares have values; what was known of them may be outdated.
+
+        shared: their names outside, each with that inside.
+        """
+        writes, ports = self.reads.keys[call.tree.name].written, call.tree.ports
+        types = self.context.tree_signature(call.tree).ports
+        having = known.keys or {}
+        found: dict[str, Key] = {}
+        for outer, inner in shared.items():
+            if inner in writes or outer not in having:
+                type_ = types[inner].type if inner in ports else object
+                found[outer] = Key(type_, call.place(inner))
+        return known.having_all(found)
+
+    def outputs(self, node: Node, signature: Signature, before: Known) -> Known:
+        after = before
+        for name, value in node.ports.items():
+            port = signature.ports.get(name)
+            if port is None or port.direction != "out" or not isinstance(value, Reference):
+                continue
+            if value.scope is Scope.ROOT or value.fields:
+                continue
+            place = node.port_places.get(name, node.place)
+            self.reads.written.append(Written(value.key, place, signature.said))
+            given = node.ports.get("value") if node.type == "SetBlackboard" else None
+            type_ = literal_type(given) if isinstance(given, Literal) else port.type
+            after = after.having(value.key, Key(type_, place))
+        return after
+
+    def handed_on(self, node: Node, signature: Signature, before: Known) -> Known:
+        """What `goal_updater` writes for its child: what its inputs have."""
+        after = before
+        for name, value in node.ports.items():
+            source = node.ports.get(name.replace("output_", "input_"))
+            port = signature.ports.get(name)
+            if port is None or port.direction != "out" or not isinstance(value, Reference):
+                continue
+            place = node.port_places.get(name, node.place)
+            self.reads.written.append(Written(value.key, place, signature.said))
+            key = before.get(source.key) if isinstance(source, Reference) else None
+            if key is not None and value.scope is Scope.LOCAL:
+                after = after.having(value.key, Key(key.type, place))
+        return after
+
+    def with_item(self, loop: Node, item: tuple[str, str]) -> Walk:
+        """Walks a loop's child, which knows the item besides the rest."""
+        output, source = item
+
+        def walk(child: Node, before: Known) -> After:
+            value = loop.ports.get(output)
+            if isinstance(value, Reference) and value.scope is Scope.LOCAL:
+                place = loop.port_places.get(output, loop.place)
+                key = Key(self.item_type(loop, output, source, before), place)
+                key = self.written_items(loop, source, before) or key
+                before = before.having(value.key, key)
+                self.reads.given.add(value.key)
+            return self.node(child, before)
+
+        return Walk(walk, self.changes.removed, self.changes.rewritten)
+
+    def written_items(self, loop: Node, source: str, before: Known) -> Key | None:
+        """The item of a loop over a list that is written in the file."""
+        items = loop.ports.get(source)
+        place = loop.port_places.get(source, loop.place)
+        if isinstance(items, Reference) and not items.fields:
+            root = items.scope is Scope.ROOT
+            key = self.reads.root_keys.get(items.key) if root else before.get(items.key)
+            if key is not None and len(key.literals) == 1:
+                items, place = key.literals[0], key.place
+        if not isinstance(items, Literal) or not isinstance(items.value, list) or not items.value:
+            return None
+        literals = tuple(Literal(item) for item in items.value)
+        types = {literal_type(literal) for literal in literals}
+        return Key(types.pop() if len(types) == 1 else object, place, literals)
+
+    def item_type(self, loop: Node, output: str, source: str, before: Known) -> ValueType:
+        declared = BUILT_IN[loop.type].ports[output].type
+        items = loop.ports.get(source)
+        if declared is object and isinstance(items, Reference) and not items.fields:
+            key = before.get(items.key)
+            if key is not None and origin(key.type) is tuple:
+                return get_args(key.type)[0]
+        return declared
+
+    def script(self, text: str, before: Known, place: Place) -> Known:
+        try:
+            script = parse(text)
+        except ScriptSyntaxError as error:
+            self.context.problems.error("script", place, error.message, error.hint)
+            return before
+        return self.script_keys(script, before, place)
+
+    def written_by_script(self, written: Written) -> None:
+        """What a script computes in the main tree may be a result: the report shows it."""
+        self.reads.written.append(written)
+        if self.tree.name == self.context.document.main:
+            self.reads.seen.add(written.key)
+
+    def in_script(self, key: str, place: Place) -> Place:
+        """Where in a script a key stands."""
+        shown = key if self.context.is_xml(place) else f"${key}"
+        return within(place, shown, self.context.document.source)
+
+    def script_types(self, script: Script, known: Mapping[str, ValueType], place: Place) -> None:
+        """Operands that cannot go together. What the script itself writes is of any type."""
+        written = {variable.key for variable in script.writes}
+
+        def type_of(variable: Variable) -> ValueType:
+            name = ".".join((variable.key, *variable.parts))
+            return object if variable.key in written else known.get(name, object)
+
+        for statement in script.statements:
+            try:
+                check_types(statement, type_of)
+            except Mismatch as mismatch:
+                where, wrong = place, mismatch.variable
+                if wrong is not None:
+                    where = within(place, f"${wrong.key}", self.context.document.source)
+                self.context.problems.error("wrong-type", where, str(mismatch))
+
+    def script_keys(self, script: Script, before: Known, place: Place) -> Known:
+        """Keys that a script needs, those that it reads, and what it leaves written."""
+        for variable in script.reads:
+            self.reads.see(_reference(variable.key))
+        known: dict[str, ValueType] = {}
+        for name, parts in dict.fromkeys((needed.key, needed.parts) for needed in script.needs):
+            where = self.in_script(name, place)
+            read = self.reads.lookup(_reference(name), before, where)
+            if read is not None:
+                known[".".join((name, *parts))] = self.reads.part_of(read, parts, where) or object
+        self.script_types(script, known, place)
+        self.reads.given.update(variable.key for variable in script.writes)
+        keys = dict.fromkeys(v.key for v in script.writes if not v.key.startswith("@"))
+        for key in keys:
+            self.written_by_script(Written(key, self.in_script(key, place), "the script"))
+        return before.having_all({name: Key(object, place) for name in keys})
+
+
+def _reference(variable: str) -> Reference:
+    if variable.startswith("@"):
+        return Reference(variable[1:], scope=Scope.ROOT)
+    return Reference(variable)

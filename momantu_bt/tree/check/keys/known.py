@@ -1,0 +1,161 @@
+"""What is known of the keys of a board at one point of a tree."""
+
+from __future__ import annotations
+
+import typing
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, fields, is_dataclass
+from functools import cache
+from typing import Any, cast
+
+from momantu_bt.tree.model import Literal, Place
+from momantu_bt.tree.types import ValueType, assignable, without_none
+from momantu_bt.tree.values.conversion import natural
+
+
+@dataclass(frozen=True, slots=True)
+class Key:
+    """A key that has a value.
+
+    type: of the value. literals: all that the value can be, where those are written in the file
+    and nothing has overwritten it. place: where it was written. either: what it is on one way or
+    another here, where those have nothing in common.
+    """
+
+    type: ValueType
+    place: Place
+    literals: tuple[Literal, ...] = ()
+    either: tuple[Key, ...] = ()
+
+    def misfits(self, type_: ValueType) -> Iterator[Key]:
+        """What of it cannot be right where a value of a type is expected."""
+        for key in self.either or (self,):
+            if not assignable(key.type, type_):
+                yield key
+
+
+@dataclass(frozen=True, slots=True)
+class Known:
+    """Keys that surely have a value here; None when this point is never reached."""
+
+    keys: Mapping[str, Key] | None
+
+    @property
+    def reached(self) -> bool:
+        """Whether this point can be reached at all."""
+        return self.keys is not None
+
+    def get(self, name: str) -> Key | None:
+        """What is known of a key."""
+        return None if self.keys is None else self.keys.get(name)
+
+    def having(self, name: str, key: Key) -> Known:
+        """The same with one more key."""
+        return self.having_all({name: key})
+
+    def having_all(self, keys: Mapping[str, Key]) -> Known:
+        """The same with further keys."""
+        return self if self.keys is None or not keys else Known({**self.keys, **keys})
+
+    def rewritten(self, keys: Iterable[tuple[str, Key]]) -> Known:
+        """The same where some keys that have a value may have been written again.
+
+        What was known of a value stays: it is right the first time.
+        """
+        if self.keys is None:
+            return self
+        having = dict(self.keys)
+        for name, key in keys:
+            old = having.get(name)
+            if old is not None and any(
+                not assignable(key.type, k.type) for k in old.either or (old,)
+            ):
+                having[name] = _one_or_other(old, key)
+        return Known(having)
+
+    def lacking(self, names: Iterable[str]) -> Known:
+        """The same without some keys."""
+        if self.keys is None:
+            return self
+        gone = self.keys.keys() & set(names)
+        if not gone:
+            return self
+        return Known({name: key for name, key in self.keys.items() if name not in gone})
+
+
+NEVER = Known(None)
+
+
+def meet(*points: Known) -> Known:
+    """What holds whichever of these points was passed."""
+    reached = [point.keys for point in points if point.keys is not None]
+    if not reached:
+        return NEVER
+    common = reached[0]
+    for keys in reached[1:]:
+        if keys is not common:
+            common = {n: _either(k, keys[n]) for n, k in common.items() if n in keys}
+    return Known(common)
+
+
+def both(*points: Known) -> Known:
+    """What is known where all of these points were passed; later ones count where they differ."""
+    if not all(point.reached for point in points):
+        return NEVER
+    return Known({name: key for point in points for name, key in (point.keys or {}).items()})
+
+
+def _either(left: Key, right: Key) -> Key:
+    if left is right or left == right:
+        return left
+    if left.either or right.either:
+        return _one_or_other(left, right)
+    if assignable(left.type, right.type):
+        return Key(right.type, right.place)
+    if assignable(right.type, left.type):
+        return Key(left.type, left.place)
+    return _one_or_other(left, right)
+
+
+def _one_or_other(left: Key, right: Key) -> Key:
+    """Each type once, with the place where it was written first."""
+    by_type: list[Key] = []
+    for key in (*(left.either or (left,)), *(right.either or (right,))):
+        if all(key.type != known.type for known in by_type):
+            by_type.append(key)
+    return Key(object, left.place, either=tuple(by_type))
+
+
+def literal_type(value: Literal) -> ValueType:
+    """The type of a written value where no port says otherwise: a quantity is a number."""
+    plain = natural(value.value)
+    return type(plain) if isinstance(plain, bool | int | float | str) else object
+
+
+def part_type(type_: ValueType, parts: tuple[str, ...]) -> ValueType:
+    """The type of a part of a value; `object` where it cannot be told.
+
+    Raises:
+        KeyError: the type has no such part; the arguments are the part and the valid ones.
+    """
+    for name in parts:
+        choices = without_none(type_)
+        if len(choices) != 1 or not is_dataclass(choices[0]):
+            if choices[0] in (str, int, float, bool):
+                raise KeyError(name, ())
+            return object
+        known = _parts(cast(Any, choices[0]))
+        if name not in known:
+            raise KeyError(name, tuple(known))
+        type_ = known[name]
+    return type_
+
+
+@cache
+def _parts(type_: Any) -> dict[str, Any]:
+    hints = typing.get_type_hints(type_)
+    found = {field.name: hints.get(field.name, object) for field in fields(type_)}
+    for name, value in vars(type_).items():
+        if isinstance(value, property) and value.fget is not None:
+            found[name] = typing.get_type_hints(value.fget).get("return", object)
+    return found

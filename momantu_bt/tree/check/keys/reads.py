@@ -1,0 +1,269 @@
+"""Every read of a key, against what is known where it is read: value, type, part and name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+from momantu_bt.skill import Port
+from momantu_bt.tree.catalogue import AUTOREMAP, SUBTREE, ScriptText
+from momantu_bt.tree.check.keys.known import Key, Known, part_type
+from momantu_bt.tree.check.keys.shared import Call, TreeKeys
+from momantu_bt.tree.check.nodes import autoremaps, check_name
+from momantu_bt.tree.check.signatures import Context, Signature
+from momantu_bt.tree.model import (
+    BROKEN,
+    Literal,
+    Node,
+    Place,
+    PortValue,
+    Reference,
+    Scope,
+    Template,
+    Tree,
+)
+from momantu_bt.tree.problems import valid_names
+from momantu_bt.tree.types import ValueType, label
+from momantu_bt.tree.values.conversion import convert
+from momantu_bt.tree.values.units import UnitError, in_unit
+from momantu_bt.tree.values.words import ConversionError
+
+Demand: TypeAlias = tuple[str, str]
+"""What a text must be: ("names", "place"), or a quantity in a unit: ("unit", "m")."""
+
+
+@dataclass(frozen=True, slots=True)
+class Written:
+    """A key that a node writes, or watches. said: the node, in the file's words."""
+
+    key: str
+    place: Place
+    said: str
+
+
+@dataclass(slots=True)
+class KeyReads:
+    """The reads of one tree, reported as they are met.
+
+    root_keys: what `$@key` may read, and what is known of it, if anything is.
+    demands: by tree and input, what nodes below expect of a text there; trees that are run come
+    before those that run them. written: what has been written so far in the order of the file.
+    given: keys that may come from elsewhere: a script, a loop, the tree's inputs. watched: keys
+    that a node only looks at; nobody knows yet who writes them. keys: what is known of each tree's
+    keys by its name. seen: keys of this tree that are read; seen_on_root: by any tree as `$@key`.
+    """
+
+    context: Context
+    tree: Tree
+    root_keys: Mapping[str, Key | None]
+    demands: dict[tuple[str, str], set[Demand]]
+    keys: dict[str, TreeKeys]
+    seen_on_root: set[str]
+    seen: set[str] = field(default_factory=set)
+    written: list[Written] = field(default_factory=list)
+    given: set[str] = field(default_factory=set)
+    watched: list[Written] = field(default_factory=list)
+
+    def inputs(self, node: Node, signature: Signature, before: Known) -> None:
+        """All inputs of a node. One that may be empty is read, and needs nothing before it."""
+        lenient = signature.spec.may_be_empty if signature.spec is not None else ()
+        self.seen.update(name for name in lenient if name not in node.ports)
+        if node.type == SUBTREE:
+            self.given.update(r.key for value in node.ports.values() for r in references(value))
+        for name, value in node.ports.items():
+            port = signature.ports.get(name)
+            if port is None or port.direction == "out" or port.type is ScriptText:
+                continue
+            place = node.port_places.get(name, node.place)
+            if name in lenient:
+                self._watch(name, value, place, signature.said)
+                continue
+            if port.direction == "inout" and isinstance(value, Reference) and not value.fields:
+                self._shared(value, before, place, port, signature.said)
+                continue
+            if isinstance(value, Reference):
+                self._wire(value, before, place, port, signature.said)
+            for reference in references(value):
+                if value is not reference:
+                    self.lookup(reference, before, place)
+            self._demands(node, name, value, before, port)
+
+    def _watch(self, port: str, value: PortValue, place: Place, said: str) -> None:
+        for reference in references(value):
+            self.see(reference)
+            if reference.scope is Scope.LOCAL and reference.key not in (port, BROKEN):
+                self.watched.append(Written(reference.key, place, said))
+
+    def see(self, reference: Reference) -> None:
+        """A key that something reads, whether it has a value or not."""
+        (self.seen_on_root if reference.scope is Scope.ROOT else self.seen).add(reference.key)
+
+    def lookup(self, reference: Reference, before: Known, place: Place) -> Key | None:
+        """What is known of a key that is read here; None, and reported, where it may be empty."""
+        self.see(reference)
+        if reference.key == BROKEN or not before.reached:
+            return None
+        if reference.scope is Scope.ROOT:
+            if reference.key not in self.root_keys:
+                message = f"the root's board has no key {reference.key!r}"
+                hint = valid_names(reference.key, sorted(self.root_keys), "keys")
+                self.context.problems.error("unknown-key", place, message, hint)
+            return self.root_keys.get(reference.key)
+        key = before.get(reference.key)
+        if key is None:
+            self._unwritten(reference.key, before, place)
+        return key
+
+    def _unwritten(self, name: str, before: Known, place: Place) -> None:
+        """A key without a value: whoever runs the tree may give it one, otherwise it is wrong."""
+        declared = self.tree.ports.get(name)
+        from_outside = self.tree.open if declared is None else declared.direction == "inout"
+        if from_outside:
+            self.keys[self.tree.name].needed.setdefault(name, place)
+            return
+        shown = self.context.wire(name, place)
+        writer = next((w for w in self.written if w.key == name), None)
+        if writer is not None:
+            message = f"{shown} may have no value here"
+            hint = f"{writer.said} (line {writer.place.line}) writes it, but not on every way here"
+        else:
+            message = f"nothing writes {shown} before it is read here"
+            hint = valid_names(name, sorted(before.keys or {}), "keys that have a value here")
+        self.context.problems.error("read-before-write", place, message, hint)
+
+    def of_call(self, call: Call, inside: TreeKeys, before: Known) -> None:
+        """What a tree that is run needs, and attributes that it never mentions."""
+        for name, place in inside.needed.items():
+            reference = call.outside(name)
+            if reference is not None:
+                self.lookup(reference, before, call.place(name))
+            elif not call.gives_value(name):
+                self._report_needed(name, place, inside)
+        if autoremaps(call.node):
+            for name, port in self.context.tree_signature(call.tree).ports.items():
+                if port.required and name not in call.node.ports:
+                    self.lookup(Reference(name), before, call.node.place)
+        for name in call.node.ports if call.tree.open else ():
+            if name not in inside.mentioned and name not in (AUTOREMAP, *call.tree.ports):
+                place = call.node.port_name_places.get(name, call.node.place)
+                message = f"the tree {call.tree.name!r} never mentions {name!r}"
+                hint = valid_names(name, sorted(inside.mentioned), "its keys")
+                self.context.problems.warning("unused-port", place, message, hint)
+        self.seen.update(call.local(inside.mentioned))
+
+    def report_needed(self) -> None:
+        """Keys that the main tree reads: nobody outside gives them a value."""
+        mine = self.keys[self.tree.name]
+        for name, place in mine.needed.items():
+            self._report_needed(name, place, mine)
+
+    def _report_needed(self, name: str, place: Place, keys: TreeKeys) -> None:
+        shown = self.context.wire(name, place)
+        if name in keys.written:
+            message = f"{shown} may have no value here"
+            hint = "something writes it, but perhaps not before"
+            self.context.problems.warning("read-before-write", place, message, hint)
+        else:
+            hint = valid_names(name, sorted(keys.written), "keys that something writes")
+            message = f"nothing writes {shown}, which is read here"
+            self.context.problems.error("read-before-write", place, message, hint)
+
+    def _shared(
+        self, reference: Reference, before: Known, place: Place, port: Port, said: str
+    ) -> None:
+        """A key that may come in with a value: what is known of it fits."""
+        self.see(reference)
+        key = before.get(reference.key) if reference.scope is Scope.LOCAL else None
+        if key is not None and any(key.misfits(port.type)):
+            message = f"{self.context.wire(reference.key, place)} is {label(key.type)}; "
+            hint = f"it comes from {key.place.seen_from(place)}"
+            message += f"{port.name!r} of {said} takes {label(port.type)}"
+            self.context.problems.error("wrong-type", place, message, hint)
+
+    def _report_misfit(self, key: Key, place: Place, message: str) -> None:
+        """A value of the tree's own is wrong where it is used; one given from outside is wrong."""
+        where, hint = place, f"it comes from {key.place.seen_from(place)}"
+        if key.place.file != place.file:
+            where, hint = key.place, f"it is used in {place.seen_from(key.place)}"
+        self.context.problems.error("wrong-value", where, message, hint)
+
+    def _wire(
+        self, reference: Reference, before: Known, place: Place, port: Port, said: str
+    ) -> None:
+        key = self.lookup(reference, before, place)
+        if key is None:
+            return
+        if key.literals and not reference.fields:
+            wire = self.context.wire(reference.key, place)
+            for literal in key.literals:
+                try:
+                    convert(literal.value, port)
+                except ConversionError as error:
+                    message = f"{wire} does not fit {port.name!r} of {said}: {error}"
+                    self._report_misfit(key, place, message)
+            return
+        type_ = self.part_of(key, reference.fields, place)
+        whole = Key(type_, key.place, either=() if reference.fields else key.either)
+        for wrong in whole.misfits(port.type) if type_ is not None else ():
+            wire = self.context.wire(".".join((reference.key, *reference.fields)), place)
+            wanted = f"{port.name!r} of {said} takes {label(port.type)}"
+            origin = f"it comes from {wrong.place.seen_from(place)}"
+            message = f"{wire} is {label(wrong.type)}; {wanted}"
+            self.context.problems.error("wrong-type", place, message, origin)
+
+    def part_of(self, key: Key, parts: tuple[str, ...], place: Place) -> ValueType | None:
+        """The type of a part of a key's value; None, and reported, where there is none."""
+        try:
+            return part_type(key.type, parts)
+        except KeyError as error:
+            part, valid = error.args
+            message = f"{label(key.type)} has no part {part!r}"
+            hint = valid_names(part, valid, "parts")
+            self.context.problems.error("unknown-part", place, message, hint)
+            return None
+
+    def _demands(self, node: Node, name: str, value: PortValue, before: Known, port: Port) -> None:
+        """Names and quantities that reach a port by wire or through a subtree."""
+        demands = {("names", port.names)} if port.names is not None else set()
+        if port.unit is not None:
+            demands.add(("unit", port.unit))
+        if node.type == SUBTREE:
+            demands |= self.demands.get((node.target or "", name), set())
+            if isinstance(value, Literal):
+                self._check_demands(value, node.port_places.get(name, node.place), demands)
+        if not isinstance(value, Reference) or value.fields:
+            return
+        root = value.scope is Scope.ROOT
+        key = self.root_keys.get(value.key) if root else before.get(value.key)
+        if key is not None and key.literals:
+            if node.type != SUBTREE:  # the wire's own check has converted it with the port's unit
+                demands = {demand for demand in demands if demand[0] == "names"}
+            for literal in key.literals:
+                self._check_demands(literal, key.place, demands)
+        elif demands and value.key in self.tree.ports and not root:
+            self.demands.setdefault((self.tree.name, value.key), set()).update(demands)
+
+    def _check_demands(self, value: Literal, place: Place, demands: set[Demand]) -> None:
+        if not isinstance(value.value, str):
+            return
+        for kind, what in sorted(demands):
+            if kind == "names":
+                check_name(self.context, value.value, place, what)
+            else:
+                self._check_unit(value.value, place, what)
+
+    def _check_unit(self, text: str, place: Place, unit: str) -> None:
+        try:
+            in_unit(text, unit)
+        except UnitError as error:
+            self.context.problems.error("wrong-value", place, str(error))
+
+
+def references(value: PortValue) -> list[Reference]:
+    """The keys that a port's value reads."""
+    if isinstance(value, Reference):
+        return [value]
+    if isinstance(value, Template):
+        return list(dict.fromkeys(part for part in value.parts if isinstance(part, Reference)))
+    return []

@@ -1,0 +1,270 @@
+"""Each node by itself: is it known, has it the right children, do its ports fit."""
+
+from __future__ import annotations
+
+from momantu_bt.failure import CODE
+from momantu_bt.messages import VALUE_TYPES
+from momantu_bt.skill import MISSING, Port
+from momantu_bt.tree.catalogue import AUTOREMAP, MODIFIERS, CodeText
+from momantu_bt.tree.check.signatures import Context, Signature, known_type, report_unknown_node
+from momantu_bt.tree.model import (
+    FIRST_INPUT,
+    Literal,
+    Node,
+    Place,
+    PortDeclaration,
+    PortValue,
+    Reference,
+    Template,
+    Tree,
+)
+from momantu_bt.tree.problems import valid_names
+from momantu_bt.tree.types import assignable, label
+from momantu_bt.tree.values.conversion import convert, port_of
+from momantu_bt.tree.values.words import ConversionError
+
+
+def check_tree_ports(context: Context, tree: Tree) -> None:
+    """Types and defaults of a tree's inputs and outputs."""
+    for name, declaration in tree.ports.items():
+        type_ = known_type(declaration.type_name)
+        if type_ is None:
+            hint = valid_names(declaration.type_name, _type_names(), "types")
+            message = f"no type is called {declaration.type_name!r}"
+            context.problems.error("unknown-type", declaration.place, message, hint)
+        else:
+            _check_default(context, name, declaration)
+
+
+def _check_default(context: Context, name: str, declaration: PortDeclaration) -> None:
+    if not isinstance(declaration.default, Literal):
+        return
+    try:
+        convert(declaration.default.value, port_of(declaration))
+    except ConversionError as error:
+        message = f"the default of {name!r}: {error}"
+        context.problems.error("wrong-value", declaration.place, message)
+
+
+def _type_names() -> list[str]:
+    return [*VALUE_TYPES, *(f"list of {name}" for name in VALUE_TYPES)]
+
+
+def check_node(context: Context, node: Node) -> None:
+    """One node: name, children, ports. Names the port of a bare value on the way."""
+    signature = context.signature(node)
+    if signature is None:
+        if node.type:
+            report_unknown_node(context, node)
+        return
+    _name_first_input(context, node, signature)
+    _check_children(context, node, signature)
+    _check_switch(context, node, signature)
+    for name in list(node.ports):
+        _check_port(context, node, name, signature)
+    _check_one_of(context, node, signature)
+    _check_default_answer(context, node)
+    for name, port in signature.ports.items():
+        needed = _is_needed(port, signature) and not autoremaps(node)
+        if needed and name not in node.ports and name not in node.port_places:
+            _report_missing(context, node, port, signature)
+
+
+def _is_needed(port: Port, signature: Signature) -> bool:
+    """Whether it must be given: an output of a built-in node, too, unless it has a default."""
+    written = port.direction == "out" and port.default is MISSING
+    return port.required or (signature.spec is not None and written)
+
+
+def autoremaps(node: Node) -> bool:
+    """Whether a SubTree takes every key that is not given from the key of the same name."""
+    return node.ports.get(AUTOREMAP) == Literal(True)
+
+
+def name_first_inputs(context: Context) -> None:
+    """Name the ports of bare values, for the nodes that are known."""
+    for tree in context.document.trees.values():
+        for node in tree.root.walk():
+            signature = context.signature(node) if FIRST_INPUT in node.ports else None
+            if signature is not None and signature.first is not None:
+                _name_first_input(context, node, signature)
+
+
+def _name_first_input(context: Context, node: Node, signature: Signature) -> None:
+    if FIRST_INPUT not in node.ports:
+        return
+    value = node.ports.pop(FIRST_INPUT)
+    place = node.port_places.pop(FIRST_INPUT)
+    node.port_name_places.pop(FIRST_INPUT, None)
+    if signature.first is None:
+        message = f"{signature.said} has no input"
+        context.problems.error("unknown-port", place, message, "remove the value")
+        return
+    node.ports[signature.first] = value
+    node.port_places[signature.first] = place
+    node.port_name_places[signature.first] = place
+
+
+def _check_children(context: Context, node: Node, signature: Signature) -> None:
+    if signature.spec is None:
+        if node.children:
+            message = f"{signature.said} takes no children"
+            context.problems.error("children", node.children[0].place, message, "remove them")
+        return
+    least, most = signature.spec.children
+    count = len(node.children)
+    if count < least and not signature.spec.positions:
+        message = f"{signature.said} has {count or 'no'} children; at least {least}"
+        context.problems.error("children", node.place, message)
+    elif count < least and count == 0 and signature.spec.positions == ("child",):
+        message = f"{signature.said} has no child"
+        context.problems.error("children", node.place, message, _child_hint(context, node))
+    elif most is not None and count > most:
+        message = f"{signature.said} has {count} children; at most {most}"
+        context.problems.error("children", node.place, message)
+
+
+def _child_hint(context: Context, node: Node) -> str:
+    return "put one node inside" if context.is_xml(node.place) else "write `child:` among its ports"
+
+
+def _check_one_of(context: Context, node: Node, signature: Signature) -> None:
+    """Of some inputs exactly one is given, such as a time in seconds or in milliseconds."""
+    for group in signature.one_of:
+        nothing = [name for name in group if node.ports.get(name) == Literal(None)]
+        named = [name for name in group if name in node.port_places or name in node.ports]
+        given = [name for name in named if name not in nothing]
+        if not given and signature.skill is not None:
+            message = f"{signature.said} needs exactly one of the inputs {', '.join(group)}"
+            context.problems.error("missing-input", node.place, message)
+        elif not given:
+            first = group[-1] if context.is_xml(node.place) else group[0]
+            _report_missing(context, node, signature.ports[first], signature)
+        for name in given[1:]:
+            message = f"{signature.said} takes {given[0]!r} or {name!r}, not both"
+            place = node.port_name_places.get(name, node.place)
+            context.problems.error("one-of", place, message, "remove one")
+
+
+def _check_default_answer(context: Context, node: Node) -> None:
+    """The default of `ask` is one of its choices, where both are written out."""
+    choices, default = (node.ports.get(name) for name in ("choices", "default"))
+    if node.type != "Ask" or not isinstance(choices, Literal) or not isinstance(default, Literal):
+        return
+    known = choices.value
+    if isinstance(known, list) and known and default.value not in [*known, None]:
+        message = f"{default.value!r} is none of the choices"
+        hint = valid_names(str(default.value), map(str, known), "choices")
+        context.problems.error("wrong-value", node.port_places["default"], message, hint)
+
+
+def _check_switch(context: Context, node: Node, signature: Signature) -> None:
+    """A switch on a text that is written out always goes one way."""
+    value = node.ports.get("variable")
+    if signature.spec is None or not signature.spec.switch or not isinstance(value, Literal):
+        return
+    place = node.port_places.get("variable", node.place)
+    message = f"`{signature.said}` chooses by a key"
+    hint = f"write {context.wire(str(value.value), place)}"
+    context.problems.error("not-a-key", place, message, hint)
+
+
+def _report_missing(context: Context, node: Node, port: Port, signature: Signature) -> None:
+    kind = "input" if port.direction == "in" else "key"
+    name = port.name
+    if signature.spec is not None and context.is_xml(node.place):
+        name = signature.spec.xml.get(name, name)
+    message = f"{signature.said} needs the {kind} {name!r}"
+    hint = f"{name}: {label(port.type)}{f' in {port.unit}' if port.unit else ''}"
+    if port.doc:
+        hint += f", {port.doc}"
+    context.problems.error("missing-input", node.place, message, hint)
+
+
+def _check_port(context: Context, node: Node, name: str, signature: Signature) -> None:
+    port = signature.ports.get(name)
+    if port is None:
+        _report_unknown_port(context, node, name, signature)
+        return
+    value = node.ports[name]
+    place = node.port_places.get(name, node.place)
+    watched = signature.spec is not None and name in signature.spec.keys
+    if port.direction == "out" or watched:
+        _check_key(context, value, place, port, signature)
+    elif isinstance(value, Literal):
+        check_literal(context, value, place, port)
+    elif isinstance(value, Template) and not assignable(str, port.type):
+        message = f"{name!r} of {signature.said} is no text: {label(port.type)}"
+        context.problems.error("wrong-type", place, message, "write $key alone")
+
+
+def _check_key(
+    context: Context, value: PortValue, place: Place, port: Port, signature: Signature
+) -> None:
+    """What is written, or looked at as a key, is a key, and a whole one."""
+    doing = "written" if port.direction == "out" else "watched"
+    if isinstance(value, Reference):
+        if value.fields:
+            message = f"a part of a value cannot be {doing}"
+            hint = f"write {context.wire(value.key, place)}"
+            context.problems.error("not-a-key", place, message, hint)
+        return
+    text = str(value.value) if isinstance(value, Literal) else "key"
+    hint = f"did you mean {context.wire(text, place)}?" if text.isidentifier() else ""
+    hint = hint or f"write {context.wire('key', place)}"
+    what = "is an output of" if port.direction == "out" else "names what is watched by"
+    message = f"{port.name!r} {what} {signature.said}: it needs a key"
+    context.problems.error("not-a-key", place, message, hint)
+
+
+def check_literal(context: Context, value: Literal, place: Place, port: Port) -> None:
+    """A written value against a port: its type, its unit, and the names it may be."""
+    try:
+        found = convert(value.value, port)
+    except ConversionError as error:
+        message = f"{port.name!r}: {error}"
+        context.problems.error("wrong-value", place, message)
+        return
+    if port.type is CodeText and not CODE.fullmatch(found):
+        hint = "upper-case words joined by underscores, such as OBJECT_NOT_FOUND"
+        context.problems.error("bad-code", place, f"{found!r} is no failure code", hint)
+    if port.names is not None and isinstance(found, str):
+        check_name(context, found, place, port.names)
+
+
+_KINDS = {
+    "place": ("place", "places"),
+    "surface": ("surface", "surfaces"),
+    "named_pose": ("named pose", "named poses"),
+}
+
+
+def check_name(context: Context, name: str, place: Place, kind: str) -> None:
+    """A place, surface or named pose by name, where the world or robot is known."""
+    valid = context.names_of(kind)
+    if valid is None or name in valid:
+        return
+    one, several = _KINDS[kind]
+    where = "the robot" if kind == "named_pose" else "the world"
+    message = f"{where} has no {one} {name!r}"
+    code = f"unknown-{one.replace(' ', '-')}"
+    context.problems.error(code, place, message, valid_names(name, valid, several))
+
+
+def _report_unknown_port(context: Context, node: Node, name: str, signature: Signature) -> None:
+    place = node.port_name_places.get(name, node.place)
+    if name in MODIFIERS:
+        context.problems.error(
+            "misplaced-modifier",
+            place,
+            f"`{name}` is a modifier, not a port of {signature.said}",
+            f"move `{name}` left, under `{signature.said}`",
+        )
+        return
+    hint = valid_names(name, signature.ports, "ports")
+    if not signature.ports:
+        hint = f"{signature.said} has no ports"
+        if signature.spec is None and signature.skill is None:
+            section = "the model" if context.is_xml(place) else "`inputs:` or `outputs:`"
+            hint = f"declare it in {section} of {signature.said}"
+    context.problems.error("unknown-port", place, f"{signature.said} has no port {name!r}", hint)

@@ -1,0 +1,152 @@
+"""What each node of a document takes, gives, commands and fails with."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from momantu_bt.plugins import PluginError
+from momantu_bt.robot import RobotDescription
+from momantu_bt.skill import Port, Skill
+from momantu_bt.tree.catalogue import AUTOREMAP, BUILT_IN, SUBTREE, NodeSpec
+from momantu_bt.tree.model import BROKEN, Document, Node, Place, Tree
+from momantu_bt.tree.problems import Problems, nearest, valid_names
+from momantu_bt.tree.registry import Registry
+from momantu_bt.tree.types import parse_type
+from momantu_bt.tree.values.conversion import port_of
+from momantu_bt.world import Site
+
+_AUTOREMAP_PORT = Port(AUTOREMAP, "in", bool, "whether keys of one name are one key", False)
+
+
+@dataclass(frozen=True, slots=True)
+class Signature:
+    """One kind of node. said: its name in the file. first: the input that a bare value means.
+
+    spec: of a built-in node; skill: of a skill; both None for a subtree.
+    """
+
+    said: str
+    ports: Mapping[str, Port]
+    first: str | None
+    spec: NodeSpec | None = None
+    skill: type[Skill] | None = None
+
+    @property
+    def one_of(self) -> tuple[tuple[str, ...], ...]:
+        """Groups of inputs of which exactly one is given."""
+        owner = self.spec or self.skill
+        return () if owner is None else owner.one_of
+
+    def inputs(self) -> list[str]:
+        """Names of its inputs."""
+        return [name for name, port in self.ports.items() if port.direction == "in"]
+
+
+@dataclass(slots=True)
+class Context:
+    """One check of one document. site, description: None where there is no world or robot."""
+
+    document: Document
+    registry: Registry
+    problems: Problems
+    site: Site | None = None
+    description: RobotDescription | None = None
+    _skills: dict[str, type[Skill] | None] = field(default_factory=dict)
+    _trees: dict[str, Signature] = field(default_factory=dict)
+    _xml_files: dict[str, bool] = field(default_factory=dict)
+
+    def signature(self, node: Node) -> Signature | None:
+        """What this node takes and gives; None where it is unknown or broken."""
+        spec = BUILT_IN.get(node.type)
+        if spec is not None:
+            said = node.type if self.is_xml(node.place) else spec.yaml[0]
+            return Signature(said, spec.ports, spec.first, spec=spec)
+        if node.type == SUBTREE:
+            return self._call_signature(node, self.document.trees[node.target or ""])
+        skill = None if node.type == BROKEN else self.skill(node.type)
+        if skill is None:
+            return None
+        return Signature(node.type, skill.ports, _first(skill.ports), skill=skill)
+
+    def _call_signature(self, node: Node, tree: Tree) -> Signature:
+        """A subtree's, with what this node may give besides: of an open tree any key."""
+        declared = self.tree_signature(tree)
+        ports = dict(declared.ports)
+        if AUTOREMAP in node.ports:
+            ports[AUTOREMAP] = _AUTOREMAP_PORT
+        for name in node.ports if tree.open else ():
+            if name and name not in ports:
+                ports[name] = Port(name, "inout", object, "")
+        return Signature(tree.name, ports, declared.first)
+
+    def is_xml(self, place: Place) -> bool:
+        """Whether the file of this place is XML, so that its words are used."""
+        known = self._xml_files.get(place.file)
+        if known is None:
+            text = self.document.source.get(place.file, "")
+            known = text.lstrip("\ufeff \t\r\n").startswith("<")
+            self._xml_files[place.file] = known
+        return known
+
+    def wire(self, key: str, place: Place) -> str:
+        """A wire as the file of this place spells it."""
+        return f"{{{key}}}" if self.is_xml(place) else f"${key}"
+
+    def tree_signature(self, tree: Tree) -> Signature:
+        """What a subtree takes and gives. An unknown type counts as `any`; `tree_ports` says so."""
+        if tree.name not in self._trees:
+            ports: dict[str, Port] = {}
+            for name, declaration in tree.ports.items():
+                try:
+                    ports[name] = port_of(declaration)
+                except KeyError:
+                    ports[name] = Port(name, declaration.direction, object, declaration.doc)
+            self._trees[tree.name] = Signature(tree.name, ports, _first(ports))
+        return self._trees[tree.name]
+
+    def skill(self, name: str) -> type[Skill] | None:
+        """A skill's class; None when there is none or it is broken (reported then)."""
+        if name not in self._skills:
+            try:
+                self._skills[name] = self.registry.skills[name]
+            except (KeyError, PluginError):
+                self._skills[name] = None
+        return self._skills[name]
+
+    def names_of(self, kind: str) -> tuple[str, ...] | None:
+        """Valid values of an input with `names=kind`; None when nobody knows them."""
+        if kind == "named_pose":
+            return None if self.description is None else tuple(self.description.named_poses)
+        if self.site is None:
+            return None
+        return self.site.known_places() if kind == "place" else tuple(self.site.surfaces)
+
+
+def _first(ports: Mapping[str, Port]) -> str | None:
+    return next((name for name, port in ports.items() if port.direction == "in"), None)
+
+
+def report_unknown_node(context: Context, node: Node) -> None:
+    """Say that no node has this name, or why the skill of this name cannot be used."""
+    name = node.type
+    if name in context.registry.skills:
+        try:
+            context.registry.skills[name]
+        except PluginError as error:
+            context.problems.error("broken-plugin", node.place, str(error), "run momantu-bt doctor")
+        return
+    spellings = [spec.yaml[0] for spec in BUILT_IN.values()]
+    skills = [*context.document.trees, *context.registry.skills]
+    near = nearest(name, [*skills, *spellings])
+    hint = f"did you mean {near}?" if near else valid_names(name, skills, "trees and skills")
+    context.problems.error("unknown-node", node.place, f"no node is called {name!r}", hint)
+
+
+def known_type(text: str) -> Any:
+    """The type of that name, or None."""
+    try:
+        return parse_type(text)
+    except KeyError:
+        return None

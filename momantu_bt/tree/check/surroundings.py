@@ -1,0 +1,99 @@
+"""The world and the robot with which a tree is checked."""
+
+from __future__ import annotations
+
+from momantu_bt.descriptions.reading import DescriptionError
+from momantu_bt.plugin_files import near_file
+from momantu_bt.plugins import ROBOTS, WORLDS, PluginError
+from momantu_bt.tree.check.named_world import world_of
+from momantu_bt.tree.check.signatures import Context
+from momantu_bt.tree.model import Place
+from momantu_bt.tree.problems import valid_names
+from momantu_bt.world import WorldError
+
+WORLD_OPTION, ROBOT_OPTION = "--world", "--robot"
+"""What stands for a file's name in problems with what the command line names."""
+
+
+def look_up_surroundings(context: Context, world: str | None, robot: str | None) -> None:
+    """Set the world's site and the robot's description; reports where there are none.
+
+    world, robot: names or paths that replace the document's own and the world's usual robot.
+    """
+    document = context.document
+    name, start = world_of(document, world), Place(document.file, 1, 1)
+    if name is not None:
+        place = document.world_place or start
+        default = _look_up_world(
+            context, name, place if world is None else _told(WORLD_OPTION, world)
+        )
+        robot_place = start if robot is None else _told(ROBOT_OPTION, robot)
+        robot = robot or default
+    elif robot is not None:
+        robot_place = _told(ROBOT_OPTION, robot)
+    if robot is not None:
+        _look_up_robot(context, robot, robot_place)
+
+
+def _told(option: str, name: str) -> Place:
+    """A place on the command line, for what no file says."""
+    return Place(option, 1, 1, len(name))
+
+
+def _look_up_world(context: Context, name: str, place: Place) -> str | None:
+    """Sets the context's site; returns the robot that the world is meant for."""
+    worlds = context.registry.worlds
+    if name not in worlds:
+        hint = near_file(WORLDS, name) or valid_names(name, worlds, "worlds")
+        _error("unknown-world", context, place, name, f"no world is called {name!r}", hint)
+        return None
+    try:
+        entry = worlds[name]
+        context.site = entry.site()
+        return entry.default_robot
+    except DescriptionError as error:
+        _broken("broken-world", context, error)
+    except PluginError as error:
+        _error("broken-world", context, place, name, str(error))
+    except Exception as error:  # a plug-in's code, which may raise anything
+        message = f"the world {name!r} cannot be read: {type(error).__name__}: {error}"
+        _error("broken-world", context, place, name, message)
+    return None
+
+
+def _look_up_robot(context: Context, name: str, place: Place) -> None:
+    robots = context.registry.robots
+    if name not in robots:
+        hint = near_file(ROBOTS, name) or valid_names(name, robots, "robots")
+        _error("unknown-robot", context, place, name, f"no robot is called {name!r}", hint)
+        return
+    try:
+        context.description = context.registry.description(name)
+    except DescriptionError as error:
+        _broken("broken-robot", context, error)
+    except PluginError as error:
+        _error("broken-robot", context, place, name, str(error))
+    except WorldError as error:
+        # its files are not installed, as without the extra [worlds]; trees are checked all the same
+        message = f"poses and actuators of {name!r} are not checked: {error}"
+        context.problems.warning("robot-not-installed", place, message)
+    except Exception as error:  # a plug-in's code, which may raise anything
+        message = f"the robot {name!r} cannot be read: {type(error).__name__}: {error}"
+        _error("broken-robot", context, place, name, message)
+
+
+def _error(
+    code: str, context: Context, place: Place, name: str, message: str, hint: str = ""
+) -> None:
+    """Report a world or robot; one that the command line names is shown as it was given there."""
+    if place.file in (WORLD_OPTION, ROBOT_OPTION):
+        context.document.source[place.file] = name
+    context.problems.error(code, place, message, hint)
+
+
+def _broken(code: str, context: Context, error: DescriptionError) -> None:
+    """Report what is wrong in a file that describes a world or a robot, in its own lines."""
+    file = str(error.path)
+    context.document.source[file] = error.text
+    for problem in error.problems:
+        context.problems.error(code, Place(file, problem.line, problem.column), problem.message)

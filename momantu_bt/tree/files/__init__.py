@@ -1,0 +1,1 @@
+"""Tree files: found, read in either spelling, joined by includes, and written."""

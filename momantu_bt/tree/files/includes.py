@@ -1,0 +1,200 @@
+"""A tree file with the files that it includes, in either spelling, as one document."""
+
+from __future__ import annotations
+
+import os.path
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Protocol
+
+from momantu_bt.tree.files.lookup import TreeNotFound, tree_files
+from momantu_bt.tree.files.resolve import resolve
+from momantu_bt.tree.files.text import is_xml, read_text
+from momantu_bt.tree.files.xml.format import XmlSource
+from momantu_bt.tree.files.yaml.format import YamlSource
+from momantu_bt.tree.model import Document, Include, Tree
+from momantu_bt.tree.problems import Problem, Problems, TooManyProblems, TreeError, errors, nearest
+from momantu_bt.tree.registry import Registry
+
+MAX_FILES = 64
+MAX_TOTAL = 3_000_000
+"""Characters of all files together."""
+
+_MARKS = (".git", "pyproject.toml")
+"""What the folder of a project holds."""
+
+
+class Source(Protocol):
+    """A file whose syntax is right and whose nodes are not read yet."""
+
+    text: str
+
+    def includes(self) -> tuple[Include, ...]:
+        """The files it includes."""
+        ...
+
+    def document(self, outside: dict[str, Tree], *, included: bool = False) -> Document | None:
+        """Its own part of the document; None, and reported, where there is none."""
+        ...
+
+
+def read_project(path: Path, registry: Registry) -> tuple[Document, Problems]:
+    """Read a tree file and all that it includes.
+
+    Included files must lie in the project: the nearest folder above `path` with `.git` or
+    `pyproject.toml`, else the file's own folder. Of them only the trees are taken.
+
+    Raises:
+        TreeNotFound: the file itself cannot be opened.
+        TreeError: a file is neither YAML nor XML, holds no tree, or has too many problems.
+    """
+    project = _Project(registry, Problems(), project_folder(path))
+    try:
+        return project.read(path)
+    except TooManyProblems as error:
+        raise TreeError(errors(error.problems), project.source) from None
+
+
+def project_folder(path: Path) -> Path:
+    """The folder that included files must lie in."""
+    here = path.resolve().parent
+    for folder in (here, *here.parents):
+        if any((folder / mark).exists() for mark in _MARKS):
+            return folder
+    return here
+
+
+@dataclass(slots=True)
+class _Open:
+    """A file whose includes are being read. path: its real one; shown: its name in reports."""
+
+    path: Path
+    shown: str
+    source: Source
+    includes: Iterator[Include]
+    visible: dict[str, Tree] = field(default_factory=dict)
+
+
+@dataclass(slots=True)
+class _Project:
+    registry: Registry
+    problems: Problems
+    folder: Path
+    documents: dict[Path, Document] = field(default_factory=dict)
+    visible: dict[Path, dict[str, Tree]] = field(default_factory=dict)
+    source: dict[str, str] = field(default_factory=dict)
+    broken: list[Problem] = field(default_factory=list)
+    """Syntax errors of included files; they are reported alone."""
+
+    def read(self, path: Path) -> tuple[Document, Problems]:
+        main = path.resolve()
+        stack = [self.open(main, str(path))]
+        while stack:
+            top = stack[-1]
+            include = next(top.includes, None)
+            if include is None:
+                self.close(stack.pop(), stack[-1] if stack else None)
+                continue
+            target = self.target(top, include, stack)
+            if target is not None and target in self.visible:
+                top.visible |= self.visible[target]
+            elif target is not None:
+                self.enter(target, include, stack)
+        if self.broken:
+            raise TreeError(self.broken, self.source)
+        if main not in self.documents:
+            raise TreeError(errors(self.problems.sorted()), self.source)
+        return self.whole(self.documents.pop(main)), self.problems
+
+    def open(self, path: Path, shown: str) -> _Open:
+        text = read_text(path, shown)
+        self.source[shown] = text
+        source: Source
+        if is_xml(shown, text):
+            source = XmlSource.of(text, shown, self.registry, self.problems)
+        else:
+            source = YamlSource.of(text, shown, self.problems)
+        return _Open(path, shown, source, iter(source.includes()))
+
+    def enter(self, target: Path, include: Include, stack: list[_Open]) -> None:
+        """Open an included file, unless there are too many or it is not what it should be."""
+        shown = os.path.normpath(Path(stack[-1].shown).parent / include.path)
+        total = sum(map(len, self.source.values()))
+        if len(self.source) >= MAX_FILES or total >= MAX_TOTAL:
+            message = f"more than {MAX_FILES} files or {MAX_TOTAL} characters in all"
+            self.problems.error("too-large", include.place, message, "include fewer files")
+            return
+        try:
+            stack.append(self.open(target, shown))
+        except TreeNotFound as error:
+            self.problems.error("include", include.place, str(error))
+        except TreeError as error:
+            self.broken.extend(error.problems)
+            self.visible[target] = {}
+
+    def target(self, top: _Open, include: Include, stack: list[_Open]) -> Path | None:
+        """The included file's real path; None where it cannot be included, which is reported."""
+        try:
+            wanted = (top.path.parent / include.path).resolve()
+            exists = wanted.is_file()
+        except (OSError, ValueError, RuntimeError):
+            wanted, exists = top.path, False
+        if not wanted.is_relative_to(self.folder):
+            message = f"{include.path} is not in the project {self.folder.name}"
+            hint = "included files lie beside the main file or below the project's folder"
+            self.problems.error("include", include.place, message, hint)
+            return None
+        if not exists:
+            self._report_missing(wanted, include)
+            return None
+        circle = [each.shown for each in stack if each.path == wanted]
+        if circle:
+            names = [each.shown for each in stack]
+            path = " -> ".join([*names[names.index(circle[0]) :], circle[0]])
+            message, hint = f"the file includes itself: {path}", "remove one of the includes"
+            self.problems.error("include-cycle", include.place, message, hint)
+            return None
+        return wanted
+
+    def _report_missing(self, wanted: Path, include: Include) -> None:
+        beside = [each.name for each in tree_files(wanted.parent)]
+        near = nearest(wanted.name, beside)
+        hint = f"tree files there: {', '.join(beside) or 'none'}"
+        if near is not None:
+            hint = f"did you mean {Path(include.path).parent / near}?"
+        self.problems.error("include", include.place, f"there is no file {include.path}", hint)
+
+    def close(self, done: _Open, parent: _Open | None) -> None:
+        """Read the file's own trees, now that those of its includes are known."""
+        document = done.source.document(done.visible, included=parent is not None)
+        if document is not None:
+            self.documents[done.path] = document
+            for name, tree in document.trees.items():
+                self._report_duplicate(name, tree, done.visible.get(name))
+                done.visible.setdefault(name, tree)
+        self.visible[done.path] = done.visible
+        if parent is not None:
+            parent.visible |= {
+                name: tree
+                for name, tree in done.visible.items()
+                if not self._report_duplicate(name, tree, parent.visible.get(name))
+            }
+
+    def _report_duplicate(self, name: str, tree: Tree, other: Tree | None) -> bool:
+        if other is None or other is tree:
+            return False
+        for place, elsewhere in ((tree.place, other.place), (other.place, tree.place)):
+            message = f"the tree {name!r} stands in {elsewhere} too"
+            self.problems.error("duplicate-tree", place, message, "rename one of them")
+        return True
+
+    def whole(self, main: Document) -> Document:
+        """The main document with the trees of all others, and every name resolved."""
+        for other in self.documents.values():
+            for name, tree in other.trees.items():
+                self._report_duplicate(name, tree, main.trees.get(name))
+                main.trees.setdefault(name, tree)
+        main.source = self.source
+        resolve(main, self.problems)
+        return main

@@ -1,0 +1,196 @@
+"""The attributes of a node's element: plain ones where BehaviorTree.CPP reads the same value."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from typing import Any
+
+from momantu_bt.plugins import PluginError
+from momantu_bt.skill import Port
+from momantu_bt.tree.catalogue import (
+    AUTOREMAP,
+    BUILT_IN,
+    SUBTREE,
+    XML_CONDITIONS,
+    NodeSpec,
+    ScriptText,
+)
+from momantu_bt.tree.files.xml.ports import DESCRIPTION, DISABLED, NOTE, PREFIX, RESERVED
+from momantu_bt.tree.files.xml.text import attribute, is_xml
+from momantu_bt.tree.files.xml.values import WireError, attribute_value
+from momantu_bt.tree.files.yaml.scalars import CannotWrite, port_text
+from momantu_bt.tree.model import (
+    Document,
+    Literal,
+    Node,
+    PortValue,
+    Reference,
+    Scope,
+)
+from momantu_bt.tree.registry import Registry
+from momantu_bt.tree.types import ValueType, parse_type
+from momantu_bt.tree.values.units import UnitError, in_unit
+
+_NAME = re.compile(r"[A-Za-z_][\w.-]*", re.ASCII)
+"""What can be the name of a tag or an attribute, as all parsers agree."""
+
+
+def is_name(text: str) -> bool:
+    """Whether a text can be the name of a tag or an attribute."""
+    return _NAME.fullmatch(text) is not None
+
+
+def plain(value: PortValue, port: str, type_: ValueType) -> str | None:
+    """The text of an attribute without prefix that is read as this value; None without one."""
+    if isinstance(value, Reference):
+        at = "@" if value.scope is Scope.ROOT else ""
+        text = f"{{{at}{value.key}}}"
+    elif isinstance(value, Literal) and isinstance(value.value, str | int | float):
+        shown = value.value
+        text = str(shown).lower() if isinstance(shown, bool) else _shown(shown)
+    else:
+        return None
+    try:
+        found = attribute_value(text, port, type_)
+    except WireError:
+        return None
+    same = found == value and _type(found) is _type(value)
+    return text if same and is_xml(text) else None
+
+
+def port_attribute(name: str, value: PortValue, type_: ValueType) -> str:
+    """The attribute of a skill's input or output: without prefix where it can be.
+
+    Raises:
+        CannotWrite: XML has no such character.
+    """
+    text = None if _is_reserved(name) else plain(value, name, type_)
+    if text is not None:
+        return attribute(name, text)
+    return attribute(PREFIX + name, port_text(value))
+
+
+def _is_reserved(name: str) -> bool:
+    """Whether an attribute without prefix of this name says something else than a port."""
+    return name.startswith("_") or name in RESERVED
+
+
+def _shown(value: str | float) -> str:
+    return value if isinstance(value, str) else repr(value)
+
+
+def _type(value: PortValue) -> type:
+    return type(value.value) if isinstance(value, Literal) else type(value)
+
+
+@dataclass(frozen=True, slots=True)
+class AttributeWriter:
+    """Writes attributes. registry: whose skills' port types tell texts from numbers."""
+
+    document: Document
+    registry: Registry
+    _skills: dict[str, Any] = field(default_factory=dict)
+
+    def of(self, node: Node) -> str:
+        """All attributes of a node, in the order that they always have.
+
+        Raises:
+            CannotWrite: one has no spelling in XML.
+        """
+        words = [attribute("ID", node.target or "")] if node.type == SUBTREE else []
+        if node.name is not None:
+            words.append(attribute("name", node.name))
+        words += [self._port(node, name, value) for name, value in node.ports.items()]
+        words += [attribute(XML_CONDITIONS[key], text) for key, text in node.conditions.items()]
+        if node.note is not None:
+            words.append(attribute(DESCRIPTION, node.note))
+        if node.disabled:
+            words.append(attribute(PREFIX + DISABLED, "true"))
+        return "".join(words)
+
+    def apart(self, node: Node) -> list[tuple[str, str]]:
+        """Ports that no attribute can be named after, and their values in YAML."""
+        return [
+            (name, port_text(value))
+            for name, value in node.ports.items()
+            if not _has_attribute(node, name)
+        ]
+
+    def _port(self, node: Node, name: str, value: PortValue) -> str:
+        if not _has_attribute(node, name):
+            return ""
+        spec = BUILT_IN.get(node.type)
+        shown = name if spec is None else spec.xml.get(name, name)
+        type_ = self._type(node, name)
+        if type_ is ScriptText:
+            return attribute(shown, _script(node, value))
+        reserved = not shown or _is_reserved(shown)
+        if name == AUTOREMAP and node.type == SUBTREE:
+            reserved = False
+        if spec is not None and name in spec.keys and isinstance(value, Literal):
+            reserved = True  # a bare word there names a key
+        text = None if reserved else plain(value, name, type_)
+        if node.type == "UnsetBlackboard":
+            text = _unset_key(value, text)
+        if text is not None:
+            return attribute(shown, text)
+        ours = attribute(PREFIX + name, port_text(value))
+        return _milliseconds(spec, name, value) + ours
+
+    def _type(self, node: Node, name: str) -> ValueType:
+        spec = BUILT_IN.get(node.type)
+        if spec is not None:
+            return spec.ports[name].type if name in spec.ports else object
+        if node.type == SUBTREE:
+            declared = self.document.trees[node.target or ""].ports.get(name)
+            try:
+                return object if declared is None else parse_type(declared.type_name)
+            except KeyError:
+                return object
+        known: dict[str, Port] = self._skill(node.type)
+        return known[name].type if name in known else object
+
+    def _skill(self, name: str) -> dict[str, Port]:
+        if name not in self._skills:
+            try:
+                self._skills[name] = dict(self.registry.skills[name].ports)
+            except (KeyError, PluginError):
+                self._skills[name] = {}
+        found: dict[str, Port] = self._skills[name]
+        return found
+
+
+def _has_attribute(node: Node, name: str) -> bool:
+    """Whether an attribute can be named after a port."""
+    return is_name(name) and (node.type in BUILT_IN or name not in (DISABLED, NOTE))
+
+
+def _unset_key(value: PortValue, text: str | None) -> str | None:
+    """The bare name of the key: `{k}` is in BehaviorTree.CPP the key that $k names."""
+    if isinstance(value, Reference) and not value.fields:
+        return f"@{value.key}" if value.scope is Scope.ROOT else value.key
+    return text
+
+
+def _script(node: Node, value: PortValue) -> str:
+    if isinstance(value, Literal):
+        return str(value.value)
+    raise CannotWrite(f"a script of {node.type} that is a wire")
+
+
+def _milliseconds(spec: NodeSpec | None, name: str, value: PortValue) -> str:
+    """Beside a time of ours the same in BehaviorTree.CPP's milliseconds, where it is whole ones."""
+    if spec is None or name != "duration" or "msec" not in spec.ports:
+        return ""
+    seconds = value.value if isinstance(value, Literal) else None
+    if isinstance(seconds, str):
+        try:
+            seconds = in_unit(seconds, "s")
+        except UnitError:
+            return ""
+    if isinstance(seconds, bool) or not isinstance(seconds, int | float):
+        return ""
+    whole = round(seconds * 1000.0)
+    exact = round(seconds * 1000.0, 6) == whole
+    return attribute(spec.xml.get("msec", "msec"), str(whole)) if exact else ""

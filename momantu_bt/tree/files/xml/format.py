@@ -1,0 +1,135 @@
+"""An XML tree file as a Document: the header, what it includes, values, models, and trees."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from momantu_bt.tree.files.resolve import resolve
+from momantu_bt.tree.files.xml.board import read_values
+from momantu_bt.tree.files.xml.elements import OURS, Attribute, Element, Parsed
+from momantu_bt.tree.files.xml.header import (
+    check_header,
+    is_root,
+    main_tree,
+    report_unknown_attribute,
+)
+from momantu_bt.tree.files.xml.models import read_models
+from momantu_bt.tree.files.xml.source import XmlSyntaxError, parse
+from momantu_bt.tree.files.xml.trees import TreesReader
+from momantu_bt.tree.model import Document, Include, Tree
+from momantu_bt.tree.problems import Problems, TooManyProblems, TreeError, errors
+from momantu_bt.tree.registry import Registry
+
+
+def read(text: str, file: str, registry: Registry | None = None) -> tuple[Document, Problems]:
+    """Read a file by itself, without those that it includes.
+
+    file: the name that places carry. registry: whose skills' port types tell texts from numbers;
+    nothing is known without one.
+
+    Raises:
+        TreeError: the text is not XML, has no trees, or too many problems; nothing else can be
+            said then.
+    """
+    problems = Problems()
+    source = XmlSource.of(text, file, registry or Registry(), problems)
+    try:
+        document = source.document({})
+    except TooManyProblems:
+        document = None
+    if document is None:
+        raise TreeError(errors(problems.sorted()), {file: text})
+    resolve(document, problems)
+    return document, problems
+
+
+@dataclass(slots=True)
+class XmlSource:
+    """A file that is XML; its trees are read when those that it includes are known."""
+
+    text: str
+    file: str
+    parsed: Parsed
+    registry: Registry
+    problems: Problems
+
+    @classmethod
+    def of(cls, text: str, file: str, registry: Registry, problems: Problems) -> XmlSource:
+        """Parse a text; TreeError when it is not XML."""
+        try:
+            return cls(text, file, parse(text, file), registry, problems)
+        except XmlSyntaxError as error:
+            raise TreeError([error.problem], {file: text}) from None
+
+    def includes(self) -> tuple[Include, ...]:
+        """The files it includes; those that are not written well are reported."""
+        found = []
+        for element in self.parsed.root.children:
+            if element.name == "include" and not element.space:
+                path = self._include_path(element)
+                if path is not None:
+                    found.append(Include(path.value, path.place))
+        return tuple(found)
+
+    def _include_path(self, element: Element) -> Attribute | None:
+        path = element.get("path")
+        for each in element.attributes:
+            if each.name == "ros_pkg":
+                message = "files of ROS packages cannot be found here"
+                hint = "copy the file beside this one and write path alone"
+                self.problems.error("include", each.name_place, message, hint)
+                return None
+            if each is not path:
+                report_unknown_attribute(each, ["path"], "<include>", self.problems)
+        if path is None:
+            message, hint = "<include> without a path", 'write <include path="other.xml"/>'
+            self.problems.error("include", element.place, message, hint)
+        return path
+
+    def document(self, outside: Mapping[str, Tree], *, included: bool = False) -> Document | None:
+        """The file's own trees. outside: trees of the files that it includes.
+
+        included: it need not say which tree to run. None, with what is wrong reported, where
+        there is nothing to read.
+        """
+        root = self.parsed.root
+        if not is_root(root, self.problems):
+            return None
+        check_header(root, self.problems)
+        models = read_models(root, self.problems)
+        trees = TreesReader(models, self.registry, self.problems).trees(root, outside)
+        if not trees and not self.includes() and not outside:
+            message, hint = "the file has no tree", 'write <BehaviorTree ID="Name">'
+            self.problems.error("no-trees", root.place, message, hint)
+            return None
+        main = "" if included else main_tree(root, trees, outside, self.problems)
+        document = Document(self.file, main, trees)
+        document.includes = self.includes()
+        document.models = tuple(models.leaves)
+        world = root.get("world", OURS)
+        if world is not None:
+            document.world, document.world_place = world.value, world.place
+        read_values(document, root, self.problems)
+        self._comments(document, root)
+        document.source = {self.file: self.text}
+        return document
+
+    def _comments(self, document: Document, root: Element) -> None:
+        """Those that belong to no tree: to the header, to the last value, or to the end."""
+        above, below = root.comments, tuple[str, ...]()
+        for element in root.children:
+            inside = [each.comments for each in element.children if each.name != "Value"]
+            if element.name == "include":
+                above += element.comments
+            elif element.name == "Values":
+                above += element.comments
+                last = next(reversed(document.values), None)
+                if last is not None:
+                    before = document.value_comments.get(last, ())
+                    document.value_comments[last] = before + element.end_comments
+            elif element.name == "TreeNodesModel":
+                models = [text for texts in inside for text in texts]
+                below += (*element.comments, *models, *element.end_comments)
+        document.header_comments = above
+        document.comments = (*below, *root.end_comments, *self.parsed.comments)

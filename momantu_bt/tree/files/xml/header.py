@@ -1,0 +1,95 @@
+"""What stands on the `<root>` of an XML tree file, and which parts it may have."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from momantu_bt.tree.files.xml.elements import OURS, Attribute, Element
+from momantu_bt.tree.language import VERSION
+from momantu_bt.tree.model import Tree
+from momantu_bt.tree.problems import Problems, valid_names
+
+FORMAT = "4"
+"""What `BTCPP_format` says; version 3 of BehaviorTree.CPP means other things by the same words."""
+
+_ROOT = "root"
+_PARTS = ("BehaviorTree", "TreeNodesModel", "include")
+_OF_ROOT = ("BTCPP_format", "main_tree_to_execute", "project_name")
+_SCHEMA = "http://www.w3.org/2001/XMLSchema-instance"
+_CHANGED = "words such as SubTree, `_autoremap` and `${key}` mean other things"
+
+
+def is_root(root: Element, problems: Problems) -> bool:
+    """Whether this begins a tree file; a problem where it does not."""
+    if root.name == _ROOT and not root.space:
+        return True
+    message = f"a tree file begins with <root>, not with <{root.said}>"
+    problems.error("not-a-tree", root.place, message, f'write <root BTCPP_format="{FORMAT}">')
+    return False
+
+
+def check_header(root: Element, problems: Problems) -> None:
+    """Report versions that are not read, and attributes and parts that nobody knows."""
+    _check_format(root, problems)
+    for each in root.attributes:
+        if each.space == OURS:
+            if each.name not in ("world", "version"):
+                report_unknown_attribute(each, ["world", "version"], "<root>", problems)
+        elif each.space != _SCHEMA and each.name not in _OF_ROOT:
+            report_unknown_attribute(each, list(_OF_ROOT), "<root>", problems)
+    ours = root.get("version", OURS)
+    if ours is not None and ours.value != str(VERSION):
+        message = "this version of the language is not known"
+        problems.error("wrong-version", ours.place, message, f"known: {VERSION}")
+    for element in root.children:
+        _check_part(element, problems)
+
+
+def main_tree(
+    root: Element, trees: Mapping[str, Tree], outside: Mapping[str, Tree], problems: Problems
+) -> str:
+    """The name of the tree to run. outside: trees of the files that this one includes."""
+    known = {**trees, **outside}
+    named = root.get("main_tree_to_execute")
+    first = next(iter(known), "")
+    if named is not None and named.value in known:
+        return named.value
+    if named is not None:
+        hint = valid_names(named.value, known, "trees")
+        problems.error("unknown-tree", named.place, f"no tree is called {named.value!r}", hint)
+    elif len(trees or known) > 1:
+        message = f"the file does not say which of {', '.join(trees or known)} to run"
+        hint = f'write <root … main_tree_to_execute="{first}">'
+        problems.error("no-main", root.place, message, hint)
+    return first
+
+
+def report_unknown_attribute(
+    attribute: Attribute, known: list[str], said: str, problems: Problems
+) -> None:
+    """An attribute that an element does not have. known: those that it has; said: the element."""
+    message = f"{said} has no attribute {attribute.name!r}"
+    hint = valid_names(attribute.name, known, "attributes")
+    problems.error("unknown-key", attribute.name_place, message, hint)
+
+
+def _check_format(root: Element, problems: Problems) -> None:
+    version = root.get("BTCPP_format")
+    if version is None:
+        message = "the file does not say which version of BehaviorTree.CPP it is for"
+        hint = f'write <root BTCPP_format="{FORMAT}">; files without it are of version 3, where '
+        problems.error("no-version", root.place, message, hint + _CHANGED)
+    elif version.value != FORMAT:
+        message = f"trees of BehaviorTree.CPP {version.value} are not read"
+        hint = f"version 4 is; in version 3 {_CHANGED}"
+        problems.error("wrong-version", version.place, message, hint)
+
+
+def _check_part(element: Element, problems: Problems) -> None:
+    if element.name in _PARTS and not element.space:
+        return
+    if element.name == "Values" and element.space == OURS:
+        return
+    hint = valid_names(element.name, [*_PARTS, "momantu:Values"], "parts of a tree file")
+    message = f"a tree file has no <{element.said}>"
+    problems.error("unknown-key", element.place, message, hint)

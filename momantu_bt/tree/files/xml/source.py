@@ -1,0 +1,233 @@
+"""XML text as elements that know their place, read without recursion and within bounds.
+
+lxml decides whether the text is XML and what its attributes say; a scan of the same text tells
+where every tag and attribute stands, to the column.
+"""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from lxml import etree
+
+from momantu_bt.tree.files.xml.comments import show_dashes
+from momantu_bt.tree.files.xml.elements import Attribute, Element, Parsed
+from momantu_bt.tree.files.xml.syntax import first_error, in_our_words
+from momantu_bt.tree.files.yaml.source import MAX_BYTES
+from momantu_bt.tree.model import Beside, Place
+from momantu_bt.tree.problems import Problem
+
+MAX_DEPTH = 200
+MAX_NODES = 10_000
+"""Elements, attributes and comments of a file."""
+MAX_ATTRIBUTES = 500
+"""Of one element."""
+
+
+class XmlSyntaxError(Exception):
+    """A file that is not XML, or out of bounds."""
+
+    def __init__(self, problem: Problem) -> None:
+        super().__init__(f"{problem.place}: {problem.message}")
+        self.problem = problem
+
+
+def parse(text: str, file: str) -> Parsed:
+    """Read a text.
+
+    Raises:
+        XmlSyntaxError: with the one problem, in our words.
+    """
+    size = len(text.encode("utf-8", "surrogatepass"))
+    if size > MAX_BYTES:
+        raise _bound(Place(file, 1, 1), f"{size} bytes; a tree file has at most {MAX_BYTES}")
+    text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
+    scan = _Scan(text, file)
+    scan.refuse_doctype()
+    parser = etree.XMLParser(
+        encoding="utf-8",
+        resolve_entities=False,
+        no_network=True,
+        load_dtd=False,
+        huge_tree=False,
+        remove_pis=True,
+        remove_comments=True,
+    )
+    try:
+        root = etree.fromstring(text.encode("utf-8", "surrogatepass"), parser)
+    except etree.XMLSyntaxError as error:
+        raise XmlSyntaxError(in_our_words(first_error(error, parser), text, file)) from None
+    return scan.parsed(root)
+
+
+def _bound(place: Place, message: str) -> XmlSyntaxError:
+    return XmlSyntaxError(Problem("too-large", message, place))
+
+
+_NAME = r"[^\s<>/=\"'&!?][^\s<>/=\"'&]*"
+_ATTRIBUTE = re.compile(rf"\s+({_NAME})\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
+_START = re.compile(rf"<({_NAME})")
+_ENDS = (("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>"))
+
+
+@dataclass(slots=True)
+class _Scan:
+    """Walks a text that is known to be XML, tag by tag."""
+
+    text: str
+    file: str
+    starts: list[int] = field(default_factory=list)
+    nodes: int = 0
+    stack: list[Element] = field(default_factory=list)
+    waiting: list[str] = field(default_factory=list)
+    ended: tuple[int, Element | None] = (0, None)
+    """The line in which the last tag ended, and its element."""
+
+    def __post_init__(self) -> None:
+        self.starts = [0, *(match.end() for match in re.finditer("\n", self.text))]
+
+    def place(self, start: int, end: int) -> Place:
+        line = bisect_right(self.starts, start)
+        begin = self.starts[line - 1]
+        stop = self.starts[line] - 1 if line < len(self.starts) else len(self.text)
+        return Place(self.file, line, start - begin + 1, max(1, min(end, stop) - start))
+
+    def refuse_doctype(self) -> None:
+        for start, kind, _ in self.tokens():
+            if kind == "declaration":
+                message = "a tree file has no <!DOCTYPE> and no entities of its own"
+                raise XmlSyntaxError(
+                    Problem("syntax", message, self.place(start, start + 9), "remove it")
+                )
+            if kind == "start":
+                return
+
+    def tokens(self) -> Iterator[tuple[int, str, int]]:
+        """Start, kind and end of everything that begins with `<`, and of the text between."""
+        text, position = self.text, 0
+        while True:
+            start = text.find("<", position)
+            if start < 0:
+                return
+            if start > position:
+                yield position, "text", start
+            kind, end = self.token(start)
+            yield start, kind, end
+            position = end
+
+    def token(self, start: int) -> tuple[str, int]:
+        for opening, closing in _ENDS:
+            if self.text.startswith(opening, start):
+                end = self.text.find(closing, start + len(opening))
+                return opening, len(self.text) if end < 0 else end + len(closing)
+        following = self.text[start + 1 : start + 2]
+        if following in ("!", "/"):
+            end = self.text.find(">", start)
+            kind = "declaration" if following == "!" else "end"
+            return kind, len(self.text) if end < 0 else end + 1
+        match = _START.match(self.text, start)
+        if match is None:  # not XML: lxml says so
+            return "start", start + 1
+        end = match.end()
+        while attribute := _ATTRIBUTE.match(self.text, end):
+            end = attribute.end()
+        close = self.text.find(">", end)
+        return "start", len(self.text) if close < 0 else close + 1
+
+    def parsed(self, root: etree._Element) -> Parsed:
+        elements = iter(root.iter("*"))
+        found: Element | None = None
+        for start, kind, end in self.tokens():
+            if kind == "start":
+                element = self.element(next(elements), start)
+                found = found or element
+                self.open(element, start, end)
+            elif kind == "end":
+                self.close(end)
+            elif kind == "<!--":
+                self.comment(start, end)
+            elif kind in ("text", "<![CDATA["):
+                self.inner_text(start, end, kind)
+        assert found is not None
+        return Parsed(found, tuple(self.waiting))
+
+    def element(self, made: etree._Element, start: int) -> Element:
+        tag = etree.QName(made)
+        match = _START.match(self.text, start)
+        assert match is not None
+        element = Element(tag.localname, tag.namespace or "", self.place(*match.span(1)), [])
+        written = [m for m in self.attributes(match.end()) if not _declares_prefix(m[1])]
+        self.count(1 + len(written), element.place)
+        if len(written) > MAX_ATTRIBUTES:
+            raise _bound(element.place, f"more than {MAX_ATTRIBUTES} attributes")
+        for (name, value), found in zip(made.attrib.items(), written, strict=True):
+            key = etree.QName(str(name))
+            at = found.span(2) if found[2] is not None else found.span(3)
+            element.attributes.append(
+                Attribute(
+                    key.localname,
+                    key.namespace or "",
+                    str(value),
+                    self.place(*found.span(1)),
+                    self.place(*at),
+                )
+            )
+        element.text = str(made.text or "")
+        return element
+
+    def attributes(self, position: int) -> Iterator[re.Match[str]]:
+        while match := _ATTRIBUTE.match(self.text, position):
+            yield match
+            position = match.end()
+
+    def count(self, more: int, place: Place) -> None:
+        self.nodes += more
+        if self.nodes > MAX_NODES:
+            raise _bound(place, f"more than {MAX_NODES} elements and attributes")
+
+    def open(self, element: Element, start: int, end: int) -> None:
+        element.comments = tuple(self.waiting)
+        self.waiting = []
+        if self.stack:
+            self.stack[-1].children.append(element)
+        if len(self.stack) >= MAX_DEPTH:
+            raise _bound(element.place, f"nested more than {MAX_DEPTH} levels deep")
+        if not self.text.endswith("/>", start, end):
+            self.stack.append(element)
+        self.ended = (self.line(end), element)
+
+    def close(self, end: int) -> None:
+        element = self.stack.pop()
+        element.end_comments = tuple(self.waiting)
+        self.waiting = []
+        self.ended = (self.line(end), element)
+
+    def line(self, position: int) -> int:
+        return bisect_right(self.starts, position)
+
+    def comment(self, start: int, end: int) -> None:
+        inside = self.text[start + 4 : end - 3]
+        lines = [line.strip() for line in inside.strip().split("\n")]
+        if len(lines) == 1:
+            lines = [show_dashes(inside.removeprefix(" ").rstrip())]
+        self.count(1, self.place(start, end))
+        line, element = self.ended
+        if element is not None and line == self.line(start):
+            element.comments += tuple(Beside(text) for text in lines)
+        else:
+            self.waiting.extend(lines)
+
+    def inner_text(self, start: int, end: int, kind: str) -> None:
+        if not self.stack:
+            return
+        element = self.stack[-1]
+        skipped = len(self.text[start:end]) - len(self.text[start:end].lstrip())
+        if element.text_place is None and (kind != "text" or start + skipped < end):
+            element.text_place = self.place(start + skipped, start + skipped + 1)
+
+
+def _declares_prefix(name: str) -> bool:
+    return name == "xmlns" or name.startswith("xmlns:")

@@ -1,0 +1,116 @@
+"""The trees of an XML file: their names, what their models say, and their nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from momantu_bt.tree.files.queue import into_tree
+from momantu_bt.tree.files.xml.elements import OURS, Element
+from momantu_bt.tree.files.xml.header import report_unknown_attribute
+from momantu_bt.tree.files.xml.models import Models
+from momantu_bt.tree.files.xml.nodes import NodeReader
+from momantu_bt.tree.language import TREE_NAME, TREE_NAME_HINT
+from momantu_bt.tree.model import Node, Place, PortDeclaration, Tree
+from momantu_bt.tree.problems import Problems, nearest, valid_names
+from momantu_bt.tree.registry import Registry
+
+_EDITORS = ("_fullpath", "_uid", "_description")
+
+
+@dataclass(frozen=True, slots=True)
+class TreesReader:
+    """Reads the trees of a file. models: what it says of their ports."""
+
+    models: Models
+    registry: Registry
+    problems: Problems
+
+    def trees(self, root: Element, outside: Mapping[str, Tree]) -> dict[str, Tree]:
+        """The file's own trees. outside: trees of the files that it includes."""
+        elements = [e for e in root.children if e.name == "BehaviorTree" and not e.space]
+        named: list[tuple[str, Element]] = []
+        for element in elements:
+            name = self._name(element)
+            if name is not None:
+                named.append((name, element))
+        ports = {name: dict(tree.ports) for name, tree in outside.items()}
+        ports |= {name: self.models.trees.get(name, {}) for name, _ in named}
+        reader = NodeReader(ports, self.registry, self.problems)
+        trees: dict[str, Tree] = {}
+        for name, element in named:
+            if name in trees:
+                _report_twice(self.problems, name, trees[name].place, element.place)
+            else:
+                trees[name] = self._tree(name, element, reader, ports[name])
+        self._model_others(outside)
+        self._report_models_of_nothing(root, {**outside, **trees})
+        return trees
+
+    def _name(self, element: Element) -> str | None:
+        identity = element.get("ID")
+        if identity is None:
+            message, hint = "a tree needs a name", 'write <BehaviorTree ID="Name">'
+            self.problems.error("bad-name", element.place, message, hint)
+            return None
+        if not TREE_NAME.fullmatch(identity.value):
+            message = f"{identity.value!r} cannot be the name of a tree"
+            self.problems.error("bad-name", identity.place, message, TREE_NAME_HINT)
+            return None
+        return identity.value
+
+    def _tree(
+        self, name: str, element: Element, reader: NodeReader, ports: dict[str, PortDeclaration]
+    ) -> Tree:
+        tree = Tree(name, Node("", element.place), _place(element), ports)
+        tree.open = name not in self.models.trees
+        tree.comments = element.comments
+        self._attributes(tree, element)
+        if not element.children:
+            message = f"the tree {name!r} has no node"
+            self.problems.error("no-node", element.place, message)
+            return tree
+        for extra in element.children[1:]:
+            message = f"the tree {name!r} has {len(element.children)} nodes at its root; it has one"
+            self.problems.error("children", extra.place, message, "put them into a <Sequence>")
+        reader.read(element.children[0], into_tree(tree))
+        tree.root.end_comments += element.end_comments
+        return tree
+
+    def _attributes(self, tree: Tree, element: Element) -> None:
+        for each in element.attributes:
+            if each.name == "doc" and each.space == OURS:
+                tree.doc = each.value
+            elif each.name != "ID" and (each.space or each.name not in _EDITORS):
+                known = ["ID", "momantu:doc"]
+                report_unknown_attribute(each, known, "<BehaviorTree>", self.problems)
+
+    def _model_others(self, outside: Mapping[str, Tree]) -> None:
+        """Models of trees in other files, as an editor's project file has them."""
+        for name, ports in self.models.trees.items():
+            tree = outside.get(name)
+            if tree is not None and tree.open:
+                tree.ports, tree.open = ports, False
+
+    def _report_models_of_nothing(self, root: Element, known: Mapping[str, Tree]) -> None:
+        """A model of a tree that nobody has: a slip, or of another file where no name is near."""
+        for section in root.children:
+            for model in section.children if section.name == "TreeNodesModel" else ():
+                identity = model.get("ID")
+                if model.name == "SubTree" and identity and identity.value not in known:
+                    message = f"no tree is called {identity.value!r}, of which this is a model"
+                    hint = valid_names(identity.value, known, "trees")
+                    slipped = nearest(identity.value, known) is not None
+                    tell = self.problems.error if slipped else self.problems.warning
+                    tell("unknown-tree", identity.place, message, hint)
+
+
+def _report_twice(problems: Problems, name: str, first: Place, second: Place) -> None:
+    for place, other in ((first, second), (second, first)):
+        message = f"the tree {name!r} stands in {other} too"
+        problems.error("duplicate-tree", place, message, "rename one of them")
+
+
+def _place(element: Element) -> Place:
+    identity = element.get("ID")
+    return element.place if identity is None else identity.place

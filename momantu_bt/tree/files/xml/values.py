@@ -1,0 +1,134 @@
+"""Port values in XML: what the text of an attribute means for a port of some type.
+
+Without a prefix attributes are BehaviorTree.CPP's: `{key}`, `{@key}`, `{=}`, else a text. With
+`momantu:` they hold the value as YAML writes it, for all that BehaviorTree.CPP cannot say.
+"""
+
+from __future__ import annotations
+
+import re
+import typing
+from enum import Enum
+
+from momantu_bt.tree.files.yaml.core import resolve
+from momantu_bt.tree.files.yaml.raw import Entries, Items, Raw
+from momantu_bt.tree.files.yaml.source import YamlSyntaxError, compose
+from momantu_bt.tree.files.yaml.values import KEY, port_value
+from momantu_bt.tree.model import Literal, Place, PortValue, Reference, Scope
+from momantu_bt.tree.problems import Problems
+from momantu_bt.tree.types import ValueType, origin, without_none
+
+SAME_NAME = "{=}"
+"""Wires a port to the key of its own name."""
+
+_HALF_A_WIRE = re.compile(r"\{(@?[^\W\d]\w*)|(@?[^\W\d]\w*)\}|\$(@?[^\W\d]\w*)")
+_POINTER = re.compile(r" *\{(.+)\} *", re.DOTALL)
+_BOOLS = {"True": True, "TRUE": True, "1": True, "False": False, "FALSE": False, "0": False}
+"""What BehaviorTree.CPP takes for a bool beside `true` and `false`."""
+
+
+class WireError(ValueError):
+    """A text in braces that names no key; the message says what would."""
+
+
+def attribute_value(text: str, port: str, type_: ValueType) -> PortValue:
+    """What an attribute without prefix means.
+
+    port: its name, for `{=}`. type_: the port's; `object` where nobody knows it.
+
+    Raises:
+        WireError: braces around something that cannot be a key, or half a wire.
+    """
+    if text == SAME_NAME:
+        return Reference(port)
+    pointer = _POINTER.fullmatch(text)
+    if pointer is not None:
+        return _wire(pointer[1])
+    _refuse_half_a_wire(text)
+    if takes_text(type_):
+        return Literal(text)
+    if without_none(type_) == (bool,) and text in _BOOLS:
+        return Literal(_BOOLS[text])
+    return Literal(_plain(text))
+
+
+def _wire(key: str) -> Reference:
+    root = key.startswith("@")
+    name = key.removeprefix("@")
+    if not KEY.fullmatch(name):
+        raise WireError(f"{{{key}}} names no key: letters, digits and underscores, no digit first")
+    return Reference(name, scope=Scope.ROOT if root else Scope.LOCAL)
+
+
+def _refuse_half_a_wire(text: str) -> None:
+    """`{key`, `key}` and YAML's `$key` are slips; as a text they stand in `momantu:port="…"`."""
+    slipped = _HALF_A_WIRE.fullmatch(text)
+    if slipped is not None:
+        key = next(filter(None, slipped.groups()))
+        raise WireError(f"{text!r} is no wire: did you mean {{{key}}}?")
+
+
+def takes_text(type_: ValueType) -> bool:
+    """Whether a port of this type takes a text and nothing else, so that `5` is one."""
+    return all(_is_text(each) for each in without_none(type_))
+
+
+def _is_text(type_: ValueType) -> bool:
+    if origin(type_) is typing.Literal:
+        return all(isinstance(value, str) for value in typing.get_args(type_))
+    if not isinstance(type_, type):
+        return False
+    if issubclass(type_, Enum):
+        return all(isinstance(item.value, str) for item in type_)
+    return issubclass(type_, str)
+
+
+def _plain(text: str) -> typing.Any:
+    """`5`, `0.5`, `true` as YAML 1.2 reads them, where it would write them so; else the text."""
+    value = resolve(text)
+    if isinstance(value, bool):
+        return value
+    if isinstance(value, int | float) and repr(value) == text:
+        return value
+    return text
+
+
+def flow_value(text: str, port: str, place: Place, problems: Problems) -> PortValue | None:
+    """What an attribute of ours means: YAML on one line; None where a problem was reported.
+
+    place: of the text in the file; its own problems are placed within it where it is as long as
+    it is written, without entities.
+    """
+    try:
+        raw = compose(text, place.file)
+    except YamlSyntaxError as error:
+        problem = error.problem
+        where = _within(problem.place, place, text)
+        problems.error(problem.code, where, problem.message, problem.hint)
+        return None
+    _move(raw, place, text)
+    return port_value(raw, port, problems)
+
+
+def _move(root: Raw, place: Place, text: str) -> None:
+    """Places in the attribute become places in the file."""
+    waiting, moved = [root], set[int]()
+    while waiting:
+        raw = waiting.pop()
+        if id(raw) in moved:
+            continue
+        moved.add(id(raw))
+        raw.place = _within(raw.place, place, text)
+        if isinstance(raw, Items):
+            waiting.extend(raw.items)
+        elif isinstance(raw, Entries):
+            for key, value in raw.entries:
+                waiting.extend((key, value))
+
+
+def _within(inner: Place, outer: Place, text: str) -> Place:
+    if outer.length != len(text) or inner.line != 1 or inner.file != outer.file:
+        return outer
+    room = outer.length - (inner.column - 1)
+    length = max(1, min(inner.length, room))
+    return Place(outer.file, outer.line, outer.column + inner.column - 1, length)

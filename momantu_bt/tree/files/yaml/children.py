@@ -1,0 +1,88 @@
+"""Nodes below a node in YAML: lists, one child, and handlers."""
+
+from __future__ import annotations
+
+from momantu_bt.tree.catalogue import NodeSpec
+from momantu_bt.tree.files.queue import into_handler
+from momantu_bt.tree.files.yaml.ports import read_port
+from momantu_bt.tree.files.yaml.raw import Entries, Items, Raw, Scalar
+from momantu_bt.tree.files.yaml.reading import Reading, said
+from momantu_bt.tree.files.yaml.values import drop_duplicates
+from momantu_bt.tree.language import AGAIN, handler_codes
+from momantu_bt.tree.model import Handler, Node
+
+
+def read_control(node: Node, value: Raw, spec: NodeSpec, reading: Reading) -> None:
+    """Several children: a list, or ports and `children:`."""
+    if isinstance(value, Items):
+        reading.children(node, value)
+    elif isinstance(value, Entries):
+        split(node, value, spec, ("children",), reading)
+    elif value.value is not None:
+        reading.misfit(node, value, f"{said(node)} takes a list of nodes")
+
+
+def read_decorator(node: Node, value: Raw, spec: NodeSpec, reading: Reading) -> None:
+    """Ports and `child:`."""
+    if not isinstance(value, Entries):
+        hint = f"write `{spec.yaml[0]}: {{…, child: …}}`, or put it beside a node"
+        reading.misfit(node, value, f"{said(node)} takes `child:`", hint)
+        return
+    for child in split(node, value, spec, ("child",), reading):
+        reading.later(child, node.children.append)
+
+
+def read_handlers(node: Node, value: Raw, spec: NodeSpec, reading: Reading) -> None:
+    """Ports, `try:`, and under `catch:` the handlers."""
+    if not isinstance(value, Entries):
+        reading.misfit(node, value, f"{said(node)} takes `try:` and `catch:`")
+        return
+    drop_duplicates(value, reading.problems)
+    for raw in split(node, _without(value, "catch"), spec, ("try",), reading):
+        reading.later(raw, node.children.append)
+    having = {key.text: raw for key, raw in value.entries}
+    for name in ("try", "catch"):
+        if name not in having:
+            reading.error("missing-child", node.place, f"`{said(node)}` without `{name}:`")
+    if "catch" in having:
+        _handlers(node, having["catch"], reading)
+
+
+def split(
+    node: Node, raw: Entries, spec: NodeSpec | None, kept: tuple[str, ...], reading: Reading
+) -> list[Raw]:
+    """Ports of a mapping to the node; the values of the kept keys, `children` read."""
+    drop_duplicates(raw, reading.problems)
+    values: list[Raw] = []
+    for key, value in raw.entries:
+        if key.text not in kept:
+            read_port(node, (key.text, key.place), value, spec, reading.problems)
+        elif key.text == "children" and isinstance(value, Items):
+            reading.children(node, value)
+        elif key.text == "children":
+            reading.misfit(node, value, "`children` is a list of nodes")
+        else:
+            values.append(value)
+    return values
+
+
+def _handlers(node: Node, raw: Raw, reading: Reading) -> None:
+    if not isinstance(raw, Entries) or not raw.entries:
+        hint = "under it, lines such as `CODE | OTHER_CODE: node`"
+        reading.error("wrong-value", raw.place, "`catch` is a mapping of codes to nodes", hint)
+        return
+    drop_duplicates(raw, reading.problems)
+    for key, value in raw.entries:
+        codes = handler_codes(key.text, key.place, reading.problems)
+        handler = Handler(codes, None, key.place)
+        node.handlers.append(handler)
+        if isinstance(value, Scalar) and value.text == AGAIN:
+            if node.type != "Recover":
+                reading.error("again", value.place, "`again` has a meaning in `recover` alone")
+            continue
+        reading.later(value, into_handler(handler))
+
+
+def _without(raw: Entries, name: str) -> Entries:
+    kept = [(key, value) for key, value in raw.entries if key.text != name]
+    return Entries(kept, raw.place, raw.flow)

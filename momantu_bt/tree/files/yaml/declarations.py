@@ -1,0 +1,81 @@
+"""What a tree in YAML takes and gives: `inputs:`, `outputs:`, `inouts:`."""
+
+from __future__ import annotations
+
+from momantu_bt.tree.files.yaml.raw import Entries, Items, Raw, Scalar
+from momantu_bt.tree.files.yaml.values import drop_duplicates, is_key, mapping, port_value, words
+from momantu_bt.tree.files.yaml.words import PORTS
+from momantu_bt.tree.model import Literal, PortDeclaration, Reference, Template, Tree
+from momantu_bt.tree.problems import Problems, nearest
+
+_DECLARATION = ("type", "default", "doc")
+
+
+def read_declarations(tree: Tree, raw: Raw, name: str, problems: Problems) -> None:
+    """Give the tree its ports of one direction. name: the key that they stand under."""
+    direction = PORTS[name]
+    if isinstance(raw, Items):
+        raw = _untyped(raw, name, problems)
+    for key, value in mapping(raw, name, "name: type", problems):
+        if not is_key(key, problems):
+            continue
+        if key.text in tree.ports and tree.ports[key.text].direction != direction:
+            message = f"{key.text!r} is an input or output already"
+            hint = "a key that comes in and goes out stands under `inouts:`"
+            problems.error("duplicate-key", key.place, message, hint)
+        found = _declaration(key, value, direction, problems)
+        if found is not None:
+            tree.ports[key.text] = found
+
+
+def _untyped(raw: Items, name: str, problems: Problems) -> Entries:
+    """`[a, b]` as `{a: any, b: any}`."""
+    entries: list[tuple[Scalar, Raw]] = []
+    for item in raw.items:
+        if isinstance(item, Scalar):
+            entries.append((item, Scalar("any", "any", False, item.place)))
+        else:
+            hint = f"write `{name}: {{name: type}}`"
+            problems.error("wrong-value", item.place, f"`{name}` lists names", hint)
+    return Entries(entries, raw.place)
+
+
+def _declaration(
+    key: Scalar, raw: Raw, direction: str, problems: Problems
+) -> PortDeclaration | None:
+    if isinstance(raw, Scalar) and isinstance(raw.value, str):
+        return PortDeclaration(key.text, direction, raw.value, raw.place)
+    if not isinstance(raw, Entries):
+        hint = "write `name: text` or `name: {type: text, default: …}`"
+        problems.error("wrong-value", raw.place, f"{key.text!r} needs a type", hint)
+        return None
+    drop_duplicates(raw, problems)
+    having = {k.text: v for k, v in raw.entries}
+    for name, _ in raw.entries:
+        if name.text not in _DECLARATION:
+            near = nearest(name.text, _DECLARATION)
+            hint = f"did you mean {near}?" if near else f"keys: {', '.join(_DECLARATION)}"
+            message = f"an input or output has no {name.text!r}"
+            problems.error("unknown-key", name.place, message, hint)
+    type_ = having.get("type")
+    if type_ is not None and not isinstance(type_, Scalar):
+        hint = "such as `type: text` or `type: list of int`"
+        problems.error("wrong-value", type_.place, "`type` is the name of a type", hint)
+    default = having.get("default")
+    return PortDeclaration(
+        key.text,
+        direction,
+        type_.text if isinstance(type_, Scalar) else "any",
+        type_.place if type_ is not None else raw.place,
+        None if default is None else _default(default, problems),
+        words(having["doc"], problems, "`doc`") if "doc" in having else "",
+    )
+
+
+def _default(raw: Raw, problems: Problems) -> Literal | Reference | None:
+    found = port_value(raw, "", problems)
+    if isinstance(found, Template) or (isinstance(found, Reference) and found.fields):
+        message = "a default is a value, or one key of whoever runs the tree"
+        problems.error("wire-inside", raw.place, message, "write the value, or $key")
+        return None
+    return found

@@ -1,0 +1,189 @@
+"""A YAML tree file as a Document: what stands on top, the values, and the trees."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from momantu_bt.tree.files.yaml.comments import attach
+from momantu_bt.tree.files.yaml.models import read_models
+from momantu_bt.tree.files.yaml.raw import Entries, Items, Raw, Scalar
+from momantu_bt.tree.files.yaml.remarks import Remark
+from momantu_bt.tree.files.yaml.source import YamlSyntaxError, compose_with_remarks
+from momantu_bt.tree.files.yaml.trees import read_trees
+from momantu_bt.tree.files.yaml.values import drop_duplicates, is_key, mapping, port_value
+from momantu_bt.tree.language import VERSION
+from momantu_bt.tree.model import Document, Include, Literal, Place, Tree
+from momantu_bt.tree.problems import Problems, TooManyProblems, TreeError, errors, valid_names
+
+_TOP = ("momantu_bt", "include", "world", "main", "values", "trees", "models")
+
+
+def read(text: str, file: str) -> tuple[Document, Problems]:
+    """Read a tree file by itself, without those that it includes.
+
+    The document holds BROKEN nodes where problems were found. file: the name that places carry.
+
+    Raises:
+        TreeError: the text is not YAML, has no trees, or too many problems; nothing else can be
+            said then.
+    """
+    problems = Problems()
+    try:
+        document = YamlSource.of(text, file, problems).document({})
+    except TooManyProblems:
+        document = None
+    if document is None:
+        raise TreeError(errors(problems.sorted()), {file: text})
+    return document, problems
+
+
+@dataclass(slots=True)
+class YamlSource:
+    """A file that is YAML; its trees are read when those that it includes are known."""
+
+    text: str
+    file: str
+    raw: Raw
+    remarks: list[Remark]
+    problems: Problems
+
+    @classmethod
+    def of(cls, text: str, file: str, problems: Problems) -> YamlSource:
+        """Parse a text; TreeError when it is not YAML."""
+        try:
+            return cls(text, file, *compose_with_remarks(text, file), problems)
+        except YamlSyntaxError as error:
+            raise TreeError([error.problem], {file: text}) from None
+
+    def includes(self) -> tuple[Include, ...]:
+        """The files it includes; those that are not written well are reported."""
+        raw = self.raw
+        listed = (
+            [value for key, value in raw.entries if key.text == "include"]
+            if isinstance(raw, Entries)
+            else []
+        )
+        found: list[Include] = []
+        for value in listed[:1]:
+            for item in value.items if isinstance(value, Items) else [value]:
+                if isinstance(item, Scalar) and item.text and isinstance(item.value, str):
+                    found.append(Include(item.text, item.place))
+                else:
+                    hint = "write `include: [other.yaml]`"
+                    self.problems.error("include", item.place, "a file's name is expected", hint)
+        return tuple(found)
+
+    def document(self, outside: Mapping[str, Tree], *, included: bool = False) -> Document | None:
+        """The file's own trees. outside: trees of the files that it includes.
+
+        included: it need not say which tree to run. None, with what is wrong reported, where
+        there is nothing to read.
+        """
+        document = _Reader(self.file, self.problems, outside, included).document(self.raw)
+        if document is not None:
+            document.includes = self.includes()
+            document.source = {self.file: self.text}
+            if self.remarks:
+                attach(document, self.raw, self.text, self.remarks)
+        return document
+
+
+@dataclass(slots=True)
+class _Reader:
+    file: str
+    problems: Problems
+    outside: Mapping[str, Tree]
+    included: bool
+
+    def document(self, raw: Raw) -> Document | None:
+        if not isinstance(raw, Entries):
+            self.problems.error(
+                "not-a-tree", raw.place, "a tree file is a mapping", "begin with `momantu_bt: 1`"
+            )
+            return None
+        drop_duplicates(raw, self.problems)
+        having = {key.text: (key, value) for key, value in raw.entries}
+        for key, _ in raw.entries:
+            if key.text not in _TOP:
+                hint = valid_names(key.text, _TOP, "keys of a tree file")
+                self.problems.error(
+                    "unknown-key", key.place, f"a tree file has no {key.text!r}", hint
+                )
+        self.version(having.get("momantu_bt"), raw.place)
+        trees = read_trees(having.get("trees"), raw.place, self.outside, self.problems)
+        if trees is None:
+            return None
+        main = "" if self.included else self.main(having.get("main"), trees)
+        document = Document(self.file, main, trees)
+        self.world(document, having.get("world"))
+        self.values(document, having.get("values"))
+        if "models" in having:
+            document.models = read_models(having["models"][1], self.problems)
+        return document
+
+    def version(self, entry: tuple[Scalar, Raw] | None, place: Place) -> None:
+        if entry is None:
+            self.problems.error(
+                "no-version",
+                Place(place.file, place.line, 1),
+                "the file does not say which language it is in",
+                f"begin with `momantu_bt: {VERSION}`",
+            )
+        elif not isinstance(entry[1], Scalar) or entry[1].text != str(VERSION):
+            self.problems.error(
+                "wrong-version",
+                entry[1].place,
+                "this version of the language is not known",
+                f"known: {VERSION}",
+            )
+
+    def main(self, entry: tuple[Scalar, Raw] | None, trees: dict[str, Tree]) -> str:
+        known = {**trees, **self.outside}
+        first = next(iter(known))
+        if entry is None:
+            if len(trees or known) > 1:
+                self.problems.error(
+                    "no-main",
+                    known[first].place,
+                    "the file does not say which tree to run",
+                    f"write `main: {first}`",
+                )
+            return first
+        raw = entry[1]
+        name = raw.text if isinstance(raw, Scalar) else ""
+        if name not in known:
+            hint = valid_names(name, known, "trees")
+            self.problems.error("unknown-tree", raw.place, f"no tree is called {name!r}", hint)
+            return first
+        return name
+
+    def world(self, document: Document, entry: tuple[Scalar, Raw] | None) -> None:
+        if entry is None:
+            return
+        raw = entry[1]
+        if isinstance(raw, Scalar) and isinstance(raw.value, str):
+            document.world, document.world_place = raw.value, raw.place
+        else:
+            self.problems.error("wrong-value", raw.place, "`world` is the name of a world")
+
+    def values(self, document: Document, entry: tuple[Scalar, Raw] | None) -> None:
+        if entry is None:
+            return
+        for key, raw in mapping(entry[1], "values", "key: value", self.problems):
+            if not is_key(key, self.problems):
+                continue
+            found = self.written_out(raw, "one of `values`")
+            if found is not None:
+                document.values[key.text] = found
+                document.value_places[key.text] = raw.place
+
+    def written_out(self, raw: Raw, what: str) -> Literal | None:
+        """A value without wires; None where a problem was reported."""
+        found = port_value(raw, "", self.problems)
+        if found is None or isinstance(found, Literal):
+            return found
+        hint = "write the value; in a text, $$ is a dollar"
+        message = f"{what} is written out; a wire has no place here"
+        self.problems.error("wire-inside", raw.place, message, hint)
+        return None

@@ -1,0 +1,118 @@
+"""What stands on a leaf's line in YAML: its name and its ports, which other nodes have as well."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+from momantu_bt.plugins import PluginError
+from momantu_bt.tree.catalogue import BUILT_IN, MODIFIERS, SPELLED, SUBTREE, ScriptText
+from momantu_bt.tree.files.yaml.lines import STEP, WIDTH, above, beside, is_nested, signed, spread
+from momantu_bt.tree.files.yaml.scalars import (
+    CannotWrite,
+    port_text,
+    scalar,
+    script_spelling,
+    script_text,
+)
+from momantu_bt.tree.language import AGAIN
+from momantu_bt.tree.model import FIRST_INPUT, Literal, Node, PortValue
+from momantu_bt.tree.registry import Registry
+
+
+@dataclass(frozen=True, slots=True)
+class LeafWriter:
+    """Writes names and ports. trees: names that are trees; registry: skills, where one is known."""
+
+    trees: Collection[str]
+    registry: Registry
+
+    def lines(self, node: Node, lead: str, pad: str, more: bool) -> list[str]:
+        """A leaf. lead: what stands before its key; more: other keys follow."""
+        key, remark = self.key(node), beside(node.comments)
+        if not node.ports:
+            colon = ":" if more or not lead.endswith("- ") else ""
+            return [f"{lead}{key}{colon}{remark}"]
+        line = f"{lead}{key}: {self.text(node)}"
+        if len(line) <= WIDTH and not node.port_comments:
+            return [line + remark]
+        if self._is_bare(node):
+            return [*(f"{pad}{signed(c)}" for cs in node.port_comments.values() for c in cs), line]
+        return [f"{lead}{key}:{remark}", *self.ports(node, pad + STEP)]
+
+    def text(self, node: Node, *, flow: bool = False) -> str:
+        """What follows a leaf's `key:` on its line; empty where it has no ports."""
+        if self._is_bare(node):
+            ((name, value),) = node.ports.items()
+            return self.port(node, name, value, flow=flow)
+        return f"{{{', '.join(self.pairs(node))}}}" if node.ports else ""
+
+    def pairs(self, node: Node) -> list[str]:
+        """Its ports as `key: value`, for within braces."""
+        return [
+            f"{scalar(name, flow=True, typed=False)}: {self.port(node, name, value, flow=True)}"
+            for name, value in node.ports.items()
+        ]
+
+    def ports(self, node: Node, pad: str) -> list[str]:
+        """Its ports, each on a line of its own."""
+        lines: list[str] = []
+        for name, value in node.ports.items():
+            comments = node.port_comments.get(name, ())
+            lead = f"{pad}{scalar(name, typed=False)}:"
+            lines += above(comments, pad)
+            lines += spread(value, lead, self.port(node, name, value), comments)
+        return lines
+
+    def port(self, node: Node, name: str, value: PortValue, *, flow: bool = False) -> str:
+        """One port's value; a script in our spelling."""
+        spec = BUILT_IN.get(node.type)
+        port = spec.ports.get(name) if spec is not None else None
+        if port is not None and port.type is ScriptText and isinstance(value, Literal):
+            return script_text(str(value.value), flow=flow)
+        return port_text(value, flow=flow)
+
+    def _is_bare(self, node: Node) -> bool:
+        """Whether its one value stands without the port's name: `reset_pose: home`."""
+        if len(node.ports) != 1:
+            return False
+        ((name, value),) = node.ports.items()
+        if isinstance(value, Literal) and (value.value is None or is_nested(value)):
+            return False
+        spec = BUILT_IN.get(node.type)
+        if spec is not None:
+            script = spec.ports[name].type is ScriptText if name in spec.ports else False
+            spelled = not script or script_spelling(_text(value)) is not None
+            return name == spec.first and spelled
+        if name == FIRST_INPUT:
+            return True
+        place = node.port_places.get(name)
+        was_bare = place is not None and place == node.port_name_places.get(name)
+        return was_bare or (isinstance(value, Literal) and name == self._only_input(node))
+
+    def _only_input(self, node: Node) -> str | None:
+        """The first input of a known skill, where nothing else is required."""
+        try:
+            ports = self.registry.skills[node.type].ports.values()
+        except (KeyError, PluginError):
+            return None
+        inputs = [port for port in ports if port.direction == "in"]
+        if not inputs or any(port.required for port in inputs[1:]):
+            return None
+        return inputs[0].name if inputs[0].required else None
+
+    def key(self, node: Node) -> str:
+        """The node's name in YAML, as a key."""
+        spec = BUILT_IN.get(node.type)
+        if spec is not None:
+            return spec.yaml[0]
+        name = node.target if node.type == SUBTREE else node.type
+        tree = node.type == SUBTREE
+        words = (*SPELLED, *BUILT_IN, *MODIFIERS, SUBTREE, AGAIN)
+        if not name or "$" in name or name in words or (name in self.trees) is not tree:
+            raise CannotWrite(f"no node in YAML is called {name!r}")
+        return scalar(name)
+
+
+def _text(value: PortValue) -> str:
+    return str(value.value) if isinstance(value, Literal) else ""

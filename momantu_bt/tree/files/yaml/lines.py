@@ -1,0 +1,51 @@
+"""Lines of YAML: comments above and beside them, long values spread over several."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from momantu_bt.tree.files.yaml.scalars import literal, scalar
+from momantu_bt.tree.model import Beside, Literal, PortValue
+
+WIDTH = 100
+"""Columns of a line, where ports can be moved to lines of their own."""
+
+STEP = "  "
+"""One level of indentation."""
+
+
+def above(comments: Sequence[str], pad: str, *, every: bool = False) -> list[str]:
+    """Comments as lines of their own. every: those too that stand beside something."""
+    own = [c for c in comments if every or not isinstance(c, Beside)]
+    # of several beside one line, one stays there
+    own += [] if every else [c for c in comments if isinstance(c, Beside)][1:]
+    return [f"{pad}{signed(line)}" for comment in own for line in comment.split("\n")]
+
+
+def beside(comments: Sequence[str]) -> str:
+    """The comment at the end of a line, with what sets it apart; empty where there is none."""
+    first = next((c for c in comments if isinstance(c, Beside)), None)
+    return "" if first is None else f"  {signed(first.replace(chr(10), ' '))}"
+
+
+def spread(value: PortValue, lead: str, text: str, comments: Sequence[str]) -> list[str]:
+    """A value behind `key:`; a long list or mapping with an entry a line. text: it on one line."""
+    line, pad = f"{lead} {text}", " " * (len(lead) - len(lead.lstrip()) + len(STEP))
+    nested = value.value if isinstance(value, Literal) and is_nested(value) else None
+    if len(line) <= WIDTH or not nested:
+        return [line + beside(comments)]
+    if isinstance(nested, dict):
+        entries = [f"{scalar(k, typed=False)}: {literal(v)}" for k, v in nested.items()]
+    else:
+        entries = [f"- {literal(item)}" for item in nested]
+    return [lead + beside(comments), *(pad + entry for entry in entries)]
+
+
+def signed(text: str) -> str:
+    """A comment's text behind its sign."""
+    return f"#{text}" if not text or text.startswith("#") else f"# {text}"
+
+
+def is_nested(value: PortValue) -> bool:
+    """Whether a value is a list or a mapping."""
+    return isinstance(value, Literal) and isinstance(value.value, list | tuple | dict)

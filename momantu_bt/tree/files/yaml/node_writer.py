@@ -1,0 +1,252 @@
+"""Nodes of the model in YAML: modifiers beside a node's key, short ports in braces, lists below.
+
+Writes with a stack, not by recursion.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from momantu_bt.tree.catalogue import BUILT_IN, Kind
+from momantu_bt.tree.files.yaml.leaf_writer import LeafWriter
+from momantu_bt.tree.files.yaml.lines import STEP, WIDTH, above, beside
+from momantu_bt.tree.files.yaml.scalars import (
+    CannotWrite,
+    port_text,
+    scalar,
+    script_text,
+)
+from momantu_bt.tree.files.yaml.spellings import (
+    FORCE,
+    bare_condition,
+    can_be_modifier,
+    has_modifiers,
+    is_short,
+    switch_cases,
+)
+from momantu_bt.tree.files.yaml.words import COMPANIONS, SWITCH
+from momantu_bt.tree.language import AGAIN
+from momantu_bt.tree.model import Beside, Handler, Node
+
+
+@dataclass(frozen=True, slots=True)
+class _Value:
+    """A node behind `key:`. lead: up to the colon; pad: before the lines below it.
+
+    braces: a short node may stand on the line of its key.
+    """
+
+    node: Node
+    lead: str
+    pad: str
+    comments: tuple[str, ...] = ()
+    taken: Collection[str] = ()
+    braces: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class _Body:
+    """A node as the keys of a mapping. lead: what stands before its first key."""
+
+    node: Node
+    lead: str
+    taken: Collection[str] = ()
+
+
+_Piece: TypeAlias = str | _Value | _Body
+
+
+@dataclass(frozen=True, slots=True)
+class NodeWriter:
+    """Writes nodes. leaves: writes their names and ports."""
+
+    leaves: LeafWriter
+
+    def value(
+        self, node: Node, lead: str, pad: int, *, taken: Collection[str], comments: tuple[str, ...]
+    ) -> list[str]:
+        """The lines of a node behind `key:`. taken: keys that mean something else beside it."""
+        return self._lines(_Value(node, lead, " " * pad, comments, taken))
+
+    def body(self, node: Node, pad: int, *, taken: Collection[str]) -> list[str]:
+        """The lines of a node as keys of the mapping they stand in."""
+        return self._lines(_Body(node, " " * pad, taken))
+
+    def _lines(self, first: _Piece) -> list[str]:
+        lines: list[str] = []
+        stack: list[_Piece] = [first]
+        while stack:
+            piece = stack.pop()
+            if isinstance(piece, str):
+                lines.append(piece)
+                continue
+            try:
+                below = self._value(piece) if isinstance(piece, _Value) else self._body(piece)
+            except CannotWrite as error:
+                error.place = piece.node.place
+                raise
+            stack.extend(reversed(below))
+        return lines
+
+    def _value(self, piece: _Value) -> list[_Piece]:
+        node, lead, pad = piece.node, piece.lead, piece.pad
+        heading = lead + beside(piece.comments)
+        if node.type == "Sequence" and node.children and not has_modifiers(node):
+            items = [_Body(child, f"{pad}- ") for child in node.children]
+            comments = above(node.comments, pad, every=True)
+            return [heading, *comments, *items, *above(node.end_comments, pad, every=True)]
+        if is_short(node):
+            inside = self._inside(node)
+            key = self.leaves.key(node)
+            line = f"{lead} {{{key}: {inside}}}" if inside else f"{lead} {key}"
+            fits = len(line) <= WIDTH and piece.braces and key not in piece.taken
+            if fits or not inside:
+                return [line + beside((*piece.comments, *node.comments))]
+        return [heading, _Body(node, pad, piece.taken)]
+
+    def _inside(self, node: Node) -> str:
+        """What follows the key of a short node within braces; empty where there is nothing."""
+        if not node.children:
+            return self.leaves.text(node, flow=True)
+        child = node.children[0]
+        below = self.leaves.text(child, flow=True)
+        inside = f"{{{self.leaves.key(child)}: {below}}}" if below else self.leaves.key(child)
+        return "{" + ", ".join([*self.leaves.pairs(node), f"child: {inside}"]) + "}"
+
+    # one node as keys
+
+    def _body(self, piece: _Body) -> list[_Piece]:
+        inner, modifiers = self._unwrapped(piece.node)
+        lead, pad = piece.lead, " " * len(piece.lead)
+        if self.leaves.key(inner) in piece.taken:
+            raise CannotWrite(
+                f"{self.leaves.key(inner)!r} means something else in a tree's first lines"
+            )
+        edge = pad.removesuffix(STEP) if lead.endswith("- ") else pad
+        remarks = [c for outer in reversed(modifiers) for c in outer.comments]
+        pieces: list[_Piece] = [*above((*map(str, remarks), *inner.comments), edge)]
+        entries = self._entries(inner, pad)
+        pieces += self._keyed(inner, lead, pad, bool(entries or modifiers))
+        pieces += entries
+        for outer in modifiers:
+            remark = tuple(Beside(c) for c in outer.end_comments)
+            pieces += [*above(remark, pad), pad + self._modifier(outer) + beside(remark)]
+        return pieces
+
+    def _unwrapped(self, node: Node) -> tuple[Node, list[Node]]:
+        """The node without what can be written as modifiers, and that, innermost first."""
+        chain = [node]
+        while can_be_modifier(chain[-1]):
+            chain.append(chain[-1].children[0])
+        inner = chain.pop()
+        modifiers: list[Node] = []
+        used = {self.leaves.key(inner)}
+        for outer in reversed(chain):
+            key = self._modifier(outer).partition(":")[0]
+            if key in used:  # a mapping has each key once: this one is written with `child:`
+                inner, modifiers, used = outer, [], {self.leaves.key(outer)}
+            else:
+                modifiers.append(outer)
+                used.add(key)
+        return inner, modifiers
+
+    def _modifier(self, node: Node) -> str:
+        if node.type in FORCE:
+            return FORCE[node.type]
+        key = BUILT_IN[node.type].yaml[0]
+        values = [f" {port_text(value)}" for value in node.ports.values()]
+        return f"{key}:{''.join(values)}"
+
+    def _entries(self, node: Node, pad: str) -> list[str]:
+        """Name, note, conditions: what is the node's own beside its key."""
+        lines = [
+            f"{pad}{key}: {scalar(text)}"
+            for key, text in (("name", node.name), ("note", node.note))
+            if text is not None
+        ]
+        if node.disabled:
+            lines.append(f"{pad}disabled: true")
+        return lines + [f"{pad}{key}: {script_text(s)}" for key, s in node.conditions.items()]
+
+    def _keyed(self, node: Node, lead: str, pad: str, more: bool) -> list[_Piece]:
+        """The node's key with all that belongs under it. more: other keys follow."""
+        spec = BUILT_IN.get(node.type)
+        key, end = self.leaves.key(node), above(node.end_comments, pad + STEP, every=True)
+        heading = f"{lead}{key}:{beside(node.comments)}"
+        if spec is not None and spec.switch and (cases := switch_cases(node)) is not None:
+            return [*self._switch(node, cases, lead, pad), *end]
+        if spec is not None and spec.yaml[0] in COMPANIONS and not spec.switch:
+            return [*self._branches(node, lead, pad), *end]
+        if spec is not None and spec.handlers:
+            return [heading, *self.leaves.ports(node, pad + STEP), *self._recovery(node, pad), *end]
+        if spec is not None and spec.kind is Kind.DECORATOR:
+            line = f"{lead}{key}: {self._inside(node)}" if is_short(node) else ""
+            if line and len(line) <= WIDTH:
+                return [line + beside((*node.comments, *node.children[0].comments))]
+            return [heading, *self.leaves.ports(node, pad + STEP), *self._child(node, pad), *end]
+        if node.handlers:
+            raise CannotWrite(f"{key} takes no `catch:`")
+        if node.children:
+            return [heading, *self._children(node, pad), *end]
+        return [*self.leaves.lines(node, lead, pad, more), *end]
+
+    def _children(self, node: Node, pad: str) -> list[_Piece]:
+        if not node.ports and node.type in BUILT_IN:
+            return [_Body(child, f"{pad}{STEP}- ") for child in node.children]
+        items = [_Body(child, f"{pad}{STEP * 2}- ") for child in node.children]
+        return [*self.leaves.ports(node, pad + STEP), f"{pad}{STEP}children:", *items]
+
+    def _child(self, node: Node, pad: str) -> list[_Piece]:
+        if len(node.children) != 1:
+            raise CannotWrite(f"{self.leaves.key(node)} has {len(node.children)} children, not one")
+        return [_Value(node.children[0], f"{pad}{STEP}child:", pad + STEP * 2)]
+
+    def _branches(self, node: Node, lead: str, pad: str) -> list[_Piece]:
+        key = self.leaves.key(node)
+        names = (key, *COMPANIONS[key])
+        if not 2 <= len(node.children) <= len(names) or node.ports:
+            raise CannotWrite(f"{key} has {len(node.children)} children, not 2 or 3")
+        first, *others = node.children
+        pieces: list[_Piece] = [_Value(first, f"{lead}{key}:", pad + STEP, node.comments)]
+        if (script := bare_condition(first)) is not None:
+            comments = (*node.comments, *first.comments)
+            pieces = [*above(first.comments, pad), f"{lead}{key}: {script}{beside(comments)}"]
+        for name, child in zip(names[1:], others, strict=False):
+            pieces.append(_Value(child, f"{pad}{name}:", pad + STEP))
+        return pieces
+
+    def _switch(self, node: Node, cases: list[str], lead: str, pad: str) -> list[_Piece]:
+        deeper = pad + STEP * 2
+        *chosen, default = node.children
+        variable = port_text(node.ports["variable"])
+        pieces: list[_Piece] = [
+            f"{lead}{SWITCH}: {variable}{beside(node.comments)}",
+            f"{pad}cases:",
+        ]
+        for number, (case, child) in enumerate(zip(cases, chosen, strict=True), start=1):
+            comments = node.port_comments.get(f"case_{number}", ())
+            pieces += above(comments, pad + STEP)
+            pieces.append(_Value(child, f"{pad}{STEP}{case}:", deeper, comments))
+        return [*pieces, _Value(default, f"{pad}default:", pad + STEP)]
+
+    def _recovery(self, node: Node, pad: str) -> list[_Piece]:
+        if len(node.children) != 1 or not node.handlers:
+            raise CannotWrite(f"{self.leaves.key(node)} needs one `try` and a handler")
+        inside, deeper = pad + STEP, pad + STEP * 2
+        pieces: list[_Piece] = [
+            _Value(node.children[0], f"{inside}try:", deeper, braces=False),
+            f"{inside}catch:",
+        ]
+        for handler in node.handlers:
+            pieces += [*above(handler.comments, deeper), self._handler(handler, deeper)]
+        return pieces
+
+    def _handler(self, handler: Handler, pad: str) -> _Piece:
+        if not handler.codes:
+            raise CannotWrite("a handler without a code")
+        lead = f"{pad}{scalar(' | '.join(handler.codes), typed=False)}:"
+        if handler.node is None:
+            return f"{lead} {AGAIN}{beside(handler.comments)}"
+        return _Value(handler.node, lead, pad + STEP, handler.comments)

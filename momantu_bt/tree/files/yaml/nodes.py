@@ -1,0 +1,135 @@
+"""YAML values at node positions, as nodes of the model. Reads with a queue, not by recursion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from momantu_bt.tree.catalogue import BUILT_IN, MODIFIERS, SPELLED, SUBTREE, Kind, NodeSpec
+from momantu_bt.tree.files.queue import Put
+from momantu_bt.tree.files.yaml.branches import read_branches, read_switch
+from momantu_bt.tree.files.yaml.children import read_control, read_decorator, read_handlers, split
+from momantu_bt.tree.files.yaml.modifiers import modified, near_modifier
+from momantu_bt.tree.files.yaml.ports import read_leaf
+from momantu_bt.tree.files.yaml.raw import Entries, Items, Raw, Scalar
+from momantu_bt.tree.files.yaml.reading import Reading
+from momantu_bt.tree.files.yaml.values import drop_duplicates
+from momantu_bt.tree.files.yaml.words import COMPANIONS, SWITCH
+from momantu_bt.tree.language import AGAIN
+from momantu_bt.tree.model import Node
+
+
+@dataclass(frozen=True, slots=True)
+class NodeReader:
+    """Reads node positions."""
+
+    reading: Reading
+
+    def read(self, raw: Raw, put: Put) -> None:
+        """Read one node and all below it, and give it to `put`; BROKEN where it cannot be."""
+        waiting = self.reading.waiting
+        waiting.append((raw, put))
+        while waiting:
+            following, its_put = waiting.popleft()
+            its_put(self._node(following))
+
+    def _node(self, raw: Raw) -> Node:
+        if isinstance(raw, Items):
+            node = Node("Sequence", raw.place)
+            self.reading.children(node, raw)
+            return node
+        if isinstance(raw, Entries):
+            return self._mapping(raw)
+        if isinstance(raw.value, str) and raw.value:
+            return self._named(raw, Scalar(None, "", False, raw.place), [])
+        message, hint = "a node is missing", "write its name"
+        return self.reading.broken("not-a-node", raw.place, message, hint)
+
+    # a mapping: one node key and its modifiers
+
+    def _mapping(self, raw: Entries) -> Node:
+        drop_duplicates(raw, self.reading.problems)
+        chosen = self._node_key(raw)
+        if chosen is None:
+            written = ", ".join(key.text for key, _ in raw.entries)
+            message = f"only modifiers here ({written}), no node" if written else "no node here"
+            hint = "write one, such as `wait: 1 s`"
+            return self.reading.broken("no-node", raw.place, message, hint)
+        key, value = chosen
+        beside = [(k, v) for k, v in raw.entries if k is not key]
+        companions = COMPANIONS.get(key.text, ())
+        node = self._named(key, value, [(k, v) for k, v in beside if k.text in companions])
+        modifiers = [(k, v) for k, v in beside if k.text not in companions]
+        return modified(node, modifiers, self.reading)
+
+    def _node_key(self, raw: Entries) -> tuple[Scalar, Raw] | None:
+        companions = {name for key, _ in raw.entries for name in COMPANIONS.get(key.text, ())}
+        own = [e for e in raw.entries if e[0].text not in MODIFIERS and e[0].text not in companions]
+        if not own:
+            nodes = [e for e in raw.entries if _has_child(e[1]) and e[0].text in MODIFIERS]
+            return nodes[-1] if nodes else None
+        known = self.reading.is_known
+        surely = [e for e in own if known(e[0].text) or not near_modifier(e[0].text)]
+        return (surely or own)[0]
+
+    # one node by its name
+
+    def _named(self, key: Scalar, value: Raw, companions: list[tuple[Scalar, Raw]]) -> Node:
+        name = key.text
+        refused = self._refused(key)
+        if refused is not None:
+            return refused
+        if name == SWITCH:
+            return read_switch(key, value, companions, self.reading)
+        spec = SPELLED.get(name)
+        if spec is None:
+            return self._foreign(key, value)
+        node = Node(spec.type, key.place)
+        if name in COMPANIONS:
+            read_branches(node, value, companions, self.reading)
+        else:
+            self._below(node, value, spec)
+        return node
+
+    def _refused(self, key: Scalar) -> Node | None:
+        """What cannot be a node's name, reported; None where it can."""
+        name = key.text
+        if name == AGAIN:
+            message = "`again` stands alone, as a handler of `recover`"
+            return self.reading.broken("again", key.place, message)
+        if "$" in name:
+            return self.reading.broken("not-a-node", key.place, f"{name} is a wire, not a node")
+        if name in BUILT_IN or name == SUBTREE:
+            ours = BUILT_IN[name].yaml[0] if name in BUILT_IN else "the tree's name"
+            message, hint = f"no node is called {name!r}", f"did you mean {ours}?"
+            return self.reading.broken("unknown-node", key.place, message, hint)
+        return None
+
+    def _foreign(self, key: Scalar, value: Raw) -> Node:
+        """A skill, or a tree of this document."""
+        name = key.text
+        target = name if name in self.reading.trees else None
+        node = Node(SUBTREE if target else name, key.place, target=target)
+        if target is None and isinstance(value, Entries) and _has_children(value):
+            split(node, value, None, ("children",), self.reading)
+        else:
+            read_leaf(node, value, None, self.reading)
+        return node
+
+    def _below(self, node: Node, value: Raw, spec: NodeSpec) -> None:
+        if spec.handlers:
+            read_handlers(node, value, spec, self.reading)
+        elif spec.kind is Kind.CONTROL:
+            read_control(node, value, spec, self.reading)
+        elif spec.kind is Kind.DECORATOR:
+            read_decorator(node, value, spec, self.reading)
+        else:
+            read_leaf(node, value, spec, self.reading)
+
+
+def _has_child(value: Raw) -> bool:
+    return isinstance(value, Entries) and any(key.text == "child" for key, _ in value.entries)
+
+
+def _has_children(value: Entries) -> bool:
+    """Whether it is a control node that nobody knows here."""
+    return any(key.text == "children" and isinstance(raw, Items) for key, raw in value.entries)

@@ -1,0 +1,68 @@
+"""What YAML values give the ports of a node."""
+
+from __future__ import annotations
+
+from momantu_bt.tree.catalogue import BUILT_IN, SPELLED, SUBTREE, Kind, NodeSpec, ScriptText
+from momantu_bt.tree.files.yaml.raw import Entries, Items, Raw, Scalar
+from momantu_bt.tree.files.yaml.reading import Reading, said
+from momantu_bt.tree.files.yaml.scripts import read_script
+from momantu_bt.tree.files.yaml.values import drop_duplicates, port_value, reported_braces
+from momantu_bt.tree.model import BROKEN, FIRST_INPUT, Literal, Node, Place, Reference
+from momantu_bt.tree.problems import Problems, nearest
+
+
+def read_leaf(node: Node, value: Raw, spec: NodeSpec | None, reading: Reading) -> None:
+    """The value of a node that has ports alone; a value by itself is its first input."""
+    if isinstance(value, Entries):
+        if reported_braces(value, reading.problems):
+            node.type = BROKEN
+        else:
+            read_ports(node, value, spec, reading.problems)
+    elif isinstance(value, Items) and (near := _near_control(node)) is not None:
+        message = f"no node is called {node.type!r}"
+        reading.error("unknown-node", node.place, message, f"did you mean {near}?")
+        node.type = BROKEN
+    elif isinstance(value, Items):
+        hint = f"write `{said(node)}: {{port: value}}`, or begin with `sequence:`"
+        reading.misfit(node, value, f"{said(node)} takes ports, no list", hint)
+    elif value.value is not None or value.quoted:
+        name = FIRST_INPUT if spec is None else spec.first
+        if name is None:
+            reading.misfit(node, value, f"{said(node)} takes no value")
+        else:
+            read_port(node, (name, value.place), value, spec, reading.problems)
+
+
+def read_ports(node: Node, raw: Entries, spec: NodeSpec | None, problems: Problems) -> None:
+    """A mapping of ports to values."""
+    drop_duplicates(raw, problems)
+    for key, value in raw.entries:
+        read_port(node, (key.text, key.place), value, spec, problems)
+
+
+def read_port(
+    node: Node, named: tuple[str, Place], value: Raw, spec: NodeSpec | None, problems: Problems
+) -> None:
+    """One port. named: its name, and where that is written."""
+    name, place = named
+    node.port_places[name] = value.place
+    node.port_name_places[name] = place
+    port = spec.ports.get(name) if spec is not None else None
+    if port is not None and port.type is ScriptText:
+        script = read_script(value, problems)
+        if script is not None:
+            node.ports[name] = Literal(script)
+        return
+    found = port_value(value, name, problems)
+    node.ports[name] = Reference(BROKEN) if found is None else found
+
+
+def is_empty(value: Raw) -> bool:
+    """Whether nothing is written."""
+    return isinstance(value, Scalar) and value.value is None and not value.quoted
+
+
+def _near_control(node: Node) -> str | None:
+    """What a mistyped node with a list of others was meant to be."""
+    controls = [name for name, spec in SPELLED.items() if spec.kind is Kind.CONTROL]
+    return None if node.type in (SUBTREE, *BUILT_IN) else nearest(node.type, controls)

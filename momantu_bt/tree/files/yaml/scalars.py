@@ -1,0 +1,151 @@
+"""Values of the model as YAML 1.2 text: plain where it can be, in quotes where it must be."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from momantu_bt.tree.files.yaml.core import resolve
+from momantu_bt.tree.files.yaml.values import KEY
+from momantu_bt.tree.files.yaml.words import BTCPP
+from momantu_bt.tree.model import Literal, Place, PortValue, Reference, Scope, Template
+from momantu_bt.tree.script import ScriptSyntaxError, canonical, yaml_spelling
+
+_NEVER_FIRST = "-?:,[]{}#&*!|>'\"%@`"
+_NEVER_INSIDE = re.compile(r": |:$| #")
+_NEVER_IN_FLOW = re.compile(r"[,\[\]{}]")
+_ESCAPES = {"\n": "\\n", "\t": "\\t", "\r": "\\r", '"': '\\"', "\\": "\\\\", "\0": "\\0"}
+
+
+class CannotWrite(ValueError):
+    """A value or node for which a spelling has no words; the message says which.
+
+    place: of the node, where that is known.
+    """
+
+    place: Place | None = None
+
+
+def scalar(text: str, *, flow: bool = False, typed: bool = True) -> str:
+    """A text as one scalar that reads back as this text.
+
+    flow: it stands within brackets or braces. typed: there a number could stand as well, so that
+    a text like one needs quotes.
+    """
+    return text if _is_plain(text, flow, typed) else quoted(text)
+
+
+def quoted(text: str) -> str:
+    """A text in quotes: double ones, single ones where that saves escapes."""
+    if text.isprintable() and ('"' in text or "\\" in text) and "'" not in text:
+        return f"'{text}'"
+    return '"' + "".join(map(_escaped, text)) + '"'
+
+
+def _escaped(character: str) -> str:
+    if character in _ESCAPES:
+        return _ESCAPES[character]
+    if character.isprintable():
+        return character
+    code = ord(character)
+    if code <= 0xFF:
+        return f"\\x{code:02x}"
+    return f"\\u{code:04x}" if code <= 0xFFFF else f"\\U{code:08x}"
+
+
+def _is_plain(text: str, flow: bool, typed: bool) -> bool:
+    if not text or text[0] in _NEVER_FIRST or text.startswith("..."):
+        return False
+    if text != text.strip() or not text.isprintable():
+        return False
+    if _NEVER_INSIDE.search(text) or (flow and _NEVER_IN_FLOW.search(text)):
+        return False
+    found = resolve(text)
+    return isinstance(found, str) if typed else found is not None
+
+
+def literal(value: Any, *, flow: bool = False) -> str:
+    """A written-out value; lists and mappings in flow style, `$` in texts doubled.
+
+    Raises:
+        CannotWrite: YAML has no such value (infinities).
+    """
+    # as deep as the value, which the readers bound
+    if value is None:
+        return "null"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return scalar(value.replace("$", "$$"), flow=flow)
+    if isinstance(value, int | float):
+        return _number(value)
+    if isinstance(value, Mapping):
+        inside = (
+            f"{scalar(k, flow=True, typed=False)}: {literal(v, flow=True)}"
+            for k, v in value.items()
+        )
+        return "{" + ", ".join(inside) + "}"
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(literal(item, flow=True) for item in value) + "]"
+    raise CannotWrite(f"a {type(value).__name__} cannot be written out")
+
+
+def _number(value: float) -> str:
+    text = repr(value)
+    found = resolve(text)
+    if type(found) is not type(value):
+        raise CannotWrite(f"the number {text} cannot be written out")
+    return text
+
+
+def port_text(value: PortValue, *, flow: bool = False) -> str:
+    """A port's value: a literal, `$key`, or a text with `${key}` inside.
+
+    Raises:
+        CannotWrite: the value, or the name of a key, has no spelling in YAML.
+    """
+    if isinstance(value, Literal):
+        return literal(value.value, flow=flow)
+    if isinstance(value, Reference):
+        return "$" + _key(value)
+    return quoted(template_text(value))
+
+
+def template_text(value: Template) -> str:
+    """A text with keys inside, without quotes."""
+    return "".join(
+        part.replace("$", "$$") if isinstance(part, str) else f"${{{_key(part)}}}"
+        for part in value.parts
+    )
+
+
+def _key(reference: Reference) -> str:
+    for name in (reference.key, *reference.fields):
+        if not KEY.fullmatch(name):
+            raise CannotWrite(f"the key {name!r} is not made of letters, digits and underscores")
+    at = "@" if reference.scope is Scope.ROOT else ""
+    return at + ".".join((reference.key, *reference.fields))
+
+
+def script_spelling(text: str) -> str | None:
+    """A canonical script in our spelling, with words or else with signs.
+
+    None where neither comes back as the same script, as with `a && b || c`.
+    """
+    for words in (True, False):
+        try:
+            spelled = yaml_spelling(text, words=words)
+            if canonical(spelled) == text:
+                return spelled
+        except ScriptSyntaxError:
+            continue
+    return None
+
+
+def script_text(text: str, *, flow: bool = False) -> str:
+    """A canonical script as a YAML value; `{btcpp: …}` keeps one that our spelling cannot say."""
+    spelled = script_spelling(text)
+    if spelled is not None:
+        return scalar(spelled, flow=flow, typed=False)
+    return f"{{{BTCPP}: {scalar(text, flow=True, typed=False)}}}"

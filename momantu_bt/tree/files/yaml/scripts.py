@@ -1,0 +1,56 @@
+"""Scripts in YAML values, such as those of `skip_if` and `condition`."""
+
+from __future__ import annotations
+
+from momantu_bt.tree.files.yaml.raw import Entries, Raw, Scalar
+from momantu_bt.tree.files.yaml.words import BTCPP
+from momantu_bt.tree.model import Place
+from momantu_bt.tree.problems import Problems
+from momantu_bt.tree.script import ScriptSyntaxError, canonical, parse
+
+
+def read_script(value: Raw, problems: Problems) -> str | None:
+    """A script in BehaviorTree.CPP's spelling; None where a problem was reported."""
+    if isinstance(value, Entries) and [key.text for key, _ in value.entries] == [BTCPP]:
+        return _kept(value.entries[0][1], problems)
+    if not isinstance(value, Scalar) or value.value is None:
+        hint = "such as $n > 2; a script with `: ` or `{` must be quoted whole"
+        problems.error("script", value.place, "a script is expected here", hint)
+        return None
+    try:
+        return canonical(value.text)
+    except ScriptSyntaxError as error:
+        problems.error("script", _within(value, error), error.message, error.hint)
+        return None
+
+
+def as_condition(value: Raw) -> Raw | None:
+    """`if: $n > 2` as the node `condition: $n > 2`; None where the value is a node itself."""
+    if not isinstance(value, Scalar):
+        return None
+    if isinstance(value.value, str) and "$" not in value.value:
+        return None
+    key = Scalar("condition", "condition", False, value.place)
+    return Entries([(key, value)], value.place)
+
+
+def _kept(value: Raw, problems: Problems) -> str | None:
+    """A script in BehaviorTree.CPP's spelling already, kept as it is."""
+    text = value.text if isinstance(value, Scalar) else ""
+    try:
+        return parse(text).text
+    except ScriptSyntaxError as error:
+        place = _within(value, error) if isinstance(value, Scalar) else value.place
+        problems.error("script", place, error.message, error.hint)
+        return None
+
+
+def _within(value: Scalar, error: ScriptSyntaxError) -> Place:
+    place = value.place
+    quotes = 1 if value.quoted else 0
+    if place.length != len(value.text) + 2 * quotes:
+        return place  # several lines, or escapes: an offset in the text is none in the file
+    offset = error.offset + quotes
+    if offset >= place.length:
+        return place
+    return Place(place.file, place.line, place.column + offset, error.length)

@@ -1,0 +1,216 @@
+"""YAML 1.2 text as values that know their place, read without recursion and within bounds.
+
+Every key of a mapping is kept, so that all duplicates can be reported; booleans are `true` and
+`false` alone, numbers are YAML 1.2's.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from typing import Any
+
+from ruamel.yaml import YAML
+from ruamel.yaml import events as yaml_events
+from ruamel.yaml.error import MarkedYAMLError
+from ruamel.yaml.reader import ReaderError
+
+from momantu_bt.tree.files.yaml.core import resolve
+from momantu_bt.tree.files.yaml.errors import in_our_words
+from momantu_bt.tree.files.yaml.raw import Entries, Items, Raw, Scalar
+from momantu_bt.tree.files.yaml.remarks import Remark, remarks, span
+from momantu_bt.tree.model import Place
+from momantu_bt.tree.problems import Problem, lines_of
+
+MAX_BYTES = 500_000
+MAX_DEPTH = 100
+MAX_NODES = 10_000
+"""Values in a file, those behind aliases counted each time they are used; and comments."""
+MAX_ALIASES = 500
+
+_SURROGATE = re.compile("[\ud800-\udfff]")
+
+
+class YamlSyntaxError(Exception):
+    """A file that is not YAML, or out of bounds."""
+
+    def __init__(self, problem: Problem) -> None:
+        super().__init__(f"{problem.place}: {problem.message}")
+        self.problem = problem
+
+
+def compose(text: str, file: str) -> Raw:
+    """Read a text.
+
+    Raises:
+        YamlSyntaxError: with the one problem, in our words.
+    """
+    return compose_with_remarks(text, file)[0]
+
+
+def compose_with_remarks(text: str, file: str) -> tuple[Raw, list[Remark]]:
+    """Read a text and its comments.
+
+    Raises:
+        YamlSyntaxError: with the one problem, in our words.
+    """
+    size = len(text.encode("utf-8", "surrogatepass"))
+    if size > MAX_BYTES:
+        raise _bound(Place(file, 1, 1), f"{size} bytes; a tree file has at most {MAX_BYTES}")
+    builder = _Builder(file)
+    reader = YAML(typ="safe", pure=True)
+    try:
+        for event in reader.parse(text):
+            builder.take(event)
+    except MarkedYAMLError as error:
+        raise YamlSyntaxError(in_our_words(error, text, file)) from None
+    except ReaderError as error:
+        before = lines_of(text[: error.position])
+        line, column = len(before), len(before[-1]) + 1
+        message = f"the character U+{ord(text[error.position]):04X} cannot stand in a tree file"
+        raise YamlSyntaxError(
+            Problem("syntax", message, Place(file, line, column), "remove it")
+        ) from None
+    if builder.root is None:
+        place = Place(file, 1, 1)
+        raise YamlSyntaxError(
+            Problem("syntax", "the file is empty", place, "begin with `momantu_bt: 1`")
+        )
+    found = remarks(text, builder.spans) if "#" in text else []
+    if len(found) > MAX_NODES:
+        place = Place(file, found[MAX_NODES].line, found[MAX_NODES].column)
+        raise _bound(place, f"more than {MAX_NODES} comments")
+    return builder.root, found
+
+
+@dataclass(slots=True)
+class _Open:
+    """A list or mapping that is being read. key: waiting for its value."""
+
+    raw: Items | Entries
+    anchor: str | None
+    key: Scalar | None = None
+
+
+@dataclass(slots=True)
+class _Builder:
+    file: str
+    root: Raw | None = None
+    stack: list[_Open] = field(default_factory=list)
+    anchors: dict[str, Raw] = field(default_factory=dict)
+    nodes: int = 0
+    aliases: int = 0
+    documents: int = 0
+    spans: list[tuple[int, int]] = field(default_factory=list)
+
+    def take(self, event: Any) -> None:
+        if isinstance(event, yaml_events.DocumentStartEvent):
+            self.documents += 1
+            if self.documents > 1:
+                message = "a second document; a tree file is one"
+                raise self.error("syntax", event, message, "remove the line `---`")
+        elif isinstance(event, yaml_events.ScalarEvent):
+            self.refuse_tag(event)
+            self.put(self.scalar(event), event.anchor)
+        elif isinstance(event, yaml_events.SequenceStartEvent):
+            self.refuse_tag(event)
+            self.open(Items([], self.place(event)), event)
+        elif isinstance(event, yaml_events.MappingStartEvent):
+            self.refuse_tag(event)
+            self.open(Entries([], self.place(event), bool(event.flow_style)), event)
+        elif isinstance(event, yaml_events.AliasEvent):
+            self.put_alias(event)
+        elif isinstance(event, yaml_events.CollectionEndEvent):
+            closed = self.stack.pop()
+            closed.raw.place = self.up_to(closed.raw.place, event)
+            self.put(closed.raw, closed.anchor)
+
+    def place(self, event: Any) -> Place:
+        start, end = event.start_mark, event.end_mark
+        length = end.column - start.column if end.line == start.line else 1
+        return Place(self.file, start.line + 1, start.column + 1, max(1, length))
+
+    def up_to(self, place: Place, event: Any) -> Place:
+        """The whole list or mapping, where it is written on one line."""
+        mark = event.end_mark
+        if mark.line + 1 != place.line or mark.column < place.column:
+            return place
+        return Place(place.file, place.line, place.column, mark.column + 1 - place.column)
+
+    def error(self, code: str, event: Any, message: str, hint: str = "") -> YamlSyntaxError:
+        return YamlSyntaxError(Problem(code, message, self.place(event), hint))
+
+    def refuse_tag(self, event: Any) -> None:
+        tag = getattr(event, "tag", None)
+        if tag:
+            message = "`!` begins a YAML tag, which tree files do not use"
+            hint = 'write `not`, or put the whole value in quotes: "!$key"'
+            raise self.error("syntax", event, message, hint)
+
+    def scalar(self, event: Any) -> Scalar:
+        if _SURROGATE.search(event.value):
+            message = "an escape that is half a character"
+            raise self.error("syntax", event, message, "write the character itself")
+        quoted = event.style is not None
+        self.spans += span(event)
+        value = event.value if quoted else resolve(event.value)
+        return Scalar(value, str(event.value), quoted, self.scalar_place(event))
+
+    def scalar_place(self, event: Any) -> Place:
+        """Of the scalar; of its key where nothing is written, as YAML ends that on a later line."""
+        place = self.place(event)
+        key = self.stack[-1].key if self.stack else None
+        missing = event.style is None and event.value == "" and key is not None
+        return key.place if key is not None and missing and key.place.line != place.line else place
+
+    def open(self, raw: Items | Entries, event: Any) -> None:
+        if len(self.stack) >= MAX_DEPTH:
+            raise _bound(self.place(event), f"nested more than {MAX_DEPTH} levels deep")
+        self.stack.append(_Open(raw, event.anchor))
+
+    def put_alias(self, event: Any) -> None:
+        self.aliases += 1
+        if self.aliases > MAX_ALIASES:
+            raise _bound(self.place(event), f"more than {MAX_ALIASES} aliases")
+        if event.anchor not in self.anchors:
+            inside = any(opened.anchor == event.anchor for opened in self.stack)
+            message = f"`*{event.anchor}` stands for nothing"
+            if inside:
+                message = f"`*{event.anchor}` stands for something that contains it"
+            hint = f'name it with `&{event.anchor}` before, or put "*{event.anchor}" in quotes'
+            raise self.error("syntax", event, message, hint)
+        self.put(self.anchors[event.anchor], None)
+
+    def put(self, raw: Raw, anchor: str | None) -> None:
+        self.nodes += raw.size if anchor is None and isinstance(raw, Scalar) else 1
+        if anchor is not None:
+            self.anchors[anchor] = raw
+        if not self.stack:
+            self.root = raw
+            return
+        top = self.stack[-1]
+        top.raw.size += raw.size
+        top.raw.depth = max(top.raw.depth, raw.depth + 1)
+        if top.raw.depth > MAX_DEPTH:
+            raise _bound(raw.place, f"nested more than {MAX_DEPTH} levels deep, aliases included")
+        if top.raw.size > MAX_NODES or self.nodes > MAX_NODES:
+            raise _bound(raw.place, f"more than {MAX_NODES} values, aliases included")
+        if isinstance(top.raw, Items):
+            top.raw.items.append(raw)
+        elif top.key is None:
+            top.key = self.key(raw)
+        else:
+            top.raw.entries.append((top.key, raw))
+            top.key = None
+
+    def key(self, raw: Raw) -> Scalar:
+        if isinstance(raw, Scalar):
+            return raw
+        hint = "did you mean $key?" if isinstance(raw, Entries) else ""
+        raise YamlSyntaxError(
+            Problem("syntax", "a list or mapping cannot be a key", raw.place, hint)
+        )
+
+
+def _bound(place: Place, message: str) -> YamlSyntaxError:
+    return YamlSyntaxError(Problem("too-large", message, place))

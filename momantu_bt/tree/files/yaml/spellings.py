@@ -1,0 +1,72 @@
+"""Which of the spellings that YAML has a node can be written in."""
+
+from __future__ import annotations
+
+from momantu_bt.tree.catalogue import BUILT_IN, FORCED, Kind
+from momantu_bt.tree.files.yaml.lines import above, is_nested
+from momantu_bt.tree.files.yaml.scalars import port_text, scalar, script_spelling
+from momantu_bt.tree.model import Literal, Node, PortValue
+
+FORCE = {type_: f"force: {word}" for word, type_ in FORCED.items()}
+"""Modifiers of the nodes that force an end."""
+
+
+def is_short(node: Node) -> bool:
+    """Whether it may stand in braces: a leaf with nothing but ports, or a decorator around one."""
+    spec = BUILT_IN.get(node.type)
+    if spec is not None and spec.kind is Kind.DECORATOR:
+        below = node.children[0] if len(node.children) == 1 else node
+        return not _says_more(node) and not below.children and is_short(below)
+    leaf = not node.children and (spec is None or spec.kind is Kind.LEAF)
+    return leaf and not _says_more(node) and not node.handlers
+
+
+def _says_more(node: Node) -> bool:
+    """Whether something besides key and ports needs a line."""
+    remarks = node.port_comments or node.end_comments or above(node.comments, "")
+    return bool(remarks) or has_modifiers(node)
+
+
+def has_modifiers(node: Node) -> bool:
+    """Whether keys stand beside the node's own, or around it."""
+    named = node.name is not None or node.note is not None or node.disabled
+    return bool(named or node.conditions or can_be_modifier(node))
+
+
+def can_be_modifier(node: Node) -> bool:
+    """Whether it is a decorator that says no more than a key beside its child can."""
+    spec = BUILT_IN.get(node.type)
+    if spec is None or not (spec.modifier or node.type in FORCE) or len(node.children) != 1:
+        return False
+    if node.name is not None or node.note is not None or node.disabled or node.conditions:
+        return False
+    values = list(node.ports.values())
+    fits = not values or (list(node.ports) == [spec.first] and not _is_nothing(values[0]))
+    return fits and not any(is_nested(value) for value in values)
+
+
+def _is_nothing(value: PortValue) -> bool:
+    return isinstance(value, Literal) and value.value is None
+
+
+def switch_cases(node: Node) -> list[str] | None:
+    """The keys of `cases:`; None where the ports cannot be written so."""
+    values = [node.ports.get(name) for name in BUILT_IN[node.type].ports]
+    if len(node.ports) != len(values) or len(node.children) != len(values):
+        return None
+    if any(value is None or is_nested(value) for value in values):
+        return None
+    variable, *cases = (port_text(value) for value in values if value is not None)
+    bare = {case.strip("\"'") for case in cases}
+    return cases if len(bare) == len(cases) and variable else None
+
+
+def bare_condition(node: Node) -> str | None:
+    """The script that `if:` can ask instead of a node; None where the node says more."""
+    code = node.ports.get("code")
+    if node.type != "ScriptCondition" or not isinstance(code, Literal) or len(node.ports) != 1:
+        return None
+    if has_modifiers(node) or node.children or node.end_comments or node.port_comments:
+        return None
+    spelled = script_spelling(str(code.value))
+    return scalar(spelled, typed=False) if spelled is not None and "$" in spelled else None

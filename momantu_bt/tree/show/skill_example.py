@@ -1,0 +1,113 @@
+"""How a skill is written in a tree: an example in YAML and in XML, made from its ports."""
+
+from __future__ import annotations
+
+from enum import Enum
+from typing import Any, Literal, get_args
+
+from momantu_bt.messages import ObjectClass
+from momantu_bt.skill import Port, Skill
+from momantu_bt.tree import model
+from momantu_bt.tree.files.xml.attributes import port_attribute
+from momantu_bt.tree.files.yaml.scalars import literal
+from momantu_bt.tree.model import PortValue
+from momantu_bt.tree.types import is_union, origin, without_none
+
+WIDEST = 76
+"""Characters of one line of an example."""
+_NAMED = {"place": "table_a", "surface": "table_a", "named_pose": "home"}
+_QUANTITIES = {"m": "10 cm", "rad": "30 deg", "s": "2 s"}
+
+
+class Wire(str):
+    """A key without its `$`."""
+
+
+def example_ports(skill: type[Skill]) -> dict[str, Any]:
+    """A value, or a Wire, for what a tree has to give, and a key for each output."""
+    try:
+        rehearsed = dict(skill.rehearsal(0)).get("inputs", {})
+    except Exception:  # other people's code; `skills test` tells what it raises
+        rehearsed = {}
+    given = {
+        name: value for name, value in rehearsed.items() if isinstance(value, str | int | float)
+    }
+    first = {group[0] for group in skill.one_of if not given.keys() & set(group)}
+    found: dict[str, Any] = {}
+    for port in skill.ports.values():
+        if port.direction == "out":
+            found[port.name] = Wire(port.name)
+        elif port.name in given:
+            found[port.name] = given[port.name]
+        elif port.required or port.name in first:
+            found[port.name] = _value(port)
+    return found
+
+
+def yaml_example(name: str, skill: type[Skill]) -> str:
+    """`reset_pose: home`, `pick: {object: $object}`, or a port per line where that is too long."""
+    values = {port: _in_yaml(value) for port, value in example_ports(skill).items()}
+    inputs = [port.name for port in skill.ports.values() if port.direction == "in"]
+    if not values:
+        return name
+    if list(values) == inputs[:1] and not values[inputs[0]].startswith("{"):
+        return f"{name}: {values[inputs[0]]}"
+    line = f"{name}: {{{', '.join(f'{port}: {value}' for port, value in values.items())}}}"
+    if len(line) <= WIDEST:
+        return line
+    return "\n".join([f"{name}:", *(f"  {port}: {value}" for port, value in values.items())])
+
+
+def xml_example(name: str, skill: type[Skill]) -> str:
+    """The same for BehaviorTree.CPP: `{key}` is a key; what is no plain text is YAML, prefixed."""
+    attributes = [
+        port_attribute(port, _in_model(value), skill.ports[port].type).lstrip()
+        for port, value in example_ports(skill).items()
+    ]
+    line = " ".join([f"<{name}", *attributes]) + "/>"
+    if len(line) <= WIDEST:
+        return line
+    indent = " " * (len(name) + 2)
+    return f"<{name} " + f"\n{indent}".join(attributes) + "/>"
+
+
+def _in_model(value: Any) -> PortValue:
+    return model.Reference(str(value)) if isinstance(value, Wire) else model.Literal(value)
+
+
+def _in_yaml(value: Any) -> str:
+    return f"${value}" if isinstance(value, Wire) else literal(value, flow=True)
+
+
+def _value(port: Port) -> Any:
+    if port.names in _NAMED:
+        return _NAMED[port.names]
+    type_ = without_none(port.type)[0] if is_union(port.type) else port.type
+    if origin(type_) is Literal:
+        return get_args(type_)[0]
+    if not isinstance(type_, type):
+        return Wire(port.name)
+    if type_ is ObjectClass:
+        return {"category": "can", "diameter": "66 mm", "height": "12 cm"}
+    if issubclass(type_, Enum):
+        return next(iter(type_)).value
+    if type_ is bool:
+        return True
+    if type_ is int or type_ is float:
+        return _number(port, type_)
+    return "text" if issubclass(type_, str) else Wire(port.name)
+
+
+def within(number: float, port: Port) -> float:
+    """The number, moved into the port's range."""
+    if port.least is not None and number < port.least:
+        return port.least
+    return port.most if port.most is not None and number > port.most else number
+
+
+def _number(port: Port, type_: type) -> Any:
+    """A quantity where the port has a unit and no range, else a number in its range."""
+    if not port.bounded and port.unit in _QUANTITIES and type_ is float:
+        return _QUANTITIES[port.unit]
+    value = type_(within(1, port))
+    return value if port.unit is None or type_ is int else f"{value:g} {port.unit}"

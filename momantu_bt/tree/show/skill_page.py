@@ -1,0 +1,138 @@
+"""All that is known of a skill, for the terminal, for programs and as a page of the docs."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from momantu_bt.skill import MISSING, Port, Skill
+from momantu_bt.tree.show.skill_example import xml_example, yaml_example
+from momantu_bt.tree.types import label
+
+_HEADINGS = (("in", "Inputs"), ("out", "Outputs"))
+
+
+def as_text(name: str, skill: type[Skill]) -> str:
+    """For the terminal."""
+    lines = [f"{name}: {_doc(skill)}"]
+    for heading, ports in _by_direction(skill):
+        lines += ["", heading]
+        lines += [f"  {port.name}: {kind(port)}{_default(port)}. {port.doc}" for port in ports]
+    lines += [f"  exactly one of {', '.join(group)}" for group in skill.one_of]
+    lines += ["", f"Uses      {', '.join(sorted(skill.uses)) or 'no actuator'}"]
+    lines += [f"Needs     {', '.join(skill.needs) or 'no service'}"]
+    if skill.failures:
+        lines += ["", "Fails with"]
+        lines += [f"  {code}: {sentence}" for code, sentence in skill.failures.items()]
+    for heading, example in _examples(name, skill):
+        lines += ["", heading, *(f"  {line}" for line in example.splitlines())]
+    return "\n".join(lines)
+
+
+def as_data(name: str, skill: type[Skill]) -> dict[str, Any]:
+    """For programs, as JSON."""
+    return {
+        "name": name,
+        "doc": _doc(skill),
+        "ports": [_plain(port) for port in skill.ports.values()],
+        "one_of": [list(group) for group in skill.one_of],
+        "uses": sorted(skill.uses),
+        "needs": list(skill.needs),
+        "failures": dict(skill.failures),
+        "examples": {heading.lower(): example for heading, example in _examples(name, skill)},
+    }
+
+
+def as_markdown(name: str, skill: type[Skill]) -> str:
+    """A page of the docs."""
+    parts = [f"# {name}", _doc(skill)]
+    for heading, example in _examples(name, skill):
+        parts.append(f"```{heading.lower()}\n{example}\n```")
+    for heading, ports in _by_direction(skill):
+        rows = [_row(port) for port in ports]
+        columns = ["Port", "Type", *(["Default"] if heading == "Inputs" else []), "Meaning"]
+        parts.append(f"## {heading}")
+        parts.append(_table(columns, rows))
+    parts += [f"Exactly one of `{'`, `'.join(group)}` is given." for group in skill.one_of]
+    if skill.failures:
+        parts.append("## Failure codes")
+        codes = [[f"`{code}`", sentence] for code, sentence in skill.failures.items()]
+        parts.append(_table(["Code", "Meaning"], codes))
+    uses = ", ".join(f"`{use}`" for use in sorted(skill.uses)) or "no actuator"
+    needs = ", ".join(f"`{need}`" for need in skill.needs)
+    parts.append(f"It commands {uses}" + (f" and needs the service {needs}." if needs else "."))
+    return "\n\n".join(parts) + "\n"
+
+
+def pages(skills: Mapping[str, type[Skill]]) -> dict[str, str]:
+    """File names and texts of a folder with a page per skill and an index."""
+    found = {f"{name}.md": as_markdown(name, skill) for name, skill in skills.items()}
+    rows = [
+        [f"[{name}]({name}.md)", _doc(skill).partition("\n")[0]] for name, skill in skills.items()
+    ]
+    intro = "Each page says what `momantu-bt skills show NAME` says, and is made from the skill."
+    found["index.md"] = f"# Skills\n\n{intro}\n\n{_table(['Skill', 'What it does'], rows)}\n"
+    return found
+
+
+def kind(port: Port) -> str:
+    """A port's type, what it names, its unit and its range, in words."""
+    words = label(port.type)
+    if port.names is not None:
+        words += f", a {port.names.replace('_', ' ')}"
+    if port.unit is not None:
+        words += f" in {port.unit}"
+    return f"{words}, {port.bounds}" if port.bounds else words
+
+
+def _doc(skill: type[Skill]) -> str:
+    return inspect.getdoc(skill) or ""
+
+
+def _by_direction(skill: type[Skill]) -> Iterator[tuple[str, list[Port]]]:
+    for direction, heading in _HEADINGS:
+        ports = [port for port in skill.ports.values() if port.direction == direction]
+        if ports:
+            yield heading, ports
+
+
+def _examples(name: str, skill: type[Skill]) -> Iterator[tuple[str, str]]:
+    yield "YAML", yaml_example(name, skill)
+    yield "XML", xml_example(name, skill)
+
+
+def _default(port: Port) -> str:
+    if port.direction == "out":
+        return ""
+    if port.default is MISSING:
+        return ", required"
+    return "" if port.default is None else f", else {port.default}"
+
+
+def _row(port: Port) -> list[str]:
+    cells = [f"`{port.name}`", kind(port).replace("|", "\\|")]
+    if port.direction == "in":
+        default = "" if port.default is None else f"`{port.default}`"
+        cells.append("required" if port.default is MISSING else default)
+    return [*cells, port.doc + (" (read again on each tick)" if port.live else "")]
+
+
+def _table(columns: list[str], rows: list[list[str]]) -> str:
+    lines = [columns, ["---"] * len(columns), *rows]
+    return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
+
+
+def _plain(port: Port) -> dict[str, Any]:
+    return {
+        "name": port.name,
+        "direction": port.direction,
+        "type": label(port.type),
+        "unit": port.unit,
+        "names": port.names,
+        "least": port.least,
+        "most": port.most,
+        "required": port.required,
+        "default": None if port.default is MISSING else str(port.default),
+        "doc": port.doc,
+    }

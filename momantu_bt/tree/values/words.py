@@ -1,0 +1,48 @@
+"""Values in the words of messages, and the error of those that fit no port."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from typing import Any
+
+from momantu_bt.tree.types import ValueType, label
+from momantu_bt.tree.values.units import units_of
+
+
+class ConversionError(ValueError):
+    """A value does not fit a port. The message says what was expected and what would be valid."""
+
+
+def in_words(value: Any) -> str:
+    """A value inside a text."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def unfit(value: Any, type_: ValueType, unit: str | None) -> ConversionError:
+    """The error of a value that cannot be of a type. unit: of a number."""
+    wanted = label(type_)
+    if unit is not None:
+        wanted += f" in {unit}, or with one of the units {', '.join(units_of(unit)) or unit}"
+    elif dataclasses.is_dataclass(type_):
+        wanted += f" {{{', '.join(f.name for f in dataclasses.fields(type_))}}}"
+    return ConversionError(f"{shown(value)} does not fit; expected {wanted}")
+
+
+def shown(value: Any) -> str:
+    """A value as a message names it."""
+    if value is None:
+        return "nothing"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return repr(value)
+    if isinstance(value, Mapping):
+        return "a mapping"
+    if isinstance(value, list | tuple):
+        return "a list"
+    if isinstance(value, int | float):
+        return in_words(value)
+    return f"a {label(type(value))}"
