@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from momantu_bt.engine.actuators import Actuators
+from momantu_bt.engine.sensor_check import same
 from momantu_bt.failure import Failure
 from momantu_bt.geometry import Pose2D
 from momantu_bt.messages import CameraImage, LaserScan
@@ -80,10 +81,15 @@ def test_small_motions_add_up_while_it_repeats_itself(robot, lease):
 
 
 def test_at_rest_it_may_repeat_itself(robot, lease):
+    stamps = []
     for _ in range(5):
-        lease.read("laser")
-        lease.read("camera")
+        stamps.append((lease.read("laser").stamp, lease.read("camera").stamp))
         robot.time += 0.1
+    assert stamps == [(pytest.approx(0.1 * n), pytest.approx(0.1 * n)) for n in range(5)]
+    moved(robot, x=0.1)
+    for sensor in ("laser", "camera"):
+        with pytest.raises(Failure, match="SENSOR_DEAD"):
+            lease.read(sensor)
 
 
 def test_another_skill_does_not_begin_from_nothing(robot):
@@ -112,9 +118,11 @@ def test_it_is_alive_again_with_the_first_new_reading(robot, lease):
 )
 def test_seeing_nothing_twice_is_no_repetition(robot, lease, sensor, nothing):
     robot.readings[sensor] = nothing
-    lease.read(sensor)
+    first = lease.read(sensor)
     moved(robot, x=1.0)
-    lease.read(sensor)
+    second = lease.read(sensor)
+    assert second.stamp > first.stamp
+    assert not same(first, second)
 
 
 def test_an_old_stamp_is_an_old_reading_not_a_new_one(robot, lease):
@@ -127,8 +135,11 @@ def test_an_old_stamp_is_an_old_reading_not_a_new_one(robot, lease):
 def test_new_pictures_are_no_repetition(robot, lease):
     for depth in (1.0, 1.1, 1.2):
         robot.readings["camera"] = picture(robot.now(), depth)
-        lease.read("camera")
+        assert lease.read("camera").depth[0, 0] == np.float32(depth)
         moved(robot, x=0.3)
+    robot.readings["camera"] = picture(robot.now(), 1.2)
+    with pytest.raises(Failure, match="SENSOR_DEAD"):
+        lease.read("camera")
 
 
 def covered(robot, first: int, count: int, beams: int = 220):
@@ -148,7 +159,10 @@ def test_a_laser_that_sees_its_own_lens_over_a_sector_is_dead(robot, lease, firs
 
 def test_a_few_beams_at_the_least_range_are_noise_or_something_thin(robot, lease):
     covered(robot, 100, 14)
-    lease.read("laser")
+    assert np.count_nonzero(lease.read("laser").ranges < 0.1) == 14
     for first in range(0, 200, 20):
         robot.readings["laser"].ranges[first : first + 10] = 0.05
-    lease.read("laser")
+    assert np.count_nonzero(lease.read("laser").ranges < 0.1) > 100
+    covered(robot, 100, 16)
+    with pytest.raises(Failure, match="something covers its lens"):
+        lease.read("laser")

@@ -143,7 +143,11 @@ def test_a_mistake_in_a_urdf_is_told_with_its_file(
 
 
 def test_what_programs_write_for_a_joint_without_ends_is_no_mistake(carter: Write) -> None:
-    read_robot(carter(arm=('<limit velocity="1"', '<limit lower="0" upper="-1" velocity="1"')))
+    robot = read_robot(
+        carter(arm=('<limit velocity="1"', '<limit lower="0" upper="-1" velocity="1"'))
+    )
+    bend = robot.joint_limits["arm_bend"]
+    assert (bend.lower, bend.upper) == (None, None)
 
 
 def test_links_in_a_ring_are_no_tree(carter: Write) -> None:
