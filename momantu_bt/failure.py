@@ -91,11 +91,12 @@ class FailureValue:
             link = link.cause
 
     def as_dict(self) -> dict[str, Any]:
-        """Plain data for JSON: code, message, node, place, tries, data, cause, beside."""
+        """Plain data for JSON: code, message, the node, tries, data, cause, beside."""
         return {
             "code": self.code,
             "message": self.message,
             "node": self.node,
+            "node_type": self.node_type,
             "place": self.place,
             "tries": self.tries,
             "most_tries": self.most_tries,

@@ -7,8 +7,7 @@ from dataclasses import replace
 
 from momantu_bt.claim import Claim, Judge, Sentence
 from momantu_bt.engine.context import RunContext
-from momantu_bt.engine.nodes.skill import SkillLeaf
-from momantu_bt.engine.outside import SkillSession
+from momantu_bt.engine.outside import SkillNode, SkillSession
 from momantu_bt.engine.session import Session
 from momantu_bt.geometry import Transform
 from momantu_bt.record.report import Lie, SkillClaims
@@ -32,8 +31,8 @@ class Auditor:
         """What was counted so far, by the skills' names in the tree, in the order of first ends."""
         return dict(self._claims)
 
-    def _ended(self, leaf: SkillLeaf, session: SkillSession) -> None:
-        name, failure = leaf.model.type, session.failure
+    def _ended(self, leaf: SkillNode, session: SkillSession) -> None:
+        name, failure = leaf.skill_name, session.failure
         count = self._claims.get(name, SkillClaims())
         claim, truth = self._judged(leaf, session)
         false = truth is (failure is not None)
@@ -57,7 +56,7 @@ class Auditor:
             count = replace(count, lies=(*count.lies, lie))
         self._claims[name] = replace(count, runs=count.runs + 1)
 
-    def _judged(self, leaf: SkillLeaf, session: SkillSession) -> tuple[Claim | None, bool | None]:
+    def _judged(self, leaf: SkillNode, session: SkillSession) -> tuple[Claim | None, bool | None]:
         """What the skill claims, and whether it is so; None where nobody can tell."""
         skill = session.skill if isinstance(session, Session) else None
         body = self._context.body

@@ -2,46 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, NamedTuple
 
-from momantu_bt.engine.actuators import Actuators
 from momantu_bt.engine.blackboard import Journal
-from momantu_bt.engine.outside import Outside, SkillSession
+from momantu_bt.engine.body import Body
+from momantu_bt.engine.changes import Change
+from momantu_bt.engine.outside import Outside, SkillNode, SkillSession
 from momantu_bt.engine.person import Person, Scripted
-from momantu_bt.engine.status import Status
 from momantu_bt.engine.watchdog import Watchdog
-from momantu_bt.failure import FailureValue
-from momantu_bt.frames import FrameBuffer
 from momantu_bt.skill import Clock
-from momantu_bt.world import Site
-
-if TYPE_CHECKING:
-    from momantu_bt.engine.node import TreeNode
-    from momantu_bt.engine.nodes.skill import SkillLeaf
-
-
-@dataclass(frozen=True, slots=True)
-class Body:
-    """What skills need beside their inputs; a run without a world has none."""
-
-    actuators: Actuators
-    frames: FrameBuffer
-    site: Site
-    services: Mapping[str, Any]
-
-
-class Change(NamedTuple):
-    """A node's status changed, or its note did while it was RUNNING.
-
-    failure: why, with FAILURE; the node itself may have started again within the tick.
-    """
-
-    node: TreeNode
-    status: Status
-    note: str
-    failure: FailureValue | None
 
 
 @dataclass(slots=True)
@@ -67,7 +37,7 @@ class RunContext:
     person: Person = field(default_factory=Scripted)
     waited: float = 0.0
     outside: Outside = field(default_factory=Outside)
-    skill_ended: Callable[[SkillLeaf, SkillSession], None] | None = None
+    skill_ended: Callable[[SkillNode, SkillSession], None] | None = None
     watchdog: Watchdog = field(default_factory=Watchdog)
 
     def begin_tick(self) -> None:

@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from momantu_bt.engine.actuators import Actuators
 from momantu_bt.engine.audit import Auditor
 from momantu_bt.engine.blackboard import Board, ReadOnlyCell
+from momantu_bt.engine.body import Body
 from momantu_bt.engine.build import build, skills_in
-from momantu_bt.engine.context import Body, RunContext
+from momantu_bt.engine.context import RunContext
 from momantu_bt.engine.executor import Executor, Observer
 from momantu_bt.engine.interrupts import Interrupts
 from momantu_bt.engine.no_world import NoWorld

@@ -10,13 +10,15 @@ without a change of its own in the journal.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import TypeAlias
 
 import py_trees
 from py_trees.behaviour import Behaviour
 
+from momantu_bt.engine.changes import Change
 from momantu_bt.engine.conditions import Conditions
-from momantu_bt.engine.context import Change, RunContext
+from momantu_bt.engine.context import RunContext
 from momantu_bt.engine.role import Role
 from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Status
 from momantu_bt.failure import FAILED, SCRIPT_ERROR, Failure, FailureValue
@@ -219,18 +221,7 @@ class TreeNode(Behaviour):
     def own(self, value: FailureValue) -> FailureValue:
         """The failure as one of this node: with its name, type and place."""
         kind = self.model.target or self.model.type
-        return FailureValue(
-            value.code,
-            value.message,
-            value.data,
-            self.name,
-            self.place,
-            value.cause,
-            value.beside,
-            value.tries,
-            value.most_tries,
-            kind,
-        )
+        return replace(value, node=self.name, place=self.place, node_type=kind)
 
     def failure_of(self, child: TreeNode) -> FailureValue:
         """Why a child that returned FAILURE did so."""

@@ -8,16 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeVar
+from typing import Any, NamedTuple, Protocol, TypeVar
 
+from momantu_bt.engine.body import Body
+from momantu_bt.engine.changes import SeenNode
 from momantu_bt.engine.session import Session, SkillContext
 from momantu_bt.engine.status import Status
 from momantu_bt.failure import Failure, FailureValue
+from momantu_bt.skill import Clock, Skill
 from momantu_bt.world import seeded
-
-if TYPE_CHECKING:
-    from momantu_bt.engine.context import Body
-    from momantu_bt.engine.nodes.skill import SkillLeaf
 
 T = TypeVar("T")
 
@@ -46,6 +45,43 @@ class SkillSession(Protocol):
         ...
 
 
+class Surroundings(Protocol):
+    """What of a run the start of a skill needs; see `RunContext`."""
+
+    @property
+    def clock(self) -> Clock:
+        """The world's time."""
+        ...
+
+    @property
+    def seed(self) -> int:
+        """The run's."""
+        ...
+
+    @property
+    def body(self) -> Body | None:
+        """The robot; None in a run without a world."""
+        ...
+
+
+class SkillNode(SeenNode, Protocol):
+    """A node that runs a skill. path: where it stands in the tree. runs: its starts so far."""
+
+    kind: type[Skill]
+    path: str
+    runs: int
+
+    @property
+    def skill_name(self) -> str:
+        """The skill's name in the tree file."""
+        ...
+
+    @property
+    def context(self) -> Surroundings:
+        """The run that it belongs to."""
+        ...
+
+
 class Outside:
     """The outside as it is: skills run on the robot, questions are asked."""
 
@@ -53,7 +89,7 @@ class Outside:
         """Whether a tree may have skills."""
         return body is not None
 
-    def begin(self, leaf: SkillLeaf, inputs: Mapping[str, Any]) -> SkillSession:
+    def begin(self, leaf: SkillNode, inputs: Mapping[str, Any]) -> SkillSession:
         """Start a leaf's skill."""
         context = leaf.context
         body = context.body
@@ -68,7 +104,7 @@ class Outside:
         lease = body.actuators.lease(leaf.name, leaf.kind.uses)
         return Session(leaf.kind, inputs, lease, surroundings)
 
-    def stepped(self, leaf: SkillLeaf, session: SkillSession, status: Status) -> None:
+    def stepped(self, leaf: SkillNode, session: SkillSession, status: Status) -> None:
         """A leaf's skill has made a step; what it gave is not on the blackboard yet."""
 
     def ask(self, key: str, ask: Callable[[], T]) -> T:
@@ -79,7 +115,7 @@ class Outside:
 class Step(NamedTuple):
     """One step of one skill. outputs: the values, by port, that are new since its last step."""
 
-    leaf: SkillLeaf
+    leaf: SkillNode
     status: Status
     phase: str
     failure: FailureValue | None
@@ -102,19 +138,19 @@ class Heard(Outside):
     def __init__(self) -> None:
         self.steps: list[Step] = []
         self.reads: list[tuple[str, Any]] = []
-        self._given: dict[SkillLeaf, dict[str, Any]] = {}
+        self._given: dict[SkillNode, dict[str, Any]] = {}
 
     def clear(self) -> None:
         """A new tick begins."""
         self.steps.clear()
         self.reads.clear()
 
-    def begin(self, leaf: SkillLeaf, inputs: Mapping[str, Any]) -> SkillSession:
+    def begin(self, leaf: SkillNode, inputs: Mapping[str, Any]) -> SkillSession:
         """Start a leaf's skill; all that it writes is new."""
         self._given[leaf] = {}
         return super().begin(leaf, inputs)
 
-    def stepped(self, leaf: SkillLeaf, session: SkillSession, status: Status) -> None:
+    def stepped(self, leaf: SkillNode, session: SkillSession, status: Status) -> None:
         """Keep the step."""
         given, outputs = self._given[leaf], session.outputs
         new = {n: v for n, v in outputs.items() if n not in given or given[n] is not v}

@@ -6,8 +6,8 @@ count of tries goes on without a change of status.
 
 from __future__ import annotations
 
+from momantu_bt.engine.changes import SeenNode
 from momantu_bt.engine.executor import Executor
-from momantu_bt.engine.node import TreeNode
 from momantu_bt.engine.status import IDLE, RUNNING
 
 
@@ -15,7 +15,7 @@ class Captions:
     """`new` gives, tick by tick, what differs from what a reader of the record knows."""
 
     def __init__(self, run: Executor) -> None:
-        self._running: dict[int, TreeNode] = {}
+        self._running: dict[int, SeenNode] = {}
         self._notes: dict[int, str] = {}
         self._labels = {node.index: node.label for node in run.built.nodes}
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from momantu_bt.engine.context import Body
+from momantu_bt.engine.body import Body
 from momantu_bt.engine.executor import Executor
 from momantu_bt.frames import MAP, ODOM, Joint
 from momantu_bt.geometry import Transform

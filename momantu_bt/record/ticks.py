@@ -8,7 +8,7 @@ from typing import Any
 
 from momantu_bt.engine.actuators import Issued
 from momantu_bt.engine.blackboard import Journal, written
-from momantu_bt.engine.context import Change
+from momantu_bt.engine.changes import Change
 from momantu_bt.engine.executor import Executor
 from momantu_bt.engine.outside import Heard, Step
 from momantu_bt.failure import FailureValue

@@ -4,17 +4,14 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, TypeVar, cast
+from typing import Any, TypeVar, cast
 
-from momantu_bt.engine.outside import PERSON, Outside, Refused, SkillSession
+from momantu_bt.engine.body import Body
+from momantu_bt.engine.outside import PERSON, Outside, Refused, SkillNode, SkillSession
 from momantu_bt.engine.person import Interrupted
 from momantu_bt.engine.status import Status
 from momantu_bt.failure import Failure, FailureValue
 from momantu_bt.record.recording import StepRecord, TickRecord
-
-if TYPE_CHECKING:
-    from momantu_bt.engine.context import Body
-    from momantu_bt.engine.nodes.skill import SkillLeaf
 
 T = TypeVar("T")
 
@@ -58,7 +55,7 @@ class RecordedOutside(Outside):
         """They do what they did."""
         return True
 
-    def begin(self, leaf: SkillLeaf, inputs: Mapping[str, Any]) -> SkillSession:
+    def begin(self, leaf: SkillNode, inputs: Mapping[str, Any]) -> SkillSession:
         """A start of a skill as it was."""
         return _RecordedSession(self, leaf.index)
 

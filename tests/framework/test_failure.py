@@ -15,10 +15,11 @@ def test_chain_runs_from_the_outermost_to_the_first_cause() -> None:
 
 
 def test_as_dict_is_json() -> None:
-    beside = FailureValue("NO_PLAN", "no way", {"tries": 3})
+    beside = FailureValue("NO_PLAN", "no way", {"tries": 3}, node_type="navigate")
     value = FailureValue("FAILED", "both", node="pick", cause=beside, beside=(beside,))
     told = json.loads(json.dumps(plain(value.as_dict())))
     assert told["cause"]["data"] == {"tries": 3}
+    assert told["cause"]["node_type"] == "navigate"
     assert told["beside"][0]["code"] == "NO_PLAN"
 
 

@@ -53,6 +53,11 @@ class SkillLeaf(TreeNode):
         return Role.ACT
 
     @property
+    def skill_name(self) -> str:
+        """The skill's name in the tree file."""
+        return self.model.type
+
+    @property
     def note(self) -> str:
         """What the running skill last yielded."""
         return "" if self.session is None else self.session.phase

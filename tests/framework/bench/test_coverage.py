@@ -12,8 +12,9 @@ import momantu_bt
 from momantu_bt.bench.coverage import GUARD, HANDLER, NODE, Point, coverage, running_order
 from momantu_bt.bench.coverage_text import coverage_text
 from momantu_bt.cli import main
+from momantu_bt.engine.body import Body
 from momantu_bt.engine.build import build
-from momantu_bt.engine.context import Body, RunContext
+from momantu_bt.engine.context import RunContext
 from momantu_bt.testing import ManualClock
 from momantu_bt.tree.files.lookup import bundled
 from momantu_bt.tree.load import load, read_file

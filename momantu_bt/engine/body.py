@@ -1,0 +1,21 @@
+"""The robot and what belongs to it, for the skills of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from momantu_bt.engine.actuators import Actuators
+from momantu_bt.frames import FrameBuffer
+from momantu_bt.world import Site
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """What skills need beside their inputs; a run without a world has none."""
+
+    actuators: Actuators
+    frames: FrameBuffer
+    site: Site
+    services: Mapping[str, Any]
