@@ -13,8 +13,9 @@ import subprocess
 import tempfile
 from pathlib import Path
 
+from momantu_worlds.vulkan.apt import AptError, PrivateApt, this_system
+
 from momantu_bt.cache import cache_folder
-from momantu_bt.vulkan.apt import AptError, PrivateApt, this_system
 
 VARIABLE = "MOMANTU_BROWSER"
 """Names another browser."""

@@ -50,7 +50,7 @@ def main() -> None:
         _install_packages()
         _call([str(VENV_PYTHON), "-m", "momantu_skills.warm_up"])
         STAMP.write_text(wanted, encoding="utf-8")
-    if _call([str(VENV_PYTHON), "-m", "momantu_bt.vulkan.install", "--quiet"]) != 0:
+    if _call([str(VENV_PYTHON), "-m", "momantu_worlds.vulkan.install", "--quiet"]) != 0:
         raise SetupError("everything but rendering is installed; see the line above")
 
 
@@ -108,7 +108,7 @@ def _bring_pip() -> None:
     Raises:
         SetupError: it cannot be had.
     """
-    apt = _module("momantu_bt_apt", ROOT / "momantu_bt" / "vulkan" / "apt.py")
+    apt = _module("momantu_bt_apt", ROOT / "worlds" / "momantu_worlds" / "vulkan" / "apt.py")
     try:
         with tempfile.TemporaryDirectory() as name:
             scratch = Path(name)

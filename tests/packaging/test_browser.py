@@ -8,8 +8,7 @@ from pathlib import Path
 from types import ModuleType
 
 import pytest
-
-from momantu_bt.vulkan.apt import AptError
+from momantu_worlds.vulkan.apt import AptError
 
 ROOT = Path(__file__).resolve().parents[2]
 

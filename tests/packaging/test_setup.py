@@ -78,7 +78,7 @@ def test_a_failed_install_leaves_no_stamp(environment: ModuleType) -> None:
 
 
 def test_nothing_that_renders_is_no_success(environment: ModuleType) -> None:
-    environment.refused.append("momantu_bt.vulkan.install")
+    environment.refused.append("momantu_worlds.vulkan.install")
     with pytest.raises(environment.SetupError, match="rendering"):
         environment.main()
     assert environment.STAMP.exists(), "the packages need not be installed again"

@@ -8,8 +8,9 @@ from pathlib import Path
 
 from momantu_bt.diagnosis import Diagnosis
 from momantu_bt.diagnosis.imports import import_cure, import_errors
-from momantu_bt.vulkan import VulkanMissingError, ensure_vulkan
-from momantu_bt.vulkan.choice import CURE
+from momantu_worlds.vulkan import VulkanMissingError, ensure_vulkan
+from momantu_worlds.vulkan.choice import CURE
+from momantu_worlds.vulkan.install import install
 
 LIBRARIES = ("av", "trimesh", "embreex", "viser")
 FETCH_FILES = ("fetch.urdf", "fetch.srdf")
@@ -31,8 +32,6 @@ def diagnose() -> Iterator[Diagnosis]:
 
 def _vulkan() -> Diagnosis:
     """SAPIEN finds something to render with: a GPU, or a software driver."""
-    from momantu_bt.vulkan.install import install
-
     try:
         choice = ensure_vulkan()
     except (VulkanMissingError, OSError) as error:

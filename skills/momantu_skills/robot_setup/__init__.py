@@ -1,6 +1,6 @@
 """Setting a robot up: what can be found out from its URDF, and what is wrong with its file."""
 
-from momantu_bt.openmp import ensure_openmp
+from momantu_skills.openmp import ensure_openmp
 
 # Every module below may import Pinocchio, and this comes before all of them.
 ensure_openmp()

@@ -6,8 +6,8 @@ import; a machine without one raises WorldError, so that nothing ever runs half 
 
 import warnings
 
-from momantu_bt.vulkan import VulkanMissingError, ensure_vulkan
 from momantu_bt.world import WorldError
+from momantu_worlds.vulkan import VulkanMissingError, ensure_vulkan
 
 try:
     ensure_vulkan()

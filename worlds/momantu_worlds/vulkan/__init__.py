@@ -1,14 +1,20 @@
 """A Vulkan driver for SAPIEN, also on machines that have none: call `ensure_vulkan()` first.
 
 Without a GPU SAPIEN needs a software driver of Mesa 24.3 or newer and, even for physics alone,
-libX11. Where a machine lacks them, `momantu_bt.vulkan.install` unpacks both into the user's cache
-folder, without root and without touching the system; this module takes them into use.
+libX11. Where a machine lacks them, `momantu_worlds.vulkan.install` unpacks both into the user's
+cache folder, without root and without touching the system; this module takes them into use.
 """
 
 from __future__ import annotations
 
-from momantu_bt.vulkan.choice import Choice, VulkanMissingError, choose, machine_state, remembered
-from momantu_bt.vulkan.use import apply
+from momantu_worlds.vulkan.choice import (
+    Choice,
+    VulkanMissingError,
+    choose,
+    machine_state,
+    remembered,
+)
+from momantu_worlds.vulkan.use import apply
 
 __all__ = ["Choice", "VulkanMissingError", "ensure_vulkan"]
 

@@ -10,12 +10,12 @@ import sys
 from pathlib import Path
 
 import pytest
+from momantu_worlds.vulkan import apt, choice, install, places, private
+from momantu_worlds.vulkan.choice import Choice, VulkanMissingError
+from momantu_worlds.vulkan.probe import ProbeResult, Way
+from momantu_worlds.vulkan.use import apply
 
 from momantu_bt.cache import CACHE_VARIABLE
-from momantu_bt.vulkan import apt, choice, install, places, private
-from momantu_bt.vulkan.choice import Choice, VulkanMissingError
-from momantu_bt.vulkan.probe import ProbeResult, Way
-from momantu_bt.vulkan.use import apply
 
 
 @pytest.fixture(autouse=True)
@@ -250,7 +250,7 @@ def test_a_command_that_fails_is_quoted() -> None:
 
 def test_the_package_needs_nothing_heavy() -> None:
     program = (
-        "import sys, momantu_bt.vulkan.install; "
+        "import sys, momantu_worlds.vulkan.install; "
         "print([m for m in ('sapien', 'torch', 'cv2', 'rich') if m in sys.modules])"
     )
     done = subprocess.run(

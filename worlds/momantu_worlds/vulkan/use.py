@@ -5,11 +5,12 @@ from __future__ import annotations
 import os
 import warnings
 
-from momantu_bt.openmp import ensure_openmp
-from momantu_bt.vulkan.private import ICD_VARIABLE, installed_driver, is_ours, preload
-from momantu_bt.vulkan.probe import Way
+from momantu_bt.shared_library import ensure_shared_library
+from momantu_worlds.vulkan.private import ICD_VARIABLE, installed_driver, is_ours, preload
+from momantu_worlds.vulkan.probe import Way
 
 SOFTWARE_THREADS_VARIABLE = "LP_NUM_THREADS"
+OPENMP_RUNTIME = "libgomp.so.1"
 
 
 def apply(way: Way) -> None:
@@ -21,8 +22,8 @@ def apply(way: Way) -> None:
     """
     # One rasteriser thread: two runs side by side are faster, and none disturbs the other's time.
     os.environ.setdefault(SOFTWARE_THREADS_VARIABLE, "1")
-    # SAPIEN takes Pinocchio along where it is installed, and warns where it cannot be loaded.
-    ensure_openmp()
+    # SAPIEN imports Pinocchio where it is installed, and warns where that lacks its OpenMP runtime.
+    ensure_shared_library(OPENMP_RUNTIME, carriers=("torch",))
     # SAPIEN says so on every machine without a system-wide loader, and uses the one it brings.
     warnings.filterwarnings("ignore", message="Failed to find system libvulkan")
     if way is not Way.PRIVATE and is_ours(os.environ.get(ICD_VARIABLE)):

@@ -8,7 +8,7 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
-from momantu_bt.vulkan.places import driver_folder
+from momantu_worlds.vulkan.places import driver_folder
 
 MANIFEST = "driver.json"
 ICD_VARIABLE = "VK_ICD_FILENAMES"

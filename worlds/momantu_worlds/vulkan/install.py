@@ -1,7 +1,7 @@
 """Unpack a software Vulkan driver into the user's cache folder: without root, in about 5 s.
 
-Run it with `python -m momantu_bt.vulkan.install`; `momantu-bt doctor --fix` and `make setup` do.
-It needs apt (Debian, Ubuntu and their kin) and 25-60 MB from the machine's own package mirror.
+Run it with `python -m momantu_worlds.vulkan.install`; `momantu-bt doctor --fix` and `make setup`
+do. It needs apt (Debian, Ubuntu and their kin) and 25-60 MB from the machine's own package mirror.
 """
 
 from __future__ import annotations
@@ -19,10 +19,16 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from momantu_bt.cache import cache_folder
-from momantu_bt.vulkan.apt import AptError, PrivateApt, System, this_system
-from momantu_bt.vulkan.choice import Choice, VulkanMissingError, choose, machine_state, remembered
-from momantu_bt.vulkan.places import driver_folder
-from momantu_bt.vulkan.private import MANIFEST
+from momantu_worlds.vulkan.apt import AptError, PrivateApt, System, this_system
+from momantu_worlds.vulkan.choice import (
+    Choice,
+    VulkanMissingError,
+    choose,
+    machine_state,
+    remembered,
+)
+from momantu_worlds.vulkan.places import driver_folder
+from momantu_worlds.vulkan.private import MANIFEST
 
 WINDOW_PACKAGE = "libx11-6"
 _WINDOW_LIBRARY = "libX11.so.6"

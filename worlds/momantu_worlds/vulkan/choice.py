@@ -10,9 +10,9 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from momantu_bt.vulkan.places import choices_file
-from momantu_bt.vulkan.private import ICD_VARIABLE, installed_driver, is_ours
-from momantu_bt.vulkan.probe import ProbeResult, Way, probe
+from momantu_worlds.vulkan.places import choices_file
+from momantu_worlds.vulkan.private import ICD_VARIABLE, installed_driver, is_ours
+from momantu_worlds.vulkan.probe import ProbeResult, Way, probe
 
 CURE = "run `momantu-bt doctor --fix` (in a checkout also `make setup`)"
 """What a person does when nothing renders."""

@@ -38,8 +38,8 @@ class ProbeResult:
 
 _PROGRAM = """
 import sys
-from momantu_bt.vulkan.use import apply
-from momantu_bt.vulkan.probe import Way
+from momantu_worlds.vulkan.use import apply
+from momantu_worlds.vulkan.probe import Way
 apply(Way(sys.argv[1]))
 import sapien
 sapien.render.set_log_level("off")

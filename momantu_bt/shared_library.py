@@ -1,0 +1,42 @@
+"""Shared libraries that an installed package expects of the machine, also where there are none."""
+
+from __future__ import annotations
+
+import ctypes
+import importlib.util
+from collections.abc import Iterable
+from pathlib import Path
+
+_loaded: dict[str, ctypes.CDLL] = {}
+
+
+def ensure_shared_library(name: str, carriers: Iterable[str]) -> None:
+    """Load a shared library, before the first import of a package that needs it.
+
+    The machine's own is taken where there is one, else the one that a carrier brings along. A
+    library loaded under this name is found by those that need it. Where there is neither, nothing
+    happens: the import that needs it says what is missing.
+
+    Args:
+        name: the library's own name, such as `libfoo.so.1`.
+        carriers: packages that may be installed and bring it in their folder `lib`.
+    """
+    if name in _loaded:
+        return
+    for path in (name, *(str(folder / "lib" / name) for folder in _folders(carriers))):
+        try:
+            _loaded[name] = ctypes.CDLL(path)
+        except OSError:
+            continue
+        return
+
+
+def _folders(packages: Iterable[str]) -> list[Path]:
+    """Where packages lie; nothing is imported."""
+    found = [importlib.util.find_spec(package) for package in packages]
+    return [
+        Path(folder)
+        for spec in found
+        if spec is not None
+        for folder in spec.submodule_search_locations or ()
+    ]

@@ -1,0 +1,13 @@
+"""The OpenMP runtime that Pinocchio's wheel expects of the machine."""
+
+from __future__ import annotations
+
+from momantu_bt.shared_library import ensure_shared_library
+
+RUNTIME = "libgomp.so.1"
+"""GNU's; Debian's package libgomp1 holds it, and a fresh minimal system has none."""
+
+
+def ensure_openmp() -> None:
+    """Load it before the first `import pinocchio`: the machine's, else the one of torch's wheel."""
+    ensure_shared_library(RUNTIME, carriers=("torch",))
