@@ -9,7 +9,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 from momantu_worlds.robots import fetch
-from momantu_worlds.sapien.world import SapienWorld
+from momantu_worlds.simulated_world import SapienWorld
 from momantu_worlds.worlds import four_rooms
 
 from momantu_bt.claim import (

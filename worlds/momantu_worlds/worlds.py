@@ -58,9 +58,9 @@ class WorldOfFile:
             WorldError: the world file is wrong, the robot cannot be simulated, or nothing renders.
         """
         from momantu_bt.robot import laser_band
-        from momantu_worlds.sapien.world import SapienWorld
         from momantu_worlds.scenes.loading import draw_episode, load_world
-        from momantu_worlds.scenes.maps import with_maps
+        from momantu_worlds.scenes.site.maps import with_maps
+        from momantu_worlds.simulated_world import SapienWorld
 
         world, episode = load_world(self.path), draw_episode(self.path, seed)
         site = with_maps(episode.site, world, laser_band(description), description.height)
@@ -69,7 +69,7 @@ class WorldOfFile:
 
     def about(self) -> Mapping[str, Mapping[str, str]]:
         """Tags, loose things, what varies and the goal, in words."""
-        from momantu_worlds.scenes.about import about
+        from momantu_worlds.scenes.file.summary import about
 
         return about(self.path)
 

@@ -16,8 +16,8 @@ from momantu_worlds.checking.remark import Remark
 from momantu_worlds.checking.run import CHECKS
 from momantu_worlds.checking.scenario import Scenario
 from momantu_worlds.checking.upright import TIPPING, upright
-from momantu_worlds.scenes.bodies import Body, Box, Cylinder, Gap, Part
-from momantu_worlds.scenes.solids import FLUSH
+from momantu_worlds.scenes.geometry.bodies import Body, Box, Cylinder, Gap, Part
+from momantu_worlds.scenes.geometry.solids import FLUSH
 
 from momantu_bt.geometry import Pose2D, Transform
 from tests.worlds.checking.test_checks import (

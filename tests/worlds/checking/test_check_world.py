@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from momantu_worlds.checking.run import check_world
 from momantu_worlds.robots import fetch
-from momantu_worlds.scenes.bodies import Episode
+from momantu_worlds.scenes.geometry.bodies import Episode
 from momantu_worlds.scenes.loading import draw_episode, world_path
 
 from momantu_bt.geometry import Pose2D

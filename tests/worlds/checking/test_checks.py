@@ -10,7 +10,7 @@ import pytest
 from momantu_worlds.checking.measures import Measures
 from momantu_worlds.checking.run import CHECKS
 from momantu_worlds.checking.scenario import Scenario
-from momantu_worlds.scenes.bodies import (
+from momantu_worlds.scenes.geometry.bodies import (
     Body,
     Box,
     Cylinder,

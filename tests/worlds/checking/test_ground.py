@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from momantu_worlds.checking.convex import convex
 from momantu_worlds.checking.ground import CELL, Ground, Obstacle, obstacle
-from momantu_worlds.scenes.bodies import Box, Cylinder, Part
+from momantu_worlds.scenes.geometry.bodies import Box, Cylinder, Part
 
 from momantu_bt.geometry import Transform
 

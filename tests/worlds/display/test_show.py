@@ -11,9 +11,9 @@ from momantu_worlds.display.video import open_video
 from momantu_worlds.display.view import open_view
 from momantu_worlds.robots import fetch
 from momantu_worlds.sapien.simulator import Simulator
-from momantu_worlds.scenes.bodies import Body
-from momantu_worlds.scenes.furniture import furniture
-from momantu_worlds.scenes.plain import plain_episode
+from momantu_worlds.scenes.catalogue.furniture import furniture
+from momantu_worlds.scenes.geometry.bodies import Body
+from momantu_worlds.testing import plain_episode
 
 from momantu_bt.geometry import Transform
 from momantu_bt.messages import BaseVelocity

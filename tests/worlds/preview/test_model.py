@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import pytest
 from momantu_worlds.preview.view import CUT, as_model
-from momantu_worlds.scenes.bodies import Body, Box, Cylinder, Part
-from momantu_worlds.scenes.plain import plain_episode
+from momantu_worlds.scenes.geometry.bodies import Body, Box, Cylinder, Part
+from momantu_worlds.testing import plain_episode
 
 from momantu_bt.geometry import Transform
 

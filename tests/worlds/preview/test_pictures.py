@@ -14,9 +14,9 @@ from momantu_worlds.checking.scenario import Scenario
 from momantu_worlds.preview.page import page
 from momantu_worlds.preview.plan import draw_plan
 from momantu_worlds.robots import fetch
-from momantu_worlds.scenes.bodies import Episode
+from momantu_worlds.scenes.geometry.bodies import Episode
 from momantu_worlds.scenes.loading import draw_episode
-from momantu_worlds.scenes.plain import plain_episode
+from momantu_worlds.testing import plain_episode
 from numpy.typing import NDArray
 from PIL import Image
 

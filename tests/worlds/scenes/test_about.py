@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from momantu_worlds.scenes.about import about
+from momantu_worlds.scenes.file.summary import about
 from momantu_worlds.scenes.loading import world_path
 
 from momantu_bt.world import WorldError

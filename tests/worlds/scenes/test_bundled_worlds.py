@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 from momantu_worlds import worlds
-from momantu_worlds.scenes.bodies import Episode
-from momantu_worlds.scenes.generator import GRASPABLE
+from momantu_worlds.scenes.catalogue.random_objects import GRASPABLE
+from momantu_worlds.scenes.geometry.bodies import Episode
+from momantu_worlds.scenes.geometry.solids import Scene
 from momantu_worlds.scenes.loading import draw_episode
-from momantu_worlds.scenes.solids import Scene
 
 from momantu_bt.messages import ObjectClass
 from momantu_bt.tree.load import read_values

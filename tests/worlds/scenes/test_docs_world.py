@@ -7,8 +7,8 @@ import pytest
 from momantu_worlds.checking.run import check_world
 from momantu_worlds.robots import fetch
 from momantu_worlds.sapien.simulator import Simulator
+from momantu_worlds.scenes.file.world import WorldFile
 from momantu_worlds.scenes.loading import draw_episode
-from momantu_worlds.scenes.world_file import WorldFile
 
 PAGE = (Path(__file__).resolve().parents[3] / "docs" / "worlds.md").read_text(encoding="utf-8")
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from momantu_worlds.robots import fetch
 from momantu_worlds.sapien.simulator import Simulator
-from momantu_worlds.scenes.bodies import Episode
-from momantu_worlds.scenes.hand import hand_of
+from momantu_worlds.scenes.geometry.bodies import Episode
 from momantu_worlds.scenes.loading import draw_episode
-from momantu_worlds.scenes.referee import Referee
+from momantu_worlds.scenes.referee.hand import hand_of
+from momantu_worlds.scenes.referee.referee import Referee
 
 from momantu_bt.geometry import Transform
 from momantu_bt.messages import BaseVelocity

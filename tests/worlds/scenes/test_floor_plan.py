@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 from momantu_worlds.robots import fetch
-from momantu_worlds.scenes.floor_plan import (
+from momantu_worlds.scenes.arrange.obstacles import wall_rectangles
+from momantu_worlds.scenes.loading import load_world
+from momantu_worlds.scenes.site.floor_plan import (
     FREE,
     OCCUPIED,
     UNKNOWN,
@@ -11,8 +13,6 @@ from momantu_worlds.scenes.floor_plan import (
     draw_plans,
     save_plan,
 )
-from momantu_worlds.scenes.loading import load_world
-from momantu_worlds.scenes.obstacles import wall_rectangles
 
 from momantu_bt.robot import laser_band
 

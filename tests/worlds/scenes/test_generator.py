@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 import trimesh
-from momantu_worlds.sapien.meshes import volume
-from momantu_worlds.scenes.bodies import Box, Cylinder, Hull, Mesh, Part
-from momantu_worlds.scenes.generator import GRASPABLE, HOLLOW, draw_look, draw_thing
-from momantu_worlds.scenes.objects import OBJECT_KINDS, Thing
+from momantu_worlds.sapien.build.meshes import volume
+from momantu_worlds.scenes.catalogue.objects import OBJECT_KINDS, Thing
+from momantu_worlds.scenes.catalogue.random_objects import GRASPABLE, HOLLOW, draw_look, draw_thing
+from momantu_worlds.scenes.geometry.bodies import Box, Cylinder, Hull, Mesh, Part
 
 from momantu_bt.world import seeded
 

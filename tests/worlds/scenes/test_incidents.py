@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from momantu_worlds.sapien.truth import JointSpeed
-from momantu_worlds.scenes.bodies import Body, Box, Cylinder, Episode, Part
-from momantu_worlds.scenes.hand import Hand
-from momantu_worlds.scenes.incidents import Incidents
+from momantu_worlds.sapien.build.truth import JointSpeed
+from momantu_worlds.scenes.geometry.bodies import Body, Box, Cylinder, Episode, Part
+from momantu_worlds.scenes.referee.hand import Hand
+from momantu_worlds.scenes.referee.incidents import Incidents
 
 from momantu_bt.geometry import Array, Pose2D, Transform
 from momantu_bt.world import TICK, Incident, Site

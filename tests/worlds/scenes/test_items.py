@@ -3,14 +3,14 @@
 from typing import Any
 
 import pytest
-from momantu_worlds.scenes.bodies import Body
-from momantu_worlds.scenes.layout import Layout
+from momantu_worlds.scenes.arrange.layout import Layout
+from momantu_worlds.scenes.arrange.variation import vary
+from momantu_worlds.scenes.catalogue.objects import OBJECT_KINDS, ObjectKind, Thing
+from momantu_worlds.scenes.file.objects import Item
+from momantu_worlds.scenes.file.world import WorldFile
+from momantu_worlds.scenes.geometry.bodies import Body
+from momantu_worlds.scenes.geometry.standing import Upright
 from momantu_worlds.scenes.loading import load_world
-from momantu_worlds.scenes.objects import OBJECT_KINDS, ObjectKind, Thing
-from momantu_worlds.scenes.standing import Upright
-from momantu_worlds.scenes.variation import vary
-from momantu_worlds.scenes.world_file import WorldFile
-from momantu_worlds.scenes.world_objects import Item
 from momantu_worlds.worlds import four_rooms
 
 from momantu_bt.geometry import Transform

@@ -11,12 +11,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from momantu_worlds.robots import fetch
-from momantu_worlds.scenes.bodies import Body, Box, Part, Picture
-from momantu_worlds.scenes.furniture import furniture
-from momantu_worlds.scenes.judge import ClaimJudge
-from momantu_worlds.scenes.objects import Thing
-from momantu_worlds.scenes.solids import Scene, Standing
-from momantu_worlds.scenes.tag36h11 import tag_picture
+from momantu_worlds.scenes.catalogue.furniture import furniture
+from momantu_worlds.scenes.catalogue.objects import Thing
+from momantu_worlds.scenes.catalogue.tag36h11 import tag_picture
+from momantu_worlds.scenes.geometry.bodies import Body, Box, Part, Picture
+from momantu_worlds.scenes.geometry.solids import Scene, Standing
+from momantu_worlds.scenes.referee.judge import ClaimJudge
 
 from momantu_bt.claim import (
     BaseAt,

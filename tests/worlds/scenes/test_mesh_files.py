@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 import trimesh
-from momantu_worlds.sapien.meshes import map_triangles
-from momantu_worlds.scenes.bodies import Body, Box, Hull, Mesh, Part
-from momantu_worlds.scenes.floor_plan import OCCUPIED, cells_of, draw_plans
+from momantu_worlds.sapien.build.meshes import map_triangles
+from momantu_worlds.scenes.arrange.mesh_files import HULL_POINTS, hull_points, mesh_parts, mesh_size
+from momantu_worlds.scenes.file.furniture import MeshUse
+from momantu_worlds.scenes.file.reader import WorldFileError
+from momantu_worlds.scenes.geometry.bodies import Body, Box, Hull, Mesh, Part
+from momantu_worlds.scenes.geometry.solids import Standing, outline
 from momantu_worlds.scenes.loading import draw_episode, load_world
-from momantu_worlds.scenes.mesh_files import HULL_POINTS, hull_points, mesh_parts, mesh_size
-from momantu_worlds.scenes.solids import Standing, outline
-from momantu_worlds.scenes.world_furniture import MeshUse
-from momantu_worlds.scenes.world_reader import WorldFileError
+from momantu_worlds.scenes.site.floor_plan import OCCUPIED, cells_of, draw_plans
 from PIL import Image
 
 from momantu_bt.geometry import Transform

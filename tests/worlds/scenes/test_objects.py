@@ -9,12 +9,12 @@ import pytest
 import trimesh
 from hypothesis import given
 from hypothesis import strategies as st
-from momantu_worlds.scenes.boards import BOARDED, board, boarded
-from momantu_worlds.scenes.bodies import Box, Cylinder, Hull, Mesh, Part
-from momantu_worlds.scenes.furniture import CATALOGUE, furniture, usual_size
-from momantu_worlds.scenes.lathe import lathe, shell_pieces
-from momantu_worlds.scenes.objects import OBJECT_KINDS, Thing
-from momantu_worlds.scenes.tag36h11 import CODES, picture_edge, tag_cells, tag_picture
+from momantu_worlds.scenes.catalogue.furniture import CATALOGUE, furniture, usual_size
+from momantu_worlds.scenes.catalogue.lathe import lathe, shell_pieces
+from momantu_worlds.scenes.catalogue.objects import OBJECT_KINDS, Thing
+from momantu_worlds.scenes.catalogue.shelves import BOARDED, board, boarded
+from momantu_worlds.scenes.catalogue.tag36h11 import CODES, picture_edge, tag_cells, tag_picture
+from momantu_worlds.scenes.geometry.bodies import Box, Cylinder, Hull, Mesh, Part
 
 COLOR = (0.5, 0.5, 0.5)
 SIZES = {

@@ -2,8 +2,8 @@
 
 import pytest
 from momantu_worlds.scenes.loading import load_world, nominal, nominal_site
-from momantu_worlds.scenes.overhangs import LEAST, MOST
-from momantu_worlds.scenes.sites import kept_nominal
+from momantu_worlds.scenes.site.nominal import kept_nominal
+from momantu_worlds.scenes.site.overhangs import LEAST, MOST
 
 from momantu_bt.geometry import Pose2D
 

@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 import pytest
-from momantu_worlds.scenes.floor_plan import FREE, OCCUPIED, UNKNOWN, cells_of, draw_plans
+from momantu_worlds.scenes.arrange.variation import vary
+from momantu_worlds.scenes.geometry.solids import outline
+from momantu_worlds.scenes.geometry.standing import Top
 from momantu_worlds.scenes.loading import draw_episode, load_world, nominal_site
-from momantu_worlds.scenes.solids import outline
-from momantu_worlds.scenes.standing import Top
-from momantu_worlds.scenes.variation import vary
+from momantu_worlds.scenes.site.floor_plan import FREE, OCCUPIED, UNKNOWN, cells_of, draw_plans
 
 from momantu_bt.geometry import Pose2D
 from momantu_bt.world import WorldError

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from momantu_worlds.scenes.plane_geometry import Rectangle, clear_of, gap, passages
+from momantu_worlds.scenes.geometry.plane import Rectangle, clear_of, gap, passages
 
 from momantu_bt.geometry import Pose2D
 

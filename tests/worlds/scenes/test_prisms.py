@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from momantu_worlds.scenes.bodies import Body, Box, Cylinder, Mesh, Part
-from momantu_worlds.scenes.plane_geometry import Rectangle
-from momantu_worlds.scenes.prisms import Prism, body_prism, prism_around, tightest_prism
+from momantu_worlds.scenes.geometry.bodies import Body, Box, Cylinder, Mesh, Part
+from momantu_worlds.scenes.geometry.plane import Rectangle
+from momantu_worlds.scenes.geometry.prisms import Prism, body_prism, prism_around, tightest_prism
 
 from momantu_bt.geometry import Pose2D, Transform
 

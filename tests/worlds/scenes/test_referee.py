@@ -6,10 +6,10 @@ import math
 from dataclasses import dataclass, field
 
 import pytest
-from momantu_worlds.sapien.truth import JointSpeed
-from momantu_worlds.scenes.bodies import Body, Box, Cylinder, Episode, Goal, Part
-from momantu_worlds.scenes.hand import Hand
-from momantu_worlds.scenes.referee import Referee, tilt
+from momantu_worlds.sapien.build.truth import JointSpeed
+from momantu_worlds.scenes.geometry.bodies import Body, Box, Cylinder, Episode, Goal, Part
+from momantu_worlds.scenes.referee.hand import Hand
+from momantu_worlds.scenes.referee.referee import Referee, tilt
 
 from momantu_bt.geometry import Array, Pose2D, Transform, quaternion_from_axis_angle
 from momantu_bt.world import Site

@@ -6,8 +6,8 @@ import pytest
 from momantu_worlds.robots import fetch
 from momantu_worlds.scenes import loading
 from momantu_worlds.scenes.loading import load_world, nominal, nominal_site, world_path
-from momantu_worlds.scenes.maps import MOST_KEPT, with_maps
-from momantu_worlds.scenes.sites import kept_nominal
+from momantu_worlds.scenes.site.maps import MOST_KEPT, with_maps
+from momantu_worlds.scenes.site.nominal import kept_nominal
 
 from momantu_bt.cache import CACHE_VARIABLE
 from momantu_bt.files import write_whole

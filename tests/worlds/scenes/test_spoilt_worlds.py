@@ -6,11 +6,11 @@ import random
 from pathlib import Path
 
 import pytest
-from momantu_worlds.scenes.building import build
-from momantu_worlds.scenes.floor_plan import draw_plans
+from momantu_worlds.scenes.arrange.episode import build
+from momantu_worlds.scenes.arrange.variation import vary
+from momantu_worlds.scenes.file.reader import parse_world
 from momantu_worlds.scenes.loading import nominal_site
-from momantu_worlds.scenes.variation import vary
-from momantu_worlds.scenes.world_reader import parse_world
+from momantu_worlds.scenes.site.floor_plan import draw_plans
 from ruamel.yaml import YAML
 
 from momantu_bt.world import WorldError

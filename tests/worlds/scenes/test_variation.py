@@ -5,15 +5,22 @@ from functools import cache
 from itertools import combinations
 
 import pytest
-from momantu_worlds.scenes.floor import around, stand_pose, stand_zone
-from momantu_worlds.scenes.layout import Layout
+from momantu_worlds.scenes.arrange.floor import around, stand_pose, stand_zone
+from momantu_worlds.scenes.arrange.layout import Layout
+from momantu_worlds.scenes.arrange.obstacles import footprint, wall_rectangles
+from momantu_worlds.scenes.arrange.spots import (
+    Disc,
+    SetDown,
+    free_spots,
+    lane,
+    seen_share,
+    tag_points,
+)
+from momantu_worlds.scenes.arrange.spots import outline_points as body_points
+from momantu_worlds.scenes.arrange.variation import vary
+from momantu_worlds.scenes.catalogue.tag36h11 import picture_edge
+from momantu_worlds.scenes.geometry.plane import Rectangle, gap, passages
 from momantu_worlds.scenes.loading import draw_episode, load_world
-from momantu_worlds.scenes.obstacles import footprint, wall_rectangles
-from momantu_worlds.scenes.plane_geometry import Rectangle, gap, passages
-from momantu_worlds.scenes.spots import Disc, SetDown, free_spots, lane, seen_share, tag_points
-from momantu_worlds.scenes.spots import outline_points as body_points
-from momantu_worlds.scenes.tag36h11 import picture_edge
-from momantu_worlds.scenes.variation import vary
 
 from momantu_bt.geometry import Pose2D, wrap_angle
 from momantu_bt.world import WorldError

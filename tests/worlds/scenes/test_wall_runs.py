@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from momantu_worlds.scenes.wall_runs import RoomWalls
-from momantu_worlds.scenes.world_building import Door, Room, Walls
+from momantu_worlds.scenes.file.building import Door, Room, Walls
+from momantu_worlds.scenes.file.walls import RoomWalls
 
 WALLS = Walls(thickness=0.1, height=2.5)
 TWO = {"a": Room(corner=(0, 0), size=(4, 3)), "b": Room(corner=(4, 0), size=(2, 3))}

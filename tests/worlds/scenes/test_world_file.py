@@ -3,8 +3,8 @@
 from pathlib import Path
 
 import pytest
+from momantu_worlds.scenes.file.reader import WorldFileError, parse_world, read_world
 from momantu_worlds.scenes.loading import FOLDER, load_world
-from momantu_worlds.scenes.world_reader import WorldFileError, parse_world, read_world
 
 from momantu_bt.world import WorldError
 

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 from momantu_worlds.sdf.findings import Findings
 from momantu_worlds.sdf.importing import Import, import_world
-from momantu_worlds.sdf.model import SdfWorld
-from momantu_worlds.sdf.read_world import read_world
-from momantu_worlds.sdf.uris import search_folders
+from momantu_worlds.sdf.read.model import SdfWorld
+from momantu_worlds.sdf.read.uris import search_folders
+from momantu_worlds.sdf.read.world import read_world
 
 
 @pytest.fixture(autouse=True)

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 import trimesh
-from momantu_worlds.sdf.convex import convex_pieces
-from momantu_worlds.sdf.meshes import Piece
+from momantu_worlds.sdf.mesh.convex import convex_pieces
+from momantu_worlds.sdf.mesh.files import Piece
 
 
 def piece(*meshes):

@@ -3,10 +3,10 @@
 from pathlib import Path
 
 import pytest
-from momantu_worlds.sdf import document
-from momantu_worlds.sdf.document import parse_document, read_document
 from momantu_worlds.sdf.findings import Place, SdfError
-from momantu_worlds.sdf.uris import version_of
+from momantu_worlds.sdf.read import document
+from momantu_worlds.sdf.read.document import parse_document, read_document
+from momantu_worlds.sdf.read.uris import version_of
 
 FILE = Path("room.sdf")
 

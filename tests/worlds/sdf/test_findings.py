@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from momantu_worlds.sdf.bodies import MOST_PARTS
+from momantu_worlds.sdf.body.bodies import MOST_PARTS
 from momantu_worlds.sdf.findings import SdfError
 from momantu_worlds.sdf.importing import Import
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from momantu_worlds.sdf.body.placing import placed_models
 from momantu_worlds.sdf.findings import Findings, SdfError
-from momantu_worlds.sdf.placing import placed_models
 
 from momantu_bt.geometry import Transform
 

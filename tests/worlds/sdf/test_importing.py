@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from momantu_worlds.scenes.world_reader import parse_world
+from momantu_worlds.scenes.file.reader import parse_world
+from momantu_worlds.sdf.body.parts import MeshPart
 from momantu_worlds.sdf.findings import Fate, SdfError
 from momantu_worlds.sdf.importing import import_world
-from momantu_worlds.sdf.model import Box, Cylinder
-from momantu_worlds.sdf.parts import MeshPart
+from momantu_worlds.sdf.read.model import Box, Cylinder
 
 GROUND = "<include><uri>model://ground_plane</uri></include>"
 BALL = "<geometry><sphere><radius>0.05</radius></sphere></geometry>"

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 import trimesh
-from momantu_worlds.sdf.collada import Z_FROM, BadMesh, collada_notes
-from momantu_worlds.sdf.meshes import Piece, read_mesh
-from momantu_worlds.sdf.model import MeshFile
-from momantu_worlds.sdf.reducing import count, reduced
+from momantu_worlds.sdf.mesh.collada import Z_FROM, BadMesh, collada_notes
+from momantu_worlds.sdf.mesh.files import Piece, read_mesh
+from momantu_worlds.sdf.mesh.reducing import count, reduced
+from momantu_worlds.sdf.read.model import MeshFile
 
 RED = [255, 0, 0, 255]
 

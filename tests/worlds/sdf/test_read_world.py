@@ -1,9 +1,9 @@
 """What a world says is read whole; what is not carried over is listed with its place."""
 
 import pytest
-from momantu_worlds.sdf import reading
 from momantu_worlds.sdf.findings import SdfError
-from momantu_worlds.sdf.model import (
+from momantu_worlds.sdf.read import reading
+from momantu_worlds.sdf.read.model import (
     Box,
     Capsule,
     Cone,

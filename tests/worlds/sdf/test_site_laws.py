@@ -10,15 +10,22 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from momantu_worlds.sdf.bodies import ImportedBody
+from momantu_worlds.sdf.body.bodies import ImportedBody
+from momantu_worlds.sdf.body.level_tops import (
+    HEADROOM,
+    HIGHEST,
+    LOWEST,
+    NARROWEST,
+    SMALLEST,
+    best_top,
+)
+from momantu_worlds.sdf.body.parts import Part
+from momantu_worlds.sdf.body.settling import FLAT, settled
 from momantu_worlds.sdf.findings import Findings, Place
-from momantu_worlds.sdf.free_floor import HALF_WIDTH, free_floor
-from momantu_worlds.sdf.meshes import Piece
-from momantu_worlds.sdf.model import Box
-from momantu_worlds.sdf.parts import Part
-from momantu_worlds.sdf.reducing import clustered, count, reduced
-from momantu_worlds.sdf.settling import FLAT, settled
-from momantu_worlds.sdf.tops import HEADROOM, HIGHEST, LOWEST, NARROWEST, SMALLEST, best_top
+from momantu_worlds.sdf.mesh.files import Piece
+from momantu_worlds.sdf.mesh.reducing import clustered, count, reduced
+from momantu_worlds.sdf.read.model import Box
+from momantu_worlds.sdf.write.free_floor import HALF_WIDTH, free_floor
 
 from momantu_bt.geometry import Array, Transform
 

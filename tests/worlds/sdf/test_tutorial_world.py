@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 import trimesh
 from momantu_worlds.robots import fetch
-from momantu_worlds.scenes.tag36h11 import tag_picture
-from momantu_worlds.scenes.world_reader import read_world
+from momantu_worlds.scenes.catalogue.tag36h11 import tag_picture
+from momantu_worlds.scenes.file.reader import read_world
+from momantu_worlds.sdf.body.parts import MeshPart
 from momantu_worlds.sdf.importing import Import, import_world
-from momantu_worlds.sdf.parts import MeshPart
 from momantu_worlds.worlds import world_from_file
 from PIL import Image
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from momantu_worlds.sdf.findings import Place, SdfError
-from momantu_worlds.sdf.uris import Library, MissingFile, model_file, search_folders
+from momantu_worlds.sdf.read.uris import Library, MissingFile, model_file, search_folders
 
 
 @pytest.fixture

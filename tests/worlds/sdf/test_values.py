@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from momantu_worlds.sdf.document import parse_document
 from momantu_worlds.sdf.findings import SdfError
-from momantu_worlds.sdf.values import color_of, flag, lengths, number, pose_of, vector
-from momantu_worlds.sdf.writing import rpy
+from momantu_worlds.sdf.read.document import parse_document
+from momantu_worlds.sdf.read.values import color_of, flag, lengths, number, pose_of, vector
+from momantu_worlds.sdf.write.writing import rpy
 
 from momantu_bt.geometry import Transform
 

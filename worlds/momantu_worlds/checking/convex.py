@@ -16,8 +16,8 @@ import trimesh
 from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array, Transform
-from momantu_worlds.scenes.bodies import Body, Box, Cylinder, Part
-from momantu_worlds.scenes.solids import SIDES, outline
+from momantu_worlds.scenes.geometry.bodies import Body, Box, Cylinder, Part
+from momantu_worlds.scenes.geometry.solids import SIDES, outline
 
 MOST_AXES = 3000
 """Cross products of edges that are looked at: two finely cut hulls have more, all much alike."""

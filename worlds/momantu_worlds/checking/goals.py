@@ -12,9 +12,9 @@ from momantu_bt.geometry import Array, Transform
 from momantu_worlds.checking.convex import Convex, solids_of
 from momantu_worlds.checking.remark import Remark
 from momantu_worlds.checking.scenario import Scenario
-from momantu_worlds.scenes.bodies import Body, Goal
-from momantu_worlds.scenes.solids import FLUSH
-from momantu_worlds.scenes.standing import Top
+from momantu_worlds.scenes.geometry.bodies import Body, Goal
+from momantu_worlds.scenes.geometry.solids import FLUSH
+from momantu_worlds.scenes.geometry.standing import Top
 
 SPARSE = 3
 """Of the cells that the robot gets to every third is enough: they are 2 cm apart."""

@@ -8,7 +8,7 @@ import numpy as np
 
 from momantu_worlds.checking.remark import Remark
 from momantu_worlds.checking.scenario import WALL, Scenario
-from momantu_worlds.scenes.bodies import Body
+from momantu_worlds.scenes.geometry.bodies import Body
 
 TOUCHING = 0.005
 """m; bodies that overlap less deep only touch."""

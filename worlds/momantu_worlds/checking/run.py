@@ -17,7 +17,7 @@ from momantu_worlds.checking.scenario import Scenario
 from momantu_worlds.checking.tags import tags
 from momantu_worlds.checking.upright import upright
 from momantu_worlds.checking.where import Where
-from momantu_worlds.scenes.bodies import Episode
+from momantu_worlds.scenes.geometry.bodies import Episode
 
 CHECKS: tuple[Callable[[Scenario], Iterable[Remark]], ...] = (
     overlaps,

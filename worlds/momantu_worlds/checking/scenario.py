@@ -13,8 +13,8 @@ from momantu_worlds.checking.convex import Convex, solids_of
 from momantu_worlds.checking.ground import Ground, Obstacle, obstacle
 from momantu_worlds.checking.measures import Measures
 from momantu_worlds.checking.remark import Place
-from momantu_worlds.scenes.bodies import Body, Episode
-from momantu_worlds.scenes.standing import Top
+from momantu_worlds.scenes.geometry.bodies import Body, Episode
+from momantu_worlds.scenes.geometry.standing import Top
 
 MARGIN = 1.0
 """m of floor that is looked at around everything."""

@@ -11,7 +11,7 @@ import numpy as np
 from momantu_bt.geometry import Array
 from momantu_worlds.checking.remark import Remark
 from momantu_worlds.checking.scenario import Scenario
-from momantu_worlds.scenes.bodies import Body, Picture
+from momantu_worlds.scenes.geometry.bodies import Body, Picture
 
 RINGS = (0.4, 0.7, 1.0, 1.4, 1.9, 2.5)
 """m from the tag along the floor: how far off it is looked for. Farther off few cameras read it."""

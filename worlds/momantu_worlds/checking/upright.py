@@ -11,8 +11,8 @@ import numpy as np
 from momantu_bt.geometry import Array
 from momantu_worlds.checking.remark import Remark
 from momantu_worlds.checking.scenario import Scenario
-from momantu_worlds.scenes.bodies import Body
-from momantu_worlds.scenes.solids import FLUSH
+from momantu_worlds.scenes.geometry.bodies import Body
+from momantu_worlds.scenes.geometry.solids import FLUSH
 
 FROM_ABOVE = 0.002
 """m above a body's lowest points: where it is begun to look for what carries them."""

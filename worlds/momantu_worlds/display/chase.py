@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from momantu_bt.geometry import Array, Pose2D, Transform, wrap_angle
-from momantu_worlds.scenes.bodies import Body, Box
+from momantu_worlds.scenes.geometry.bodies import Body, Box
 
 BASE_HEIGHT = 0.25
 """m; of the middle of a robot's base above the floor."""

@@ -12,9 +12,9 @@ import trimesh
 from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array
-from momantu_worlds.sapien.looks import GAMMA, drawn_vertices
-from momantu_worlds.sapien.meshes import collision_mesh
-from momantu_worlds.scenes.bodies import Body, Mesh, Part, Picture
+from momantu_worlds.sapien.build.meshes import collision_mesh
+from momantu_worlds.sapien.build.render_shapes import GAMMA, drawn_vertices
+from momantu_worlds.scenes.geometry.bodies import Body, Mesh, Part, Picture
 
 Rgb: TypeAlias = tuple[int, int, int]
 

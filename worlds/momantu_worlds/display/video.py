@@ -13,8 +13,8 @@ from momantu_bt.messages import CameraImage
 from momantu_bt.world import TreeLine, WorldError
 from momantu_worlds.display.chase import Chase
 from momantu_worlds.display.frame import HEIGHT, SCENE, WIDTH, Image, compose
-from momantu_worlds.sapien.camera_view import ViewCamera
-from momantu_worlds.scenes.bodies import Episode
+from momantu_worlds.sapien.sensors.camera_view import ViewCamera
+from momantu_worlds.scenes.geometry.bodies import Episode
 
 if TYPE_CHECKING:
     from momantu_worlds.sapien.simulator import Simulator

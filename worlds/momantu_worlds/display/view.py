@@ -13,7 +13,7 @@ import viser
 from momantu_bt.geometry import Transform
 from momantu_bt.world import WorldError
 from momantu_worlds.display.shapes import ColoredMesh, body_meshes, link_meshes, still_meshes
-from momantu_worlds.scenes.bodies import Body, Episode, Picture
+from momantu_worlds.scenes.geometry.bodies import Body, Episode, Picture
 
 if TYPE_CHECKING:
     from momantu_worlds.sapien.simulator import Simulator

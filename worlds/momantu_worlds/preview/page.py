@@ -11,7 +11,7 @@ from momantu_bt.robot import RobotDescription
 from momantu_worlds.checking.measures import measured
 from momantu_worlds.checking.scenario import Scenario
 from momantu_worlds.preview.plan import draw_plan, extent
-from momantu_worlds.scenes.bodies import Episode
+from momantu_worlds.scenes.geometry.bodies import Episode
 
 WIDTH = 1500
 """px; of the plan and of the view."""

@@ -12,8 +12,8 @@ from momantu_bt.geometry import Array, Pose2D, Transform
 from momantu_worlds.checking.ground import Ground
 from momantu_worlds.checking.scenario import WALL, Scenario
 from momantu_worlds.preview.canvas import Canvas, Rgb, rgb
-from momantu_worlds.scenes.bodies import Body, Mesh, Part, Picture
-from momantu_worlds.scenes.solids import outline
+from momantu_worlds.scenes.geometry.bodies import Body, Mesh, Part, Picture
+from momantu_worlds.scenes.geometry.solids import outline
 
 PAPER: Rgb = (226, 224, 219)
 WAY: Rgb = (251, 250, 246)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from momantu_bt.geometry import Pose2D, Transform
 from momantu_bt.robot import RobotDescription
 from momantu_bt.world import Site
-from momantu_worlds.scenes.bodies import Body, Box, Cylinder, Episode, Part, SunLight
+from momantu_worlds.scenes.geometry.bodies import Body, Box, Cylinder, Episode, Part, SunLight
 
 FLOOR = (8.0, 8.0)
 """m; more than is in any picture."""

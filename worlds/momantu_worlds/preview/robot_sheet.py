@@ -15,8 +15,8 @@ from momantu_bt.geometry import Array, Transform
 from momantu_bt.robot import CameraSensor, RobotDescription
 from momantu_worlds.display.chase import looking
 from momantu_worlds.preview.robot_scene import robot_episode
-from momantu_worlds.sapien.camera import OPTICAL_FROM_SAPIEN
-from momantu_worlds.sapien.camera_view import ViewCamera
+from momantu_worlds.sapien.sensors.camera import OPTICAL_FROM_SAPIEN
+from momantu_worlds.sapien.sensors.camera_view import ViewCamera
 from momantu_worlds.sapien.simulator import Simulator
 
 WIDTH, HEIGHT = 720, 600

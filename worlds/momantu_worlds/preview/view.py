@@ -14,9 +14,9 @@ from momantu_bt.robot import RobotDescription
 from momantu_worlds.checking.scenario import WALL
 from momantu_worlds.display.chase import looking
 from momantu_worlds.preview.plan import part_points
-from momantu_worlds.sapien.camera_view import ViewCamera
+from momantu_worlds.sapien.sensors.camera_view import ViewCamera
 from momantu_worlds.sapien.simulator import Simulator
-from momantu_worlds.scenes.bodies import Body, Box, Episode, Part, SunLight
+from momantu_worlds.scenes.geometry.bodies import Body, Box, Episode, Part, SunLight
 
 FIELD = math.radians(35)
 """rad; horizontal field of view: narrow, so that far rooms are not tiny."""

@@ -16,14 +16,14 @@ from momantu_bt.robot import (
     SensorReading,
     SimulationModel,
 )
-from momantu_worlds.sapien.base_drive import BaseDrive
+from momantu_worlds.sapien.build.robot_model import RobotModel
 from momantu_worlds.sapien.config import SimulatorConfig
-from momantu_worlds.sapien.encoders import Encoders, prismatic_joints
-from momantu_worlds.sapien.fingers import Tips
-from momantu_worlds.sapien.gripper_drive import GripperDrive
-from momantu_worlds.sapien.joint_drive import JointDrive
-from momantu_worlds.sapien.odometry import Odometry
-from momantu_worlds.sapien.robot_model import RobotModel
+from momantu_worlds.sapien.drives.base import BaseDrive
+from momantu_worlds.sapien.drives.encoders import Encoders, prismatic_joints
+from momantu_worlds.sapien.drives.fingers import Tips
+from momantu_worlds.sapien.drives.gripper import GripperDrive
+from momantu_worlds.sapien.drives.joints import JointDrive
+from momantu_worlds.sapien.drives.odometry import Odometry
 
 
 class Sensor(Protocol):

@@ -10,17 +10,17 @@ import sapien
 from momantu_bt.geometry import Transform
 from momantu_bt.robot import RobotDescription, SimulationModel
 from momantu_bt.world import TICK, WorldError
-from momantu_worlds.sapien.building import Addition, add_bodies, add_body, add_lights
+from momantu_worlds.sapien.build.bodies import Addition, add_bodies, add_body, add_lights
+from momantu_worlds.sapien.build.robot_model import build_robot
+from momantu_worlds.sapien.build.truth import Truth
 from momantu_worlds.sapien.config import STEP, SUB_STEPS, Physics, SimulatorConfig
 from momantu_worlds.sapien.memory import tidy
 from momantu_worlds.sapien.poses import pose_of
 from momantu_worlds.sapien.rendering import render_system
 from momantu_worlds.sapien.robot import SimulatedRobot
-from momantu_worlds.sapien.robot_model import build_robot
-from momantu_worlds.sapien.sensors import SensorBuilder
-from momantu_worlds.sapien.truth import Truth
-from momantu_worlds.sapien.wrench import Wrench
-from momantu_worlds.scenes.bodies import Body, Episode
+from momantu_worlds.sapien.sensors.builder import SensorBuilder
+from momantu_worlds.sapien.sensors.wrench import Wrench
+from momantu_worlds.scenes.geometry.bodies import Body, Episode
 
 START_POSE = "home"
 """The named pose in which an episode begins."""

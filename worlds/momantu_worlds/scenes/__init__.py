@@ -1,1 +1,1 @@
-"""Scenes: world files, what fills them, what varies, maps, and the referee."""
+"""World files, the episodes drawn from them, what the robot is told, the referee; no simulator."""

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 
 from momantu_bt.geometry import Pose2D
 from momantu_bt.world import Site, WorldError
-from momantu_worlds.scenes.sites import Nominal, keep, kept_nominal, site_of
+from momantu_worlds.scenes.site.nominal import Nominal, keep, kept_nominal, site_of
 
 if TYPE_CHECKING:
-    from momantu_worlds.scenes.bodies import Episode
-    from momantu_worlds.scenes.world_file import WorldFile
+    from momantu_worlds.scenes.file.world import WorldFile
+    from momantu_worlds.scenes.geometry.bodies import Episode
 
 FOLDER = Path(__file__).parent
 
@@ -31,7 +31,7 @@ def load_world(world: str | Path) -> WorldFile:
     Raises:
         WorldError: there is no such file, or it is wrong.
     """
-    from momantu_worlds.scenes.world_reader import world_text
+    from momantu_worlds.scenes.file.reader import world_text
 
     path = world_path(world) if isinstance(world, str) else world
     return _parsed(path, world_text(path))
@@ -39,7 +39,7 @@ def load_world(world: str | Path) -> WorldFile:
 
 @lru_cache(maxsize=16)
 def _parsed(path: Path, text: str) -> WorldFile:
-    from momantu_worlds.scenes.world_reader import parse_world
+    from momantu_worlds.scenes.file.reader import parse_world
 
     return parse_world(text, path)
 
@@ -69,8 +69,8 @@ def draw_episode(world: str | Path, seed: int) -> Episode:
     Raises:
         WorldError: the world file is missing or wrong, or leaves no room for the robot.
     """
-    from momantu_worlds.scenes.building import build
-    from momantu_worlds.scenes.variation import vary
+    from momantu_worlds.scenes.arrange.episode import build
+    from momantu_worlds.scenes.arrange.variation import vary
 
     loaded = load_world(world)
     layout = vary(loaded, seed)

@@ -1,1 +1,1 @@
-"""Gazebo's SDF worlds, read and turned into world files and assets of ours."""
+"""Gazebo's SDF worlds, converted to world files and assets."""

@@ -10,21 +10,21 @@ from pathlib import Path
 from momantu_bt.files import OutputError, write_whole
 from momantu_bt.geometry import Pose2D, Transform
 from momantu_bt.world import WorldError
-from momantu_worlds.scenes.world_reader import parse_world
-from momantu_worlds.sdf.assets import Assets
-from momantu_worlds.sdf.bodies import BodyMaker, ImportedBody, plain_name
+from momantu_worlds.scenes.file.reader import parse_world
+from momantu_worlds.sdf.body.bodies import BodyMaker, ImportedBody, plain_name
+from momantu_worlds.sdf.body.frames import PlacedModel
+from momantu_worlds.sdf.body.ground import find_ground
+from momantu_worlds.sdf.body.lighting import lighting
+from momantu_worlds.sdf.body.placing import placed_lights, placed_models
+from momantu_worlds.sdf.body.rigid_groups import is_robot, rigid_groups
+from momantu_worlds.sdf.body.settling import settled
+from momantu_worlds.sdf.body.shaping import Shaping
 from momantu_worlds.sdf.findings import Fate, Findings, Place, SdfError
-from momantu_worlds.sdf.frames import PlacedModel
-from momantu_worlds.sdf.ground import find_ground
-from momantu_worlds.sdf.lighting import lighting
-from momantu_worlds.sdf.placing import placed_lights, placed_models
-from momantu_worlds.sdf.proposal import propose
-from momantu_worlds.sdf.read_world import read_world
-from momantu_worlds.sdf.rigid import is_robot, rigid_groups
-from momantu_worlds.sdf.settling import settled
-from momantu_worlds.sdf.shaping import Shaping
-from momantu_worlds.sdf.uris import search_folders
-from momantu_worlds.sdf.writing import Imported, world_text
+from momantu_worlds.sdf.mesh.assets import Assets
+from momantu_worlds.sdf.read.uris import search_folders
+from momantu_worlds.sdf.read.world import read_world
+from momantu_worlds.sdf.write.proposal import propose
+from momantu_worlds.sdf.write.writing import Imported, world_text
 
 MOST_BODIES = 2000
 """As many as a world file may have."""

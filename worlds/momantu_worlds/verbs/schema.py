@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from momantu_bt.descriptions.schema import editor_schema
-from momantu_worlds.verbs.words import words_of
+from momantu_worlds.verbs.schema_descriptions import words_of
 
 EXIT_WRONG_INPUT = 2
 
@@ -44,7 +44,7 @@ def schema(
 
 def world_schema() -> dict[str, Any]:
     """The schema, from the models that read world files."""
-    from momantu_worlds.scenes.world_file import WorldFile
+    from momantu_worlds.scenes.file.world import WorldFile
 
     made = WorldFile.model_json_schema(mode="validation")
     for part, schema in {"WorldFile": made, **made["$defs"]}.items():

@@ -9,9 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array, Pose2D
-from momantu_worlds.scenes.layout import PlacedTable
-from momantu_worlds.scenes.plane_geometry import Rectangle, gap
-from momantu_worlds.scenes.spots import SPOT_GAP, Disc, SetDown, lane, seen_share, tag_points
+from momantu_worlds.scenes.arrange.layout import PlacedTable
+from momantu_worlds.scenes.arrange.spots import (
+    SPOT_GAP,
+    Disc,
+    SetDown,
+    lane,
+    seen_share,
+    tag_points,
+)
+from momantu_worlds.scenes.geometry.plane import Rectangle, gap
 
 SIZE, HEIGHT = 0.09, 0.06
 """m; edge and height of a box: too low to hide a marker behind it from a standing robot."""

@@ -12,9 +12,9 @@ from momantu_bt.geometry import Array, Pose2D
 from momantu_worlds.sapien.faults.floor_space import WALL, free_floor
 from momantu_worlds.sapien.faults.parameters import only
 from momantu_worlds.sapien.faults.stage import Stage
-from momantu_worlds.scenes.bodies import Body, Gap
-from momantu_worlds.scenes.furniture import furniture
-from momantu_worlds.scenes.prisms import Prism, body_prism
+from momantu_worlds.scenes.catalogue.furniture import furniture
+from momantu_worlds.scenes.geometry.bodies import Body, Gap
+from momantu_worlds.scenes.geometry.prisms import Prism, body_prism
 
 DEPTH, HEIGHT = 0.45, 0.6
 """m; across the doorway's threshold, and up."""

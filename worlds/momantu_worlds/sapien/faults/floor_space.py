@@ -8,8 +8,8 @@ import numpy as np
 
 from momantu_bt.geometry import Pose2D
 from momantu_worlds.sapien.faults.stage import Stage
-from momantu_worlds.scenes.plane_geometry import Passages, Rectangle, passages
-from momantu_worlds.scenes.prisms import Prism
+from momantu_worlds.scenes.geometry.plane import Passages, Rectangle, passages
+from momantu_worlds.scenes.geometry.prisms import Prism
 
 WALL = "wall"
 """Category of what bounds the rooms."""

@@ -10,7 +10,7 @@ from momantu_worlds.sapien.faults.laid import lying
 from momantu_worlds.sapien.faults.parameters import only
 from momantu_worlds.sapien.faults.stage import Stage
 from momantu_worlds.sapien.faults.tops import TableTop, clear_on, item_top
-from momantu_worlds.scenes.standing import Upright
+from momantu_worlds.scenes.geometry.standing import Upright
 
 ASIDE = 0.01
 """m; least gap to everything where it lies."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from momantu_bt.geometry import Transform, quaternion_from_axis_angle
-from momantu_worlds.scenes.standing import Upright
+from momantu_worlds.scenes.geometry.standing import Upright
 
 
 def lying(item: Upright, x: float, y: float, floor: float, direction: float) -> Transform:

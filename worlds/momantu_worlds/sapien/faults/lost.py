@@ -10,7 +10,7 @@ from momantu_worlds.sapien.faults.floor_space import walls_between
 from momantu_worlds.sapien.faults.laid import lying
 from momantu_worlds.sapien.faults.parameters import only
 from momantu_worlds.sapien.faults.stage import Stage
-from momantu_worlds.scenes.standing import Upright
+from momantu_worlds.scenes.geometry.standing import Upright
 
 DISTANCES = (0.7, 0.9, 1.1, 1.4, 1.8)
 """m from the robot, the first that is free is taken."""

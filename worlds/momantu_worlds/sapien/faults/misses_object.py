@@ -9,7 +9,7 @@ from momantu_bt.fault import Fault
 from momantu_bt.geometry import Array
 from momantu_worlds.sapien.faults.pictures import PictureCount, cameras, frames
 from momantu_worlds.sapien.faults.stage import Stage
-from momantu_worlds.scenes.standing import Upright
+from momantu_worlds.scenes.geometry.standing import Upright
 
 
 class MissesObject:

@@ -9,8 +9,8 @@ from momantu_bt.geometry import Transform
 from momantu_worlds.sapien.faults.parameters import number, only
 from momantu_worlds.sapien.faults.stage import Stage
 from momantu_worlds.sapien.faults.tops import TableTop, clear_on, item_top, things_on
-from momantu_worlds.scenes.spots import Disc, lane
-from momantu_worlds.scenes.standing import Upright
+from momantu_worlds.scenes.arrange.spots import Disc, lane
+from momantu_worlds.scenes.geometry.standing import Upright
 
 FARTHEST = 2.0
 """m."""

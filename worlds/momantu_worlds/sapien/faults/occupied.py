@@ -11,12 +11,12 @@ from momantu_worlds.sapien.faults.parameters import only, whole
 from momantu_worlds.sapien.faults.stage import Stage
 from momantu_worlds.sapien.faults.tag import marker_picture
 from momantu_worlds.sapien.faults.tops import TableTop, clear_on, table_top, things_on
-from momantu_worlds.scenes.bodies import Body
-from momantu_worlds.scenes.parts import block
-from momantu_worlds.scenes.plane_geometry import Rectangle
-from momantu_worlds.scenes.prisms import body_prism
-from momantu_worlds.scenes.spots import SetDown, free_spots
-from momantu_worlds.scenes.standing import Upright
+from momantu_worlds.scenes.arrange.spots import SetDown, free_spots
+from momantu_worlds.scenes.geometry.bodies import Body
+from momantu_worlds.scenes.geometry.parts import block
+from momantu_worlds.scenes.geometry.plane import Rectangle
+from momantu_worlds.scenes.geometry.prisms import body_prism
+from momantu_worlds.scenes.geometry.standing import Upright
 
 MOST_FREE = 4
 APART = 0.25

@@ -9,9 +9,9 @@ from momantu_bt.geometry import Pose2D
 from momantu_worlds.sapien.faults.floor_space import walls_between
 from momantu_worlds.sapien.faults.parameters import only
 from momantu_worlds.sapien.faults.stage import Stage
-from momantu_worlds.scenes.bodies import Body
-from momantu_worlds.scenes.furniture import furniture, usual_size
-from momantu_worlds.scenes.prisms import body_prism
+from momantu_worlds.scenes.catalogue.furniture import furniture, usual_size
+from momantu_worlds.scenes.geometry.bodies import Body
+from momantu_worlds.scenes.geometry.prisms import body_prism
 
 DISTANCE = 1.0
 """m from the middle of the base to the person's chest."""

@@ -12,10 +12,10 @@ from momantu_bt.geometry import Pose2D, Transform
 from momantu_worlds.sapien.faults.pictures import PictureCount, cameras, frames
 from momantu_worlds.sapien.faults.stage import Stage
 from momantu_worlds.sapien.faults.tops import TableTop, clear_on, item_top, things_on
-from momantu_worlds.scenes.bodies import Body
-from momantu_worlds.scenes.spots import Disc, lane, outline_points, seen_share
-from momantu_worlds.scenes.standing import Upright
-from momantu_worlds.scenes.tabletop import ITEM_SEEN
+from momantu_worlds.scenes.arrange.spots import Disc, lane, outline_points, seen_share
+from momantu_worlds.scenes.arrange.tabletop import ITEM_SEEN
+from momantu_worlds.scenes.geometry.bodies import Body
+from momantu_worlds.scenes.geometry.standing import Upright
 
 APART = 0.15
 """m; least distance to the item."""

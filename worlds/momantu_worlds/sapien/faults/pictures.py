@@ -10,9 +10,9 @@ from momantu_bt.fault import Fault, FaultError
 from momantu_bt.geometry import Array
 from momantu_bt.messages import CameraImage
 from momantu_bt.robot import SensorReading
-from momantu_worlds.sapien.camera import Camera
 from momantu_worlds.sapien.faults.parameters import only, whole
 from momantu_worlds.sapien.faults.stage import Stage
+from momantu_worlds.sapien.sensors.camera import Camera
 
 MOST_FRAMES = 1000
 

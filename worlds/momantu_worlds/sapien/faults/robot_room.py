@@ -8,10 +8,10 @@ import numpy as np
 import sapien
 
 from momantu_bt.geometry import Array, Pose2D
+from momantu_worlds.sapien.build.robot_model import RobotModel
 from momantu_worlds.sapien.poses import transform_of
-from momantu_worlds.sapien.robot_model import RobotModel
-from momantu_worlds.scenes.prisms import Prism, prism_around
-from momantu_worlds.scenes.solids import CORNERS
+from momantu_worlds.scenes.geometry.prisms import Prism, prism_around
+from momantu_worlds.scenes.geometry.solids import CORNERS
 
 
 class RobotRoom:

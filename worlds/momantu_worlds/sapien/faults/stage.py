@@ -13,13 +13,13 @@ from momantu_bt.geometry import Pose2D, Transform
 from momantu_bt.robot import RobotDescription
 from momantu_bt.world import seeded
 from momantu_worlds.sapien.faults.robot_room import RobotRoom
-from momantu_worlds.scenes.bodies import Body, Episode, Gap, Goal, Picture
-from momantu_worlds.scenes.prisms import Prism, body_prism
-from momantu_worlds.scenes.standing import Upright
+from momantu_worlds.scenes.geometry.bodies import Body, Episode, Gap, Goal, Picture
+from momantu_worlds.scenes.geometry.prisms import Prism, body_prism
+from momantu_worlds.scenes.geometry.standing import Upright
 
 if TYPE_CHECKING:
     from momantu_worlds.sapien.simulator import Simulator
-    from momantu_worlds.scenes.referee import Referee
+    from momantu_worlds.scenes.referee.referee import Referee
 
 IN_HAND = 0.03
 """m; nearer to the item than this the point between the pads has the item between the fingers."""

@@ -11,10 +11,10 @@ from momantu_bt.geometry import Transform
 from momantu_worlds.sapien.faults.parameters import only, whole
 from momantu_worlds.sapien.faults.stage import Stage
 from momantu_worlds.sapien.faults.tops import clear_on, table_top
-from momantu_worlds.scenes.bodies import Body, Part, Picture
-from momantu_worlds.scenes.parts import block
-from momantu_worlds.scenes.prisms import body_prism
-from momantu_worlds.scenes.tag36h11 import CODES, tag_picture
+from momantu_worlds.scenes.catalogue.tag36h11 import CODES, tag_picture
+from momantu_worlds.scenes.geometry.bodies import Body, Part, Picture
+from momantu_worlds.scenes.geometry.parts import block
+from momantu_worlds.scenes.geometry.prisms import body_prism
 
 PAPER = 0.0005
 """m; thickness of the sheet that another tag is printed on."""

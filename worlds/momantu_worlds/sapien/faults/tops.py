@@ -10,11 +10,11 @@ import numpy as np
 from momantu_bt.fault import FaultError
 from momantu_bt.geometry import Pose2D, Transform
 from momantu_worlds.sapien.faults.stage import Stage
-from momantu_worlds.scenes.bodies import Body, Cylinder
-from momantu_worlds.scenes.layout import PlacedTable
-from momantu_worlds.scenes.prisms import Prism, body_points, prism_around
-from momantu_worlds.scenes.spots import Disc
-from momantu_worlds.scenes.standing import Top
+from momantu_worlds.scenes.arrange.layout import PlacedTable
+from momantu_worlds.scenes.arrange.spots import Disc
+from momantu_worlds.scenes.geometry.bodies import Body, Cylinder
+from momantu_worlds.scenes.geometry.prisms import Prism, body_points, prism_around
+from momantu_worlds.scenes.geometry.standing import Top
 
 TABLES = ("table", "desk")
 """Categories of bodies with a top, surfaces of the site or not."""

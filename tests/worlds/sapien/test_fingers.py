@@ -1,0 +1,118 @@
+"""Forces at the pads become torques of joints; fingers are coupled, tips follow their motors."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from momantu_worlds.robots import fetch, kinova_jackal
+from momantu_worlds.sapien.config import Physics
+from momantu_worlds.sapien.drives.fingers import Finger, Tips, fingers_of, torques
+from momantu_worlds.sapien.drives.gains import Gains, arm_gains, with_own
+
+from momantu_bt.robot import JointGains, Linkage, RobotDescription
+from momantu_bt.world import WorldError
+
+PHYSICS = Physics()
+
+
+class FakeJoint:
+    """Keeps what it was told."""
+
+    def __init__(self, low: float = 0.0, high: float = 1.2) -> None:
+        self.limits = np.array([[low, high]])
+        self.target = 0.0
+        self.force = 0.0
+
+    def set_drive_target(self, target: float) -> None:
+        self.target = target
+
+    def set_drive_property(self, stiffness: float, damping: float, force: float) -> None:
+        self.force = force
+
+
+def fingers(description: RobotDescription) -> dict[str, Finger]:
+    assert description.simulation is not None
+    joints: dict[str, Any] = {name: FakeJoint() for name in description.end_effector.opening}
+    return fingers_of(description, description.simulation, joints, PHYSICS)
+
+
+def test_fingers_that_slide_have_no_lever() -> None:
+    for finger in fingers(fetch()).values():
+        assert finger.lever == 1.0
+        assert finger.closing == -1.0
+        assert finger.gains.stiffness == PHYSICS.finger_stiffness
+        assert finger.span == pytest.approx(0.05)
+
+
+def test_fingers_that_turn_have_the_distance_to_the_grasp_as_lever() -> None:
+    for finger in fingers(kinova_jackal()).values():
+        assert finger.lever == pytest.approx(0.16 - 0.115, abs=2e-3)
+        assert finger.closing == 1.0
+        assert finger.gains.stiffness == PHYSICS.finger_stiffness * finger.lever**2
+        assert finger.gains.armature > 0.0
+
+
+def test_each_side_presses_with_the_whole_force_however_many_fingers_it_has() -> None:
+    pair, three = fingers(fetch()), fingers(kinova_jackal())
+    assert set(torques(pair, 40.0).values()) == {40.0}
+    for name, torque in torques(three, 25.0).items():
+        assert torque / three[name].lever == pytest.approx(25.0 / 1.5)
+    name, finger = next(iter(pair.items()))
+    assert torques({name: finger}, 40.0) == {name: 40.0}
+
+
+def test_a_gripper_that_cannot_close_is_refused_with_the_reason() -> None:
+    robot = kinova_jackal()
+    hand = robot.end_effector
+    sideways = robot.model_copy(
+        update={"end_effector": hand.model_copy(update={"frame": "arm_finger_1"})}
+    )
+    with pytest.raises(WorldError, match=r"arm_joint_finger_1.* along y of 'arm_finger_1'"):
+        fingers(sideways)
+    bare = robot.model_copy(update={"end_effector": hand.model_copy(update={"opening": {}})})
+    with pytest.raises(WorldError, match="no joints"):
+        fingers(bare)
+
+
+def test_a_joints_own_gains_take_the_place_of_the_usual_ones() -> None:
+    usual = Gains(1.0, 2.0, 3.0, 0.0)
+    assert with_own(None, usual) == usual
+    assert with_own(JointGains(damping=0.0, armature=0.5), usual) == Gains(1.0, 0.0, 3.0, 0.5)
+
+
+def test_forces_are_the_urdfs_where_the_description_gives_none() -> None:
+    robot = kinova_jackal()
+    assert robot.simulation is not None
+    gains = arm_gains(robot, robot.simulation, PHYSICS)
+    assert [gains[f"arm_joint_{i}"].force for i in (1, 2, 6)] == [40.0, 80.0, 20.0]
+    weak = robot.simulation.model_copy(update={"drives": {"arm_joint_2": JointGains(force=5.0)}})
+    assert arm_gains(robot, weak, PHYSICS)["arm_joint_2"].force == 5.0
+
+
+def test_an_effort_of_0_limits_nothing(tmp_path: Path) -> None:
+    robot = kinova_jackal()
+    assert robot.simulation is not None
+    text = robot.urdf.read_text(encoding="utf-8")
+    assert 'effort="40"' in text
+    (tmp_path / "idle.urdf").write_text(text.replace('effort="40"', 'effort="0"'), encoding="utf-8")
+    idle = robot.model_copy(update={"urdf": tmp_path / "idle.urdf"})
+    gains = arm_gains(idle, robot.simulation, PHYSICS)
+    assert [gains[f"arm_joint_{i}"].force for i in (1, 2)] == [math.inf, 80.0]
+
+
+@pytest.mark.parametrize("closing", [1.0, -1.0])
+def test_a_tip_takes_the_travel_that_its_finger_cannot(closing: float) -> None:
+    motor, tip = FakeJoint(), FakeJoint()
+    gains = Gains(4.0, 0.2, 0.0, 0.0)
+    linkage = Linkage(motor="finger", ratio=4.0, share=0.25, preload=0.03)
+    finger = Finger(motor, gains, 0.05, closing, 1.3)
+    tips = Tips({"tip": linkage}, {"finger": finger}, {"tip": tip}, {"tip": gains}, {"finger": 1})
+    for left, wanted in ((0.0, 0.0), (0.02, 0.0), (0.13, 0.4), (2.0, 1.2), (-0.5, 0.0)):
+        tips.follow({"finger": 0.5 + closing * left}, np.array([9.0, 0.5]))
+        assert tip.target == pytest.approx(wanted)
+    tips.press({"finger": 0.8})
+    assert tip.force == pytest.approx(0.2)

@@ -1,0 +1,1 @@
+"""Bodies and robots built in a SAPIEN scene, and their ground truth."""

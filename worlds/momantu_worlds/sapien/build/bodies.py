@@ -1,0 +1,156 @@
+"""Bodies and lights of an episode, built in SAPIEN."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import sapien
+
+from momantu_bt.geometry import Array, Transform, quaternion_from_axis_angle
+from momantu_worlds.sapien.build.collision_filter import FLOOR_BIT
+from momantu_worlds.sapien.build.meshes import body_mesh, map_triangles, volume
+from momantu_worlds.sapien.build.moving import MovingBody
+from momantu_worlds.sapien.build.render_shapes import render_shape
+from momantu_worlds.sapien.build.truth import Truth
+from momantu_worlds.sapien.poses import pose_of
+from momantu_worlds.scenes.geometry.bodies import Body, Box, Cylinder, Episode, Hull, Part, Sphere
+
+FLOOR = "floor"
+"""Category of bodies that the robot's base rolls on, and the name of the plane at z = 0."""
+FLOOR_FRICTION = 0.8
+Z_FROM_X = Transform((0, 0, 0), quaternion_from_axis_angle((0, 1, 0), -math.pi / 2))
+"""SAPIEN's cylinders lie along x and its planes face x; ours stand along z."""
+
+
+def add_bodies(
+    scene: Any, bodies: Iterable[Body], truth: Truth, *, visuals: bool
+) -> tuple[Array, list[MovingBody]]:
+    """Build every body and the floor, and tell `truth` of them.
+
+    Returns:
+        Triangles (k, 3, 3) in the map of all that stands still, and the loose bodies.
+    """
+    _add_floor(scene)
+    still, moving = [], []
+    for body in bodies:
+        if body.static:
+            _place(scene, body, truth, visuals)
+            still.append(body)
+            continue
+        addition = add_body(scene, body, truth, visuals=visuals)
+        if addition.moving is not None:
+            moving.append(addition.moving)
+    return map_triangles(still), moving
+
+
+@dataclass(frozen=True, slots=True)
+class Addition:
+    """A body that may come and go. moving: as the laser meets it; None when it passes through."""
+
+    body: Body
+    entity: Any
+    moving: MovingBody | None
+
+
+def add_body(scene: Any, body: Body, truth: Truth, *, visuals: bool) -> Addition:
+    """Build one body and tell `truth` of it."""
+    entity = _place(scene, body, truth, visuals)
+    mesh = body_mesh(body)
+    return Addition(body, entity, None if mesh is None else MovingBody(entity, mesh))
+
+
+def _place(scene: Any, body: Body, truth: Truth, visuals: bool) -> Any:
+    entity = sapien.Entity()
+    entity.name = body.name
+    if visuals and any(part.visual for part in body.parts):
+        entity.add_component(_look(body))
+    entity.add_component(_physics(body))
+    entity.set_pose(pose_of(body.map_from_body))
+    scene.add_entity(entity)
+    truth.add(body.name, entity)
+    return entity
+
+
+def add_lights(scene: Any, episode: Episode) -> None:
+    """Ambient light, suns and lamps; none casts a shadow."""
+    scene.set_ambient_light(list(episode.ambient))
+    for sun in episode.suns:
+        scene.add_directional_light(list(sun.direction), list(sun.color), shadow=False)
+    for lamp in episode.lamps:
+        scene.add_point_light(list(lamp.position), list(lamp.color), shadow=False)
+
+
+def _add_floor(scene: Any) -> None:
+    material = sapien.physx.PhysxMaterial(FLOOR_FRICTION, FLOOR_FRICTION, 0.0)
+    shape = sapien.physx.PhysxCollisionShapePlane(material)
+    shape.set_collision_groups([1, 1, FLOOR_BIT, 0])
+    component = sapien.physx.PhysxRigidStaticComponent()
+    component.attach(shape)
+    component.name = FLOOR
+    entity = sapien.Entity()
+    entity.add_component(component)
+    entity.name = FLOOR
+    entity.set_pose(pose_of(Z_FROM_X))
+    scene.add_entity(entity)
+
+
+def _look(body: Body) -> Any:
+    look = sapien.render.RenderBodyComponent()
+    for part in body.parts:
+        if part.visual:
+            shape = render_shape(part)
+            shape.local_pose = pose_of(_sapien_pose(part))
+            look.attach(shape)
+    look.name = body.name
+    return look
+
+
+def _physics(body: Body) -> Any:
+    physx = sapien.physx
+    component = (
+        physx.PhysxRigidStaticComponent() if body.static else physx.PhysxRigidDynamicComponent()
+    )
+    material = physx.PhysxMaterial(body.friction, body.friction, 0.0)
+    colliding = [part for part in body.parts if part.collision]
+    total = sum(volume(part.geometry) for part in colliding)
+    for part in colliding:
+        shape = _collision_shape(part, material)
+        shape.local_pose = pose_of(_sapien_pose(part))
+        shape.set_collision_groups([1, 1, FLOOR_BIT if body.category == FLOOR else 0, 0])
+        if not body.static:
+            shape.set_density(body.mass / total)
+        component.attach(shape)
+    component.name = body.name
+    return component
+
+
+def _collision_shape(part: Part, material: Any) -> Any:
+    geometry, physx = part.geometry, sapien.physx
+    if isinstance(geometry, Box):
+        half = [edge / 2 for edge in geometry.size]
+        return physx.PhysxCollisionShapeBox(half_size=half, material=material)
+    if isinstance(geometry, Cylinder):
+        return physx.PhysxCollisionShapeCylinder(
+            radius=geometry.radius, half_length=geometry.height / 2, material=material
+        )
+    if isinstance(geometry, Sphere):
+        return physx.PhysxCollisionShapeSphere(radius=geometry.radius, material=material)
+    if isinstance(geometry, Hull):
+        vertices = np.asarray(geometry.vertices, dtype=np.float32)
+        return physx.PhysxCollisionShapeConvexMesh(
+            vertices=vertices, scale=[1, 1, 1], material=material
+        )
+    raise TypeError(
+        f"a {type(geometry).__name__} cannot collide; use Box, Cylinder, Sphere or Hull"
+    )
+
+
+def _sapien_pose(part: Part) -> Transform:
+    """Where SAPIEN's own shape must lie so that the part lies where it is described."""
+    if isinstance(part.geometry, Cylinder):
+        return part.body_from_part @ Z_FROM_X
+    return part.body_from_part

@@ -1,0 +1,196 @@
+"""Building a robot from its URDF: collision filters, drives, coupled fingers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import combinations, product
+from typing import Any
+
+import numpy as np
+import sapien
+from sapien.wrapper.urdf_loader import URDFLoader
+
+from momantu_bt.geometry import Array
+from momantu_bt.robot import ActuatorKind, Cuts, RobotDescription, SimulationModel
+from momantu_worlds.sapien.build.cells import convex_cells
+from momantu_worlds.sapien.build.collision_filter import FLOOR_BIT, ignore_bits
+from momantu_worlds.sapien.config import Physics
+from momantu_worlds.sapien.drives.fingers import Finger, couple, fingers_of
+from momantu_worlds.sapien.drives.gains import Gains, arm_gains
+
+MANY_TURNS = 1e3
+"""rad; the limit given to joints that turn for ever, so that positions never wrap."""
+FLOOR_REACH = 1e3
+"""m; how far the slides of the base go."""
+
+
+@dataclass
+class RobotModel:
+    """A robot in the physics scene.
+
+    joints: active joints by name. index: their place in qpos. links: by name.
+    gains: of each arm and head joint, and of finger tips. fingers: the gripper's, by joint.
+    """
+
+    articulation: Any
+    joints: dict[str, Any]
+    index: dict[str, int]
+    links: dict[str, Any]
+    gains: Mapping[str, Gains]
+    fingers: Mapping[str, Finger]
+
+    def positions(self) -> Array:
+        """All joint positions now (dof,), true."""
+        return np.asarray(self.articulation.get_qpos(), dtype=np.float64)
+
+    def velocities(self) -> Array:
+        """All joint velocities now (dof,), true."""
+        return np.asarray(self.articulation.get_qvel(), dtype=np.float64)
+
+
+def build_robot(
+    scene: Any,
+    description: RobotDescription,
+    simulation: SimulationModel,
+    physics: Physics,
+    *,
+    visuals: bool,
+) -> RobotModel:
+    """Load the robot with its base at the origin.
+
+    visuals: whether to load what cameras see; impossible in a scene without a renderer.
+    """
+    builder = _parse(scene, description, simulation, visuals)
+    cells = {
+        name: _take_cells(builder, name, cuts) for name, cuts in simulation.convex_cells.items()
+    }
+    articulation = builder.build(fix_root_link=True)
+    for name, shapes in cells.items():
+        for shape in shapes:
+            articulation.find_link_by_name(name).attach(shape)
+    articulation.set_name(description.name)
+    articulation.set_sleep_threshold(0.0)
+    articulation.set_solver_position_iterations(physics.position_iterations)
+    articulation.set_solver_velocity_iterations(physics.velocity_iterations)
+    for link in articulation.get_links():
+        link.set_disable_gravity(True)
+    joints = {joint.name: joint for joint in articulation.get_active_joints()}
+    model = RobotModel(
+        articulation,
+        joints,
+        {name: i for i, name in enumerate(joints)},
+        {link.name: link for link in articulation.get_links()},
+        arm_gains(description, simulation, physics),
+        fingers_of(description, simulation, joints, physics),
+    )
+    _set_drives(model, description, simulation, physics)
+    couple(articulation, model.fingers, physics)
+    return model
+
+
+class _UnseenLoader(URDFLoader):  # type: ignore[misc]
+    """Leaves out what is only seen: without a renderer not even a colour can be made."""
+
+    def _build_link(self, link: Any, link_builder: Any) -> None:
+        link.visuals = []
+        super()._build_link(link, link_builder)
+
+
+def _parse(
+    scene: Any, description: RobotDescription, simulation: SimulationModel, visuals: bool
+) -> Any:
+    loader = URDFLoader() if visuals else _UnseenLoader()
+    loader.set_scene(scene)
+    loader.fix_root_link = True
+    for link in simulation.finger_links:
+        friction = simulation.finger_friction
+        loader.set_link_material(link, friction, friction, 0.0)
+    articulations, _, _ = loader.parse(str(description.urdf), srdf_file="")
+    builder = articulations[0]
+    links = {link.name: link for link in builder.link_builders}
+    for link in builder.link_builders:
+        if link.name in simulation.no_collision_links:
+            link.collision_records.clear()
+        _unwrap(link.joint_record, simulation)
+    for name in simulation.floor_links:
+        links[name].collision_groups[2] |= FLOOR_BIT
+    _ignore_pairs(links, description.ignored_collisions)
+    return builder
+
+
+def _take_cells(builder: Any, name: str, cuts: Cuts) -> list[Any]:
+    """Replace a link's collision mesh by hulls of its cells, to be attached once it is built."""
+    link = next(link for link in builder.link_builders if link.name == name)
+    shapes = []
+    for record in link.collision_records:
+        for vertices in convex_cells(record.filename, cuts):
+            shape = sapien.physx.PhysxCollisionShapeConvexMesh(
+                vertices=vertices, scale=record.scale, material=record.material
+            )
+            shape.local_pose = record.pose
+            shape.set_collision_groups(link.collision_groups)
+            shapes.append(shape)
+    link.collision_records.clear()
+    return shapes
+
+
+def _unwrap(joint: Any, simulation: SimulationModel) -> None:
+    base = simulation.base.joints
+    if joint.joint_type == "revolute":
+        joint.joint_type = "revolute_unwrapped"
+        joint.limits = [[-MANY_TURNS, MANY_TURNS]]
+    elif joint.name in (base.x, base.y):
+        joint.limits = [[-FLOOR_REACH, FLOOR_REACH]]
+
+
+def _ignore_pairs(links: dict[str, Any], pairs: tuple[tuple[str, str], ...]) -> None:
+    """Let these pairs pass through each other, and those that sit on one joint or share one.
+
+    SAPIEN itself leaves out a link and the one above it.
+    """
+    apart = [*pairs, *_neighbours(links)]
+    unknown = [
+        (first, second)
+        for first, second in apart
+        if links[first].parent is not links[second] and links[second].parent is not links[first]
+    ]
+    for name, bits in ignore_bits(unknown).items():
+        links[name].collision_groups[2] |= bits
+
+
+def _neighbours(links: dict[str, Any]) -> list[tuple[str, str]]:
+    """Pairs of colliding links that no joint moves against each other, or just one does."""
+    bodies: dict[Any, list[str]] = {}
+    for name, link in links.items():
+        if link.collision_records:
+            bodies.setdefault(_body(link), []).append(name)
+    pairs = [pair for names in bodies.values() for pair in combinations(names, 2)]
+    for body, names in bodies.items():
+        if body.parent is not None:
+            pairs += product(names, bodies.get(_body(body.parent), ()))
+    return pairs
+
+
+def _body(link: Any) -> Any:
+    """The topmost link that is fixed to this one."""
+    while link.parent is not None and link.joint_record.joint_type == "fixed":
+        link = link.parent
+    return link
+
+
+def _set_drives(
+    model: RobotModel, description: RobotDescription, simulation: SimulationModel, physics: Physics
+) -> None:
+    base = simulation.base.joints
+    for name, most in (
+        (base.x, simulation.base.force),
+        (base.y, simulation.base.force),
+        (base.yaw, simulation.base.torque),
+    ):
+        model.joints[name].set_drive_property(0.0, physics.base_damping, most)
+        model.joints[name].set_friction(0.0)
+    for actuator in description.actuators.values():
+        if actuator.kind is ActuatorKind.JOINTS:
+            for name in actuator.joints:
+                model.gains[name].give(model.joints[name])

@@ -1,0 +1,175 @@
+"""Ground truth, for the referee and for tests alone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from momantu_bt.geometry import Array, Pose2D, Transform
+from momantu_bt.world import TICK
+from momantu_worlds.sapien.build.robot_model import RobotModel
+from momantu_worlds.sapien.config import SUB_STEPS
+from momantu_worlds.sapien.poses import transform_of
+from momantu_worlds.scenes.geometry.solids import FLOOR
+
+DOWN = np.array([0.0, 0.0, -1.0], dtype=np.float32)
+THROUGH = 0.001
+"""m; step by which a ray goes on through what does not count: by as much heights are off."""
+
+
+@dataclass(frozen=True, slots=True)
+class Contact:
+    """Two things that touched during the last tick.
+
+    first, second: names of bodies, or of the robot's links (which come first).
+    force: length of the contact force, averaged over the tick (between two bodies: over its last
+    physics step), N.
+    """
+
+    first: str
+    second: str
+    force: float
+
+
+@dataclass(frozen=True, slots=True)
+class JointSpeed:
+    """How fast a joint moves: m/s when `linear`, else rad/s; never negative."""
+
+    speed: float
+    linear: bool
+
+
+class Truth:
+    """Where everything really is, and what touches what."""
+
+    def __init__(self, system: Any, model: RobotModel, base_link: str) -> None:
+        self._system, self._model, self._base_link = system, model, base_link
+        self._entities: dict[str, Any] = {}
+        self._impulses: dict[tuple[str, str], Array] = {}
+        self.watching = False
+        self.robot_links = frozenset(model.links)
+        self._links = frozenset(model.links.values())
+
+    def add(self, name: str, entity: Any) -> None:
+        """Make a body known by name."""
+        self._entities[name] = entity
+
+    def forget(self, name: str) -> None:
+        """A body is gone."""
+        del self._entities[name]
+
+    def entity(self, name: str) -> Any:
+        """A body's SAPIEN entity; KeyError with the names there are when there is none."""
+        if name not in self._entities:
+            raise KeyError(f"no body {name!r}; bodies: {', '.join(self._entities)}")
+        return self._entities[name]
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        """Names of all bodies, robot excluded."""
+        return tuple(self._entities)
+
+    def pose(self, body: str) -> Transform:
+        """`map_from_body`; KeyError with the names there are when there is none."""
+        return transform_of(self.entity(body).pose)
+
+    def speed(self, body: str) -> tuple[float, float]:
+        """Speed of a moving body, m/s and rad/s; (0, 0) for what never moves."""
+        import sapien
+
+        part = self.entity(body).find_component_by_type(sapien.physx.PhysxRigidDynamicComponent)
+        if part is None:
+            return 0.0, 0.0
+        linear, angular = part.get_linear_velocity(), part.get_angular_velocity()
+        return float(np.linalg.norm(linear)), float(np.linalg.norm(angular))
+
+    def link(self, name: str) -> Transform:
+        """`map_from_link` of one of the robot's links; KeyError when there is none."""
+        return transform_of(self._model.links[name].entity_pose)
+
+    def joint(self, name: str) -> float:
+        """Position of one of the robot's joints, rad or m; KeyError when there is none."""
+        return float(self._model.positions()[self._model.index[name]])
+
+    def height_below(self, body: str, points: Array) -> tuple[float, str]:
+        """Height of the lowest of points (n, 3) of the map above what lies under them, m, of what.
+
+        The body itself and the robot do not count; the floor is under everything.
+        """
+        best = (float(points[:, 2].min()), FLOOR)
+        for point in points:
+            below, fallen = np.array(point, dtype=np.float32), 0.0
+            while fallen < best[0]:
+                hit = self._system.raycast(below, DOWN, best[0] - fallen)
+                if hit is None:
+                    break
+                fallen += float(hit.distance)
+                if hit.component.entity.name != body and hit.component not in self._links:
+                    best = min(best, (fallen, hit.component.entity.name))
+                    break
+                fallen += THROUGH
+                below = below + DOWN * np.float32(hit.distance + THROUGH)
+        return best
+
+    def base_speed(self) -> tuple[float, float]:
+        """Of the base along the floor and about the vertical, m/s and rad/s."""
+        link = self._model.links[self._base_link]
+        linear, angular = link.get_linear_velocity(), link.get_angular_velocity()
+        return float(np.hypot(linear[0], linear[1])), abs(float(angular[2]))
+
+    def joint_speeds(self) -> dict[str, JointSpeed]:
+        """Of every active joint of the robot, by name."""
+        speeds = np.abs(self._model.velocities()).tolist()
+        return {
+            name: JointSpeed(speeds[self._model.index[name]], joint.type == "prismatic")
+            for name, joint in self._model.joints.items()
+        }
+
+    def base(self) -> Pose2D:
+        """`map_from_base` on the floor."""
+        return Pose2D.from_transform(self.link(self._base_link))
+
+    def watch_contacts(self) -> None:
+        """Collect contact forces from the next tick on; costs time, changes nothing."""
+        self.watching = True
+
+    def contacts(self) -> tuple[Contact, ...]:
+        """What touched during the last tick; `watch_contacts` must have been called.
+
+        Raises:
+            RuntimeError: nobody asked to watch contacts.
+        """
+        if not self.watching:
+            raise RuntimeError("contacts are not collected; call watch_contacts() before stepping")
+        return tuple(
+            Contact(first, second, float(np.linalg.norm(impulse)) / TICK)
+            for (first, second), impulse in self._impulses.items()
+        )
+
+    def begin_tick(self) -> None:
+        """Forget the contacts of the tick before."""
+        self._impulses.clear()
+
+    def collect(self, *, last: bool) -> None:
+        """Add the contact impulses of the physics step just made.
+
+        The robot's contacts are added up over all steps of a tick, for they may be blows; those
+        between bodies are taken from its last step, which is enough for what rests on what.
+        """
+        for contact in self._system.get_contacts():
+            a, b = contact.bodies
+            if a in self._links or b in self._links:
+                self._add(a.name, b.name, contact, 1)
+            elif last:
+                self._add(a.name, b.name, contact, SUB_STEPS)
+
+    def _add(self, a: str, b: str, contact: Any, steps: int) -> None:
+        impulse = sum((point.impulse for point in contact.points), np.zeros(3)) * steps
+        if not impulse.any():
+            return
+        if (a not in self.robot_links, a) > (b not in self.robot_links, b):
+            a, b, impulse = b, a, -impulse
+        before = self._impulses.get((a, b))
+        self._impulses[a, b] = impulse if before is None else before + impulse

@@ -1,0 +1,1 @@
+"""Drivers of base, joints and gripper, and what they measure."""

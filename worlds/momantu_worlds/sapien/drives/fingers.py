@@ -1,0 +1,164 @@
+"""A gripper's fingers in physics: their levers, what couples them, and tips without motors."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from momantu_bt.geometry import Array, Transform
+from momantu_bt.robot import Linkage, RobotDescription, SimulationModel
+from momantu_bt.world import WorldError
+from momantu_worlds.sapien.config import Physics
+from momantu_worlds.sapien.drives.gains import Gains, with_own
+
+EXACT = 9
+"""Decimals to which a lever is rounded: what a product of rotations loses."""
+LEAST_LEVER = 1e-3
+"""m, or share of a slide's way: fingers that close the gripper less do not close it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Finger:
+    """A finger joint.
+
+    lever: force at the pads along the closing direction is torque / lever; m, or 1 if it slides.
+    closing: sign of its motion when the gripper closes. span: how far it goes from wide to closed.
+    """
+
+    joint: Any
+    gains: Gains
+    lever: float
+    closing: float
+    span: float
+
+
+def fingers_of(
+    description: RobotDescription,
+    simulation: SimulationModel,
+    joints: Mapping[str, Any],
+    physics: Physics,
+) -> dict[str, Finger]:
+    """The gripper's finger joints by name; joints: SAPIEN's.
+
+    A stiffness at the pads becomes one of the joint by the lever's square.
+
+    Raises:
+        WorldError: there are none, or one does not move along the closing direction.
+    """
+    effector, found = description.end_effector, {}
+    if not effector.opening:
+        raise WorldError(
+            f"the gripper {effector.actuator!r} of {description.name} has no joints; a simulated "
+            "gripper needs at least one finger"
+        )
+    for name, rows in effector.opening.items():
+        lever = _lever(description, name)
+        if lever < LEAST_LEVER:
+            raise WorldError(
+                f"the finger joint {name!r} of {description.name} does not move its finger along y "
+                f"of {effector.frame!r}, the direction in which the gripper closes; turn that frame"
+            )
+        usual = Gains(
+            physics.finger_stiffness * lever**2, physics.finger_damping * lever**2, 0.0, 0.0
+        )
+        gains = with_own(simulation.drives.get(name), usual)
+        way = rows[0][1] - rows[-1][1]
+        found[name] = Finger(joints[name], gains, lever, math.copysign(1.0, way), abs(way))
+    return found
+
+
+def _lever(description: RobotDescription, joint: str) -> float:
+    """How the grasp frame's origin moves along the closing direction, per motion of a joint."""
+    effector = description.end_effector
+    tree = description.kinematics()
+    one = next(each for each in tree.joints() if each.name == joint)
+    offset = Transform((effector.grasp_offset, 0.0, 0.0))
+    base_from_grasp = tree.base_from_frame(effector.frame, {}) @ offset
+    base_from_joint = tree.base_from_frame(one.parent, {}) @ one.parent_from_joint
+    axis = base_from_joint.rotation @ (np.asarray(one.axis) / np.linalg.norm(one.axis))
+    closing: Array = base_from_grasp.rotation[:, 1]
+    if one.kind == "prismatic":
+        return round(abs(float(axis @ closing)), EXACT)
+    arm = base_from_grasp.position - base_from_joint.position
+    return round(abs(float(np.cross(axis, arm) @ closing)), EXACT)
+
+
+def couple(articulation: Any, fingers: Mapping[str, Finger], physics: Physics) -> None:
+    """Make all fingers on one hand move alike, each by its share of its way.
+
+    Stands for motors that follow one command and that what is held cannot turn back.
+    """
+    first, *others = fingers.values()
+    for other in others:
+        links = [first.joint.parent_link, first.joint.child_link, other.joint.child_link]
+        if other.joint.parent_link is not links[0]:
+            continue
+        share = -first.closing * other.closing * first.span / other.span
+        articulation.create_fixed_tendon(
+            links,
+            [0, 1, share],
+            [0, 1, 1 / share],
+            rest_length=0,
+            offset=0,
+            stiffness=physics.tendon_stiffness * first.lever**2,
+            damping=physics.tendon_damping * first.lever**2,
+        )
+
+
+def torques(fingers: Mapping[str, Finger], force: float) -> dict[str, float]:
+    """What each finger joint must give so that either side presses with `force`, N; Nm or N."""
+    return {name: force * finger.lever / sides(fingers) for name, finger in fingers.items()}
+
+
+def sides(fingers: Mapping[str, Finger]) -> float:
+    """Fingers on either side; a single one presses against something that does not move."""
+    return max(1.0, len(fingers) / 2)
+
+
+@dataclass(frozen=True, slots=True)
+class _Tip:
+    """low, high: its limits, rad or m. place: of its motor's joint in qpos."""
+
+    linkage: Linkage
+    joint: Any
+    gains: Gains
+    low: float
+    high: float
+    place: int
+    closing: float
+
+
+class Tips:
+    """Finger joints that another finger joint's motor moves too; see `Linkage`."""
+
+    def __init__(
+        self,
+        linkages: Mapping[str, Linkage],
+        fingers: Mapping[str, Finger],
+        joints: Mapping[str, Any],
+        gains: Mapping[str, Gains],
+        index: Mapping[str, int],
+    ) -> None:
+        self._tips = []
+        for name, linkage in linkages.items():
+            low, high = (float(limit) for limit in joints[name].limits[0])
+            place, closing = index[linkage.motor], fingers[linkage.motor].closing
+            tip = _Tip(linkage, joints[name], gains[name], low, high, place, closing)
+            self._tips.append(tip)
+
+    def follow(self, targets: Mapping[str, float], positions: Array) -> None:
+        """Turn by what the motors were sent (rad or m) and their own joints have not gone."""
+        for tip in self._tips:
+            motor = targets[tip.linkage.motor]
+            left = tip.closing * (motor - float(positions[tip.place])) - tip.linkage.preload
+            wanted = tip.low + tip.linkage.ratio * max(0.0, left)
+            tip.joint.set_drive_target(min(wanted, tip.high))
+
+    def press(self, torques: Mapping[str, float]) -> None:
+        """Limit each to its share of the torque that its finger has now."""
+        for tip in self._tips:
+            tip.gains.give(tip.joint, tip.linkage.share * torques[tip.linkage.motor])

@@ -1,0 +1,1 @@
+"""Cameras, lasers, lidars and the wrist sensor, with their errors."""

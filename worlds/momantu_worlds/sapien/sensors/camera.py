@@ -1,0 +1,153 @@
+"""The RGB-D camera: rendered on request, with the errors of a structured-light sensor."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import sapien
+from numpy.typing import NDArray
+
+from momantu_bt.geometry import Array, Transform, quaternion_from_axis_angle
+from momantu_bt.messages import CameraImage, frozen
+from momantu_bt.robot import CameraSensor
+from momantu_bt.world import seeded
+from momantu_worlds.sapien.config import CameraErrors
+from momantu_worlds.sapien.poses import pose_of, transform_of
+from momantu_worlds.sapien.sensors.culling import Culling
+
+NEAR, FAR = 0.05, 30.0
+"""m; what the renderer draws. Colour reaches farther than depth."""
+OPTICAL_FROM_SAPIEN = Transform.from_rotation(
+    np.array([[0.0, -1.0, 0.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]])
+)
+"""SAPIEN's camera looks along x with z up; an optical frame looks along z with y down."""
+
+
+class Camera:
+    """Takes a picture from where the link really is, plus a constant mounting error.
+
+    hidden: render components that it does not see.
+    """
+
+    def __init__(
+        self,
+        scene: Any,
+        link: Any,
+        name: str,
+        sensor: CameraSensor,
+        seed: int,
+        errors: CameraErrors,
+        own_links: list[Any],
+    ) -> None:
+        self._scene, self._link, self._name = scene, link, name
+        self._sensor, self._seed, self._errors = sensor, seed, errors
+        self.link_from_camera = _mounting(seeded(seed, name, "mounting"), errors)
+        self._camera, self._entity = _component(sensor)
+        self.culling = Culling(own_links, sensor)
+        self.hidden: list[Any] = []
+        self.intrinsics = _intrinsics(sensor)
+        scene.add_entity(self._entity)
+
+    def read(self, stamp: float) -> CameraImage:
+        """A picture of now; runs the renderer."""
+        truth = transform_of(self._link.entity_pose) @ self.link_from_camera
+        self._entity.set_pose(pose_of(truth @ OPTICAL_FROM_SAPIEN))
+        unseen = [*self.culling.outside(truth), *self.hidden]
+        for body in unseen:
+            body.disable()
+        self._scene.update_render()
+        self._camera.take_picture()
+        color = self._camera.get_picture("Color")[..., :3]
+        for body in unseen:
+            body.enable()
+        depth = -self._camera.get_picture("Position")[..., 2]
+        random = seeded(self._seed, self._name, stamp)
+        return CameraImage(
+            stamp,
+            self._sensor.frame,
+            frozen(noisy_color(color, random, self._errors)),
+            frozen(noisy_depth(depth, random, self._sensor, self._errors)),
+            self.intrinsics,
+        )
+
+    def exact_depth(self) -> NDArray[np.float32]:
+        """Depth (h, w) of the last picture without errors, m; 0 where there is nothing."""
+        return np.asarray(-self._camera.get_picture("Position")[..., 2], dtype=np.float32)
+
+
+def noisy_color(
+    color: NDArray[Any], random: np.random.Generator, errors: CameraErrors
+) -> NDArray[np.uint8]:
+    """Colour (h, w, 3) uint8 with even noise of the configured sigma added, grey levels."""
+    span = round(errors.color_noise * math.sqrt(3.0))
+    levels = (np.arange(256) % (2 * span + 1) - span).astype(np.int16)
+    noise = levels[np.frombuffer(random.bytes(color.size), dtype=np.uint8)]
+    noisy = color + noise.reshape(color.shape)
+    return np.clip(noisy, 0, 255, out=noisy).astype(np.uint8)
+
+
+def noisy_depth(
+    depth: NDArray[Any], random: np.random.Generator, sensor: CameraSensor, errors: CameraErrors
+) -> NDArray[np.float32]:
+    """Depth (h, w) float32 as a structured-light camera gives it.
+
+    Noise grows with the square of the distance; pixels at depth edges, out of range and a few at
+    random are 0.
+    """
+    z = np.asarray(depth, dtype=np.float32)
+    noise = random.standard_normal(z.shape, dtype=np.float32)
+    chance = random.random(z.shape, dtype=np.float32)
+    lost_share = np.where(_edges(z, errors.edge_jump), errors.edge_hole, errors.drop_out)
+    sigma = errors.depth_noise if sensor.depth_noise is None else sensor.depth_noise
+    measured = z + np.float32(sigma) * z * z * noise
+    measured = np.round(measured / np.float32(errors.depth_quantum))
+    measured *= np.float32(errors.depth_quantum)
+    valid = (z > 0) & (measured >= sensor.min_depth) & (measured <= sensor.max_depth)
+    valid &= chance >= lost_share
+    return np.where(valid, measured, np.float32(0.0))
+
+
+def _edges(z: NDArray[np.float32], jump: float) -> NDArray[np.bool_]:
+    """Pixels beside a depth step of more than `jump` times their depth."""
+    limit = np.float32(jump) * z
+    edges = np.zeros(z.shape, dtype=bool)
+    across = np.abs(np.diff(z, axis=1)) > np.minimum(limit[:, 1:], limit[:, :-1])
+    down = np.abs(np.diff(z, axis=0)) > np.minimum(limit[1:], limit[:-1])
+    edges[:, 1:] |= across
+    edges[:, :-1] |= across
+    edges[1:] |= down
+    edges[:-1] |= down
+    return edges
+
+
+def _mounting(random: np.random.Generator, errors: CameraErrors) -> Transform:
+    shift = errors.mounting_position * random.standard_normal(3)
+    turn = errors.mounting_angle * random.standard_normal(3)
+    angle = float(np.linalg.norm(turn))
+    if angle == 0.0:
+        return Transform(shift)
+    return Transform(shift, quaternion_from_axis_angle(turn, angle))
+
+
+def _component(sensor: CameraSensor) -> tuple[Any, Any]:
+    camera = sapien.render.RenderCameraComponent(sensor.width, sensor.height)
+    camera.set_fovx(sensor.horizontal_fov, True)
+    camera.near, camera.far = NEAR, FAR
+    entity = sapien.Entity()
+    entity.add_component(camera)
+    return camera, entity
+
+
+def _intrinsics(sensor: CameraSensor) -> Array:
+    """Pinhole matrix (3, 3) for pixel centres at whole numbers."""
+    focal = sensor.width / 2 / math.tan(sensor.horizontal_fov / 2)
+    matrix = np.array(
+        [
+            [focal, 0.0, (sensor.width - 1) / 2],
+            [0.0, focal, (sensor.height - 1) / 2],
+            [0.0, 0.0, 1.0],
+        ]
+    )
+    return np.asarray(frozen(matrix))

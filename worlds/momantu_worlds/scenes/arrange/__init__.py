@@ -1,0 +1,1 @@
+"""One episode from a world file and a seed: positions first, then bodies."""

@@ -1,0 +1,252 @@
+"""What stands on the floor of an episode: tables, furniture, the robot's start.
+
+Every choice is drawn from the seed and kept only when the robot can still do its work: doorways
+and the tables' preferred sides stay free, and a disc of the world's `passage` radius still gets
+from the start to both tables and through every doorway.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from momantu_bt.geometry import Pose2D
+from momantu_bt.world import WorldError, seeded
+from momantu_worlds.scenes.arrange.layout import PlacedPiece, PlacedTable
+from momantu_worlds.scenes.arrange.obstacles import floor_extent, footprint, standing_rectangles
+from momantu_worlds.scenes.arrange.surfaces import board_surface, carriers, nominal_surfaces
+from momantu_worlds.scenes.file.furniture import Piece
+from momantu_worlds.scenes.file.variation import Unknown
+from momantu_worlds.scenes.file.world import WorldFile
+from momantu_worlds.scenes.geometry.plane import Rectangle, clear_of, passages
+
+TRIES = 60
+"""Draws for one thing before it is left out (an extra) or stays where the map has it."""
+MOVED_GAP = 0.03
+"""m; what a moved piece keeps from everything else."""
+EXTRA_GAP = 0.15
+"""m; what an extra piece keeps from everything else."""
+STAND_OFF = 0.55
+"""m; from a table's edge to where a robot stands that reaches onto it."""
+WIDE = 0.4
+"""m; radius of a disc for which a coarse grid is fine enough: its doors are wide."""
+COARSE, FINE = 0.1, 0.05
+"""m; cells in which passages are looked for. A narrow door leaves a disc's centre a few cm."""
+SIDEWAYS = 0.3
+"""m; how much wider than the table's side the zone before it is kept free, on either hand."""
+UNVARIED = Unknown()
+"""Of a world that says nothing about the unknown: nothing is moved, nothing is added."""
+
+
+def place_tables(
+    world: WorldFile, seed: int
+) -> tuple[dict[str, PlacedTable], dict[str, PlacedPiece]]:
+    """Surfaces shifted, turned and lifted, and the shelves whose boards are among them."""
+    shelves = {name: _shelf(world, seed, name) for name in carriers(world)}
+    placed = {}
+    for name, nominal in nominal_surfaces(world).items():
+        table = world.tables.get(name)
+        if table is None:
+            placed[name] = nominal
+        elif table.board_of is not None:
+            shelf = shelves[table.board_of]
+            placed[name] = board_surface(shelf.piece, table, shelf.pose)
+        else:
+            draw = seeded(seed, "table", name)
+            pose = _shifted(draw, nominal.pose, table.shift, table.turn)
+            lift = float(draw.uniform(-table.lift, table.lift))
+            placed[name] = replace(nominal, pose=pose, height=nominal.height + lift)
+    return placed, shelves
+
+
+def _shelf(world: WorldFile, seed: int, name: str) -> PlacedPiece:
+    piece = world.furniture[name]
+    draw = seeded(seed, "table", name)
+    return PlacedPiece(name, piece, _shifted(draw, piece.pose, piece.shift, piece.turn), True)
+
+
+def _shifted(draw: np.random.Generator, pose: Pose2D, shift: float, turn: float) -> Pose2D:
+    x, y = draw.uniform(-shift, shift, 2)
+    yaw = float(draw.uniform(-turn, turn))
+    return Pose2D(pose.x + float(x), pose.y + float(y), pose.yaw + yaw)
+
+
+def place_start(world: WorldFile, seed: int) -> tuple[Pose2D, Pose2D]:
+    """Where the robot truly stands, and what it is told."""
+    draw = seeded(seed, "start")
+    nominal = Pose2D(*world.start.at)
+    fixed = [*standing_rectangles(world)]
+    fixed += [footprint(world, p, p.pose) for p in world.furniture.values()]
+    fixed += [Rectangle(t.pose, t.size) for t in nominal_surfaces(world).values()]
+    turn = world.start.turn
+    for _ in range(TRIES):
+        x, y = draw.uniform(-world.start.shift, world.start.shift, 2)
+        yaw = float(draw.uniform(-math.pi, math.pi))
+        if turn is not None:
+            yaw = nominal.yaw + turn * yaw / math.pi
+        start = Pose2D(nominal.x + float(x), nominal.y + float(y), yaw)
+        if clear_of(around(start, world.start.clear), fixed, 0.0):
+            break
+    else:
+        raise WorldError(
+            f"the world {world.name!r} has no free place to start within {world.start.shift:g} m "
+            f"of ({nominal.x:g}, {nominal.y:g}), where {world.start.clear:g} m around it are free; "
+            "move start.at, or make start.clear smaller"
+        )
+    away = float(draw.uniform(0.0, world.start.belief_shift))
+    where = float(draw.uniform(-math.pi, math.pi))
+    off = float(draw.uniform(-world.start.belief_turn, world.start.belief_turn))
+    x, y = start.x + away * math.cos(where), start.y + away * math.sin(where)
+    return start, Pose2D(x, y, start.yaw + off)
+
+
+def place_furniture(
+    world: WorldFile,
+    seed: int,
+    tables: Mapping[str, PlacedTable],
+    shelves: Mapping[str, PlacedPiece],
+    start: Pose2D,
+) -> tuple[PlacedPiece, ...]:
+    """Known furniture, some of it moved, and extra pieces. shelves: those that stand already.
+
+    Raises:
+        WorldError: even with nothing moved and nothing extra the robot could not do its work.
+    """
+    known = {name: PlacedPiece(name, p, p.pose, True) for name, p in world.furniture.items()}
+    known |= shelves
+    room = _Room(world, world.unknown or UNVARIED, tables, start)
+    placed = dict(known)
+    for change in (*_own_shifts(world, seed), *_moves(world, seed), *_extras(world, seed)):
+        for piece in change:
+            others = [room.footprint(p) for n, p in placed.items() if n != piece.name]
+            then = {**placed, piece.name: piece}
+            if room.fits(piece, others) and room.passable(then.values()):
+                placed = then
+                break
+    promised = world.unknown is not None
+    if promised and placed == known and not room.passable(known.values()):
+        raise WorldError(
+            f"in the world {world.name!r} a disc of {room.unknown.passage} m does not get from "
+            "the start to every table and through every doorway; move the furniture apart"
+        )
+    return tuple(placed.values())
+
+
+def _own_shifts(world: WorldFile, seed: int) -> Iterator[Iterator[PlacedPiece]]:
+    """Pieces that every episode shifts."""
+    shelves = carriers(world)
+    for name, piece in world.furniture.items():
+        if (piece.shift or piece.turn) and name not in shelves:
+            draw = seeded(seed, "shifted", name)
+            yield _elsewhere(name, piece, draw, piece.shift, piece.turn)
+
+
+def _moves(world: WorldFile, seed: int) -> Iterator[Iterator[PlacedPiece]]:
+    unknown = world.unknown or UNVARIED
+    draw = seeded(seed, "moved")
+    names = [name for name, piece in world.furniture.items() if piece.moves]
+    wanted = int(draw.integers(unknown.moved.least, unknown.moved.most + 1))
+    for name in draw.permutation(names)[:wanted].tolist():
+        own = seeded(seed, "moved", name)
+        yield _elsewhere(name, world.furniture[name], own, unknown.shift, unknown.turn)
+
+
+def _elsewhere(
+    name: str, piece: Piece, draw: np.random.Generator, shift: float, turn: float
+) -> Iterator[PlacedPiece]:
+    """Draws of where a piece may stand."""
+    for _ in range(TRIES):
+        yield PlacedPiece(name, piece, _shifted(draw, piece.pose, shift, turn), True)
+
+
+def _extras(world: WorldFile, seed: int) -> Iterator[Iterator[PlacedPiece]]:
+    unknown = world.unknown or UNVARIED
+    wanted = int(seeded(seed, "extra").integers(unknown.extra.least, unknown.extra.most + 1))
+    for i in range(wanted if unknown.areas else 0):
+        yield _anywhere(unknown, seed, i)
+
+
+def _anywhere(unknown: Unknown, seed: int, number: int) -> Iterator[PlacedPiece]:
+    draw = seeded(seed, "extra", number)
+    kind = unknown.kinds[int(draw.integers(len(unknown.kinds)))]
+    for _ in range(TRIES):
+        x0, y0, x1, y1 = unknown.areas[int(draw.integers(len(unknown.areas)))]
+        x, y = float(draw.uniform(x0, x1)), float(draw.uniform(y0, y1))
+        pose = Pose2D(x, y, float(draw.uniform(-math.pi, math.pi)))
+        piece = Piece(kind=kind, at=(pose.x, pose.y, pose.yaw))
+        yield PlacedPiece(f"extra_{kind}_{number}", piece, pose, False)
+
+
+class _Room:
+    """What a piece must leave free: doorways, the start, the floor before tables, ways through."""
+
+    def __init__(
+        self,
+        world: WorldFile,
+        unknown: Unknown,
+        tables: Mapping[str, PlacedTable],
+        start: Pose2D,
+    ) -> None:
+        self.unknown = unknown
+        self._world = world
+        self._standing, self._floor = standing_rectangles(world), floor_extent(world)
+        self._tops = [Rectangle(table.pose, table.size) for table in tables.values()]
+        doors = world.all_doorways.values()
+        self._doors = [(np.array(door.at), door.clear) for door in doors]
+        self._zones = [around(start, world.start.clear)]
+        self._zones += [stand_zone(table, unknown.stand) for table in tables.values()]
+        self._stops = [(start.x, start.y), *(door.at for door in doors)]
+        self._stops += [(at.x, at.y) for at in map(stand_pose, tables.values())]
+
+    def footprint(self, placed: PlacedPiece) -> Rectangle:
+        """The floor that a piece takes up."""
+        return footprint(self._world, placed.piece, placed.pose)
+
+    def fits(self, placed: PlacedPiece, others: list[Rectangle]) -> bool:
+        """Whether a piece keeps its distance from everything."""
+        own = self.footprint(placed)
+        least = MOVED_GAP if placed.known else EXTRA_GAP
+        return (
+            clear_of(own, self._zones, 0.0 if placed.known else EXTRA_GAP)
+            and all(float(own.distance(at)) >= radius for at, radius in self._doors)
+            and clear_of(own, self._standing, least)
+            and clear_of(own, self._tops, least)
+            and clear_of(own, others, least)
+        )
+
+    def passable(self, pieces: Iterable[PlacedPiece]) -> bool:
+        """Whether a disc still gets from the start everywhere."""
+        obstacles = [*self._standing, *map(self.footprint, pieces), *self._tops]
+        cell = COARSE if self.unknown.passage >= WIDE else FINE
+        center, size = self._floor
+        return passages(obstacles, center, size, self.unknown.passage, cell).connects(self._stops)
+
+
+def around(pose: Pose2D, radius: float) -> Rectangle:
+    """A square around a pose, of half edge `radius` m."""
+    return Rectangle(pose, (2 * radius, 2 * radius))
+
+
+def side_pose(placed: PlacedTable, side: int, away: float) -> Pose2D:
+    """A pose `away` m before the middle of a side's edge, facing the table."""
+    angle = placed.sides[side]
+    half_x, half_y = placed.size[0] / 2, placed.size[1] / 2
+    along = half_x if abs(math.cos(angle)) > abs(math.sin(angle)) else half_y
+    reach = along + away
+    own = Pose2D(reach * math.cos(angle), reach * math.sin(angle), angle + math.pi)
+    return placed.pose @ own
+
+
+def stand_pose(placed: PlacedTable) -> Pose2D:
+    """Where a robot stands before the middle of the preferred side."""
+    return side_pose(placed, 0, STAND_OFF)
+
+
+def stand_zone(placed: PlacedTable, depth: float) -> Rectangle:
+    """The floor before the preferred side that is kept free."""
+    along_x = abs(math.cos(placed.sides[0])) > abs(math.sin(placed.sides[0]))
+    width = placed.size[1] if along_x else placed.size[0]
+    return Rectangle(side_pose(placed, 0, depth / 2), (depth, width + 2 * SIDEWAYS))

@@ -1,0 +1,281 @@
+"""What stands on the tables of an episode: the item, the tag, and what is in their way.
+
+The job stays possible by rule. Around the item nothing is nearer than `gap_to_item`, a lane as
+wide as a hand leads to it from somewhere before the table's preferred side, and from where the
+robot would stand at least half of it is seen. The tag is seen whole from there. Beside the tag
+remains a spot for the item with the same lane.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import islice
+
+import numpy as np
+
+from momantu_bt.geometry import Pose2D
+from momantu_bt.world import seeded
+from momantu_worlds.scenes.arrange.layout import PlacedTable, PlacedTag, PlacedThing
+from momantu_worlds.scenes.arrange.spots import (
+    Disc,
+    SetDown,
+    free_spots,
+    gap,
+    lane,
+    outline_points,
+    seen_share,
+    tag_points,
+)
+from momantu_worlds.scenes.catalogue.objects import ObjectKind, Thing
+from momantu_worlds.scenes.catalogue.random_objects import COLORS, draw_look, draw_thing
+from momantu_worlds.scenes.catalogue.tag36h11 import picture_edge
+from momantu_worlds.scenes.file.objects import ObjectNote, TagNote
+from momantu_worlds.scenes.file.world import WorldFile
+
+TRIES = 80
+"""Draws for one thing before it is left out."""
+RIM = 0.02
+"""m; what everything keeps from the table's edge."""
+APART = 0.01
+"""m; least gap between two named objects."""
+AIR = 0.03
+"""m; what is left between a thing and the board above it."""
+ITEM_SEEN = 0.5
+"""share of the item that must be seen from one of them."""
+
+
+def place_objects(
+    world: WorldFile,
+    seed: int,
+    tables: Mapping[str, PlacedTable],
+    tags: Sequence[PlacedTag],
+) -> tuple[PlacedThing, ...]:
+    """The item and all named objects, each whole on its top; those of the file first come first."""
+    placed: list[PlacedThing] = []
+    item = {} if world.item is None else {world.item.name: world.item}
+    for name, note in {**item, **world.objects}.items():
+        placed.append(_placed_object(world, seed, tables, name, note, placed, tags))
+    return tuple(placed)
+
+
+def _placed_object(
+    world: WorldFile,
+    seed: int,
+    tables: Mapping[str, PlacedTable],
+    name: str,
+    note: ObjectNote,
+    before: Sequence[PlacedThing],
+    tags: Sequence[PlacedTag],
+) -> PlacedThing:
+    """An object where nothing else stands yet; at its last draw when that is nowhere."""
+    table = note.tops[int(seeded(seed, "which top", name).integers(len(note.tops)))]
+    thing = _thing_of(note, seed, name)
+    taken = [disc_of(other) for other in before if other.table == table]
+    taken += [tag_disc(tag) for tag in tags if tag.table == table]
+    spot = Spot(name, table, note.at, note.shift, thing.reach + RIM, note.yaw, note.turn)
+    for at in islice(_on_top(tables, seed, spot), TRIES):
+        own = Disc(at.x, at.y, thing.reach, thing.height)
+        if all(gap(own, other) >= APART for other in taken):
+            break
+    return PlacedThing(name, thing, table, at, note.friction)
+
+
+def _thing_of(note: ObjectNote, seed: int, name: str) -> Thing:
+    """What the file says of an object, and of the rest what its kind usually is."""
+    draw = seeded(seed, "object", name)
+    paint = seeded(seed, "paint", name) if note.color is None else None
+    thing = draw_thing(note.kind, draw, paint, size=note.extent, color=note.color)
+    return thing if note.mass is None else replace(thing, mass=note.mass)
+
+
+def place_tags(
+    world: WorldFile, seed: int, tables: Mapping[str, PlacedTable]
+) -> tuple[PlacedTag, ...]:
+    """Every tag: on its table, its white margin kept whole on the top, or where it is hung."""
+    placed = []
+    for name, note in world.all_tags.items():
+        if note.on is None or note.at is None:
+            placed.append(PlacedTag(name, note, None, Pose2D(0.0, 0.0)))
+            continue
+        spot = Spot(name, note.on, note.at, note.shift, tag_corner(note), note.yaw, note.turn)
+        placed.append(PlacedTag(name, note, note.on, next(_on_top(tables, seed, spot))))
+    return tuple(placed)
+
+
+@dataclass(frozen=True, slots=True)
+class Spot:
+    """Where something may lie on a top: at a point of it and around, or anywhere (`at` None).
+
+    margin: what its middle keeps from the edges, m. yaw, turn: how it is turned, rad.
+    """
+
+    name: str
+    table: str
+    at: tuple[float, float] | None
+    shift: float
+    margin: float
+    yaw: float = 0.0
+    turn: float = math.pi
+
+
+def _on_top(tables: Mapping[str, PlacedTable], seed: int, spot: Spot) -> Iterator[Pose2D]:
+    """Draws of a place in the table's own frame, without end."""
+    draw = seeded(seed, "on top", spot.name)
+    half = np.maximum(np.array(tables[spot.table].size) / 2 - spot.margin, 0.0)
+    while True:
+        if spot.at is None:
+            x, y = draw.uniform(-half, half)
+        else:
+            shift = draw.uniform(-spot.shift, spot.shift, 2)
+            x, y = np.clip(np.array(spot.at) + shift, -half, half)
+        yield Pose2D(float(x), float(y), spot.yaw + float(draw.uniform(-spot.turn, spot.turn)))
+
+
+def place_things(
+    world: WorldFile,
+    seed: int,
+    tables: Mapping[str, PlacedTable],
+    objects: Sequence[PlacedThing],
+    tags: Sequence[PlacedTag],
+) -> tuple[PlacedThing, ...]:
+    """0 to `most` loose things on each table, all of them leaving the job possible."""
+    rule = world.distractors
+    if rule is None:
+        return ()
+    placed: list[PlacedThing] = []
+    for table in tables if rule.on is None else rule.on:
+        crowd = _Crowd(world, tables[table], table, objects, tags)
+        draw = seeded(seed, "things", table)
+        wanted = int(draw.integers(rule.most + 1))
+        here: list[PlacedThing] = []
+        for i in range(wanted):
+            kind = rule.kinds[int(draw.integers(len(rule.kinds)))]
+            name = f"{table}_{kind}_{i}"
+            paint = seeded(seed, "paint", name) if rule.patterns else None
+            thing = draw_distractor(kind, draw, paint, crowd.sought)
+            half = np.array(tables[table].size) / 2 - thing.reach - RIM
+            for _ in range(TRIES if (half > 0).all() else 0):
+                x, y = draw.uniform(-half, half)
+                yaw = float(draw.uniform(-math.pi, math.pi))
+                at = Pose2D(float(x), float(y), yaw)
+                candidate = PlacedThing(name, thing, table, at)
+                if crowd.takes([*here, candidate]):
+                    here.append(candidate)
+                    break
+        placed += here
+    return tuple(placed)
+
+
+def draw_distractor(
+    kind: ObjectKind,
+    draw: np.random.Generator,
+    paint: np.random.Generator | None,
+    sought: Thing | None,
+) -> Thing:
+    """A thing of some usual size, weight and look, never like one that is sought."""
+    if sought is None or sought.kind != kind:
+        return draw_thing(kind, draw, paint)
+    color = COLORS[int(draw.integers(len(COLORS)))]
+    size = _other_size(sought, draw)
+    mass = sought.mass * (size[0] ** 2 * size[2]) / (sought.size[0] ** 2 * sought.size[2])
+    color = sought.color if draw.random() < 0.5 else color
+    look = None if paint is None else draw_look(kind, color, paint)
+    return Thing(kind, size, mass, color, look)
+
+
+OTHER_SIZE = 0.22
+"""relative; another thing of the item's kind is more than 20 % wider or higher, or less so."""
+
+
+def _other_size(sought: Thing, draw: np.random.Generator) -> tuple[float, float, float]:
+    factors = draw.uniform(0.85, 1.15, 2)
+    larger = bool(draw.random() < 0.5)
+    factor = draw.uniform(1 + OTHER_SIZE, 1.38) if larger else draw.uniform(0.68, 1 - OTHER_SIZE)
+    factors[int(draw.integers(2))] = factor
+    wide, high = (float(factor) for factor in factors)
+    return sought.size[0] * wide, sought.size[1] * wide, sought.height * high
+
+
+class _Crowd:
+    """What stands on one table already, and what loose things there must leave possible."""
+
+    def __init__(
+        self,
+        world: WorldFile,
+        table: PlacedTable,
+        name: str,
+        objects: Sequence[PlacedThing],
+        tags: Sequence[PlacedTag],
+    ) -> None:
+        assert world.distractors is not None
+        self._rule, self._table, self._goal, self._name = world.distractors, table, world.goal, name
+        item = next((o for o in objects if o.name == world.sought), None)
+        self._item = item
+        self._objects = [disc_of(o) for o in objects if o.table == name and o is not item]
+        self._tags = [tag for tag in tags if tag.table == name]
+
+    @property
+    def sought(self) -> Thing | None:
+        """What is to be brought."""
+        return None if self._item is None else self._item.thing
+
+    def takes(self, things: Sequence[PlacedThing]) -> bool:
+        """Whether the last of some things may stand where it does."""
+        discs = [disc_of(thing) for thing in things]
+        last, others = discs[-1], discs[:-1]
+        if last.height > self._table.above - AIR:
+            return False
+        if any(gap(last, other) < self._rule.gap for other in (*others, *self._objects)):
+            return False
+        around = [*discs, *self._objects]
+        return (
+            self._leaves_item(last, around)
+            and all(self._leaves_tag(tag, last, around) for tag in self._tags)
+            and self._leaves_spot(around)
+        )
+
+    def _leaves_item(self, last: Disc, discs: Sequence[Disc]) -> bool:
+        if self._item is None or self._item.table != self._name:
+            return True
+        item, side = disc_of(self._item), self._table.sides[0]
+        return (
+            gap(last, item) >= self._rule.gap_to_item
+            and lane(item, discs, side)
+            and seen_share(outline_points(item), discs, self._table, side, item) >= ITEM_SEEN
+        )
+
+    def _leaves_tag(self, tag: PlacedTag, last: Disc, discs: Sequence[Disc]) -> bool:
+        disc, side = tag_disc(tag), self._table.sides[0]
+        return (
+            gap(last, disc) >= 0
+            and seen_share(tag_points(tag.at, disc.radius), discs, self._table, side, disc) == 1
+        )
+
+    def _leaves_spot(self, discs: Sequence[Disc]) -> bool:
+        """Whether the item can still be set down where it is to go."""
+        goal, item = self._goal, self._item
+        if goal is None or item is None or goal.on != self._name:
+            return True
+        marker = next((tag.at for tag in self._tags if tag.name == goal.beside), None)
+        if marker is None:
+            return True
+        radius = item.thing.reach
+        wanted = SetDown(radius, item.thing.height, goal.distance, self._table.sides[0])
+        return bool(free_spots(wanted, self._table, discs, marker))
+
+
+def disc_of(placed: PlacedThing) -> Disc:
+    """The upright cylinder around a thing."""
+    return Disc(placed.at.x, placed.at.y, placed.thing.reach, placed.thing.height)
+
+
+def tag_corner(note: TagNote) -> float:
+    """From the middle of a tag's picture to its corner, m."""
+    return picture_edge(note.edge) / math.sqrt(2.0)
+
+
+def tag_disc(tag: PlacedTag) -> Disc:
+    """The disc around the picture of a tag that lies."""
+    return Disc(tag.at.x, tag.at.y, tag_corner(tag.note), 0.0)

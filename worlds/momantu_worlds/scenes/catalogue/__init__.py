@@ -1,0 +1,1 @@
+"""Furniture, loose objects and AprilTags that a world file names by their kind."""

@@ -1,0 +1,69 @@
+"""Reading a world file: YAML 1.2 to checked values, with every error at its place."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import ClassVar
+
+from pydantic import ValidationError
+
+from momantu_bt.descriptions.findings import checked
+from momantu_bt.descriptions.reading import DescriptionError, Problem, Reading, read_text
+from momantu_worlds.scenes.file.references import dangling
+from momantu_worlds.scenes.file.world import WorldFile
+
+SECTIONS = ("rooms", "doors", "doorways", "tables", "furniture", "objects", "tags", "bodies")
+"""Parts of a world file whose keys are names."""
+
+
+class WorldFileError(DescriptionError):
+    """A world file is wrong; the message lists every problem with its line and a caret."""
+
+    what: ClassVar[str] = "world"
+
+
+def read_world(path: Path) -> WorldFile:
+    """The world that a file describes.
+
+    Raises:
+        WorldFileError: the file cannot be read, is no YAML, or describes no possible world; all
+            problems are listed with line and column.
+    """
+    return parse_world(world_text(path), path)
+
+
+def world_text(path: Path) -> str:
+    """The text of a world file; WorldFileError when it cannot be read or is too long."""
+    return read_text(path, WorldFileError)
+
+
+def parse_world(text: str, path: Path) -> WorldFile:
+    """As `read_world`, from text; `path` is for the messages, and where named files lie."""
+    reading = Reading(path, text, WorldFileError)
+    try:
+        world = checked(reading, WorldFile, WorldFileError).located(path)
+    except WorldFileError as error:
+        raise WorldFileError(path, text, [*error.problems, *_beside(reading, error)]) from None
+    reading.refuse(dangling(world))
+    return world
+
+
+def _beside(reading: Reading, error: WorldFileError) -> Iterator[Problem]:
+    """What is wrong with the names of a file whose values are wrong, too.
+
+    Parts that are wrong are left out; where whole sections would be, nothing is said.
+    """
+    places = {problem.place[:2] for problem in error.problems}
+    if any(len(place) < 2 or place[0] not in SECTIONS for place in places):
+        return
+    named = {section: dict(reading.plain[section]) for section, _ in places}
+    for section, name in places:
+        named[str(section)].pop(name, None)
+    try:
+        world = WorldFile.model_validate({**reading.plain, **named}).located(reading.path)
+    except ValidationError:
+        return
+    for place, message in dangling(world, also={str(name) for _, name in places}):
+        if place[0] != "doors" or "rooms" not in named:  # its wall may be one of these
+            yield Problem(*reading.at(place), message, place)

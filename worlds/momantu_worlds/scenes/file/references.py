@@ -1,0 +1,164 @@
+"""Names in a world file that point at nothing, or at two things, and files that are not there."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator
+from typing import TypeAlias
+
+from momantu_bt.descriptions.names import nearest
+from momantu_worlds.scenes.file.furniture import MeshUse
+from momantu_worlds.scenes.file.world import WorldFile
+
+Place: TypeAlias = tuple[str | int, ...]
+Finding: TypeAlias = tuple[Place, str]
+FLOOR = "floor"
+"""The name of the body that everything stands on."""
+NO_WORLD = "none"
+"""What trees and the command line call running without a world."""
+
+
+def dangling(world: WorldFile, also: Collection[str] = ()) -> Iterator[Finding]:
+    """Everything that one part of a file says of another and that is not so.
+
+    also: names of parts that are wrong in themselves and were left out.
+    """
+    if world.name == NO_WORLD:
+        yield ("name",), f"{NO_WORLD!r} means no world at all; choose another name"
+    yield from _twice(world)
+    yield from _Names(world, also).findings()
+    yield from _files(world)
+    for name, problem in world.room_walls.problems.items():
+        yield ("doors", name), f"the door {name!r}: {problem}"
+
+
+def _twice(world: WorldFile) -> Iterator[Finding]:
+    """Bodies of one name: all that a file names, and the walls that follow from it."""
+    seen: dict[str, str] = {FLOOR: "the floor"} | {run.name: "a wall" for run in world.wall_runs}
+    named = {("item", "name"): world.item, ("tag", "name"): world.tag}
+    found: list[tuple[Place, str, str]] = [
+        (place, each.name, place[0]) for place, each in named.items() if each is not None
+    ]
+    sections: dict[str, tuple[str, Iterable[str]]] = {
+        "doors": ("door", world.doors),
+        "tables": ("table", world.tables),
+        "furniture": ("piece of furniture", world.furniture),
+        "bodies": ("body", world.bodies),
+        "objects": ("object", world.objects),
+        "tags": ("tag", world.tags),
+    }
+    for section, (what, names) in sections.items():
+        found += [((section, name), name, what) for name in names]
+    for place, name, what in found:
+        if name in seen:
+            yield place, f"{name!r} is {_a(seen[name])} already; choose another name"
+        seen.setdefault(name, what)
+    for name in sorted(set(world.doorways) & set(world.doors)):
+        yield ("doorways", name), f"{name!r} is a door already; choose another name"
+
+
+def _a(what: str) -> str:
+    if what.startswith(("a ", "the ")):
+        return what
+    return f"{'an' if what[0] in 'aeiou' else 'a'} {what}"
+
+
+class _Names:
+    """Names of what stands on what, and what they point at."""
+
+    def __init__(self, world: WorldFile, also: Collection[str]) -> None:
+        self._world, self._also = world, also
+        self._surfaces = surface_names(world)
+
+    def findings(self) -> Iterator[Finding]:
+        yield from self._boards()
+        for place, top in self._tops():
+            yield from self._missing(place, top, self._surfaces, "table")
+        yield from self._goal()
+
+    def _missing(
+        self, place: Place, name: str, having: Iterable[str], what: str
+    ) -> Iterator[Finding]:
+        names = list(having)
+        if name not in names and name not in self._also:
+            yield place, f"there is no {what} {name!r}{nearest(name, names)}"
+
+    def _boards(self) -> Iterator[Finding]:
+        """Boards that are surfaces: their shelf, their number, and whether somebody took it."""
+        world = self._world
+        taken: dict[tuple[str, int], str] = {}
+        shelves = [name for name, piece in world.furniture.items() if piece.boards]
+        for name, table in world.tables.items():
+            if table.board_of is None or table.board is None:
+                continue
+            place = ("tables", name)
+            yield from self._missing(
+                (*place, "board_of"), table.board_of, shelves, "shelf with boards"
+            )
+            if table.board_of in shelves:
+                piece = world.furniture[table.board_of]
+                if table.board > len(piece.boards):
+                    message = f"{table.board_of!r} has {len(piece.boards)} boards, counted from 1"
+                    yield (*place, "board"), message
+                elif piece.moves:
+                    message = (
+                        f"{table.board_of!r} carries a surface: shift and turn it, instead of moves"
+                    )
+                    yield ("furniture", table.board_of, "moves"), message
+            other = taken.setdefault((table.board_of, table.board), name)
+            if other != name:
+                yield (*place, "board"), f"this board is {other!r} already"
+
+    def _tops(self) -> Iterator[tuple[Place, str]]:
+        """What stands on which surface."""
+        world = self._world
+        if world.item is not None:
+            yield from ((("item", "on"), top) for top in world.item.tops)
+        if world.tag is not None and world.tag.on is not None:
+            yield ("tag", "on"), world.tag.on
+        for name, note in world.objects.items():
+            yield from ((("objects", name, "on"), top) for top in note.tops)
+        for name, tag in world.tags.items():
+            if tag.on is not None:
+                yield ("tags", name, "on"), tag.on
+        if world.distractors is not None:
+            for number, top in enumerate(world.distractors.on or ()):
+                yield ("distractors", "on", number), top
+
+    def _goal(self) -> Iterator[Finding]:
+        world, goal = self._world, self._world.goal
+        if goal is None:
+            return
+        things = [*([world.item.name] if world.item is not None else ()), *world.objects]
+        yield from self._missing(("goal", "item"), goal.item, things, "object")
+        yield from self._missing(("goal", "on"), goal.on, self._surfaces, "table")
+        if goal.beside is None:
+            return
+        markers = [*world.all_tags, *world.objects, *self._surfaces, *world.bodies]
+        yield from self._missing(("goal", "beside"), goal.beside, markers, "tag or body")
+        if goal.beside == goal.item:
+            yield ("goal", "beside"), f"{goal.item!r} cannot stand beside itself"
+
+
+def surface_names(world: WorldFile) -> tuple[str, ...]:
+    """Names of all surfaces: tables, boards, and bodies with a top."""
+    bodies = (name for name, body in world.bodies.items() if body.surface is not None)
+    return (*world.tables, *bodies)
+
+
+def _files(world: WorldFile) -> Iterator[Finding]:
+    for place, use in _meshes(world):
+        if not world.beside(use.file).is_file():
+            yield (*place, "file"), f"there is no file {use.file!r} beside the world file"
+    if world.site.map is not None and not world.beside(world.site.map).is_file():
+        yield ("site", "map"), f"there is no file {world.site.map!r} beside the world file"
+
+
+def _meshes(world: WorldFile) -> Iterator[tuple[Place, MeshUse]]:
+    for section, pieces in (("tables", world.tables), ("furniture", world.furniture)):
+        for name, piece in pieces.items():
+            if piece.mesh is not None:
+                yield (section, name, "mesh"), piece.mesh
+    for name, body in world.bodies.items():
+        for number, part in enumerate(body.parts):
+            if part.mesh is not None:
+                yield ("bodies", name, "parts", number, "mesh"), part.mesh

@@ -1,0 +1,50 @@
+"""What a world file asks of the robot, and what it tells it."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any
+
+from pydantic import Field
+
+from momantu_bt.descriptions.quantities import Angle, Force, Size, Time
+from momantu_worlds.scenes.file.values import Name, Part, PlanarPose
+
+
+class GoalDemand(Part):
+    """What the referee wants: an object on a surface, within `distance` of a tag or body or not."""
+
+    item: Name
+    on: Name
+    beside: Name | None = None
+    tilt: Angle = math.radians(5)
+    distance: Size = 0.4
+    still: Time = 1.0
+    gripper: Size = 0.1
+    others_tilt: Angle = math.radians(30)
+    others_shift: Size = 0.1
+    force: Force = 150.0
+
+
+class ObjectSizes(Part):
+    """What the robot is told of a class of objects."""
+
+    category: Name
+    diameter: Size | None = None
+    height: Size | None = None
+    width: Size | None = None
+    depth: Size | None = None
+
+
+class SiteNotes(Part):
+    """What a person would tell the robot, beside what follows from the file.
+
+    map: map_server's YAML of a floor plan of one's own; drawn from this file when not said.
+    services: parameters of services, by service name.
+    """
+
+    resolution: Annotated[Size, Field(ge=0.01, le=0.5)] = 0.05
+    places: dict[Name, PlanarPose] = {}
+    objects: dict[Name, ObjectSizes] = {}
+    services: dict[Name, dict[str, Any]] = {}
+    map: Annotated[str, Field(min_length=1, max_length=500)] | None = None

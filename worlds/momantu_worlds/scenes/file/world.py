@@ -1,0 +1,115 @@
+"""A whole world file, as checked values."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import Field, PrivateAttr
+
+from momantu_bt.geometry import Pose2D
+from momantu_worlds.scenes.file.bodies import BodyNote
+from momantu_worlds.scenes.file.building import (
+    MOST_DOORS,
+    MOST_ROOMS,
+    Door,
+    Doorway,
+    Floor,
+    Room,
+    Walls,
+)
+from momantu_worlds.scenes.file.furniture import Piece, Table
+from momantu_worlds.scenes.file.objects import Distractors, Item, ObjectNote, Tag, TagNote
+from momantu_worlds.scenes.file.site import GoalDemand, SiteNotes
+from momantu_worlds.scenes.file.values import Name, Part
+from momantu_worlds.scenes.file.variation import Light, Start, Unknown
+from momantu_worlds.scenes.file.walls import RoomWalls, WallRun, given_runs
+
+MOST_PIECES, MOST_TABLES, MOST_OBJECTS, MOST_TAGS, MOST_BODIES = 1000, 100, 200, 100, 2000
+
+
+class WorldFile(Part):
+    """A whole world file. Everything but its version, its name and the start may be missing."""
+
+    momantu_world: Literal[1]
+    name: Name
+    robot: Annotated[str, Field(min_length=1, max_length=500)] = "fetch"
+    floor: Floor = Floor()
+    walls: Walls = Walls()
+    rooms: Annotated[dict[Name, Room], Field(max_length=MOST_ROOMS)] = {}
+    doors: Annotated[dict[Name, Door], Field(max_length=MOST_DOORS)] = {}
+    doorways: Annotated[dict[Name, Doorway], Field(max_length=MOST_DOORS)] = {}
+    tables: Annotated[dict[Name, Table], Field(max_length=MOST_TABLES)] = {}
+    item: Item | None = None
+    tag: Tag | None = None
+    objects: Annotated[dict[Name, ObjectNote], Field(max_length=MOST_OBJECTS)] = {}
+    tags: Annotated[dict[Name, TagNote], Field(max_length=MOST_TAGS)] = {}
+    distractors: Distractors | None = None
+    furniture: Annotated[dict[Name, Piece], Field(max_length=MOST_PIECES)] = {}
+    bodies: Annotated[dict[Name, BodyNote], Field(max_length=MOST_BODIES)] = {}
+    start: Start
+    unknown: Unknown | None = None
+    light: Light = Light()
+    goal: GoalDemand | None = None
+    site: SiteNotes = SiteNotes()
+
+    _file: Path = PrivateAttr(default=Path())
+
+    def located(self, file: Path) -> WorldFile:
+        """The same world, with the file that it was read from."""
+        self._file = file
+        return self
+
+    @property
+    def file(self) -> Path:
+        """Where it was read from."""
+        return self._file
+
+    def beside(self, name: str) -> Path:
+        """A file that the world file names: relative to where it lies."""
+        return self._file.parent / name
+
+    def mesh_files(self) -> tuple[Path, ...]:
+        """Every mesh file that it names, once."""
+        uses = [table.mesh for table in self.tables.values()]
+        uses += [piece.mesh for piece in self.furniture.values()]
+        uses += [part.mesh for body in self.bodies.values() for part in body.parts]
+        return tuple(dict.fromkeys(self.beside(use.file) for use in uses if use is not None))
+
+    def files(self) -> tuple[Path, ...]:
+        """The world file itself and all that it names: meshes, a map of its own."""
+        maps = () if self.site.map is None else (self.beside(self.site.map),)
+        return (self._file, *self.mesh_files(), *maps)
+
+    @property
+    def sought(self) -> str | None:
+        """The object that is to be brought: the goal's, or the item."""
+        if self.goal is not None:
+            return self.goal.item
+        return None if self.item is None else self.item.name
+
+    @cached_property
+    def room_walls(self) -> RoomWalls:
+        """The walls that follow from the rooms."""
+        return RoomWalls(self.walls, self.rooms, self.doors)
+
+    @cached_property
+    def wall_runs(self) -> tuple[WallRun, ...]:
+        """Every wall: those given piece by piece, then those of the rooms."""
+        return (*given_runs(self.walls), *self.room_walls.runs())
+
+    @cached_property
+    def door_leaves(self) -> tuple[tuple[str, Door, Pose2D], ...]:
+        """Closed doors, and where the middle of each leaf is."""
+        return tuple(self.room_walls.leaves())
+
+    @cached_property
+    def all_doorways(self) -> dict[str, Doorway]:
+        """Gaps to drive through: those that are given, then the open doors."""
+        return {**self.doorways, **self.room_walls.doorways()}
+
+    @cached_property
+    def all_tags(self) -> dict[str, TagNote]:
+        """Every tag by its name; the one that `tag` describes comes first."""
+        return {**({} if self.tag is None else {self.tag.name: self.tag}), **self.tags}

@@ -1,0 +1,1 @@
+"""Bodies as plain values, and their geometry: extents, outlines, prisms, floor-plan shapes."""

@@ -1,0 +1,1 @@
+"""Links and shapes of SDF as bodies of a world file, in its frame."""

@@ -1,0 +1,172 @@
+"""Rigid groups of links as bodies of a world file."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from momantu_bt.geometry import Array, Transform
+from momantu_worlds.sdf.body.frames import PlacedLink, PlacedModel
+from momantu_worlds.sdf.body.ground import Ground
+from momantu_worlds.sdf.body.parts import Part, joined
+from momantu_worlds.sdf.body.placing import placed_in_link
+from momantu_worlds.sdf.body.rigid_groups import Group
+from momantu_worlds.sdf.body.shaping import Shaping
+from momantu_worlds.sdf.findings import Findings, Place
+
+MOST_PARTS = 500
+"""Of one body, as the reader of world files takes them."""
+FRICTION = (0.01, 1.0)
+"""Least and most that a world file takes."""
+_LONGEST = 50
+
+
+@dataclass(frozen=True, slots=True)
+class ImportedBody:
+    """One body. title: models and links that it was made of. mass: kg, None when it is still.
+
+    friction: None where the world says nothing.
+    """
+
+    name: str
+    title: str
+    place: Place
+    at: Transform
+    parts: tuple[Part, ...]
+    still: bool
+    mass: float | None = None
+    friction: float | None = None
+
+    def hulls(self) -> Iterator[Array]:
+        """Points (n, 3) of everything that is touched, piece by piece, in the map."""
+        for part in self.parts:
+            for hull in part.hulls:
+                yield self.at.apply(part.body_from_part.apply(hull))
+
+    def lifted(self, height: float) -> ImportedBody:
+        """The same body, higher."""
+        return replace(self, at=Transform((0.0, 0.0, height)) @ self.at)
+
+
+class BodyMaker:
+    """Makes bodies of one import, each with a name of its own."""
+
+    def __init__(self, shaping: Shaping, ground: Ground, findings: Findings) -> None:
+        self._shaping, self._ground, self._findings = shaping, ground, findings
+        self._names: set[str] = set()
+
+    def body(self, model: PlacedModel, group: Group) -> Iterator[ImportedBody]:
+        """The body of a group; several when it has too many parts; none when nothing is left."""
+        first = group.links[0]
+        at = _frame_of(model, group) if group.still else first.world_from_link
+        parts = list(joined(self._parts(model, group, at)))
+        if not parts:
+            if any(self._had_shapes(placed) for placed in group.links):
+                self._findings.dropped(
+                    first.link.place, first.subject, "a body of which no shape is left", "left out"
+                )
+            return
+        still = group.still or not any(part.collision for part in parts)
+        if still and not group.still:
+            self._findings.changed(
+                first.link.place, first.subject, "it can move but not be touched", "it stays there"
+            )
+        mass = None if still else sum(placed.link.mass for placed in group.links)
+        title = first.subject if len(group.links) == 1 else "/".join(first.path)
+        if not still and len(parts) > MOST_PARTS:
+            what = f"{len(parts)} parts of one loose body"
+            self._findings.dropped(
+                first.link.place, first.subject, what, f"the first {MOST_PARTS} are kept"
+            )
+            parts = parts[:MOST_PARTS]
+        for count in range(0, len(parts), MOST_PARTS):
+            yield ImportedBody(
+                self._name(model, group),
+                title,
+                first.link.place,
+                at,
+                tuple(parts[count : count + MOST_PARTS]),
+                still,
+                mass,
+                self._friction(group),
+            )
+
+    def _parts(self, model: PlacedModel, group: Group, at: Transform) -> Iterator[Part]:
+        owners = {one.path: one for one in model.everything()}
+        body_from_world = at.inverse()
+        for placed in group.links:
+            owner = owners[placed.path]
+            for shape in placed.link.visuals:
+                if self._ground.is_floor(placed, shape):
+                    continue
+                pose = body_from_world @ placed_in_link(owner, placed, shape.pose)
+                subject = f"{placed.subject}/{shape.name}"
+                yield from self._shaping.seen(shape, pose, placed.scale, subject)
+            for shape in placed.link.collisions:
+                if self._ground.is_floor(placed, shape):
+                    continue
+                pose = body_from_world @ placed_in_link(owner, placed, shape.pose)
+                subject = f"{placed.subject}/{shape.name}"
+                yield from self._shaping.touched(
+                    shape, pose, placed.scale, subject, still=group.still
+                )
+
+    def _had_shapes(self, placed: PlacedLink) -> bool:
+        """Whether a link has anything that is not the floor."""
+        shapes = (*placed.link.visuals, *placed.link.collisions)
+        return any(not self._ground.is_floor(placed, shape) for shape in shapes)
+
+    def _friction(self, group: Group) -> float | None:
+        """The friction of a body is one for all its shapes: the least of them."""
+        given = [
+            s.friction for p in group.links for s in p.link.collisions if s.friction is not None
+        ]
+        if not given:
+            return None
+        friction = min(given)
+        kept = float(np.clip(friction, *FRICTION))
+        first = group.links[0]
+        if kept != friction or max(given) != friction:
+            said = f"friction {max(given):g}" + (
+                f" to {friction:g}" if max(given) > friction else ""
+            )
+            self._findings.changed(first.link.place, first.subject, said, f"{kept:g} for all of it")
+        return kept
+
+    def _name(self, model: PlacedModel, group: Group) -> str:
+        """The outermost model's name if that is one body, else the innermost's, and the link's."""
+        first = group.links[0]
+        if len(group.links) == sum(len(one.links) for one in model.everything()):
+            return self.unique(model.model.name)
+        inner = next(one for one in model.everything() if one.path == first.path)
+        own = [placed for placed in group.links if placed.path == first.path]
+        link = [] if len(own) == len(inner.links) else [first.link.name]
+        return self.unique("_".join([first.path[-1], *link]))
+
+    def unique(self, said: str) -> str:
+        """A name as world files have them, that nothing else has."""
+        stem = plain_name(said)
+        name, count = stem, 2
+        while name in self._names:
+            name, count = f"{stem}_{count}", count + 1
+        self._names.add(name)
+        return name
+
+
+def _frame_of(model: PlacedModel, group: Group) -> Transform:
+    """The frame of the innermost model that has all links of a group, in the world's."""
+    first = group.links[0]
+    if any(placed.path != first.path for placed in group.links):
+        return model.world_from_model
+    return next(one for one in model.everything() if one.path == first.path).world_from_model
+
+
+def plain_name(said: str) -> str:
+    """Small letters, digits and underscores, beginning with a letter."""
+    name = re.sub(r"[^a-z0-9]+", "_", said.lower()).strip("_")[:_LONGEST].rstrip("_")
+    if not name:
+        return "body"
+    return name if name[0].isalpha() else f"body_{name}"

@@ -1,0 +1,68 @@
+"""Bodies on the floor: lowered to it, and what lies flat on it out of a robot's way."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from momantu_bt.geometry import Array, Transform
+from momantu_worlds.sdf.body.bodies import ImportedBody
+from momantu_worlds.sdf.body.parts import Part
+from momantu_worlds.sdf.findings import Findings
+
+FLAT = 0.03
+"""m; a still part that ends below this height is driven over, as a carpet or a marking is."""
+FLUSH = 0.002
+"""m; what ends no lower than this below the floor is meant to be seen on it."""
+WIDE, LIFTED = 10.0, (0.001, 0.003)
+"""m2, and m: how high things on the floor are at least, wide ones and those that lie on such.
+
+Two faces at one height flicker in pictures.
+"""
+
+
+def settled(
+    bodies: Iterable[ImportedBody], height: float, findings: Findings
+) -> Iterator[ImportedBody]:
+    """Bodies with the floor at z = 0; height: of the floor where they come from, m."""
+    for body in bodies:
+        lowered = body.lifted(-height) if height else body
+        parts = tuple(_flattened(lowered, findings)) if body.still else body.parts
+        if parts:
+            yield replace(lowered, parts=parts)
+
+
+def _flattened(body: ImportedBody, findings: Findings) -> Iterator[Part]:
+    for part in body.parts:
+        if part.seen is not None:
+            yield _visible(body, part, part.seen)
+            continue
+        around = np.concatenate(part.hulls) if part.hulls else None
+        top = None if around is None else _height(body, part, around)
+        if around is None or top is None or top > FLAT:
+            yield part
+            continue
+        what = f"a part that lies flat on the floor, up to {top:.3f} m"
+        if part.visual:
+            findings.changed(body.place, body.title, what, "it is seen, but not touched")
+            yield _visible(body, replace(part, collision=False, hulls=()), around)
+        else:
+            findings.dropped(body.place, body.title, what, "it is not touched")
+
+
+def _visible(body: ImportedBody, part: Part, around: Array) -> Part:
+    """A part that is flush with the floor, lifted out of it; around: points (n, 3) of it."""
+    points = body.at.apply(part.body_from_part.apply(around))
+    top, wide = float(points[:, 2].max()), float(np.ptp(points[:, :2], axis=0).prod()) > WIDE
+    least = LIFTED[0] if wide else LIFTED[1]
+    if not -FLUSH <= top < least:
+        return part
+    lift = Transform((0.0, 0.0, least - top))
+    return replace(part, body_from_part=body.at.inverse() @ lift @ body.at @ part.body_from_part)
+
+
+def _height(body: ImportedBody, part: Part, points: Array) -> float:
+    """Of the highest of some points of a part, m."""
+    return float(body.at.apply(part.body_from_part.apply(points))[:, 2].max())

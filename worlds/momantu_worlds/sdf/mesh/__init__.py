@@ -1,0 +1,1 @@
+"""Mesh files: reading, simplifying, convex decomposition, and GLB assets."""

@@ -1,0 +1,103 @@
+"""Meshes as GLB files beside the world file, named after their content."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import trimesh
+
+from momantu_bt.files import write_whole
+from momantu_bt.geometry import Array
+from momantu_worlds.sdf.mesh.files import Piece
+
+MOST_PIXELS = 1024
+"""Of a picture's longer edge: what a camera of 640 x 480 can see of it."""
+MOST_PIECES = 200
+"""Convex pieces of one file; the reader of world files takes more for a single one."""
+_STEM = 40
+
+
+_untyped: Any = trimesh
+"""For what trimesh has no types of."""
+
+
+@dataclass(slots=True)
+class Assets:
+    """The files of one import, held until all of it is known to be right.
+
+    folder: their name of it in the world file, relative to that.
+    """
+
+    folder: str
+    _files: dict[str, bytes] = field(default_factory=dict)
+
+    def look(self, name: str, pieces: Sequence[Piece], color: tuple[float, ...] | None) -> str:
+        """A file to look at; color: instead of the pieces' own. Returns its path."""
+        return self._keep(name, [_seen(piece, color) for piece in pieces])
+
+    def touch(self, name: str, hulls: Sequence[Array]) -> str:
+        """A file of at most MOST_PIECES convex pieces to touch, each given by points (n, 3)."""
+        return self._keep(f"{name}_touch", [trimesh.convex.convex_hull(h) for h in hulls])
+
+    def write(self, beside: Path) -> int:
+        """Write everything below the folder of `beside`; returns how many files.
+
+        Raises:
+            OutputError: it cannot be written there.
+        """
+        for path, content in self._files.items():
+            write_whole(beside.parent / path, content, folders=True)
+        return len(self._files)
+
+    def _keep(self, name: str, meshes: Sequence[Any]) -> str:
+        scene = _untyped.Scene()
+        for number, mesh in enumerate(meshes):
+            scene.add_geometry(mesh, node_name=f"piece_{number:04}", geom_name=f"piece_{number:04}")
+        content = bytes(scene.export(file_type="glb"))
+        digest = hashlib.blake2b(content, digest_size=8).hexdigest()
+        stem = re.sub(r"[^a-z0-9_]+", "_", name.lower()).strip("_")[:_STEM] or "mesh"
+        path = f"{self.folder}/{stem}-{digest}.glb"
+        self._files[path] = content
+        return path
+
+
+def _seen(piece: Piece, color: tuple[float, ...] | None) -> Any:
+    chosen = color or piece.color
+    material = _untyped.visual.material.PBRMaterial(metallicFactor=0.0, roughnessFactor=1.0)
+    if color is None and piece.picture is not None:
+        material.baseColorTexture = small_picture(piece.picture)
+    elif chosen is not None:
+        material.baseColorFactor = np.array([*(round(255 * c) for c in chosen[:3]), 255], np.uint8)
+    uv = None if piece.uv is None else piece.uv
+    visual = _untyped.visual.TextureVisuals(uv=uv, material=material)
+    return trimesh.Trimesh(piece.vertices, piece.triangles, visual=visual, process=False)
+
+
+def small_picture(picture: Any) -> Any:
+    """A picture (PIL) in red, green and blue, no larger than can be seen."""
+    small = picture.convert("RGB")
+    small.thumbnail((MOST_PIXELS, MOST_PIXELS))
+    return small
+
+
+def open_picture(file: Path) -> Any:
+    """A picture of a file, None when it cannot be read as one."""
+    from PIL import Image
+
+    try:
+        with Image.open(file) as picture:
+            return small_picture(picture)
+    except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
+        return None
+
+
+def mean_color(picture: Any) -> tuple[float, float, float]:
+    """The mean colour of a picture, 0..1."""
+    red, green, blue = np.asarray(picture, dtype=np.float64).reshape(-1, 3).mean(axis=0) / 255.0
+    return float(red), float(green), float(blue)

@@ -1,0 +1,84 @@
+"""Convex pieces that stand for a mesh when it is touched.
+
+A mesh falls apart into what hangs together; each part is its convex hull. A hull that would fill
+space in which the robot stands or puts things (a room, the space below a table) is no good: of
+what stands still and is hollow, faces become thin plates instead.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+import trimesh
+from numpy.typing import NDArray
+
+from momantu_bt.geometry import Array
+from momantu_worlds.sdf.mesh.files import Piece
+from momantu_worlds.sdf.mesh.hollow import Air
+from momantu_worlds.sdf.mesh.plates import plates_of
+
+SMALL = 0.3
+"""m; parts with no greater extent are their hulls: nothing stands in them."""
+MOST_PARTS = 400
+"""Of one mesh; with more, the hull of all stands for it."""
+FLAT_HULL = 1e-9
+"""m3; a hull that is smaller has no inside."""
+THICKENED = 0.005
+"""m; what is flat is made thicker by this on every side."""
+
+_untyped: Any = trimesh
+"""For what trimesh has no types of."""
+
+
+def convex_pieces(pieces: Sequence[Piece], *, still: bool) -> tuple[list[Array], bool]:
+    """Points (n, 3) of convex pieces that cover a mesh, m; and whether all of it is a plain hull.
+
+    still: it never moves, so hollow parts may be plates.
+    """
+    parts = list(_parts(pieces))
+    if len(parts) > MOST_PARTS:
+        return [_hull(np.concatenate([v for v, _ in parts])).vertices], True
+    found: list[Array] = []
+    plain = True
+    air = Air(parts) if still else None
+    for vertices, triangles in parts:
+        hull = _hull(vertices)
+        hollow = air is not None and np.ptp(vertices, axis=0).max() > SMALL and air.fills(hull)
+        plates = plates_of(vertices, triangles) if hollow else []
+        plain = plain and not plates
+        found += plates or [np.asarray(hull.vertices)]
+    return found, plain
+
+
+def _parts(pieces: Sequence[Piece]) -> Iterator[tuple[Array, NDArray[np.int64]]]:
+    """Vertices and triangles of everything that hangs together, whatever it looks like."""
+    offsets = np.cumsum([0, *(len(piece.vertices) for piece in pieces)])
+    vertices = np.concatenate([piece.vertices for piece in pieces])
+    triangles = np.concatenate([p.triangles + o for p, o in zip(pieces, offsets, strict=False)])
+    mesh = trimesh.Trimesh(vertices, triangles, process=False)
+    mesh.merge_vertices(merge_tex=True, merge_norm=True, digits_vertex=5)
+    edges = np.concatenate([mesh.faces[:, [0, 1]], mesh.faces[:, [1, 2]]])
+    groups = _untyped.graph.connected_component_labels(edges, node_count=len(mesh.vertices))
+    of_triangle = groups[mesh.faces[:, 0]]
+    for group in np.unique(of_triangle):
+        own = mesh.faces[of_triangle == group]
+        used, own = np.unique(own, return_inverse=True)
+        yield np.asarray(mesh.vertices[used]), np.asarray(own.reshape(-1, 3), dtype=np.int64)
+
+
+def _hull(points: Array) -> Any:
+    """The convex hull, a trimesh.Trimesh; of what is flat, of a thickened one."""
+    try:
+        hull = trimesh.convex.convex_hull(points)
+        if hull.volume > FLAT_HULL:
+            return hull
+    except Exception:  # qhull's own errors: points on one plane or line
+        pass
+    return trimesh.convex.convex_hull(np.concatenate([points + THICKENED * s for s in _CORNERS]))
+
+
+_CORNERS = np.array(
+    [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=np.float64
+)

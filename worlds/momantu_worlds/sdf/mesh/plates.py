@@ -1,0 +1,117 @@
+"""Thin convex plates in the place of a hollow mesh's faces, so that its inside stays free."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from momantu_bt.geometry import Array
+from momantu_worlds.sdf.mesh.files import Piece
+from momantu_worlds.sdf.mesh.reducing import clustered
+
+PLATE = 0.01
+"""m; thickness of a plate, to its inner side."""
+FLAT = 0.02
+"""What the outline of joined triangles may lack of being convex, of its area."""
+ONE_PLANE = 0.002
+"""m; faces whose planes lie farther apart are different ones."""
+MOST_PLATES = 600
+"""Of one part; with more, its hull stands for it."""
+CELL = 0.02
+"""m; finer shapes than this are no matter for a plate."""
+MOST_TRIANGLES = 4000
+"""Of a part whose faces become plates; with more it is clustered first."""
+THIN = 1e-9
+"""m2; a triangle that is smaller has no side."""
+
+
+def plates_of(vertices: Array, triangles: NDArray[np.int64]) -> list[Array]:
+    """Thin convex pieces below a surface; none when it takes too many."""
+    if len(triangles) > MOST_TRIANGLES:
+        few = clustered(Piece(vertices, triangles), CELL)
+        vertices, triangles = few.vertices, few.triangles
+        if len(triangles) > MOST_TRIANGLES:
+            return []
+    triangles = triangles[_areas(vertices, triangles) > THIN]
+    found: list[Array] = []
+    for normal, face in _faces(vertices, triangles):
+        for polygon in _convex_polygons(vertices, face, normal):
+            found.append(np.concatenate([polygon, polygon - PLATE * normal]))
+        if len(found) > MOST_PLATES:
+            return []
+    return found
+
+
+def _areas(vertices: Array, triangles: NDArray[np.int64]) -> Array:
+    a, b, c = (vertices[triangles[:, i]] for i in range(3))
+    return np.asarray(np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2.0)
+
+
+def _faces(
+    vertices: Array, triangles: NDArray[np.int64]
+) -> Iterator[tuple[Array, NDArray[np.int64]]]:
+    """Triangles that lie in one plane, with its normal."""
+    a, b, c = (vertices[triangles[:, i]] for i in range(3))
+    normals = np.cross(b - a, c - a)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    offsets = np.einsum("ij,ij->i", normals, a)
+    keys = np.round(np.column_stack([normals / FLAT, offsets / ONE_PLANE])).astype(np.int64)
+    _, group = np.unique(keys, axis=0, return_inverse=True)
+    group = group.reshape(-1)
+    for one in range(int(group.max()) + 1):
+        own = group == one
+        yield normals[own].mean(axis=0), triangles[own]
+
+
+def _convex_polygons(vertices: Array, face: NDArray[np.int64], normal: Array) -> Iterator[Array]:
+    """Corners (n, 3) of convex polygons that cover the triangles of a face, joined greedily."""
+    flat = _in_plane(normal)
+    polygons = [frozenset(map(int, triangle)) for triangle in face]
+    areas = {p: _hull_area(vertices[list(p)] @ flat) for p in polygons}
+    open_polygons = list(dict.fromkeys(polygons))
+    while open_polygons:
+        polygon = open_polygons.pop(0)
+        grown = True
+        while grown:
+            grown = False
+            for other in open_polygons:
+                joined = polygon | other
+                if len(polygon & other) < 2:
+                    continue
+                area = _hull_area(vertices[list(joined)] @ flat)
+                if area <= (areas[polygon] + areas[other]) * (1.0 + FLAT):
+                    open_polygons.remove(other)
+                    areas[joined] = area
+                    polygon, grown = joined, True
+                    break
+        yield vertices[sorted(polygon)]
+
+
+def _in_plane(normal: Array) -> Array:
+    """Two unit vectors (3, 2) across a normal."""
+    seed = np.eye(3)[int(np.argmin(np.abs(normal)))]
+    first = np.cross(normal, seed)
+    first /= np.linalg.norm(first)
+    return np.stack([first, np.cross(normal, first)], axis=1)
+
+
+def _hull_area(points: Array) -> float:
+    """Area of the convex hull of points (n, 2), m2 (Andrew's monotone chain)."""
+    order = points[np.lexsort((points[:, 1], points[:, 0]))]
+    outline: list[Array] = []
+    for half in (order, order[::-1]):
+        chain: list[Array] = []
+        for point in half:
+            while len(chain) > 1 and _turn(chain[-2], chain[-1], point) <= 0.0:
+                chain.pop()
+            chain.append(point)
+        outline += chain[:-1]
+    corners = np.array(outline)
+    x, y = corners.T
+    return abs(float(x @ np.roll(y, -1) - y @ np.roll(x, -1))) / 2.0
+
+
+def _turn(a: Array, b: Array, c: Array) -> float:
+    return float((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))

@@ -1,0 +1,1 @@
+"""SDF files as typed values, each with its place in the file."""

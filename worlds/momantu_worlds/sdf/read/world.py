@@ -1,0 +1,136 @@
+"""A whole SDF world: models, lights, frames, and the states that Gazebo saved."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from pathlib import Path
+
+from momantu_bt.geometry import Transform
+from momantu_worlds.sdf.findings import Findings, Place
+from momantu_worlds.sdf.read.document import Element
+from momantu_worlds.sdf.read.lights import lights_of
+from momantu_worlds.sdf.read.model import Model, ModelState, SdfWorld
+from momantu_worlds.sdf.read.models import read_frame, read_include, read_model
+from momantu_worlds.sdf.read.reading import Reading
+from momantu_worlds.sdf.read.unread import INSTEAD, list_leftovers
+from momantu_worlds.sdf.read.uris import Library, version_of
+from momantu_worlds.sdf.read.values import color_of, name_of, numbers, pose_of, vector
+
+DOWN = 9.8
+"""m/s2; gravity that is meant to be the Earth's lies within 0.1 of it."""
+_OF_WORLD = ("model", "include", "light", "frame", "state", "scene", "gravity", "physics")
+_GRAVITY_NEAR = 0.1
+SCALES = (0.001, 1000)
+"""Factors by which a state may scale a model."""
+
+
+def read_world(file: Path, folders: Iterable[Path], findings: Findings) -> SdfWorld:
+    """The world of an SDF file. A file with models alone is a world of them.
+
+    Raises:
+        SdfError: the file, or one that it includes, is broken; the message says where.
+    """
+    reading = Reading(Library(tuple(folders)), findings)
+    with reading.including(file, Place(file)) as root:
+        version = version_of(root)
+        worlds = list(root.all("world"))
+        for other in worlds[1:]:
+            findings.dropped(other.place, other.attributes.get("name", ""), "<world>", "left out")
+        return _world(worlds[0] if worlds else root, file, version, reading)
+
+
+def _world(element: Element, file: Path, version: tuple[int, int], reading: Reading) -> SdfWorld:
+    _list_settings(element, reading.findings)
+    models = [read_model(child, "", reading) for child in element.all("model")]
+    lights = list(lights_of(element, "", reading))
+    for child in element.all("include"):
+        model, more = read_include(child, "", reading)
+        models += [] if model is None else [model]
+        lights += more
+    state = element.child("state")
+    if state is not None:
+        models += [read_model(e, "", reading) for e in _inserted(state)]
+        gone = _deleted(state)
+        models = [model for model in models if model.name not in gone]
+        lights = [light for light in lights if light.name not in gone]
+        list_leftovers(state, "state", _OF_STATE, reading.findings)
+    if not models and element.child("include") is None:
+        raise element.error(f"there is no <model> in {file}; nothing could be imported")
+    scene = element.child("scene")
+    return SdfWorld(
+        name=element.attributes.get("name", "") or file.stem,
+        file=file,
+        version=version,
+        models=_apart(models, reading.findings),
+        lights=tuple(lights),
+        frames=tuple(read_frame(child) for child in element.all("frame")),
+        states={} if state is None else _states(state, "model"),
+        light_states={} if state is None else _light_states(state),
+        ambient=None if scene is None else color_of(scene, "ambient"),
+    )
+
+
+def _list_settings(element: Element, findings: Findings) -> None:
+    list_leftovers(element, "world", _OF_WORLD, findings)
+    for child in element.all("physics"):
+        findings.dropped(child.place, "world", "<physics>", INSTEAD["physics"])
+    for child in element.all("scene"):
+        list_leftovers(child, "world/scene", ("ambient",), findings)
+    gravity = vector(element, "gravity", (0.0, 0.0, -DOWN))
+    if max(abs(gravity[0]), abs(gravity[1]), abs(gravity[2] + DOWN)) > _GRAVITY_NEAR:
+        where = element.child("gravity") or element
+        findings.changed(where.place, "world", "<gravity>", INSTEAD["gravity"])
+
+
+def _apart(models: Iterable[Model], findings: Findings) -> tuple[Model, ...]:
+    """Models with names of their own, as Gazebo numbers them: `can`, `can_0`, `can_1`."""
+    names: dict[str, Model] = {}
+    for model in models:
+        name, count = model.name, 0
+        while name in names:
+            name, count = f"{model.name}_{count}", count + 1
+        if name != model.name:
+            findings.changed(model.place, model.name, "a name that is here twice", f"it is {name}")
+        names[name] = replace(model, name=name)
+    return tuple(names.values())
+
+
+_OF_STATE = ("model", "light", "insertions", "deletions")
+
+
+def _inserted(state: Element) -> Iterator[Element]:
+    for insertions in state.all("insertions"):
+        yield from insertions.all("model")
+
+
+def _deleted(state: Element) -> set[str]:
+    return {name.text for gone in state.all("deletions") for name in gone.all("name")}
+
+
+def _states(element: Element, tag: str) -> dict[str, ModelState]:
+    found = {}
+    for child in element.all(tag):
+        scale = child.child("scale")
+        x, y, z = (1.0, 1.0, 1.0) if scale is None else numbers(scale, 3)
+        if not SCALES[0] <= min(x, y, z) <= max(x, y, z) <= SCALES[1]:
+            few, many = SCALES
+            raise child.error(f"<scale> is {x:g} {y:g} {z:g}; expected factors of {few} to {many}")
+        found[name_of(child)] = ModelState(
+            child.place,
+            None if child.child("pose") is None else pose_of(child).transform,
+            (x, y, z),
+            _link_states(child),
+            _states(child, "model"),
+        )
+    return found
+
+
+def _link_states(element: Element) -> dict[str, Transform]:
+    with_pose = (child for child in element.all("link") if child.child("pose") is not None)
+    return {name_of(child): pose_of(child).transform for child in with_pose}
+
+
+def _light_states(state: Element) -> dict[str, Transform]:
+    with_pose = (child for child in state.all("light") if child.child("pose") is not None)
+    return {name_of(child): pose_of(child).transform for child in with_pose}

@@ -1,0 +1,155 @@
+"""What an imported world says of its site: surfaces, a start, places, things that can be brought.
+
+All of it is a guess from shapes, to be corrected by a person.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from momantu_bt.geometry import Pose2D
+from momantu_worlds.sdf.body.bodies import ImportedBody
+from momantu_worlds.sdf.body.level_tops import Top, best_top
+from momantu_worlds.sdf.read.model import Box, Cylinder
+from momantu_worlds.sdf.write.free_floor import FreeFloor, free_floor
+
+STAND_OFF = 0.6
+"""m; from a top's edge to the middle of a robot that reaches onto it."""
+COMFORT = 0.8
+"""m; a start with as much room around is as good as one with more."""
+GRASPED = 0.09
+"""m; the widest thing that is proposed to be brought: a hand opens about as far."""
+LIGHT = 2.0
+"""kg; the heaviest."""
+MOST_PLACES = 6
+APART = 2.5
+"""m; between places."""
+
+
+@dataclass(frozen=True, slots=True)
+class Surface:
+    """A top and the sides to stand at, as angles in its own frame, the best first."""
+
+    top: Top
+    sides: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Proposal:
+    """surfaces: by name of the body. objects: sizes of what can be brought, by name of the body.
+
+    clear: half the edge of the free square around the start, m.
+    """
+
+    start: Pose2D
+    clear: float
+    surfaces: dict[str, Surface]
+    places: dict[str, Pose2D]
+    objects: dict[str, dict[str, str | float]]
+
+
+def propose(bodies: Sequence[ImportedBody], start: Pose2D | None) -> Proposal:
+    """The site of some bodies. start: where a robot stood; else a free place is chosen."""
+    still = [hull for body in bodies if body.still for hull in body.hulls()]
+    loose = [hull for body in bodies if not body.still for hull in body.hulls()]
+    floor = free_floor([*still, *loose])
+    tops = {body.name: best_top(body, still) for body in bodies if body.still}
+    sides = {name: _sides(top, floor) for name, top in tops.items() if top is not None}
+    if start is not None and (home := floor.region(start.x, start.y)):
+        region = home
+    else:
+        region = _region(sides.values(), floor)
+    surfaces = {}
+    for name, ways in sides.items():
+        top = tops[name]
+        angles = tuple(angle for angle, at in ways if at == region)
+        if top is not None and angles:
+            surfaces[name] = Surface(top, angles)
+    if start is None:
+        start = _start(floor, region, [surface.top for surface in surfaces.values()])
+    return Proposal(
+        start,
+        _clear(floor, start),
+        surfaces,
+        _places(floor, region, start),
+        {body.name: sizes for body in bodies if (sizes := _sizes(body))},
+    )
+
+
+def _sides(top: Top, floor: FreeFloor) -> list[tuple[float, int]]:
+    """Directions from which a robot can stand at a top, with their regions, the best first."""
+    found = []
+    for angle, reach in (
+        (0.0, top.size[0]),
+        (math.pi / 2, top.size[1]),
+        (math.pi, top.size[0]),
+        (-math.pi / 2, top.size[1]),
+    ):
+        away = reach / 2 + STAND_OFF
+        at = top.pose @ Pose2D(away * math.cos(angle), away * math.sin(angle))
+        region, index = floor.region(at.x, at.y), floor.index(at.x, at.y)
+        if region and index is not None:
+            # the nearer the middle of the top, the better; then the more room
+            found.append((round(reach, 3), -round(float(floor.clearance[index]), 2), angle, region))
+    return [(angle, region) for *_, angle, region in sorted(found)]
+
+
+def _region(sides: Iterable[list[tuple[float, int]]], floor: FreeFloor) -> int:
+    """The region from which the most tops are reached; else the largest."""
+    votes = Counter(region for ways in sides for region in sorted({r for _, r in ways}))
+    if votes:
+        return min(votes, key=lambda region: (-votes[region], -floor.area(region), region))
+    return max(range(1, int(floor.regions.max()) + 1), key=floor.area, default=0)
+
+
+def _start(floor: FreeFloor, region: int, tops: Sequence[Top]) -> Pose2D:
+    """A roomy place near the tops, or near the middle of the region; it faces the nearest top."""
+    inside = floor.regions == region
+    room = min(float(floor.clearance[inside].max(initial=0.0)), COMFORT)
+    points = floor.points(inside & (floor.clearance >= room - floor.cell / 2))
+    if not len(points):
+        return Pose2D(0.0, 0.0)
+    goals = np.array([(top.pose.x, top.pose.y) for top in tops] or [points.mean(axis=0)])
+    away = np.hypot(*(points[:, None, :] - goals[None]).transpose(2, 0, 1))
+    x, y = (float(v) for v in points[int(np.argmin(away.sum(axis=1)))])
+    nearest = goals[int(np.argmin(np.hypot(goals[:, 0] - x, goals[:, 1] - y)))]
+    yaw = math.atan2(nearest[1] - y, nearest[0] - x) if tops else 0.0
+    return Pose2D(x, y, yaw)
+
+
+def _clear(floor: FreeFloor, start: Pose2D) -> float:
+    """Half the edge of a square that surely is free around the start, m."""
+    index = floor.index(start.x, start.y)
+    free = COMFORT if index is None else float(floor.clearance[index]) - floor.cell
+    return max(min(free, COMFORT) / math.sqrt(2.0), 0.05)
+
+
+def _places(floor: FreeFloor, region: int, start: Pose2D) -> dict[str, Pose2D]:
+    """The start as home, and roomy points of its region far from each other."""
+    places = {"home": start}
+    points = floor.points((floor.regions == region) & (floor.clearance > COMFORT))
+    away = np.hypot(points[:, 0] - start.x, points[:, 1] - start.y)
+    while len(points) and len(places) < MOST_PLACES and away.max() >= APART:
+        x, y = points[int(np.argmax(away))]
+        places[f"place_{len(places)}"] = Pose2D(float(x), float(y))
+        away = np.minimum(away, np.hypot(points[:, 0] - x, points[:, 1] - y))
+    return places
+
+
+def _sizes(body: ImportedBody) -> dict[str, str | float] | None:
+    """What the robot would be told of a loose thing that one hand can hold."""
+    touched = [part.solid for part in body.parts if part.collision]
+    if body.still or len(touched) != 1 or (body.mass or 0.0) > LIGHT:
+        return None
+    solid = touched[0]
+    if isinstance(solid, Cylinder) and 2 * solid.radius <= GRASPED:
+        return {"category": "can", "diameter": 2 * solid.radius, "height": solid.length}
+    if isinstance(solid, Box) and min(solid.size[:2]) <= GRASPED:
+        x, y, z = solid.size
+        return {"category": "box", "width": x, "depth": y, "height": z}
+    return None

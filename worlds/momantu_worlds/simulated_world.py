@@ -1,0 +1,105 @@
+"""A world in SAPIEN: an episode, the robot in it, a referee who watches."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from momantu_bt.claim import Sentence
+from momantu_bt.fault import Effect, Fault
+from momantu_bt.geometry import Transform
+from momantu_bt.robot import RobotDescription
+from momantu_bt.world import Site, Verdict, Video, View
+from momantu_worlds.sapien.faults.rows import possible, prepare
+from momantu_worlds.sapien.faults.stage import Stage
+from momantu_worlds.sapien.robot import SimulatedRobot
+from momantu_worlds.sapien.simulator import Simulator
+from momantu_worlds.scenes.geometry.bodies import Episode
+from momantu_worlds.scenes.referee.hand import hand_of
+from momantu_worlds.scenes.referee.judge import ClaimJudge
+from momantu_worlds.scenes.referee.referee import Referee
+
+
+class SapienWorld:
+    """Implements `World`, and `Judge` and `FaultyWorld` of the framework's contracts."""
+
+    def __init__(
+        self,
+        path: Path,
+        description: RobotDescription,
+        episode: Episode,
+        seed: int,
+        *,
+        referee: bool = True,
+    ) -> None:
+        """path: of the world file that the episode was drawn from."""
+        self._path, self._episode = path, episode
+        self.simulator = Simulator(description, episode, seed)
+        wanted = referee and episode.goal is not None
+        self._referee = (
+            Referee(episode, self.simulator.truth, hand_of(description)) if wanted else None
+        )
+        self._stage = Stage(self.simulator, episode, description, seed, self._referee)
+
+    @property
+    def name(self) -> str:
+        """The world's name."""
+        return self._episode.name
+
+    @property
+    def site(self) -> Site:
+        """What the robot is told of this episode."""
+        return self._episode.site
+
+    @property
+    def robot(self) -> SimulatedRobot:
+        """The robot's driver."""
+        return self.simulator.robot
+
+    def now(self) -> float:
+        """Seconds since the episode began."""
+        return self.simulator.now()
+
+    def step(self) -> None:
+        """Advance by one tick."""
+        self.simulator.step()
+        if self._referee is not None:
+            self._referee.observe(self.simulator.now())
+
+    def verdict(self) -> Verdict | None:
+        """The referee's word on this instant; None without a referee."""
+        return None if self._referee is None else self._referee.verdict()
+
+    def judge(self, sentence: Sentence, odom_from_base: Transform) -> bool | None:
+        """Whether something that a skill claims is true of this instant."""
+        bodies = {body.name: body for body in self._stage.bodies}
+        judge = ClaimJudge(self.robot.description, bodies, self.simulator.truth)
+        return judge.judge(sentence, odom_from_base)
+
+    def faults(self) -> tuple[str, ...]:
+        """Names of the faults that this episode can have."""
+        return possible(self._stage)
+
+    def effect(self, fault: Fault) -> Effect:
+        """Prepare a fault; raises FaultError when this episode cannot have it so."""
+        return prepare(self._stage, fault)
+
+    def open_video(self, path: Path, title: str) -> Video:
+        """Start a film at `path`."""
+        from momantu_worlds.display.video import open_video
+
+        return open_video(self.simulator, self._episode, path, title)
+
+    def open_view(self, port: int) -> View:
+        """Serve the scene to a browser on this machine."""
+        from momantu_worlds.display.view import open_view
+
+        return open_view(self.simulator, self._episode, port)
+
+    def texts(self) -> Mapping[str, str]:
+        """The world file, by its name."""
+        return {self._path.name: self._path.read_text(encoding="utf-8", errors="replace")}
+
+    def close(self) -> None:
+        """Free the scene; safe to call twice."""
+        self.simulator.close()
