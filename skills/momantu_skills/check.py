@@ -64,7 +64,7 @@ class Check(Skill):
         if self.what in ("holding", "not_holding"):
             return Holding(self.what == "holding")
         if self.what == "localized":
-            from momantu_skills.navigation.confidence import estimate
+            from momantu_skills.navigation.localize.confidence import estimate
 
             return estimate(self.localization)
         if self.what == "near":
@@ -83,7 +83,7 @@ class Check(Skill):
             raise Failure("HOLDING", f"the hand holds a {held.object.category}")
 
     def _localized(self) -> None:
-        from momantu_skills.navigation.confidence import is_localized, sigmas
+        from momantu_skills.navigation.localize.confidence import is_localized, sigmas
 
         if is_localized(self.localization):
             return

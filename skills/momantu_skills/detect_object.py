@@ -14,9 +14,9 @@ from momantu_bt.service import Localization, PlanningScene
 from momantu_bt.skill import Failure, In, Needs, Out, Run, Skill, compute
 
 if TYPE_CHECKING:
-    from momantu_skills.perception.detector import Detections, ObjectDetector
-    from momantu_skills.perception.surveys import SurfaceRegion
-    from momantu_skills.perception.views import Snapshot, View
+    from momantu_skills.perception.camera.views import Snapshot, View
+    from momantu_skills.perception.geometry.regions import SurfaceRegion
+    from momantu_skills.perception.objects.detector import Detections, ObjectDetector
 
 LOOKS = 3
 """Fewest looks over a surface before a thing is said not to be there."""
@@ -48,7 +48,7 @@ class DetectObject(Skill):
 
     def __init__(self) -> None:
         """Start with nothing seen."""
-        from momantu_skills.perception.detector import GeometricDetector
+        from momantu_skills.perception.objects.detector import GeometricDetector
 
         super().__init__()
         self._detector: ObjectDetector = GeometricDetector()
@@ -56,7 +56,8 @@ class DetectObject(Skill):
 
     def run(self, robot: Robot) -> Run:
         """Look and measure until the thing was seen in enough looks, or none is left."""
-        from momantu_skills.perception.surveys import beside, glance, looks_over, surface_region
+        from momantu_skills.gaze.surveys import beside, glance, looks_over
+        from momantu_skills.perception.geometry.regions import surface_region
 
         corners = self._corners()
         region = surface_region(corners)
@@ -90,7 +91,7 @@ class DetectObject(Skill):
         return ObjectOn(self.object, self.on) if failure.code == "OBJECT_NOT_FOUND" else None
 
     def _measure(self, snapshots: list[Snapshot], region: SurfaceRegion) -> Detections | None:
-        from momantu_skills.perception.views import see
+        from momantu_skills.perception.camera.views import see
 
         for snapshot in snapshots[len(self._views) :]:
             self._views.append(see(snapshot, region, self.planning_scene))
@@ -101,7 +102,7 @@ class DetectObject(Skill):
         return next((t for t in result.things if t.score >= self._detector.accepted), None)
 
     def _corners(self) -> Array:
-        from momantu_skills.perception.regions import surface_corners
+        from momantu_skills.perception.geometry.regions import surface_corners
 
         surface = self.site.surfaces.get(self.on)
         if surface is None:

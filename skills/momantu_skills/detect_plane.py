@@ -16,9 +16,9 @@ from momantu_bt.service import PlanningScene
 from momantu_bt.skill import Failure, In, Needs, Out, Run, Skill, compute
 
 if TYPE_CHECKING:
-    from momantu_skills.perception.surfaces import Surroundings
-    from momantu_skills.perception.surveys import SurfaceRegion
-    from momantu_skills.perception.views import Snapshot
+    from momantu_skills.perception.camera.views import Snapshot
+    from momantu_skills.perception.geometry.regions import SurfaceRegion
+    from momantu_skills.perception.surface.surfaces import Surroundings
 
 BUDGET = 0.2
 """s granted to making sense of both looks and to finding spots."""
@@ -57,7 +57,8 @@ class DetectPlane(Skill):
 
     def run(self, robot: Robot) -> Run:
         """Look, measure, choose."""
-        from momantu_skills.perception.surveys import glance, looks_over, place_region
+        from momantu_skills.gaze.surveys import glance, looks_over
+        from momantu_skills.perception.geometry.regions import place_region
 
         near = self.frames.lookup(ODOM, self.near.frame).apply(self.near.position)
         corners, region = place_region(near)
@@ -91,8 +92,8 @@ class DetectPlane(Skill):
         near = self.frames.lookup(ODOM, self.near.frame).apply(self.near.position)
         if failure.code == "PLANE_NOT_FOUND":
             return PlaneAt(Transform(near), LEVEL)
-        from momantu_skills.perception.spots import SpotConfig
-        from momantu_skills.perception.surveys import PLACE_ERROR
+        from momantu_skills.perception.geometry.regions import PLACE_ERROR
+        from momantu_skills.perception.surface.spots import SpotConfig
 
         config = SpotConfig()
         room = self._needed + config.fingers
@@ -101,8 +102,8 @@ class DetectPlane(Skill):
     def _measure(
         self, snapshots: list[Snapshot], region: SurfaceRegion, near: Array, radius: float
     ) -> Surroundings | None:
-        from momantu_skills.perception.surfaces import surroundings
-        from momantu_skills.perception.views import see
+        from momantu_skills.perception.camera.views import see
+        from momantu_skills.perception.surface.surfaces import surroundings
 
         views = [see(snapshot, region, self.planning_scene) for snapshot in snapshots]
         if not views:

@@ -15,8 +15,8 @@ from momantu_bt.service import Localization, PlanningScene
 from momantu_bt.skill import Compute, Failure, In, Needs, Out, Run, Skill, compute
 
 if TYPE_CHECKING:
-    from momantu_skills.perception.tag_poses import TagSighting
-    from momantu_skills.perception.views import Snapshot
+    from momantu_skills.perception.camera.views import Snapshot
+    from momantu_skills.perception.tags import TagSighting
 
 BUDGET = 0.05
 """s granted to searching one picture."""
@@ -44,8 +44,8 @@ class FindAprilTag(Skill):
 
     def run(self, robot: Robot) -> Run:
         """Sweep, look at it, average."""
-        from momantu_skills.perception.surveys import glance
-        from momantu_skills.perception.tag_poses import average
+        from momantu_skills.gaze.surveys import glance
+        from momantu_skills.perception.tags import average
 
         others: set[int] = set()
         for point in self._points(robot):
@@ -73,8 +73,8 @@ class FindAprilTag(Skill):
         self, robot: Robot, first: TagSighting, others: set[int]
     ) -> Generator[str | Compute, Any, list[TagSighting]]:
         """More pictures, with the tag in the middle of the view where that is possible."""
-        from momantu_skills.perception.surveys import glance
-        from momantu_skills.perception.views import take
+        from momantu_skills.gaze.surveys import glance
+        from momantu_skills.perception.camera.views import take
 
         seen: list[TagSighting] = []
         snapshot = yield from glance(self, robot, self.planning_scene, first.odom_from_tag.position)
@@ -88,7 +88,7 @@ class FindAprilTag(Skill):
     def _search(
         self, snapshot: Snapshot, others: set[int]
     ) -> Generator[str | Compute, Any, TagSighting | None]:
-        from momantu_skills.perception.tag_poses import search
+        from momantu_skills.perception.tags import search
 
         ids, sighting = yield from compute(
             partial(search, snapshot, self.tag_id, self.edge), budget=BUDGET
@@ -97,8 +97,8 @@ class FindAprilTag(Skill):
         return sighting
 
     def _points(self, robot: Robot) -> list[Array]:
-        from momantu_skills.perception.regions import surface_corners
-        from momantu_skills.perception.surveys import around, looks_over
+        from momantu_skills.gaze.surveys import around, looks_over
+        from momantu_skills.perception.geometry.regions import surface_corners
 
         if self.on is None:
             return around(self, robot)

@@ -13,7 +13,7 @@ from momantu_bt.robot import CAMERA_CARRIER, Robot
 from momantu_bt.skill import Failure, In, Needs, Run, Skill
 
 if TYPE_CHECKING:
-    from momantu_skills.manipulation.service import PlanningSceneService
+    from momantu_skills.manipulation.scene.service import PlanningSceneService
 
 AHEAD = 3.0
 """m before the base, at the camera's own height."""
@@ -51,7 +51,7 @@ class Look(Skill):
 
     def run(self, robot: Robot) -> Run:
         """Work out the point, then look."""
-        from momantu_skills.perception.looking import look_at
+        from momantu_skills.gaze.look_at import look_at
 
         x, y, z = (float(v) for v in self._point(robot))
         self._target = x, y, z
@@ -59,7 +59,7 @@ class Look(Skill):
 
     def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
         """The camera looks there, whether it is said or denied."""
-        from momantu_skills.perception.looking import WITHIN
+        from momantu_skills.gaze.look_at import WITHIN
 
         if self._target is None or (failure is not None and failure.code != "OUT_OF_VIEW"):
             return None

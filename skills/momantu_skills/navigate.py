@@ -16,10 +16,10 @@ from momantu_bt.skill import Failure, In, Needs, Run, Skill
 
 if TYPE_CHECKING:
     from momantu_bt.world import Surface
-    from momantu_skills.manipulation.service import PlanningSceneService
+    from momantu_skills.manipulation.scene.service import PlanningSceneService
     from momantu_skills.navigation.config import NavigationConfig
-    from momantu_skills.navigation.trip import Destination
-    from momantu_skills.navigation.vehicle import Vehicle
+    from momantu_skills.navigation.drive.trip import Destination
+    from momantu_skills.navigation.drive.vehicle import Vehicle
 
 
 SURVEY = (0.05, 0.03)
@@ -68,9 +68,9 @@ class Navigate(Skill):
 
     def run(self, robot: Robot) -> Run:
         """Check the goal, then travel."""
-        from momantu_skills.navigation.mppi import Mppi
-        from momantu_skills.navigation.trip import travel
-        from momantu_skills.navigation.vehicle import Vehicle
+        from momantu_skills.navigation.control.mppi import Mppi
+        from momantu_skills.navigation.drive.trip import travel
+        from momantu_skills.navigation.drive.vehicle import Vehicle
 
         self._check()
         config = self._config()
@@ -87,7 +87,7 @@ class Navigate(Skill):
 
     def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
         """The base is on its stand, or where the hand reaches; or is where it doubts to be."""
-        from momantu_skills.navigation.confidence import estimate
+        from momantu_skills.navigation.localize.confidence import estimate
 
         if failure is not None and failure.code == "NOT_LOCALIZED":
             return estimate(self.localization)
@@ -134,7 +134,7 @@ class Navigate(Skill):
 
     def _surface(self) -> Surface | None:
         """The surface that is driven up to."""
-        from momantu_skills.navigation.goals import surface_at
+        from momantu_skills.navigation.plan.goals import surface_at
 
         if self.within_reach_of is not None:
             return surface_at(self._point(self.within_reach_of), self.site.surfaces.values())
@@ -148,8 +148,8 @@ class Navigate(Skill):
         return float(there[0]), float(there[1])
 
     def _destination(self, vehicle: Vehicle, working: Working) -> Destination:
-        from momantu_skills.navigation.goals import Stand, before_surface, within_reach
-        from momantu_skills.navigation.trip import Destination
+        from momantu_skills.navigation.drive.trip import Destination
+        from momantu_skills.navigation.plan.goals import Stand, before_surface, within_reach
 
         tolerance = (self.tolerance, self.angle_tolerance)
         surfaces = self.site.surfaces

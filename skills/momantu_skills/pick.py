@@ -14,8 +14,8 @@ from momantu_bt.skill import Compute, In, Needs, Run, Skill
 
 if TYPE_CHECKING:
     from momantu_skills.manipulation.arm import Arm
-    from momantu_skills.manipulation.reaching import PickPlan
-    from momantu_skills.manipulation.service import PlanningSceneService
+    from momantu_skills.manipulation.hand.reaching import PickPlan
+    from momantu_skills.manipulation.scene.service import PlanningSceneService
 
 THINKING = 0.4
 """s that choosing a grasp and planning are given: twice the median."""
@@ -54,8 +54,8 @@ class Pick(Skill):
 
     def run(self, robot: Robot) -> Run:
         """The whole skill; each step is a method below."""
+        from momantu_skills.gaze.unseen_ways import planned_in_sight
         from momantu_skills.manipulation.arm import Arm
-        from momantu_skills.manipulation.blind import planned_in_sight
 
         arm = Arm(self, robot, self.planning_scene)
         self._check_start(arm)
@@ -84,7 +84,7 @@ class Pick(Skill):
         return None
 
     def _check_start(self, arm: Arm) -> None:
-        from momantu_skills.manipulation.freshness import check_fresh
+        from momantu_skills.manipulation.hand.freshness import check_fresh
 
         held = self.planning_scene.held
         if held is not None:
@@ -94,7 +94,7 @@ class Pick(Skill):
 
     def _look(self, arm: Arm) -> Run:
         """See the surroundings, and that something stands where the object should be."""
-        from momantu_skills.manipulation.looks import stands_there
+        from momantu_skills.manipulation.hand.verification import stands_there
 
         yield from self._turn_camera(arm)
         self.planning_scene.observe(arm.robot)
@@ -111,7 +111,7 @@ class Pick(Skill):
 
     def _turn_camera(self, arm: Arm) -> Run:
         """Point the camera at the object as well as the robot can."""
-        from momantu_skills.perception.looking import look_at
+        from momantu_skills.gaze.look_at import look_at
 
         try:
             yield from look_at(self, arm.robot, self.object.pose.position)
@@ -120,7 +120,7 @@ class Pick(Skill):
                 raise
 
     def _plan(self, arm: Arm) -> PickPlan:
-        from momantu_skills.manipulation.reaching import plan_pick
+        from momantu_skills.manipulation.hand.reaching import plan_pick
 
         try:
             return plan_pick(arm, self.object, self.lift)
@@ -132,7 +132,7 @@ class Pick(Skill):
     def _reach(self, arm: Arm, plan: PickPlan) -> Run:
         """Open on the way to the pre-grasp, then go straight in."""
         from momantu_bt.messages import GripperCommand
-        from momantu_skills.manipulation.hand import bump, open_hand, rested_force
+        from momantu_skills.manipulation.hand.gripper import bump, open_hand, rested_force
 
         effector = arm.robot.description.end_effector
         opened = GripperCommand(effector.max_width, arm.force)
@@ -153,7 +153,7 @@ class Pick(Skill):
 
     def _close(self, arm: Arm, plan: PickPlan) -> Generator[str | Compute, Any, Array | None]:
         """Close with a force limit and judge the opening; the wrist's force before that."""
-        from momantu_skills.manipulation.hand import move_gripper, rested_force
+        from momantu_skills.manipulation.hand.gripper import move_gripper, rested_force
 
         hand = arm.hand
         rest = yield from rested_force(arm.robot, self.frames, "feeling")
@@ -188,7 +188,7 @@ class Pick(Skill):
 
     def _lift(self, arm: Arm, plan: PickPlan, rest: Array | None) -> Run:
         """Lift; it must still be there, and weigh something."""
-        from momantu_skills.manipulation.hand import rested_force
+        from momantu_skills.manipulation.hand.gripper import rested_force
 
         yield from arm.follow(plan.lift, "lifting")
         loaded = yield from rested_force(arm.robot, self.frames, "weighing")
@@ -203,7 +203,7 @@ class Pick(Skill):
 
     def _set_back(self, arm: Arm, plan: PickPlan, rest: Array | None) -> Run:
         """Lower again before the hand opens, while there still seems to be something in it."""
-        from momantu_skills.manipulation.hand import bump
+        from momantu_skills.manipulation.hand.gripper import bump
 
         gap = abs(arm.state.gripper_width - plan.grasp.width)
         if gap <= arm.hand.width_tolerance:
@@ -213,7 +213,7 @@ class Pick(Skill):
 
     def _look_again(self, arm: Arm) -> Run:
         """The place where it stood must be empty, unless the hand hides it."""
-        from momantu_skills.manipulation.looks import stands_there
+        from momantu_skills.manipulation.hand.verification import stands_there
 
         yield "looking"
         self.planning_scene.observe(arm.robot)
@@ -229,7 +229,7 @@ class Pick(Skill):
         yield from arm.follow(plan.retreat, "drawing back")
 
     def _let_go(self, arm: Arm) -> Run:
-        from momantu_skills.manipulation.hand import open_hand
+        from momantu_skills.manipulation.hand.gripper import open_hand
 
         effector, hand = arm.robot.description.end_effector, arm.hand
         yield from self._gripper_or_stuck(

@@ -17,8 +17,8 @@ from momantu_bt.skill import In, Needs, Run, Skill
 
 if TYPE_CHECKING:
     from momantu_skills.manipulation.arm import Arm
-    from momantu_skills.manipulation.placing import PlacePlan
-    from momantu_skills.manipulation.service import PlanningSceneService
+    from momantu_skills.manipulation.hand.placing import PlacePlan
+    from momantu_skills.manipulation.scene.service import PlanningSceneService
 
 THINKING = 0.4
 """s that choosing a spot and planning are given: twice the median."""
@@ -51,8 +51,8 @@ class Place(Skill):
 
     def run(self, robot: Robot) -> Run:
         """The whole skill; each step is a method below."""
+        from momantu_skills.gaze.unseen_ways import planned_in_sight
         from momantu_skills.manipulation.arm import Arm
-        from momantu_skills.manipulation.blind import planned_in_sight
 
         arm = Arm(self, robot, self.planning_scene)
         held = self._check_start(arm)
@@ -82,7 +82,7 @@ class Place(Skill):
         return SetDown(self._spot, BESIDE)
 
     def _check_start(self, arm: Arm) -> HeldObject:
-        from momantu_skills.manipulation.freshness import check_fresh
+        from momantu_skills.manipulation.hand.freshness import check_fresh
 
         held: HeldObject | None = self.planning_scene.held
         if held is None:
@@ -99,7 +99,7 @@ class Place(Skill):
 
         around: corners (n, 3) in odom of solids that an arm that carries the camera avoids.
         """
-        from momantu_skills.perception.looking import look_at
+        from momantu_skills.gaze.look_at import look_at
 
         try:
             yield from look_at(self, arm.robot, point, around=around)
@@ -109,7 +109,7 @@ class Place(Skill):
         self.planning_scene.observe(arm.robot)
 
     def _plan(self, arm: Arm, held: HeldObject) -> PlacePlan:
-        from momantu_skills.manipulation.placing import plan_place
+        from momantu_skills.manipulation.hand.placing import plan_place
 
         try:
             return plan_place(arm, held, self.spots)
@@ -124,7 +124,7 @@ class Place(Skill):
 
     def _lower(self, arm: Arm, plan: PlacePlan, held: HeldObject) -> Run:
         """Straight down until the surface carries part of the weight, where that can be felt."""
-        from momantu_skills.manipulation.hand import bump, rested_force
+        from momantu_skills.manipulation.hand.gripper import bump, rested_force
 
         rest = yield from rested_force(arm.robot, self.frames, "feeling")
         watch = bump(self.frames, rest, arm.hand.contact_force, vertical=True)
@@ -144,7 +144,7 @@ class Place(Skill):
 
     def _let_go(self, arm: Arm, held: HeldObject) -> Run:
         """Open no wider than needed: other things may stand near."""
-        from momantu_skills.manipulation.hand import open_hand
+        from momantu_skills.manipulation.hand.gripper import open_hand
 
         hand = arm.hand
         width = min(arm.open_width, arm.state.gripper_width + hand.margin)
@@ -167,8 +167,8 @@ class Place(Skill):
 
         before: cells (n, 3) in odom that were occupied before; they are not what was set down.
         """
-        from momantu_skills.manipulation.looks import beside, standing, unseen_before
-        from momantu_skills.manipulation.solids import object_corners
+        from momantu_skills.manipulation.hand.verification import beside, standing, unseen_before
+        from momantu_skills.manipulation.model.hulls import object_corners
 
         pose = plan.odom_from_object
         yield from self._look(arm, pose.position, [pose.apply(object_corners(held.object))])

@@ -10,7 +10,7 @@ from momantu_bt.robot import ARM, Robot
 from momantu_bt.skill import In, Needs, Run, Skill
 
 if TYPE_CHECKING:
-    from momantu_skills.manipulation.service import PlanningSceneService
+    from momantu_skills.manipulation.scene.service import PlanningSceneService
 
 OPEN = 0.01
 """m short of its widest at which the gripper still counts as open: gauge and control."""
@@ -37,7 +37,7 @@ class Release(Skill):
         """Open, wait until it is, draw back."""
         from momantu_skills.manipulation.arm import Arm
         from momantu_skills.manipulation.config import HandConfig
-        from momantu_skills.manipulation.hand import open_hand
+        from momantu_skills.manipulation.hand.gripper import open_hand
 
         config = HandConfig()
         holding = self.planning_scene.held is not None

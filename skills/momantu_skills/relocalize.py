@@ -16,7 +16,7 @@ from momantu_bt.skill import Failure, In, Needs, Run, Skill
 if TYPE_CHECKING:
     import numpy as np
 
-    from momantu_skills.manipulation.service import PlanningSceneService
+    from momantu_skills.manipulation.scene.service import PlanningSceneService
 
 WIDEN = (0.35, 0.35)
 """m and rad by which the estimate is doubted at first: the most that a robot usually drifts."""
@@ -57,7 +57,7 @@ class Relocalize(Skill):
 
     def run(self, robot: Robot) -> Run:
         """Local first, then global; each is judged at rest."""
-        from momantu_skills.navigation.confidence import QUALITY, is_localized, sigmas
+        from momantu_skills.navigation.localize.confidence import QUALITY, is_localized, sigmas
 
         if robot.description.eye_in_hand:
             from momantu_skills.manipulation.tucking import take_in
@@ -88,7 +88,7 @@ class Relocalize(Skill):
 
     def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
         """The base is where it is now believed to be, or was no longer believed to be."""
-        from momantu_skills.navigation.confidence import estimate
+        from momantu_skills.navigation.localize.confidence import estimate
 
         if failure is not None and failure.code != "NOT_LOCALIZED":
             return None
@@ -134,14 +134,14 @@ class Relocalize(Skill):
         """Of base, arm and load (m, 3): the walls that a scan shows are as high as they are."""
         import numpy as np
 
-        from momantu_skills.navigation.footprint import discs
+        from momantu_skills.navigation.control.footprint import discs
 
         return discs(np.asarray(self.planning_scene.footprint(robot.state())))
 
     def _share(self, robot: Robot, rate: float, discs: np.ndarray) -> float:
         from momantu_bt.robot import read_laser
-        from momantu_skills.navigation.guard import safe_share
-        from momantu_skills.navigation.scans import Rays
+        from momantu_skills.navigation.control.guard import safe_share
+        from momantu_skills.navigation.map.sensing import Rays
 
         scan = read_laser(robot)
         base = robot.description.base_frame

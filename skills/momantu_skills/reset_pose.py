@@ -15,7 +15,7 @@ from momantu_bt.skill import Compute, In, Needs, Run, Skill, compute
 
 if TYPE_CHECKING:
     from momantu_skills.manipulation.arm import Arm
-    from momantu_skills.manipulation.service import PlanningSceneService
+    from momantu_skills.manipulation.scene.service import PlanningSceneService
 
 THINKING = 0.2
 """s that planning is given: several times its median."""
@@ -62,7 +62,7 @@ class ResetPose(Skill):
         self, arm: Arm, goal: Array
     ) -> Generator[str | Compute, Any, Sequence[JointTrajectory]]:
         """The way to the pose; with something in the hand, where the camera has looked."""
-        from momantu_skills.manipulation.blind import planned_in_sight
+        from momantu_skills.gaze.unseen_ways import planned_in_sight
 
         held = self.planning_scene.held
         if held is None:

@@ -3,14 +3,54 @@
 `python -m momantu_skills.warm_up` is quick where the compiled kernels are there already.
 """
 
-from momantu_skills.manipulation import model
-from momantu_skills.navigation import warm_up
+from __future__ import annotations
+
+import numpy as np
+
+from momantu_bt.geometry import Pose2D
+from momantu_bt.robot import BaseLimits
+from momantu_skills.manipulation.model import arm_model
+from momantu_skills.navigation.config import LocalizationConfig, NavigationConfig
+from momantu_skills.navigation.control import graceful
+from momantu_skills.navigation.control.guard import safe_share
+from momantu_skills.navigation.control.mppi import Mppi
+from momantu_skills.navigation.localize.localizer import Localizer
+from momantu_skills.navigation.map.costmap import Costmap
+from momantu_skills.navigation.map.maps import OCCUPIED, GridMap
+from momantu_skills.navigation.map.sensing import Rays
+from momantu_skills.navigation.plan.planner import plan
 
 
 def compile_kernels() -> None:
-    """Compile those of the arm and those of the base into numba's cache."""
-    model.compile_kernels()
-    warm_up.compile_kernels()
+    """Compile the arm's and the base's kernels into numba's cache."""
+    arm_model.compile_kernels()
+    compile_navigation()
+
+
+def compile_navigation() -> None:
+    """Call every kernel with the types that it is called with on the robot."""
+    cells = np.zeros((60, 60), np.uint8)
+    cells[[0, -1], :] = cells[:, [0, -1]] = OCCUPIED
+    cells.setflags(write=False)
+    grid = GridMap(cells, 0.05, (0.0, 0.0))
+    config = NavigationConfig()
+    limits = BaseLimits(linear=1.0, angular=1.0, linear_acceleration=1.0, angular_acceleration=1.0)
+    here, goal, disc = Pose2D(1.0, 1.0), Pose2D(2.0, 1.5), np.array([[0.0, 0.0, 0.2]])
+    ways = np.array([[1.0, 0.0], [0.0, 1.0]])
+    rays = Rays(np.zeros(2), ways, np.array([1.9, 1.9]), np.ones(2, np.bool_))
+    costmap = Costmap(grid, None, config)
+    costmap.see_laser(here, rays)
+    costmap.room(here, disc)
+    random = np.random.default_rng(0)
+    localizer = Localizer(grid, LocalizationConfig(), random)
+    localizer.reset(here, 0.1, 0.1)
+    localizer.observe(rays)
+    way = plan(costmap, here, goal, 0.25, config.comfort)
+    if way is not None:
+        Mppi(limits, config, random).command(here, (0.0, 0.0), costmap, disc, way)
+    graceful.simulate(here, (0.0, 0.0), goal, limits, costmap, disc)
+    graceful.command(here, goal, limits)
+    safe_share((0.5, 0.1), (0.0, 0.0), limits, disc, rays.points())
 
 
 if __name__ == "__main__":

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from momantu_skills.manipulation.mask import floor_outline
-from momantu_skills.manipulation.service import PlanningSceneService
+from momantu_skills.manipulation.model.hulls import floor_outline
+from momantu_skills.manipulation.scene.service import PlanningSceneService
 from momantu_worlds.robots import fetch
 
 from momantu_bt.frames import FrameBuffer

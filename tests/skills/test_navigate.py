@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from momantu_skills.navigate import Navigate
-from momantu_skills.navigation.service import LocalizationService
+from momantu_skills.navigation.localize.service import LocalizationService
 
 from momantu_bt.claim import BaseAt, BaseNear
 from momantu_bt.geometry import Pose, Pose2D, Transform, wrap_angle

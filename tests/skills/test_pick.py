@@ -124,7 +124,7 @@ def test_what_is_too_wide_is_no_grasp(tabletop: Any, scene_of: Any) -> None:
 def test_no_way_to_any_grasp_is_no_plan(
     tabletop: Any, scene_of: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from momantu_skills.manipulation.planning import Planner
+    from momantu_skills.manipulation.motion.planner import Planner
 
     monkeypatch.setattr(Planner, "path", lambda *_: None)
     robot = tabletop()

@@ -106,7 +106,7 @@ def test_no_spots_are_no_place(holding: Any) -> None:
 
 
 def test_no_way_is_no_plan(holding: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    from momantu_skills.manipulation.planning import Planner
+    from momantu_skills.manipulation.motion.planner import Planner
 
     robot, scene = holding()
     monkeypatch.setattr(Planner, "path", lambda *_: None)

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import pytest
-from momantu_skills.manipulation.service import PlanningSceneService
+from momantu_skills.manipulation.scene.service import PlanningSceneService
 from momantu_skills.pick import Pick
 from momantu_skills.place import Place
 

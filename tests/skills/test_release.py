@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from momantu_skills.manipulation.surroundings import Surroundings
+from momantu_skills.manipulation.scene.surroundings import Surroundings
 from momantu_skills.release import Release
 
 from momantu_bt.claim import GripperOpen, Holding

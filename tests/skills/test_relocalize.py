@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from momantu_skills.navigation.confidence import is_localized
-from momantu_skills.navigation.service import LocalizationService
+from momantu_skills.navigation.localize.confidence import is_localized
+from momantu_skills.navigation.localize.service import LocalizationService
 from momantu_skills.relocalize import Relocalize
 
 from momantu_bt.claim import BaseAt

@@ -153,7 +153,7 @@ def test_a_start_within_the_margin_is_left(tabletop: Any, scene_of: Any) -> None
 def test_a_start_deep_in_something_is_reported(
     tabletop: Any, scene_of: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from momantu_skills.manipulation.collision import CollisionWorld
+    from momantu_skills.manipulation.model.collision import CollisionWorld
 
     robot = tabletop(can=None, pose="carry")
     monkeypatch.setattr(CollisionWorld, "free", lambda *_: False)

@@ -15,7 +15,7 @@ import pytest
 from momantu_skills.check import Check
 from momantu_skills.detect_object import DetectObject
 from momantu_skills.detect_plane import DetectPlane
-from momantu_skills.manipulation.grasps import grasps_for
+from momantu_skills.manipulation.hand.grasps import grasps_for
 from momantu_skills.pick import Pick
 from momantu_skills.reset_pose import ResetPose
 

@@ -13,14 +13,13 @@ from momantu_bt.messages import JointTrajectory, RobotState
 from momantu_bt.robot import ARM, Robot
 from momantu_bt.service import HeldObject
 from momantu_bt.skill import Skill
-from momantu_skills.manipulation.collision import CollisionWorld, Obstacle
 from momantu_skills.manipulation.config import HandConfig, PlanningConfig
-from momantu_skills.manipulation.escape import escape
-from momantu_skills.manipulation.motion import STILL, Watch, follow
-from momantu_skills.manipulation.planning import Planner, Valid
-from momantu_skills.manipulation.scene import Cut, Scene
-from momantu_skills.manipulation.service import PlanningSceneService
-from momantu_skills.manipulation.timing import timed
+from momantu_skills.manipulation.model.collision import CollisionWorld, Obstacle
+from momantu_skills.manipulation.motion.following import STILL, Watch, follow
+from momantu_skills.manipulation.motion.planner import Planner, Valid, escape
+from momantu_skills.manipulation.motion.timing import timed
+from momantu_skills.manipulation.scene.scene import Cut, Scene
+from momantu_skills.manipulation.scene.service import PlanningSceneService
 
 SLOW = 2.0
 """Scaled rad per rad or m above which a joint is slow (see Group.scale)."""

@@ -8,8 +8,8 @@ from momantu_bt.failure import Failure
 from momantu_bt.robot import Robot
 from momantu_bt.skill import Run, Skill, compute
 from momantu_skills.manipulation.arm import Arm
-from momantu_skills.manipulation.service import PlanningSceneService
-from momantu_skills.manipulation.surroundings import within
+from momantu_skills.manipulation.scene.service import PlanningSceneService
+from momantu_skills.manipulation.scene.surroundings import within
 
 STICKS_OUT = 0.10
 """m beyond the base's outline that arm and load may reach on the way."""

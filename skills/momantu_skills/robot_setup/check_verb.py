@@ -32,7 +32,7 @@ def check(
     """
     from momantu_bt.findings import findings_json, findings_text
     from momantu_bt.robots.named import robot_of
-    from momantu_skills.robot_setup.skeleton import SetupError
+    from momantu_skills.robot_setup.urdf.skeleton import SetupError
 
     description = robot_of(robot)
     try:
@@ -53,10 +53,8 @@ def check_robot(description: RobotDescription) -> list[Finding]:
     Raises:
         SetupError: the URDF is no mechanism, or has a collision shape without volume.
     """
-    from momantu_skills.manipulation.model import ArmModel
-    from momantu_skills.robot_setup.base import find_stand
-    from momantu_skills.robot_setup.body import Body
-    from momantu_skills.robot_setup.check_body import (
+    from momantu_skills.manipulation.model.arm_model import ArmModel
+    from momantu_skills.robot_setup.check.body import (
         check_footprint,
         check_hulls,
         check_limits,
@@ -64,10 +62,12 @@ def check_robot(description: RobotDescription) -> list[Finding]:
         check_poses,
         read_urdf,
     )
-    from momantu_skills.robot_setup.check_hand import check_hand, check_reach
-    from momantu_skills.robot_setup.check_sensors import check_sensors
-    from momantu_skills.robot_setup.remarks import located
-    from momantu_skills.robot_setup.skeleton import read_skeleton
+    from momantu_skills.robot_setup.check.hand import check_hand, check_reach
+    from momantu_skills.robot_setup.check.remarks import located
+    from momantu_skills.robot_setup.check.sensors import check_sensors
+    from momantu_skills.robot_setup.find.base import find_stand
+    from momantu_skills.robot_setup.urdf.body import Body
+    from momantu_skills.robot_setup.urdf.skeleton import read_skeleton
 
     body = Body(read_skeleton(read_urdf(description)), description)
     stand = find_stand(body)

@@ -11,7 +11,7 @@ import typer
 from momantu_bt.files import OutputError, write_whole
 
 if TYPE_CHECKING:
-    from momantu_skills.robot_setup.proposal import Proposal
+    from momantu_skills.robot_setup.find.proposal import Proposal
 
 EXIT_TO_DO = 1
 EXIT_WRONG_INPUT = 2
@@ -42,12 +42,12 @@ def setup(
       momantu-bt robots setup my_robot.urdf.xacro -o robots/my_robot
       momantu-bt robots setup my_robot.urdf --samples 50000 --force
     """
-    from momantu_skills.robot_setup.skeleton import SetupError
+    from momantu_skills.robot_setup.urdf.skeleton import SetupError
 
     if output is not None and (output / FILE).exists() and not force:
         return _in_the_way(output / FILE)
     try:
-        from momantu_skills.robot_setup.proposal import propose
+        from momantu_skills.robot_setup.find.proposal import propose
 
         proposal = propose(urdf, samples=samples, seed=seed)
     except SetupError as error:
@@ -79,7 +79,7 @@ def _refuse(message: str) -> int:
 
 
 def _text(proposal: Proposal, folder: Path) -> tuple[str, tuple[str, ...]]:
-    from momantu_skills.robot_setup.writer import missing, robot_file
+    from momantu_skills.robot_setup.write.writer import missing, robot_file
 
     return robot_file(proposal, folder), missing(proposal)
 
@@ -96,13 +96,13 @@ def _read_again(path: Path) -> str:
 
 
 def _plain(proposal: Proposal, path: Path, fill_in: tuple[str, ...], wrong: str) -> dict[str, Any]:
-    from momantu_skills.robot_setup.summary import plain
+    from momantu_skills.robot_setup.write.summary import plain
 
     return {"file": str(path), **plain(proposal), "fill_in": list(fill_in), "reader": wrong}
 
 
 def _say(proposal: Proposal, path: Path, fill_in: tuple[str, ...], wrong: str) -> None:
-    from momantu_skills.robot_setup.summary import lines
+    from momantu_skills.robot_setup.write.summary import lines
 
     for line in lines(proposal):
         typer.echo(line)

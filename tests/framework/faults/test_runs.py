@@ -282,7 +282,7 @@ def test_surfaces_are_told_too_high(run_tree):
 
 
 def test_a_wrong_map_lacks_a_wall_or_lies_elsewhere(run_tree):
-    from momantu_skills.navigation.maps import FREE, OCCUPIED, read_map
+    from momantu_skills.navigation.map.maps import FREE, OCCUPIED, read_map
 
     def told(fault, seed=0):
         Spy.heard.clear()

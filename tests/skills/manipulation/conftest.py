@@ -6,8 +6,8 @@ from itertools import product
 
 import numpy as np
 import pytest
-from momantu_skills.manipulation.collision import BodyPairs, Obstacle, body_pairs
-from momantu_skills.manipulation.model import ArmModel, arm_model
+from momantu_skills.manipulation.model.arm_model import ArmModel, arm_model
+from momantu_skills.manipulation.model.collision import BodyPairs, Obstacle, body_pairs
 from momantu_worlds.robots import fetch
 
 

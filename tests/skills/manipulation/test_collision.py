@@ -6,15 +6,15 @@ from itertools import product
 
 import numpy as np
 import pytest
-from momantu_skills.manipulation.collision import (
+from momantu_skills.manipulation.model.arm_model import ArmModel
+from momantu_skills.manipulation.model.collision import (
     Attached,
     BodyPairs,
     CollisionWorld,
     Obstacle,
     body_pairs,
 )
-from momantu_skills.manipulation.hulls import convex, prism
-from momantu_skills.manipulation.model import ArmModel
+from momantu_skills.manipulation.model.hulls import convex, prism
 
 from momantu_bt.geometry import Transform
 

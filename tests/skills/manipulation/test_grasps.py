@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from momantu_skills.manipulation.grasps import Grasp, grasps_for
-from momantu_skills.manipulation.model import arm_model
-from momantu_skills.manipulation.solids import object_corners
+from momantu_skills.manipulation.hand.grasps import Grasp, grasps_for
+from momantu_skills.manipulation.model.arm_model import arm_model
+from momantu_skills.manipulation.model.hulls import object_corners
 from momantu_worlds.robots import fetch, kinova_jackal
 
 from momantu_bt.geometry import Pose, Transform

@@ -8,19 +8,20 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from momantu_skills.manipulation.hulls import (
+from momantu_skills.manipulation.model.arm_model import ArmModel
+from momantu_skills.manipulation.model.hulls import (
     MOST_CORNERS,
+    LinkMask,
     convex,
+    floor_outline,
     hull_points,
     link_hulls,
     load_mesh,
+    object_corners,
     part_points,
     prism,
 )
-from momantu_skills.manipulation.mask import LinkMask, floor_outline
-from momantu_skills.manipulation.model import ArmModel
-from momantu_skills.manipulation.solids import object_corners
-from momantu_skills.manipulation.urdf import CollisionPart, base_urdf
+from momantu_skills.manipulation.model.urdf import CollisionPart, base_urdf
 from momantu_worlds.robots import fetch
 from scipy.spatial import ConvexHull
 

@@ -9,15 +9,15 @@ from typing import Any
 
 import numpy as np
 import pytest
-from momantu_skills.manipulation.collision import CollisionWorld, Obstacle, body_pairs
 from momantu_skills.manipulation.config import HandConfig, PlanningConfig
-from momantu_skills.manipulation.escape import escape
-from momantu_skills.manipulation.freshness import check_fresh
-from momantu_skills.manipulation.hand import bump, move_gripper
-from momantu_skills.manipulation.looks import standing, stands_there
-from momantu_skills.manipulation.model import ArmModel
-from momantu_skills.manipulation.motion import brake, expected, follow
-from momantu_skills.manipulation.timing import timed
+from momantu_skills.manipulation.hand.freshness import check_fresh
+from momantu_skills.manipulation.hand.gripper import bump, move_gripper
+from momantu_skills.manipulation.hand.verification import standing, stands_there
+from momantu_skills.manipulation.model.arm_model import ArmModel
+from momantu_skills.manipulation.model.collision import CollisionWorld, Obstacle, body_pairs
+from momantu_skills.manipulation.motion.following import brake, expected, follow
+from momantu_skills.manipulation.motion.planner import escape
+from momantu_skills.manipulation.motion.timing import timed
 
 from momantu_bt.failure import Failure
 from momantu_bt.frames import FrameBuffer

@@ -12,12 +12,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from momantu_skills.manipulation.arm import Arm, straight_line
 from momantu_skills.manipulation.config import PlanningConfig
-from momantu_skills.manipulation.hand import MOVEMENT, move_gripper, open_hand
-from momantu_skills.manipulation.model import ArmModel
-from momantu_skills.manipulation.motion import ARRIVED
-from momantu_skills.manipulation.placing import plan_place
-from momantu_skills.manipulation.reaching import plan_pick
-from momantu_skills.manipulation.timing import timed
+from momantu_skills.manipulation.hand.gripper import MOVEMENT, move_gripper, open_hand
+from momantu_skills.manipulation.hand.placing import plan_place
+from momantu_skills.manipulation.hand.reaching import plan_pick
+from momantu_skills.manipulation.model.arm_model import ArmModel
+from momantu_skills.manipulation.motion.following import ARRIVED
+from momantu_skills.manipulation.motion.timing import timed
 
 from momantu_bt.failure import Failure
 from momantu_bt.geometry import Pose, Transform

@@ -10,10 +10,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from momantu_skills.manipulation.config import SceneConfig
-from momantu_skills.manipulation.holding import Holding
-from momantu_skills.manipulation.mask import LinkMask, floor_outline
-from momantu_skills.manipulation.model import ArmModel
-from momantu_skills.manipulation.surroundings import (
+from momantu_skills.manipulation.model.arm_model import ArmModel
+from momantu_skills.manipulation.model.hulls import LinkMask, floor_outline
+from momantu_skills.manipulation.scene.service import Holding
+from momantu_skills.manipulation.scene.surroundings import (
     EDGE,
     Support,
     Surroundings,

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from momantu_skills.manipulation.config import SceneConfig
-from momantu_skills.manipulation.surroundings import (
+from momantu_skills.manipulation.scene.surroundings import (
     BOARD_DEPTH,
     EDGE,
     SUPPORT_DEPTH,

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 import pytest
-from momantu_skills.manipulation.surroundings import Surroundings
+from momantu_skills.manipulation.scene.surroundings import Surroundings
 from momantu_skills.manipulation.tucking import STICKS_OUT, take_in
 
 from momantu_bt.geometry import Pose, Transform

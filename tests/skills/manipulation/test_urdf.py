@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pinocchio as pin
 import pytest
-from momantu_skills.manipulation.urdf import BaseUrdf, base_urdf
+from momantu_skills.manipulation.model.urdf import BaseUrdf, base_urdf
 
 from momantu_bt.geometry import Transform
 from momantu_bt.testing import small_robot

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 from momantu_skills.navigation.config import NavigationConfig
-from momantu_skills.navigation.costmap import Costmap
-from momantu_skills.navigation.footprint import discs, half_width
-from momantu_skills.navigation.maps import OCCUPIED, GridMap
+from momantu_skills.navigation.control.footprint import discs, half_width
+from momantu_skills.navigation.map.costmap import Costmap
+from momantu_skills.navigation.map.maps import OCCUPIED, GridMap
 
 from momantu_bt.failure import Failure
 from momantu_bt.geometry import Pose2D

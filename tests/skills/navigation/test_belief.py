@@ -6,8 +6,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from momantu_skills.navigation.belief import covariance, differences, main_cluster, mean_pose
-from momantu_skills.navigation.confidence import sigmas
+from momantu_skills.navigation.localize.belief import (
+    covariance,
+    differences,
+    main_cluster,
+    mean_pose,
+)
+from momantu_skills.navigation.localize.confidence import sigmas
 
 from momantu_bt.geometry import Pose2D
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from momantu_skills.navigation.maps import FREE, OCCUPIED, UNKNOWN, read_map
+from momantu_skills.navigation.map.maps import FREE, OCCUPIED, UNKNOWN, read_map
 
 GOOD = {
     "image": "plan.pgm",

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from momantu_skills.navigation import approach
 from momantu_skills.navigation.config import NavigationConfig
-from momantu_skills.navigation.costmap import Costmap
-from momantu_skills.navigation.guard import safe_share
-from momantu_skills.navigation.maps import OCCUPIED, GridMap
-from momantu_skills.navigation.mppi import Mppi
-from momantu_skills.navigation.planner import plan
+from momantu_skills.navigation.control import graceful
+from momantu_skills.navigation.control.guard import safe_share
+from momantu_skills.navigation.control.mppi import Mppi
+from momantu_skills.navigation.map.costmap import Costmap
+from momantu_skills.navigation.map.maps import OCCUPIED, GridMap
+from momantu_skills.navigation.plan.planner import plan
 
 from momantu_bt.geometry import Pose2D, wrap_angle
 from momantu_bt.robot import BaseLimits
@@ -102,7 +102,7 @@ def test_the_approach_ends_on_the_goal(offset: Pose2D, yaw: float) -> None:
     goal = Pose2D(4.0, 3.0, yaw)
     base = _Unicycle(goal @ offset)
     for _ in range(120):
-        command = approach.command(base.pose, goal, LIMITS)
+        command = graceful.command(base.pose, goal, LIMITS)
         base.drive(command or (0.0, 0.0))
         if command is None and abs(base.v) + abs(base.w) < 1e-6:
             break
@@ -116,10 +116,10 @@ def test_the_approach_ends_on_the_goal(offset: Pose2D, yaw: float) -> None:
 def test_the_simulated_approach_foretells_the_real_one(offset: Pose2D) -> None:
     goal = Pose2D(4.0, 3.0, 0.7)
     costmap = _costmap()
-    foretold = approach.simulate(goal @ offset, (0.0, 0.0), goal, LIMITS, costmap, DISC)
+    foretold = graceful.simulate(goal @ offset, (0.0, 0.0), goal, LIMITS, costmap, DISC)
     base = _Unicycle(goal @ offset)
     for _ in range(120):
-        base.drive(approach.command(base.pose, goal, LIMITS) or (0.0, 0.0))
+        base.drive(graceful.command(base.pose, goal, LIMITS) or (0.0, 0.0))
     end = goal.inverse() @ base.pose
     assert (foretold.ahead, foretold.left) == pytest.approx((end.x, end.y), abs=0.03)
     assert abs(wrap_angle(foretold.yaw - end.yaw)) < 0.25
@@ -129,13 +129,13 @@ def test_the_simulated_approach_foretells_the_real_one(offset: Pose2D) -> None:
 def test_an_approach_past_a_wall_has_no_room() -> None:
     goal = Pose2D(4.0, 3.0, 0.0)
     costmap = _costmap((55, 60, 8, 4))
-    end = approach.simulate(Pose2D(2.4, 3.0, 0.0), (0.0, 0.0), goal, LIMITS, costmap, DISC)
+    end = graceful.simulate(Pose2D(2.4, 3.0, 0.0), (0.0, 0.0), goal, LIMITS, costmap, DISC)
     assert end.room < 0.0
     assert not end.within(0.05, 0.2, 0.0)
 
 
 def test_behind_the_goals_line_there_is_nothing_to_approach() -> None:
-    assert approach.command(Pose2D(1.1, 0.0, 0.0), Pose2D(1.0, 0.0, 0.0), LIMITS) is None
+    assert graceful.command(Pose2D(1.1, 0.0, 0.0), Pose2D(1.0, 0.0, 0.0), LIMITS) is None
 
 
 HITS = st.tuples(st.floats(0.33, 1.5), st.floats(-math.pi, math.pi))
@@ -180,7 +180,7 @@ def test_the_approach_keeps_a_slow_base_slow() -> None:
     slow = LIMITS.model_copy(update={"linear": 0.3})
     goal = Pose2D(4.0, 0.0, 0.0)
     for start in (Pose2D(0.0, 0.0, 0.0), Pose2D(2.0, 0.5, 0.3)):
-        quick, wanted = (approach.command(start, goal, limits) for limits in (LIMITS, slow))
+        quick, wanted = (graceful.command(start, goal, limits) for limits in (LIMITS, slow))
         assert quick is not None
         assert wanted is not None
         assert quick[0] > 0.3 >= wanted[0] > 0.0

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from momantu_skills.navigation.config import NavigationConfig
-from momantu_skills.navigation.costmap import FAR, SURE, Costmap
-from momantu_skills.navigation.maps import OCCUPIED, GridMap
-from momantu_skills.navigation.scans import Rays
+from momantu_skills.navigation.map.costmap import FAR, SURE, Costmap
+from momantu_skills.navigation.map.maps import OCCUPIED, GridMap
+from momantu_skills.navigation.map.sensing import Rays
 
 from momantu_bt.geometry import Pose2D
 

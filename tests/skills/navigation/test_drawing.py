@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from momantu_skills.navigation.belief import (
+from momantu_skills.navigation.localize.belief import (
     CLUSTER_RADIUS,
     covariance,
     differences,
     main_cluster,
     mean_pose,
 )
-from momantu_skills.navigation.resampling import kld_resample
+from momantu_skills.navigation.localize.particle_filter import kld_resample
 
 from momantu_bt.geometry import Pose2D
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
-from momantu_skills.navigation.fields import clearance, sample, surface_distance
+from momantu_skills.navigation.map.fields import clearance, sample, surface_distance
 
 GRIDS = arrays(np.bool_, (9, 12), elements=st.sampled_from([False, False, False, True]))
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from momantu_skills.navigation.footprint import SLACK, SPACING, discs, half_width
+from momantu_skills.navigation.control.footprint import SLACK, SPACING, discs, half_width
 
 
 @st.composite

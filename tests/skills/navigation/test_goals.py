@@ -5,7 +5,7 @@ import math
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from momantu_skills.navigation.goals import before_surface, within_reach
+from momantu_skills.navigation.plan.goals import before_surface, within_reach
 
 from momantu_bt.geometry import Pose2D, wrap_angle
 from momantu_bt.robot import Working

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from momantu_skills.navigation.fields import surface_distance
-from momantu_skills.navigation.fit import scan_fit
-from momantu_skills.navigation.likelihood import likelihood_field, log_likelihoods
-from momantu_skills.navigation.maps import OCCUPIED, GridMap
-from momantu_skills.navigation.scans import Rays
+from momantu_skills.navigation.localize.fit import scan_fit
+from momantu_skills.navigation.localize.particle_filter import likelihood_field, log_likelihoods
+from momantu_skills.navigation.map.fields import surface_distance
+from momantu_skills.navigation.map.maps import OCCUPIED, GridMap
+from momantu_skills.navigation.map.sensing import Rays
 from scipy.ndimage import map_coordinates
 
 from momantu_bt.geometry import Pose2D

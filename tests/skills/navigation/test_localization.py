@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from momantu_skills.navigation.confidence import is_localized, sigmas
 from momantu_skills.navigation.config import LocalizationConfig, NavigationConfig, configured
-from momantu_skills.navigation.fields import surface_distance
-from momantu_skills.navigation.fit import scan_fit
-from momantu_skills.navigation.localizer import Localizer
-from momantu_skills.navigation.maps import FREE, OCCUPIED, GridMap, read_map
-from momantu_skills.navigation.scans import SPREAD, Rays
-from momantu_skills.navigation.service import LocalizationService
+from momantu_skills.navigation.localize.confidence import is_localized, sigmas
+from momantu_skills.navigation.localize.fit import scan_fit
+from momantu_skills.navigation.localize.localizer import Localizer
+from momantu_skills.navigation.localize.service import LocalizationService
+from momantu_skills.navigation.map.fields import surface_distance
+from momantu_skills.navigation.map.maps import FREE, OCCUPIED, GridMap, read_map
+from momantu_skills.navigation.map.sensing import SPREAD, Rays
 
 from momantu_bt.geometry import Pose2D, Transform
 from momantu_bt.messages import BaseVelocity, LaserScan

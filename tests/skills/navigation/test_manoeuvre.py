@@ -6,9 +6,9 @@ from typing import Any
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from momantu_skills.navigation.arrive import arrive, within
-from momantu_skills.navigation.cruise import leave
-from momantu_skills.navigation.manoeuvre import (
+from momantu_skills.navigation.drive.arrive import arrive, within
+from momantu_skills.navigation.drive.cruise import leave
+from momantu_skills.navigation.drive.manoeuvre import (
     HOP,
     approach_is_sure,
     hop_bearing,

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
-from momantu_skills.navigation.maps import FREE, OCCUPIED, UNKNOWN, GridMap, read_map
+from momantu_skills.navigation.map.maps import FREE, OCCUPIED, UNKNOWN, GridMap, read_map
 
 YAML = """image: plan.pgm
 resolution: 0.05

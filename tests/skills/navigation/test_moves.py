@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from momantu_skills.navigation.moves import (
+from momantu_skills.navigation.drive.moves import (
     CREEP_DONE,
     TURN_DONE,
     back_off,

@@ -8,9 +8,9 @@ from pathlib import Path
 SCRIPT = """
 import hashlib, sys
 import numpy as np
-from momantu_skills.navigation.fields import clearance
-from momantu_skills.navigation.likelihood import likelihood_field
-from momantu_skills.navigation.planner import _slowness
+from momantu_skills.navigation.map.fields import clearance
+from momantu_skills.navigation.localize.particle_filter import likelihood_field
+from momantu_skills.navigation.plan.planner import _slowness
 
 padding = [bytearray(int(n)) for n in np.random.default_rng(int(sys.argv[1])).integers(1, 999, 50)]
 blocked = np.random.default_rng(0).random((141, 133)) < 0.01

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from momantu_skills.navigation.resampling import kld_resample
+from momantu_skills.navigation.localize.particle_filter import kld_resample
 
 
 def _draw(poses: np.ndarray, weights: np.ndarray, most: int = 20_000, seed: int = 0) -> np.ndarray:

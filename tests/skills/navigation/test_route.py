@@ -7,16 +7,16 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from momantu_skills.navigation.goals import Stand
-from momantu_skills.navigation.planner import UNREACHED
-from momantu_skills.navigation.route import (
+from momantu_skills.navigation.drive.route import (
     choose,
     free_stands,
     no_way,
     planning_radius,
     route_to,
 )
-from momantu_skills.navigation.scans import Rays
+from momantu_skills.navigation.map.sensing import Rays
+from momantu_skills.navigation.plan.goals import Stand
+from momantu_skills.navigation.plan.planner import UNREACHED
 
 from momantu_bt.failure import Failure
 from momantu_bt.geometry import Pose2D

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from momantu_skills.navigation import trip
-from momantu_skills.navigation.goals import Stand
-from momantu_skills.navigation.mppi import Mppi
-from momantu_skills.navigation.trip import Destination, be_sure, travel
+from momantu_skills.navigation.control.mppi import Mppi
+from momantu_skills.navigation.drive import trip
+from momantu_skills.navigation.drive.trip import Destination, be_sure, travel
+from momantu_skills.navigation.plan.goals import Stand
 
 from momantu_bt.failure import Failure
 from momantu_bt.geometry import Pose2D

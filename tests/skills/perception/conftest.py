@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import pytest
-from momantu_skills.perception.regions import Region, disc
-from momantu_skills.perception.views import Snapshot, View, see
+from momantu_skills.perception.camera.views import Snapshot, View, see
+from momantu_skills.perception.geometry.regions import Region, disc
 
 from momantu_bt.geometry import Transform
 from momantu_bt.testing import ScriptedRobot

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from momantu_skills.perception.aiming import aim, view_error
+from momantu_skills.perception.camera.aiming import aim, view_error
 
 from momantu_bt.testing import small_robot
 

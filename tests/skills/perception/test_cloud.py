@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from momantu_skills.perception.cloud import on_ramp, points_from_depth
+from momantu_skills.perception.camera.cloud import on_ramp, points_from_depth
 
 K = np.array([[100.0, 0.0, 31.5], [0.0, 100.0, 23.5], [0.0, 0.0, 1.0]])
 

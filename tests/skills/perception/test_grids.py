@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from momantu_skills.perception.grids import (
+from momantu_skills.perception.geometry.grids import (
     Grid,
     clearance,
     closed,

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from momantu_skills.perception.cloud import points_from_depth
-from momantu_skills.perception.grids import Grid
-from momantu_skills.perception.rectangles import smallest_rectangle
-from momantu_skills.perception.segment import SegmentConfig, Thing, group
-from momantu_skills.perception.splitting import _circumcircles, split
-from momantu_skills.perception.spots import Ground, SpotConfig, free_spots
-from momantu_skills.perception.tag_poses import TagSighting, average
+from momantu_skills.perception.camera.cloud import points_from_depth
+from momantu_skills.perception.geometry.grids import Grid
+from momantu_skills.perception.geometry.rectangles import smallest_rectangle
+from momantu_skills.perception.objects.splitting import _circumcircles, split
+from momantu_skills.perception.surface.segment import SegmentConfig, Thing, group
+from momantu_skills.perception.surface.spots import Ground, SpotConfig, free_spots
+from momantu_skills.perception.tags import TagSighting, average
 
 from momantu_bt.geometry import Pose2D, Transform
 

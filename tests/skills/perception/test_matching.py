@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from momantu_skills.perception.matching import MatchConfig, score
-from momantu_skills.perception.shapes import Shape
+from momantu_skills.perception.objects.matching import MatchConfig, score
+from momantu_skills.perception.objects.shapes import Shape
 
 from momantu_bt.messages import ObjectClass
 

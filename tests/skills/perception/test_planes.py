@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from momantu_skills.perception.planes import PlaneConfig, find_plane, measure_support
-from momantu_skills.perception.regions import depth_inside
+from momantu_skills.perception.geometry.regions import depth_inside
+from momantu_skills.perception.surface.planes import PlaneConfig, find_plane, measure_support
 
 from momantu_bt.geometry import Transform, quaternion_from_rpy
 from momantu_bt.testing.painting import Block, Round

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from momantu_skills.perception.rectangles import fitted_to, smallest_rectangle
+from momantu_skills.perception.geometry.rectangles import fitted_to, smallest_rectangle
 
 SIZE = (0.10, 0.06)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from momantu_skills.perception.regions import (
+from momantu_skills.perception.geometry.regions import (
     Region,
     convex_hull,
     depth_inside,

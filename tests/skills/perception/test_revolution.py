@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from momantu_skills.perception.revolution import fit_revolution
+from momantu_skills.perception.geometry.revolution import fit_revolution
 
 NOISE = 0.0012
 """m; of depth at 0.9 m."""

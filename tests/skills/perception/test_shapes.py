@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from momantu_skills.perception.planes import measure_support
-from momantu_skills.perception.segment import SegmentConfig, Thing, headroom, things_on
-from momantu_skills.perception.shapes import Shape, describe
-from momantu_skills.perception.splitting import split
+from momantu_skills.perception.objects.shapes import Shape, describe
+from momantu_skills.perception.objects.splitting import split
+from momantu_skills.perception.surface.planes import measure_support
+from momantu_skills.perception.surface.segment import SegmentConfig, Thing, headroom, things_on
 
 from momantu_bt.testing.painting import Block, Round, Solid
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from momantu_skills.perception.grids import Grid
-from momantu_skills.perception.spots import Ground, SpotConfig, free_spots
+from momantu_skills.perception.geometry.grids import Grid
+from momantu_skills.perception.surface.spots import Ground, SpotConfig, free_spots
 
 CONFIG = SpotConfig()
 OUTLINE = np.array([[0.0, 0.0], [0.6, 0.0], [0.6, 1.0], [0.0, 1.0]])

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from momantu_skills.perception.tag_poses import TagSighting, average
-from momantu_skills.perception.tags import UNIT_CORNERS, find_tags, locate
+from momantu_skills.perception.tags import UNIT_CORNERS, TagSighting, average, find_tags, locate
 
 from momantu_bt.geometry import Transform, quaternion_from_rpy
 from momantu_bt.messages import CameraImage

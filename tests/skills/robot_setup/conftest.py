@@ -6,10 +6,10 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import pytest
-from momantu_skills.robot_setup.base import find_base
-from momantu_skills.robot_setup.body import Body
-from momantu_skills.robot_setup.prepare import Placed, prepare
-from momantu_skills.robot_setup.proposal import Proposal, propose
+from momantu_skills.robot_setup.find.base import find_base
+from momantu_skills.robot_setup.find.proposal import Proposal, propose
+from momantu_skills.robot_setup.urdf.body import Body
+from momantu_skills.robot_setup.urdf.prepare import Placed, prepare
 
 MASS = (
     '<inertial><mass value="{m}"/>'

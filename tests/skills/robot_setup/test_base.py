@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from momantu_skills.robot_setup.base import CORNERS, find_base, find_stand, outline, planar
+from momantu_skills.robot_setup.find.base import CORNERS, find_base, find_stand, outline, planar
 from scipy.spatial import ConvexHull
 
 from momantu_bt.geometry import Array

@@ -6,12 +6,12 @@ from itertools import product
 
 import numpy as np
 import pytest
-from momantu_skills.robot_setup.base import find_base
-from momantu_skills.robot_setup.body import Body
-from momantu_skills.robot_setup.cells import cuts_of, swallowed
-from momantu_skills.robot_setup.matrix import sample_matrix
-from momantu_skills.robot_setup.prepare import Placed, prepare
-from momantu_skills.robot_setup.proposal import propose
+from momantu_skills.robot_setup.find.base import find_base
+from momantu_skills.robot_setup.find.matrix import sample_matrix
+from momantu_skills.robot_setup.find.proposal import propose
+from momantu_skills.robot_setup.urdf.body import Body
+from momantu_skills.robot_setup.urdf.cells import cuts_of, swallowed
+from momantu_skills.robot_setup.urdf.prepare import Placed, prepare
 from momantu_worlds.robots import fetch
 from scipy.spatial import ConvexHull
 

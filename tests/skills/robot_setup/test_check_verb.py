@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 from momantu_skills.robot_setup.check_verb import check, check_robot
-from momantu_skills.robot_setup.proposal import Proposal
-from momantu_skills.robot_setup.writer import robot_file
+from momantu_skills.robot_setup.find.proposal import Proposal
+from momantu_skills.robot_setup.write.writer import robot_file
 from momantu_worlds.robots import fetch
 from typer import Typer
 from typer.testing import CliRunner

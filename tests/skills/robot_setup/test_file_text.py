@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from momantu_skills.robot_setup.file_text import comment, listed, number, scalar
-from momantu_skills.robot_setup.proposal import propose
-from momantu_skills.robot_setup.writer import robot_file
+from momantu_skills.robot_setup.find.proposal import propose
+from momantu_skills.robot_setup.write.file_text import comment, listed, number, scalar
+from momantu_skills.robot_setup.write.writer import robot_file
 from ruamel.yaml import YAML
 
 from momantu_bt.robots import read_robot

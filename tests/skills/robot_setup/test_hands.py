@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from momantu_skills.robot_setup.body import Body, placed
-from momantu_skills.robot_setup.fingers import NEAR, STEPS, Hand, find_hands
-from momantu_skills.robot_setup.grasp import APART, LINEAR, STRONGEST, Grasp, find_grasp
-from momantu_skills.robot_setup.rays import opening_between
+from momantu_skills.robot_setup.find.fingers import NEAR, STEPS, Hand, find_hands
+from momantu_skills.robot_setup.find.grasp import APART, LINEAR, STRONGEST, Grasp, find_grasp
+from momantu_skills.robot_setup.urdf.body import Body, placed
+from momantu_skills.robot_setup.urdf.rays import opening_between
 
 from momantu_bt.geometry import Transform
 from tests.skills.robot_setup.conftest import body_of, box, joint, link

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from momantu_skills.robot_setup.limits import (
+from momantu_skills.robot_setup.find.limits import (
     GENTLE,
     LIGHT,
     SLOWEST,
@@ -15,7 +15,7 @@ from momantu_skills.robot_setup.limits import (
     find_limits,
     plain_limits,
 )
-from momantu_skills.robot_setup.skeleton import SetupError
+from momantu_skills.robot_setup.urdf.skeleton import SetupError
 
 from tests.skills.robot_setup.conftest import body_of, box, joint, link
 

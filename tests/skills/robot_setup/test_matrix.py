@@ -6,10 +6,10 @@ from itertools import combinations
 from pathlib import Path
 
 import pytest
-from momantu_skills.robot_setup.base import find_base
-from momantu_skills.robot_setup.body import Body, Contacts
-from momantu_skills.robot_setup.matrix import SAMPLES, CollisionMatrix, Why, sample_matrix
-from momantu_skills.robot_setup.prepare import Placed, prepare
+from momantu_skills.robot_setup.find.base import find_base
+from momantu_skills.robot_setup.find.matrix import SAMPLES, CollisionMatrix, Why, sample_matrix
+from momantu_skills.robot_setup.urdf.body import Body, Contacts
+from momantu_skills.robot_setup.urdf.prepare import Placed, prepare
 
 
 @pytest.fixture(scope="module")

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 from lxml import etree
-from momantu_skills.robot_setup.prepare import Prepared, find_mesh, prepare
-from momantu_skills.robot_setup.skeleton import SetupError
+from momantu_skills.robot_setup.urdf.prepare import Prepared, find_mesh, prepare
+from momantu_skills.robot_setup.urdf.skeleton import SetupError
 
 Given = Callable[..., Prepared]
 BOX = '<collision><geometry><box size="1 1 1"/></geometry></collision>'

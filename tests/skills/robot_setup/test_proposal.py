@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from momantu_skills.robot_setup.proposal import Proposal, propose
-from momantu_skills.robot_setup.sensor_writer import sensor_names
+from momantu_skills.robot_setup.find.proposal import Proposal, propose
+from momantu_skills.robot_setup.write.sensor_writer import sensor_names
 from momantu_worlds.robots import fetch
 
 from momantu_bt.robot import RobotDescription

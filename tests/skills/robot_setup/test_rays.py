@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from momantu_skills.robot_setup.rays import blocked, crossings, opening_between, planes_of
+from momantu_skills.robot_setup.urdf.rays import blocked, crossings, opening_between, planes_of
 
 COORDINATE = st.floats(-3, 3)
 BOX = np.array(list(product((-1.0, 1.0), (-0.5, 0.5), (-0.25, 0.25))))

@@ -10,10 +10,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from lxml import etree
-from momantu_skills.robot_setup.proposal import Proposal
-from momantu_skills.robot_setup.sensor_writer import LIDAR_SCAN, sensor_frames, sensor_lines
-from momantu_skills.robot_setup.sensors import FoundSensor, find_sensors
-from momantu_skills.robot_setup.skeleton import read_skeleton
+from momantu_skills.robot_setup.find.proposal import Proposal
+from momantu_skills.robot_setup.find.sensors import FoundSensor, find_sensors
+from momantu_skills.robot_setup.urdf.skeleton import read_skeleton
+from momantu_skills.robot_setup.write.sensor_writer import LIDAR_SCAN, sensor_frames, sensor_lines
 from pydantic import TypeAdapter
 from ruamel.yaml import YAML
 

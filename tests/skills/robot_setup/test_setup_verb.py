@@ -6,9 +6,9 @@ import json
 from pathlib import Path
 
 import pytest
-from momantu_skills.robot_setup.proposal import Proposal
+from momantu_skills.robot_setup.find.proposal import Proposal
 from momantu_skills.robot_setup.setup_verb import setup
-from momantu_skills.robot_setup.writer import missing, robot_file
+from momantu_skills.robot_setup.write.writer import missing, robot_file
 from typer import Typer
 from typer.testing import CliRunner
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 from lxml import etree
-from momantu_skills.robot_setup.skeleton import SetupError, Skeleton, read_skeleton
+from momantu_skills.robot_setup.urdf.skeleton import SetupError, Skeleton, read_skeleton
 
 
 def link(name: str, shape: str = "") -> str:

@@ -1,0 +1,120 @@
+"""Looking over a surface: several views of one region."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Generator, Sequence
+from typing import Any
+
+import numpy as np
+
+from momantu_bt.failure import Failure
+from momantu_bt.frames import ODOM
+from momantu_bt.geometry import Array
+from momantu_bt.robot import CameraSensor, Robot
+from momantu_bt.service import PlanningScene
+from momantu_bt.skill import Compute, Skill
+from momantu_skills.gaze.look_at import look_at
+from momantu_skills.perception.camera.views import Snapshot, take
+
+OFF_AXIS = math.radians(12.0)
+"""How far from the middle of the picture a looked-at point may lie: it is still well inside."""
+OVERLAP = 0.7
+"""Share of the field of view by which neighbouring views of a sweep are apart at most."""
+SIDESTEP = 0.12
+"""m beside a thing where further looks at it go, so that it falls on other pixels."""
+NEAR, TABLE = 1.0, 0.6
+"""m; distance and height of what is looked at where nothing is known: a table ahead."""
+AROUND = tuple(math.radians(angle) for angle in (0.0, 40.0, -40.0, 80.0, -80.0))
+"""rad; bearings of those looks: neighbouring views of 60 degrees overlap by a third."""
+
+
+def glance(
+    skill: Skill, robot: Robot, scene: PlanningScene, point_odom: Array
+) -> Generator[str | Compute, Any, Snapshot | None]:
+    """Look at a point (3,) in odom and take a picture; None when it cannot be looked at.
+
+    The planning scene sees the picture too: from here things may be in view that the hand hides
+    later.
+    """
+    try:
+        yield from look_at(skill, robot, point_odom, within=OFF_AXIS)
+    except Failure as failure:
+        if failure.code != "OUT_OF_VIEW":
+            raise
+        return None
+    scene.observe(robot)
+    return take(skill, robot)
+
+
+def looks_over(skill: Skill, robot: Robot, corners: Array, at_least: int) -> list[Array]:
+    """Points (3,) in odom to look at so that a surface of these corners (k, 3) is seen whole.
+
+    From where the camera is, or, where an arm will carry it elsewhere, from above the base.
+    """
+    sensor = robot.description.camera()[1]
+    moved = robot.description.eye_in_hand
+    viewpoint = robot.description.base_frame if moved else sensor.frame
+    return sweep(corners, skill.frames.lookup(ODOM, viewpoint).position, sensor, at_least)
+
+
+def around(skill: Skill, robot: Robot) -> list[Array]:
+    """Points (3,) in odom to look at where nothing is known: ahead, then to both sides."""
+    odom_from_base = skill.frames.lookup(ODOM, robot.description.base_frame)
+    points = []
+    for bearing in AROUND:
+        ahead = (NEAR * math.cos(bearing), NEAR * math.sin(bearing), TABLE)
+        points.append(odom_from_base.apply(ahead))
+    return points
+
+
+def beside(thing: Array, camera: Array, count: int) -> Array:
+    """Where to look (3,) for the `count`-th further view of a thing at (3,): at it, then beside."""
+    if count == 1:
+        return thing
+    away = thing[:2] - camera[:2]
+    across = np.array([-away[1], away[0]]) / max(float(np.hypot(*away)), 1e-9)
+    side = SIDESTEP * (1.0 if count % 2 == 0 else -1.0)
+    return np.array([*(thing[:2] + side * across), thing[2]])
+
+
+def sweep(
+    corners_odom: Array, camera_odom: Array, camera: CameraSensor, at_least: int
+) -> list[Array]:
+    """Points (3,) to look at, one after the other, so that a surface is seen whole.
+
+    corners_odom: (k, 3) of the surface's convex outline. The views share the bearings that the
+    outline spans as seen from `camera_odom`; they are ordered from the middle outwards, and each
+    looks at the middle of the surface along its bearing.
+    """
+    centre = corners_odom.mean(axis=0)
+    ahead = math.atan2(centre[1] - camera_odom[1], centre[0] - camera_odom[0])
+    offsets = corners_odom[:, :2] - camera_odom[:2]
+    turned = np.arctan2(offsets[:, 1], offsets[:, 0]) - ahead
+    bearings = np.arctan2(np.sin(turned), np.cos(turned))
+    low, high = float(bearings.min()), float(bearings.max())
+    needed = math.ceil((high - low) / (OVERLAP * camera.horizontal_fov))
+    count = max(at_least, needed, 1)
+    share = (np.arange(count) + 0.5) / count
+    views = [float(low + (high - low) * s) for s in share]
+    views.sort(key=lambda bearing: (abs(bearing - (low + high) / 2), bearing))
+    return [_along(corners_odom, camera_odom, ahead + bearing) for bearing in views]
+
+
+def _along(corners: Array, camera: Array, heading: float) -> Array:
+    """Middle of the part of the outline that a vertical half-plane from the camera cuts."""
+    direction = np.array([math.cos(heading), math.sin(heading)])
+    across = np.array([-direction[1], direction[0]])
+    relative = corners[:, :2] - camera[:2]
+    side, forward = relative @ across, relative @ direction
+    hits: list[float] = []
+    for here, there in _edges(len(corners)):
+        if (side[here] > 0) != (side[there] > 0):
+            share = side[here] / (side[here] - side[there])
+            hits.append(float(forward[here] + share * (forward[there] - forward[here])))
+    distance = sum(hits) / len(hits) if hits else float(forward.mean())
+    return np.array([*(camera[:2] + distance * direction), float(corners[:, 2].mean())])
+
+
+def _edges(count: int) -> Sequence[tuple[int, int]]:
+    return [(index, (index + 1) % count) for index in range(count)]

@@ -1,0 +1,205 @@
+"""Choosing grasps that can be approached, held and lifted, and the motions for one of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from momantu_bt.failure import Failure
+from momantu_bt.geometry import Array, Transform
+from momantu_bt.messages import DetectedObject, JointTrajectory, RobotState
+from momantu_bt.service import HeldObject
+from momantu_skills.manipulation.arm import Arm
+from momantu_skills.manipulation.hand.grasps import Grasp, grasps_for
+from momantu_skills.manipulation.model.collision import CollisionWorld, Obstacle
+from momantu_skills.manipulation.model.hulls import object_corners
+
+SEEDS = 6
+"""Starts of the inverse kinematics per grasp: three in four find a posture where there is one."""
+FROM_BEHIND = -0.3
+"""Cosine between the fingers' direction and the direction from base to object below which a grasp
+would reach around the object; those are not tried."""
+POSTURES = 3
+"""Postures kept per grasp, the quickest to reach."""
+ENOUGH = 5
+"""Grasps with which a way is searched: the planner takes the first it can reach."""
+TESTED = 1800
+"""Postures whose approach and lift are tested at most."""
+CUT = (0.025, 0.025, 0.03)
+"""m around the object in which cells are its own: detection error and a cell's diagonal."""
+BESIDE = 0.003
+"""m between the open hand and the object until it closes: less than the palm keeps."""
+SKIN = 0.004
+"""m around the object that the hand keeps on its way to it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Reach:
+    """A grasp with its motions: approach (k, n) ends at the grasp, lift (m, n) begins there."""
+
+    grasp: Grasp
+    approach: Array
+    lift: Array
+    cost: float
+
+
+@dataclass(frozen=True, eq=False)
+class PickPlan:
+    """What to execute. transit: trajectories to the pre-grasp, one after the other."""
+
+    grasp: Grasp
+    transit: list[JointTrajectory]
+    approach: JointTrajectory
+    retreat: JointTrajectory
+    lift: JointTrajectory
+
+
+def plan_pick(arm: Arm, thing: DetectedObject, lift: float) -> PickPlan:
+    """Grasp, approach, lift and the way to them.
+
+    Raises:
+        Failure: NO_GRASP when no grasp can be reached, NO_PLAN when none of those that can has a
+            way to it, START_IN_COLLISION.
+    """
+    reaches = reachable(arm, thing, lift)
+    state = arm.state
+    cut = (thing.pose.transform, _cut(thing))
+    base_from_object = state.odom_from_base.inverse() @ thing.pose.transform
+    target = Obstacle("target", base_from_object.apply(object_corners(thing, SKIN)))
+    goals = [reach.approach[0] for reach in reaches]
+    transit = arm.route(goals, None, width=arm.open_width, cut=cut, extra=(target,))
+    end = transit[-1].positions[-1] if transit else arm.joints
+    reach = min(reaches, key=lambda r: float(np.abs(arm.turned(r.approach[0], end) - end).max()))
+    approach, up = arm.turned(reach.approach, end), arm.turned(reach.lift, end)
+    return PickPlan(
+        reach.grasp,
+        transit,
+        arm.trajectory(approach, arm.hand.approach_speed),
+        arm.trajectory(approach[::-1], arm.hand.lift_speed),
+        arm.trajectory(up, arm.hand.lift_speed),
+    )
+
+
+def reachable(arm: Arm, thing: DetectedObject, lift: float) -> list[Reach]:
+    """Grasps whose approach, closing and lift are all possible, best first.
+
+    Raises:
+        Failure: NO_GRASP, with how many grasps failed at which step.
+    """
+    effector = arm.scene.model.description.end_effector
+    model = arm.scene.model
+    grasps = grasps_for(thing, effector, model.palm, model.open_fingers)
+    if not grasps:
+        raise Failure(
+            "NO_GRASP",
+            f"the {thing.category} measures {thing.size[0] * 1000:.0f} x "
+            f"{thing.size[1] * 1000:.0f} mm, the gripper opens to "
+            f"{effector.max_width * 1000:.0f} mm",
+        )
+    check = _Check(arm, thing, lift)
+    found: list[Reach] = []
+    for count, (grasp, q, cost) in enumerate(_postures(arm, thing, grasps)):
+        if len(found) >= ENOUGH or count >= TESTED:
+            break
+        reach = check(grasp, q, cost)
+        if reach is not None:
+            found.append(reach)
+    if not found:
+        raise Failure(
+            "NO_GRASP",
+            f"none of {len(grasps)} grasps can be approached, held and lifted: {check.summary()}",
+            **check.lost,
+        )
+    return found
+
+
+def _postures(
+    arm: Arm, thing: DetectedObject, grasps: Sequence[Grasp]
+) -> Iterator[tuple[Grasp, Array, float]]:
+    """Postures (n,) at the grasps, with their cost in seconds, cheapest first."""
+    state, start, group = arm.state, arm.joints, arm.group
+    base_from_object = state.odom_from_base.inverse() @ thing.pose.transform
+    grasp_from_tip = arm.scene.model.tip_from_grasp.inverse()
+    away = base_from_object.position[:2] / np.linalg.norm(base_from_object.position[:2])
+    poses = [base_from_object @ grasp.object_from_grasp for grasp in grasps]
+    ahead = [float(pose.rotation[:2, 0] @ away) > FROM_BEHIND for pose in poses]
+    grasps = [grasp for grasp, keep in zip(grasps, ahead, strict=True) if keep]
+    targets = [(p @ grasp_from_tip).matrix for p, keep in zip(poses, ahead, strict=True) if keep]
+    found, good = group.solve(np.array(targets), arm.seeds(start, SEEDS))
+    ranked: list[tuple[float, int, Array]] = []
+    for i, grasp in enumerate(grasps):
+        solved = group.nearest_turn(found[i][good[i]], start)
+        costs = np.max(np.abs(solved - start) / group.velocity, axis=1)
+        costs += grasp.penalty + arm.carry_penalty(grasp.object_from_grasp.inverse())
+        costs += arm.blind_penalty(grasp.object_from_grasp)
+        order = np.argsort(costs, kind="stable")[:POSTURES]
+        ranked += [(float(costs[j]), i, solved[j]) for j in order]
+    ranked.sort(key=lambda item: (item[0], item[1]))
+    for cost, i, q in ranked:
+        yield grasps[i], q, cost
+
+
+class _Check:
+    """Tests a posture at a grasp: hand, approach and lift; counts what fails where."""
+
+    def __init__(self, arm: Arm, thing: DetectedObject, lift: float) -> None:
+        self._arm, self._thing, self._lift = arm, thing, lift
+        self._state: RobotState = arm.state
+        cut = (thing.pose.transform, _cut(thing))
+        self._cut = cut
+        margin = arm.hand.near_margin
+        self._open = arm.scene.world(self._state, None, margin, width=arm.open_width, cut=cut)
+        self._around = _around(arm, self._state, thing)
+        self.lost = {"hand collides": 0, "approach": 0, "lift": 0}
+
+    def __call__(self, grasp: Grasp, q: Array, cost: float) -> Reach | None:
+        arm = self._arm
+        if not (self._open.free(q) and self._around.free(q)):
+            self.lost["hand collides"] += 1
+            return None
+        base_from_tip = arm.group.tip_pose(q)
+        back = base_from_tip @ Transform((-arm.hand.approach, 0.0, 0.0))
+        approach = arm.line(q, back)
+        if approach is None or not (
+            self._open.path_free(approach) and self._around.path_free(approach)
+        ):
+            self.lost["approach"] += 1
+            return None
+        x, y, z = base_from_tip.position
+        above = Transform((x, y, z + self._lift), base_from_tip.quaternion)
+        lift = arm.line(q, above)
+        if lift is None or not self._carrying(grasp).path_free(lift):
+            self.lost["lift"] += 1
+            return None
+        return Reach(grasp, approach[::-1], lift, cost)
+
+    def _carrying(self, grasp: Grasp) -> CollisionWorld:
+        held = HeldObject(self._thing, grasp.object_from_grasp.inverse())
+        return self._arm.scene.world(
+            self._state,
+            held,
+            self._arm.hand.near_margin,
+            width=grasp.width,
+            held_on_support=True,
+            cut=self._cut,
+        )
+
+    def summary(self) -> str:
+        """How many postures failed where, for a message."""
+        counts = ", ".join(f"{n} at {where}" for where, n in self.lost.items() if n)
+        return counts or "no posture of the arm reaches any of them"
+
+
+def _around(arm: Arm, state: RobotState, thing: DetectedObject) -> CollisionWorld:
+    """The object alone, as something that an open hand must not touch before it closes."""
+    base_from_object = state.odom_from_base.inverse() @ thing.pose.transform
+    solid = Obstacle("target", base_from_object.apply(object_corners(thing)))
+    posture = arm.scene.model.configuration(state, arm.open_width)
+    return CollisionWorld(arm.scene.body, posture, [solid], margin=BESIDE)
+
+
+def _cut(thing: DetectedObject) -> tuple[float, float, float]:
+    x, y, z = (edge / 2 + more for edge, more in zip(thing.size, CUT, strict=True))
+    return x, y, z

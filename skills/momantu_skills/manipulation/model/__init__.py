@@ -1,0 +1,1 @@
+"""The robot's body for planning: URDF, hulls, kinematics, collision checks."""

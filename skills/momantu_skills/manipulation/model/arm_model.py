@@ -1,0 +1,326 @@
+"""A robot's body for planning: links, hulls, chains of joints. Everything in the base frame."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import NDArray
+from scipy.spatial import ConvexHull
+
+from momantu_bt.frames import Joint, KinematicTree
+from momantu_bt.geometry import Array, Transform
+from momantu_bt.messages import RobotState
+from momantu_bt.robot import JointLimit, RobotDescription
+from momantu_skills.manipulation.model import kinematics as kin
+from momantu_skills.manipulation.model.hulls import link_hulls
+from momantu_skills.manipulation.model.urdf import base_urdf
+
+PACE = 1.5
+"""rad/s; speed of a usual arm's joints, to which those of a group are compared."""
+JUMP = 0.25
+"""rad between two solved poses of a straight line, 1 cm apart; more is another arm posture."""
+NEAR, TURN = 5e-4, 3e-3
+"""m and rad to which inverse kinematics solves: well below calibration errors."""
+
+
+@dataclass(frozen=True)
+class Group:
+    """A chain of n joints from the base to a tip, with limits (endless joints: infinite).
+
+    scale (n,): turns joint angles into equal times. The rest: see `kinematics`.
+    """
+
+    names: tuple[str, ...]
+    lower: Array
+    upper: Array
+    velocity: Array
+    acceleration: Array
+    origins: Array
+    axes: Array
+    slides: NDArray[np.bool_]
+    tip: Array
+
+    @property
+    def pace(self) -> float:
+        """rad/s; a scaled radian takes 1 / pace seconds on each joint. Less on a slow arm."""
+        return min(PACE, float(np.median(self.velocity)))
+
+    @property
+    def scale(self) -> Array:
+        """Scaled radians per radian or metre, (n,)."""
+        return self.pace / self.velocity
+
+    @property
+    def endless(self) -> NDArray[np.bool_]:
+        """(n,) which joints turn for ever."""
+        return np.asarray(~np.isfinite(self.lower))
+
+    def tip_pose(self, q: Array) -> Transform:
+        """base_from_tip at joints (n,)."""
+        r, p, _ = kin.forward(self.origins, self.axes, self.slides, self.tip, q)
+        return Transform.from_rotation(r, p)
+
+    def tip_matrix(self, q: Array) -> Array:
+        """base_from_tip (4, 4) at joints (n,)."""
+        m = np.eye(4)
+        m[:3, :3], m[:3, 3], _ = kin.forward(self.origins, self.axes, self.slides, self.tip, q)
+        return m
+
+    def jacobian(self, q: Array) -> Array:
+        """(6, n): velocity of the tip, then angular velocity, in base, per joint."""
+        return np.asarray(kin.forward(self.origins, self.axes, self.slides, self.tip, q)[2])
+
+    def solve(self, targets: Array, seeds: Array, rounds: int = 40) -> tuple[Array, Array]:
+        """Inverse kinematics of poses (m, 4, 4) from seeds (s, n).
+
+        Returns joints (m, s, n) within the limits, and success (m, s).
+        """
+        found, good = kin.solve(  # type: ignore[call-arg]
+            *self._kernel(), np.ascontiguousarray(targets), seeds, rounds, NEAR, TURN
+        )
+        return found, good
+
+    def trace(self, targets: Array, start: Array) -> tuple[Array, int]:
+        """Joints along poses (k, 4, 4) a centimetre apart: (reached, n), and how many there are."""
+        path, reached = kin.trace(  # type: ignore[call-arg]
+            *self._kernel(), np.ascontiguousarray(targets), np.array(start), NEAR, TURN, JUMP
+        )
+        return path[:reached], int(reached)
+
+    def poses(self, postures: Array) -> Array:
+        """base_from_tip (m, 4, 4) at each of joints (m, n)."""
+        return np.asarray(kin.poses(self.origins, self.axes, self.slides, self.tip, postures))
+
+    def point(
+        self, starts: Array, ray: Array, target: Array, rounds: int = 12
+    ) -> tuple[Array, Array]:
+        """Turn a ray (3,) of the tip towards a point (3,) in base, from joints (m, n).
+
+        Returns joints (m, n) within the limits, moved little, and the angles left (m,), rad.
+        """
+        return kin.point(*self._kernel(), starts, ray, target, rounds, TURN)  # type: ignore[call-arg,no-any-return]
+
+    def nearest_turn(self, q: Array, reference: Array) -> Array:
+        """The same posture with endless joints (.., n) within half a turn of `reference` (n,)."""
+        turns = np.round((q - reference) / (2 * np.pi)) * (2 * np.pi)
+        return np.where(self.endless, q - turns, q)
+
+    def _kernel(self) -> tuple[object, ...]:
+        weights = (self.velocity / self.pace) ** 2
+        return (
+            self.origins,
+            self.axes,
+            self.slides,
+            self.tip,
+            self.lower,
+            self.upper,
+            weights,
+        )
+
+
+class ArmModel:
+    """Kinematics and hulls of the whole robot, for one planning group that is moved."""
+
+    def __init__(self, description: RobotDescription, group: str = "arm") -> None:
+        self.description = description
+        self.urdf = base_urdf(description)
+        self.pin: pin.Model = pin.buildModelFromXML(self.urdf.text)
+        self.hulls = link_hulls(self.urdf.parts)
+        effector = description.end_effector
+        self.group = _chain_of(description, description.groups[group].joints, effector.frame)
+        self._index = {
+            name: int(self.pin.joints[self.pin.getJointId(name)].idx_q)
+            for name in list(self.pin.names)[1:]
+        }
+        self.group_index = np.array([self._index[name] for name in self.group.names])
+        self.frame_ids = {
+            link: int(self.pin.getFrameId(link, pin.FrameType.BODY))
+            for link in (*self.hulls, effector.frame)
+        }
+
+    def joints(self, state: RobotState) -> Array:
+        """Joints of the planning group (n,) as measured, clipped into their limits."""
+        q = np.array([state.position(name) for name in self.group.names])
+        return np.asarray(np.clip(q, self.group.lower, self.group.upper))
+
+    def configuration(self, state: RobotState, width: float | None = None) -> Array:
+        """All joints (nq,) in pinocchio's order; fingers from a width, the measured one if None."""
+        return self.posture(state.joints(), state.gripper_width if width is None else width)
+
+    def posture(self, joints: Mapping[str, float], width: float) -> Array:
+        """All joints (nq,) from those given, the others at 0, and the gripper's opening in m."""
+        q = np.zeros(self.pin.nq)
+        for name, value in joints.items():
+            if name in self._index:
+                q[self._index[name]] = value
+        for finger, value in self.description.end_effector.positions(max(0.0, width)).items():
+            q[self._index[finger]] = value
+        return q
+
+    def link_poses(self, q: Array) -> dict[str, Array]:
+        """base_from_link (4, 4) of the tip and every link with a hull, at all joints (nq,)."""
+        data = self._data
+        pin.framesForwardKinematics(self.pin, data, q)
+        return {link: np.array(data.oMf[i].homogeneous) for link, i in self.frame_ids.items()}
+
+    @property
+    def _data(self) -> pin.Data:
+        data = self.__dict__.get("_cached_data")
+        if data is None:
+            data = self.__dict__["_cached_data"] = self.pin.createData()
+        return data
+
+    @property
+    def tip_from_grasp(self) -> Transform:
+        """The grasp frame in the tip, the link that the end effector names as its frame."""
+        effector = self.description.end_effector
+        return Transform((effector.grasp_offset, 0.0, 0.0))
+
+    @cached_property
+    def palm(self) -> Array:
+        """Corners (n, 3) of the hand without its fingers, in the grasp frame, m.
+
+        Those of the links that may touch what is grasped and do not move against the tip.
+        """
+        effector = self.description.end_effector
+        tip = self.pin.frames[self.frame_ids[effector.frame]]
+        corners = []
+        for link in effector.touch_links:
+            frame = self.pin.frames[self.frame_ids[link]] if link in self.hulls else None
+            if frame is None or frame.parentJoint != tip.parentJoint:
+                continue
+            place = tip.placement.actInv(frame.placement).homogeneous
+            own = self.hulls[link]
+            corners.append(own if link == effector.frame else own @ place[:3, :3].T + place[:3, 3])
+        found = np.vstack(corners) if corners else np.zeros((1, 3))
+        return np.asarray(found - (effector.grasp_offset, 0.0, 0.0))
+
+    @cached_property
+    def open_fingers(self) -> tuple[Array, ...]:
+        """Planes (k, 4) around each link of the fingers, opened wide, in the grasp frame, m.
+
+        Outward normal and offset: a point is inside where all are negative.
+        """
+        effector = self.description.end_effector
+        joint = self.pin.frames[self.frame_ids[effector.frame]].parentJoint
+        poses = self.link_poses(self.posture({}, effector.max_width))
+        grasp = Transform.from_matrix(poses[effector.frame]) @ self.tip_from_grasp
+        found = []
+        for link in effector.touch_links:
+            moves = self.pin.frames[self.pin.getFrameId(link)].parentJoint != joint
+            if moves and link in self.hulls:
+                pose = grasp.inverse() @ Transform.from_matrix(poses[link])
+                found.append(ConvexHull(pose.apply(self.hulls[link])).equations)
+        return tuple(found)
+
+    @cached_property
+    def grasp_from_camera(self) -> Transform | None:
+        """The first camera in the grasp frame, where it is fixed to the hand, else None."""
+        if not self.description.eye_in_hand or self.eye.names != self.group.names:
+            return None
+        joints = np.zeros(len(self.group.names))
+        tip, camera = self.group.tip_pose(joints), self.eye.tip_pose(joints)
+        return (tip @ self.tip_from_grasp).inverse() @ camera
+
+    @cached_property
+    def beyond_eye(self) -> frozenset[str]:
+        """Links with hulls that move with the first camera, or against it alone."""
+        frame = self.pin.frames[self.pin.getFrameId(self.description.camera()[1].frame)]
+        below = set(self.pin.subtrees[int(frame.parentJoint)])
+        return frozenset(
+            link
+            for link in self.hulls
+            if int(self.pin.frames[self.frame_ids[link]].parentJoint) in below
+        )
+
+    @cached_property
+    def eye(self) -> Group:
+        """The group's joints that move the first camera, with the camera's frame as the tip.
+
+        Raises ValueError where the arm does not carry it.
+        """
+        description = self.description
+        if not description.eye_in_hand:
+            raise ValueError(f"the arm of {description.name} carries no camera")
+        return _chain_of(description, self.group.names, description.camera()[1].frame)
+
+
+def arm_model(description: RobotDescription) -> ArmModel:
+    """The model of a description; built once per process."""
+    return _cached(_Key(description))
+
+
+class _Key:
+    def __init__(self, description: RobotDescription) -> None:
+        self.description = description
+        self.text = description.model_dump_json()
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Key) and other.text == self.text
+
+    def __hash__(self) -> int:
+        return hash(self.text)
+
+
+@lru_cache(maxsize=4)
+def _cached(key: _Key) -> ArmModel:
+    return ArmModel(key.description)
+
+
+def _chain_of(description: RobotDescription, names: Sequence[str], tip: str) -> Group:
+    return chain_group(description.kinematics(), names, tip, description.joint_limits)
+
+
+def chain_group(
+    kinematics: KinematicTree,
+    names: Sequence[str],
+    tip: str,
+    joint_limits: Mapping[str, JointLimit],
+) -> Group:
+    """Those of joints `names` that lead to a link; others on the way stand at 0."""
+    joints: list[Joint] = []
+    origins: list[Array] = []
+    after = np.eye(4)
+    for joint in kinematics.chain(tip):
+        after = after @ joint.parent_from_joint.matrix
+        if joint.name in names:
+            joints.append(joint)
+            origins.append(after)
+            after = np.eye(4)
+    limits = [joint_limits[joint.name] for joint in joints]
+    axes = np.array([joint.axis for joint in joints])
+    return Group(
+        names=tuple(joint.name for joint in joints),
+        lower=np.array([-np.inf if m.lower is None else m.lower for m in limits]),
+        upper=np.array([np.inf if m.upper is None else m.upper for m in limits]),
+        velocity=np.array([m.velocity for m in limits]),
+        acceleration=np.array([m.acceleration for m in limits]),
+        origins=np.ascontiguousarray(origins),
+        axes=axes / np.linalg.norm(axes, axis=1, keepdims=True),
+        slides=np.array([joint.kind == "prismatic" for joint in joints]),
+        tip=after,
+    )
+
+
+def compile_kernels() -> None:
+    """Compile `kinematics` into numba's cache: some 10 s once, instead of during a run."""
+    eye = np.eye(4)
+    group = Group(
+        names=("slide", "turn"),
+        lower=np.array([0.0, -np.inf]),
+        upper=np.array([1.0, np.inf]),
+        velocity=np.ones(2),
+        acceleration=np.ones(2),
+        origins=np.stack([eye, eye]),
+        axes=np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0]]),
+        slides=np.array([True, False]),
+        tip=eye,
+    )
+    here = np.array([0.5, 0.0])
+    target = group.tip_matrix(here)[None]
+    group.solve(target, here[None])
+    group.trace(target, here)

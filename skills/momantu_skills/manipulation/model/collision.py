@@ -1,0 +1,216 @@
+"""Whether the robot, and what it holds, would meet itself or its surroundings."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import combinations, product
+
+import coal
+import numpy as np
+import pinocchio as pin
+
+from momantu_bt.geometry import Array, Transform
+from momantu_skills.manipulation.model.arm_model import ArmModel
+from momantu_skills.manipulation.model.hulls import convex
+from momantu_skills.manipulation.model.shapes import BodyShapes
+
+FLOOR = 0.01
+"""m above which the floor's box ends: no moving link belongs below it."""
+SAMPLES = 200
+"""Random postures in which pairs of links that always touch are looked for."""
+SELF_MARGIN = 0.008
+"""m; clearance between the robot's own links on transits, for a path is only checked at points."""
+ALWAYS = 0.95
+"""Share of the postures in which a pair touches because its hulls overlap for good."""
+
+
+@dataclass(frozen=True, eq=False)
+class Obstacle:
+    """A convex solid: corners (n, 3) in base, m. support: the held object may touch it."""
+
+    name: str
+    corners: Array
+    support: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Attached:
+    """What the tip carries: corners (n, 3) of its hull in the tip's frame, m."""
+
+    corners: Array
+
+
+class BodyPairs:
+    """The robot's own shapes, and which pairs of links are worth checking."""
+
+    def __init__(self, model: ArmModel) -> None:
+        self.model = model
+        self.shapes = BodyShapes(model.pin, model.hulls, model.urdf.parts)
+        self.geometry, self.links = self.shapes.geometry, self.shapes.links
+        self.moving = self._moving_links()
+        self.pairs = self._sometimes_apart(self._worthwhile())
+        self.close = self._always_close()
+
+    def _moving_links(self) -> tuple[str, ...]:
+        first = min(int(self.model.pin.getJointId(name)) for name in self.model.group.names)
+        below = set(self.model.pin.subtrees[first])
+        return tuple(link for link in self.model.hulls if self.shapes.joint(link) in below)
+
+    def _worthwhile(self) -> list[tuple[int, int]]:
+        ignored = {frozenset(pair) for pair in self.model.description.ignored_collisions}
+        return [
+            pair
+            for one, other in combinations(self.model.hulls, 2)
+            for pair in self.shapes.pairs(one, other)
+            if frozenset((one, other)) not in ignored
+            and not self.shapes.adjacent(one, other)
+            and (one in self.moving or other in self.moving)
+        ]
+
+    def _sometimes_apart(self, pairs: list[tuple[int, int]]) -> tuple[tuple[int, int], ...]:
+        geometry = self.geometry.copy()
+        for a, b in pairs:
+            geometry.addCollisionPair(pin.CollisionPair(a, b))
+        data, shapes = self.model.pin.createData(), geometry.createData()
+        random = np.random.default_rng(0)
+        lower = np.maximum(self.model.pin.lowerPositionLimit, -np.pi)
+        upper = np.minimum(self.model.pin.upperPositionLimit, np.pi)
+        touching = np.zeros(len(pairs))
+        for _ in range(SAMPLES):
+            q = random.uniform(lower, upper)
+            pin.computeCollisions(self.model.pin, data, geometry, shapes, q, False)
+            touching += [result.isCollision() for result in shapes.collisionResults]
+        return tuple(p for p, n in zip(pairs, touching, strict=True) if n < ALWAYS * SAMPLES)
+
+    def _always_close(self) -> frozenset[tuple[int, int]]:
+        """Pairs of `pairs` that are nearer than SELF_MARGIN in one of the named poses."""
+        geometry = self.geometry.copy()
+        for a, b in self.pairs:
+            geometry.addCollisionPair(pin.CollisionPair(a, b))
+        data, shapes = self.model.pin.createData(), geometry.createData()
+        for index in range(len(self.pairs)):
+            shapes.collisionRequests[index].security_margin = SELF_MARGIN
+        close: set[tuple[int, int]] = set()
+        for pose in self.model.description.named_poses.values():
+            q = self.model.posture(pose, 0.0)
+            pin.computeCollisions(self.model.pin, data, geometry, shapes, q, False)
+            results = zip(self.pairs, shapes.collisionResults, strict=True)
+            close |= {pair for pair, result in results if result.isCollision()}
+        return frozenset(close)
+
+
+@lru_cache(maxsize=4)
+def body_pairs(model: ArmModel) -> BodyPairs:
+    """The shapes and pairs of a model; built once per process."""
+    return BodyPairs(model)
+
+
+class CollisionWorld:
+    """Collision checks for one situation: posture of the rest, surroundings, what is held.
+
+    cells: centres (n, 3) of occupied cells in a frame that `base_from_cells` places. margin: m of
+    clearance to surroundings. touching: (link or "held", obstacle name) pairs that may touch.
+    """
+
+    def __init__(
+        self,
+        body: BodyPairs,
+        posture: Array,
+        obstacles: Sequence[Obstacle] = (),
+        cells: Array | None = None,
+        voxel: float = 0.02,
+        base_from_cells: Transform | None = None,
+        attached: Attached | None = None,
+        margin: float = 0.0,
+        held_on_support: bool = False,
+    ) -> None:
+        self.body = body
+        self.checks = 0
+        self._pin = body.model.pin
+        self._data = self._pin.createData()
+        self._geometry = body.geometry.copy()
+        self._q = np.array(posture)
+        self._index = body.model.group_index
+        around = {obstacle.name: self._add_obstacle(obstacle) for obstacle in obstacles}
+        around["floor"] = self._add_floor()
+        if cells is not None and len(cells):
+            around["cells"] = self._add_cells(cells, voxel, base_from_cells or Transform())
+        pairs = list(body.pairs)
+        moving = [shape for link in body.moving for shape in body.links[link]]
+        near = list(product(moving, around.values()))
+        if attached is not None:
+            held = self._attach(attached)
+            supports = {o.name for o in obstacles if o.support and held_on_support}
+            near += [(held, around[name]) for name in around if name not in supports]
+            pairs += [(held, shape) for shape in self._strangers()]
+        self._finish(pairs, near, margin)
+
+    def _finish(
+        self, pairs: Iterable[tuple[int, int]], near: Iterable[tuple[int, int]], margin: float
+    ) -> None:
+        own = min(margin, SELF_MARGIN)
+        kept = [(pair, 0.0 if pair in self.body.close else own) for pair in pairs]
+        kept += [(pair, margin) for pair in near]
+        for (a, b), _ in kept:
+            self._geometry.addCollisionPair(pin.CollisionPair(a, b))
+        self._shapes = self._geometry.createData()
+        for index, (_, clearance) in enumerate(kept):
+            self._shapes.collisionRequests[index].security_margin = clearance
+        self._manager = pin.BroadPhaseManager_DynamicAABBTreeCollisionManager(
+            self._pin, self._geometry, self._shapes
+        )
+
+    def free(self, q: Array) -> bool:
+        """Whether joints (n,) of the planning group touch nothing."""
+        self.checks += 1
+        self._q[self._index] = q
+        return not pin.computeCollisions(self._pin, self._data, self._manager, self._q, True)
+
+    def path_free(self, path: Array) -> bool:
+        """Whether every one of joints (k, n) touches nothing."""
+        return all(self.free(q) for q in path)
+
+    def touching(self, q: Array) -> list[tuple[str, str]]:
+        """Names of all pairs that touch at joints (n,), for messages and tests."""
+        self._q[self._index] = q
+        pin.computeCollisions(self._pin, self._data, self._geometry, self._shapes, self._q, False)
+        objects = self._geometry.geometryObjects
+        return [
+            (str(objects[int(pair.first)].name), str(objects[int(pair.second)].name))
+            for pair, result in zip(
+                self._geometry.collisionPairs, self._shapes.collisionResults, strict=True
+            )
+            if result.isCollision()
+        ]
+
+    def _add_obstacle(self, obstacle: Obstacle) -> int:
+        return self._add(obstacle.name, convex(obstacle.corners), pin.SE3.Identity())
+
+    def _add_floor(self) -> int:
+        place = pin.SE3(np.eye(3), np.array([0.0, 0.0, FLOOR - 0.05]))
+        return self._add("floor", coal.Box(4.0, 4.0, 0.1), place)
+
+    def _add_cells(self, cells: Array, voxel: float, base_from_cells: Transform) -> int:
+        tree = coal.makeOctree(np.ascontiguousarray(cells), voxel)
+        place = pin.SE3(base_from_cells.rotation, np.array(base_from_cells.position))
+        return self._add("cells", tree, place)
+
+    def _add(self, name: str, shape: coal.CollisionGeometry, place: pin.SE3) -> int:
+        return int(self._geometry.addGeometryObject(pin.GeometryObject(name, 0, 0, place, shape)))
+
+    def _attach(self, attached: Attached) -> int:
+        model = self.body.model
+        tip = model.frame_ids[model.description.end_effector.frame]
+        frame = model.pin.frames[tip]
+        shape = pin.GeometryObject(
+            "held", frame.parentJoint, tip, frame.placement, convex(attached.corners)
+        )
+        return int(self._geometry.addGeometryObject(shape))
+
+    def _strangers(self) -> list[int]:
+        """Shapes of the links that what is held must not touch: all but the hand."""
+        touch = self.body.model.description.end_effector.touch_links
+        links = self.body.links
+        return [shape for link, shapes in links.items() if link not in touch for shape in shapes]

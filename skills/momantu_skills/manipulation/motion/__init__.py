@@ -1,0 +1,1 @@
+"""Motions of the arm: search a path, time it, follow it."""

@@ -1,0 +1,262 @@
+"""The scene's knowledge, with everything heavy: body, surroundings, masks, collision worlds."""
+
+from __future__ import annotations
+
+import math
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from momantu_bt.frames import ODOM, FrameBuffer
+from momantu_bt.geometry import Array, Transform
+from momantu_bt.messages import CameraImage, DetectedObject, RobotState, SupportPlane
+from momantu_bt.robot import Robot, RobotDescription, read_camera
+from momantu_bt.service import HeldObject
+from momantu_skills.manipulation.config import SceneConfig
+from momantu_skills.manipulation.model.arm_model import arm_model
+from momantu_skills.manipulation.model.collision import (
+    Attached,
+    CollisionWorld,
+    Obstacle,
+    body_pairs,
+)
+from momantu_skills.manipulation.model.hulls import LinkMask, floor_outline, object_corners
+from momantu_skills.manipulation.scene.site_obstacles import Overhead, hanging
+from momantu_skills.manipulation.scene.surroundings import (
+    Looks,
+    Support,
+    Surroundings,
+    cells_of,
+    merged,
+    same_surface,
+    shelved,
+    support_around,
+    support_of_plane,
+    within,
+)
+from momantu_skills.perception.camera.cloud import points_from_depth
+
+FORGET = 2.0
+"""m from the base beyond which cells and supports are forgotten: odometry has drifted since."""
+SAME_HEIGHT = 0.06
+"""m of height within which a new support replaces an older one that it overlaps."""
+DISC = 0.25
+"""m; radius of the support assumed below an object when too little of it is seen."""
+FLOOR_BAND = 0.06
+"""m above the floor below which points are the floor."""
+Cut: TypeAlias = tuple[Transform, tuple[float, float, float]]
+"""A box: `odom_from_box`, and half its edges in m."""
+SEEN_THROUGH = 0.03
+"""m; an old cell is gone when the picture shows something that much behind it."""
+
+
+class Scene:
+    """See `PlanningSceneService`, which owns one."""
+
+    def __init__(self, description: RobotDescription, config: SceneConfig) -> None:
+        self.config = config
+        self.model = arm_model(description)
+        self.body = body_pairs(self.model)
+        self.surroundings = Surroundings()
+        self.points: Array = np.empty((0, 3))
+        self.known: tuple[Support, ...] = ()
+        self.overhead: tuple[Overhead, ...] = ()
+        self.looks = Looks()
+        self._mask = LinkMask(self.model.hulls, config.robot_padding)
+
+    # seeing
+
+    def observe(self, robot: Robot, frames: FrameBuffer, held: HeldObject | None) -> None:
+        """Take a depth picture and update the cells that it shows."""
+        image = read_camera(robot)
+        base = self.model.description.base_frame
+        odom_from_camera = frames.lookup(ODOM, image.frame, image.stamp)
+        odom_from_base = frames.lookup(ODOM, base, image.stamp)
+        nearest = self.model.description.camera()[1].min_depth
+        self.looks.add(image, odom_from_camera, nearest)
+        self.points = self._seen(robot, image, odom_from_camera, odom_from_base, held)
+        new = cells_of(self.points, odom_from_camera.position, FLOOR_BAND, self.config)
+        old = self.surroundings.cells
+        old = old[self._still_believed(old, image, odom_from_camera, odom_from_base)]
+        near = [
+            support
+            for support in self.surroundings.supports
+            if _distance(support.outline, odom_from_base) < FORGET
+        ]
+        cells: Array = np.unique(np.round(np.vstack([old, new]), 4), axis=0)
+        self.surroundings = Surroundings(cells, tuple(near), image.stamp)
+
+    def _seen(
+        self,
+        robot: Robot,
+        image: CameraImage,
+        odom_from_camera: Transform,
+        odom_from_base: Transform,
+        held: HeldObject | None,
+    ) -> Array:
+        """Points (n, 3) in odom of the picture, without the robot, within its reach."""
+        optical = points_from_depth(image.depth, image.intrinsics, self.config.pixel_stride)
+        base_points = (odom_from_base.inverse() @ odom_from_camera).apply(optical)
+        reach = self.model.description.working.reach[2] + self.config.beyond_reach
+        base_points = base_points[np.linalg.norm(base_points[:, :2], axis=1) < reach]
+        own = self.is_robot(base_points, robot.state(), held)
+        return odom_from_base.apply(base_points[~own])
+
+    def _still_believed(
+        self,
+        cells: Array,
+        image: CameraImage,
+        odom_from_camera: Transform,
+        odom_from_base: Transform,
+    ) -> NDArray[np.bool_]:
+        """(n,) which older cells are near and not seen through in the new picture."""
+        near = np.linalg.norm(cells[:, :2] - odom_from_base.position[:2], axis=1) < FORGET
+        optical = odom_from_camera.inverse().apply(cells)
+        z = np.maximum(optical[:, 2], 1e-3)
+        k, (height, width) = image.intrinsics, image.depth.shape
+        u = np.round(optical[:, 0] / z * k[0, 0] + k[0, 2]).astype(np.int64)
+        v = np.round(optical[:, 1] / z * k[1, 1] + k[1, 2]).astype(np.int64)
+        inside = (optical[:, 2] > 0.1) & (u >= 0) & (u < width) & (v >= 0) & (v < height)
+        depth = image.depth[np.clip(v, 0, height - 1), np.clip(u, 0, width - 1)]
+        gone = inside & (depth > z + SEEN_THROUGH)
+        return np.asarray(near & ~gone)
+
+    def add_support(self, plane: SupportPlane) -> None:
+        """Take over a measured surface."""
+        self._remember(support_of_plane(plane))
+
+    def support_below(self, thing: DetectedObject) -> Support:
+        """The surface that an object stands on, as far as the newest picture shows it."""
+        centre = thing.pose.position[:2]
+        found = support_around(self.points, centre, thing.support_height, self.config.surface_band)
+        if found is None:
+            angles = np.linspace(0.0, 2 * np.pi, 12, endpoint=False)
+            ring = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+            found = Support(centre + DISC * ring, thing.support_height)
+        return self._remember(found)
+
+    def _remember(self, support: Support) -> Support:
+        for known in self.known:
+            if same_surface(support, known):
+                support = merged(support, known)
+        centre = support.outline.mean(axis=0)
+        others = [
+            other
+            for other in self.surroundings.supports
+            if abs(other.height - support.height) > SAME_HEIGHT
+            or float(np.linalg.norm(other.outline - centre, axis=1).min()) > 1.0
+        ]
+        self.surroundings = Surroundings(
+            self.surroundings.cells, (*others, support), self.surroundings.stamp
+        )
+        return support
+
+    # the robot's own body
+
+    def footprint(
+        self, state: RobotState, held: HeldObject | None, below: float = math.inf
+    ) -> Array:
+        """See `PlanningScene.footprint`."""
+        poses = self.model.link_poses(self.model.configuration(state))
+        corners = [
+            hull @ poses[link][:3, :3].T + poses[link][:3, 3]
+            for link, hull in self.model.hulls.items()
+        ]
+        if held is not None:
+            tip = poses[self.model.description.end_effector.frame]
+            corners.append(self.held_corners(held) @ tip[:3, :3].T + tip[:3, 3])
+        corners = [each for each in corners if each[:, 2].min() < below]
+        outline = np.array([(x, y, 0.0) for x, y in self.model.description.footprint])
+        everything = np.vstack([*corners, outline])
+        return floor_outline(everything[everything[:, 2] < self.model.description.height])
+
+    def is_robot(
+        self, points: Array, state: RobotState, held: HeldObject | None
+    ) -> NDArray[np.bool_]:
+        """See `PlanningScene.is_robot`."""
+        poses = self.model.link_poses(self.model.configuration(state))
+        own = self._mask.covers(points, poses)
+        if held is not None:
+            tip = poses[self.model.description.end_effector.frame]
+            mask = LinkMask({"held": self.held_corners(held)}, self.config.robot_padding)
+            own |= mask.covers(points, {"held": tip})
+        return own
+
+    def hides(self, points: Array, joints: Array) -> bool:
+        """Whether a link covers one of points (n, 3), base frame, with the arm at joints (n,)."""
+        posed = dict(zip(self.model.group.names, joints, strict=True))
+        poses = self.model.link_poses(self.model.posture(posed, 0.0))
+        return bool(self._mask.covers(points, poses).any())
+
+    def held_corners(self, held: HeldObject, padding: float = 0.0) -> Array:
+        """Corners (n, 3) of what is held, in the tip's frame, m."""
+        tip_from_object = self.model.tip_from_grasp @ held.grasp_from_object
+        return tip_from_object.apply(object_corners(held.object, padding))
+
+    # asking
+
+    def world(
+        self,
+        state: RobotState,
+        held: HeldObject | None,
+        margin: float,
+        *,
+        width: float | None = None,
+        held_on_support: bool = False,
+        cut: Cut | None = None,
+        extra: tuple[Obstacle, ...] = (),
+    ) -> CollisionWorld:
+        """A collision world of now. Everything is placed by the state's odometry.
+
+        width: the gripper's opening to check with, m; the measured one if None.
+        held_on_support: what is held may touch supports. cut: a box in which cells are ignored.
+        extra: more solids.
+        """
+        base_from_odom = state.odom_from_base.inverse()
+        around = self.surroundings if cut is None else self.surroundings.without(*cut)
+        cells = around.cells
+        seen = len(around.supports)
+        supports = shelved((*around.supports, *self._unseen(state.odom_from_base)))
+        for support in supports[:seen]:
+            cells = cells[~self._covered(cells, support)]
+        attached = None if held is None else Attached(self.held_corners(held))
+        return CollisionWorld(
+            self.body,
+            self.model.configuration(state, width),
+            obstacles=[
+                *(s.obstacle(base_from_odom, f"support {i}") for i, s in enumerate(supports)),
+                *hanging(self.overhead, base_from_odom, FORGET),
+                *extra,
+            ],
+            cells=cells,
+            voxel=self.config.voxel,
+            base_from_cells=base_from_odom,
+            attached=attached,
+            margin=margin,
+            held_on_support=held_on_support,
+        )
+
+    def _unseen(self, odom_from_base: Transform) -> list[Support]:
+        """Surfaces near the base that the site names and that no picture has shown yet."""
+        seen = self.surroundings.supports
+        return [
+            known
+            for known in self.known
+            if _distance(known.outline, odom_from_base) < FORGET
+            and not any(same_surface(other, known) for other in seen)
+        ]
+
+    def _covered(self, cells: Array, support: Support) -> NDArray[np.bool_]:
+        """(n,) which cells are the support's own: inside its outline, not above its top.
+
+        Those below it belong to it too, unless it is a board, below which other things stand.
+        """
+        low = cells[:, 2] < support.height + self.config.surface_band + self.config.voxel / 2
+        if support.board:
+            low &= cells[:, 2] > support.height - support.depth
+        return np.asarray(low & within(cells[:, :2], support.outline, self.config.voxel))
+
+
+def _distance(outline: Array, odom_from_base: Transform) -> float:
+    return float(np.linalg.norm(outline - odom_from_base.position[:2], axis=1).min())

@@ -1,0 +1,164 @@
+"""The planning scene: the robot, its surroundings and what it holds, as believed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from momantu_bt.failure import FRAME_UNKNOWN, Failure
+from momantu_bt.frames import MAP, ODOM, FrameBuffer
+from momantu_bt.geometry import Array, Transform
+from momantu_bt.messages import DetectedObject, RobotState, SupportPlane
+from momantu_bt.robot import Robot
+from momantu_bt.service import HeldObject, Service, ServiceContext
+from momantu_skills.manipulation.config import SceneConfig
+
+if TYPE_CHECKING:
+    from momantu_skills.manipulation.scene.scene import Scene
+    from momantu_skills.manipulation.scene.site_obstacles import FloorPlan
+
+
+class PlanningSceneService(Service):
+    """Keeps the scene. It reads no sensor but the state by itself; `observe` takes a picture.
+
+    `$@planning_scene.holding` is the category of what is held, or "".
+    """
+
+    rate = 20.0
+    publishes: ClassVar[Mapping[str, type]] = {"holding": str}
+
+    def start(self, context: ServiceContext) -> None:
+        """Build the robot's model. Parameters: any field of SceneConfig."""
+        self.config = SceneConfig(**context.parameters)
+        self.frames: FrameBuffer = context.frames
+        self.site = context.site
+        self.holding = Holding(self.config)
+        self.scene: Scene = _scene(context, self.config)
+
+    @cached_property
+    def floor_plan(self) -> FloorPlan:
+        """What the site's maps know of."""
+        from momantu_skills.manipulation.scene.site_obstacles import FloorPlan
+
+        return FloorPlan(self.site, self.frames)
+
+    def update(self, robot: Robot, now: float) -> None:
+        """Judge anew what is held."""
+        self._state = robot.state()
+        self.holding.judge(self._state)
+
+    def published(self) -> Mapping[str, Any]:
+        """See `publishes`."""
+        held = self.held
+        return {"holding": "" if held is None else held.object.category}
+
+    @property
+    def held(self) -> HeldObject | None:
+        """What is held, judged anew at each update from gripper width and effort."""
+        return self.holding.held
+
+    @property
+    def last_contact(self) -> float:
+        """When the hand last touched or released something, s; -inf when it never has."""
+        return self.holding.last_contact
+
+    def grasped(self, thing: DetectedObject, grasp_from_object: Transform) -> None:
+        """Say what the gripper has just closed on; held while width and effort agree."""
+        held = HeldObject(thing, grasp_from_object)
+        self.holding.claim(held, self._state.gripper_width, self._state.stamp)
+
+    def touched(self) -> None:
+        """Say that the hand has just touched or let go of something."""
+        self.holding.touched(self._state.stamp)
+
+    def released(self) -> None:
+        """Say that the hand has just let go of what it held."""
+        self.holding.release(self._state.stamp)
+
+    def observe(self, robot: Robot) -> None:
+        """Take a depth picture now and see the surroundings in it.
+
+        What the newest picture shows replaces what older ones showed of the same region.
+        """
+        self._take_over_site()
+        self.scene.observe(robot, self.frames, self.held)
+
+    def support(self, plane: SupportPlane) -> None:
+        """Take over a measured surface."""
+        self._take_over_site()
+        self.scene.add_support(plane)
+
+    def _take_over_site(self) -> None:
+        """The site's surfaces, and what hangs over them; none while nobody knows where it is."""
+        from momantu_skills.manipulation.scene.site_obstacles import overhead_of
+        from momantu_skills.manipulation.scene.surroundings import known_support
+
+        self.scene.known = self.scene.overhead = ()
+        try:
+            odom_from_map = self.frames.lookup(ODOM, MAP)
+        except Failure as failure:
+            if failure.code != FRAME_UNKNOWN:
+                raise
+            return
+        surfaces = self.site.surfaces.values()
+        self.scene.known = tuple(known_support(s, odom_from_map) for s in surfaces)
+        self.scene.overhead = tuple(o for s in surfaces for o in overhead_of(s, odom_from_map))
+
+    def footprint(self, state: RobotState, below: float = math.inf) -> Array:
+        """Convex outline (k, 2) of base, arm and held object on the floor, base frame, m.
+
+        below: parts of arm and load that keep above this height, m, are left out.
+        """
+        return self.scene.footprint(state, self.held, below)
+
+    def is_robot(self, points: Array, state: RobotState) -> Any:
+        """(n,) bool: which points (n, 3) in base frame lie on the robot or on what it holds."""
+        return self.scene.is_robot(points, state, self.held)
+
+
+def _scene(context: ServiceContext, config: SceneConfig) -> Scene:
+    from momantu_skills.manipulation.scene.scene import Scene
+
+    return Scene(context.description, config)
+
+
+class Holding:
+    """Believes in a grasp while opening and effort agree with it.
+
+    A grasp is claimed with `claim`; after `doubt` updates in a row that speak against it, it is
+    given up for good, and the instant counts as a contact: what was held has touched something.
+    """
+
+    def __init__(self, config: SceneConfig) -> None:
+        self._config = config
+        self._width = 0.0
+        self._doubts = 0
+        self.held: HeldObject | None = None
+        self.last_contact = -math.inf
+
+    def claim(self, held: HeldObject, width: float, now: float) -> None:
+        """Something has been closed on, at an opening of `width` m."""
+        self.held, self._width, self._doubts = held, width, 0
+        self.last_contact = now
+
+    def touched(self, now: float) -> None:
+        """The hand has touched or let go of something."""
+        self.last_contact = now
+
+    def release(self, now: float) -> None:
+        """What was held has been let go."""
+        self.held, self.last_contact = None, now
+
+    def judge(self, state: RobotState) -> None:
+        """Compare the newest state with what a held object would show."""
+        if self.held is None:
+            return
+        config = self._config
+        moved = abs(state.gripper_width - self._width) > config.width_tolerance
+        weak = state.gripper_effort < config.least_effort
+        self._doubts = self._doubts + 1 if moved or weak else 0
+        if self._doubts >= config.doubt:
+            self.held = None
+            self.last_contact = state.stamp

@@ -1,0 +1,1 @@
+"""From a path to velocities: MPPI, the graceful controller, the collision guard."""

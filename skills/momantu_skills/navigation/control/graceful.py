@@ -1,0 +1,160 @@
+"""The graceful controller: a smooth law that brings a unicycle to a pose.
+
+From Park and Kuipers, "A smooth control law for graceful motion", 2011.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numba
+import numpy as np
+
+from momantu_bt.geometry import Array, Pose2D
+from momantu_bt.robot import BaseLimits
+from momantu_skills.navigation.map.costmap import Costmap, room
+from momantu_skills.navigation.map.fields import Field
+
+TURN_IN = 1.3
+"""k1 of the paper: how much the heading is bent towards the goal's axis."""
+FOLLOW = 3.5
+"""k2 of the paper: how fast the heading follows."""
+SLOW_IN_CURVES = 0.5
+"""Speed divides by 1 + this * curvature^2 (1/m)."""
+TOP_SPEED = 0.95
+"""m/s: the last metre is driven with care."""
+CREEP = 0.06
+"""m/s towards the very end."""
+EASE = 1.8
+"""1/s: speed per metre to go, near the goal, where commands are late by a scan."""
+BRAKE = 0.5
+"""m/s2 of planned braking, half of what the base can do."""
+ARRIVED = 0.012
+"""m before the goal's line at which the base stops; braking from `CREEP` takes the rest."""
+STEP = 0.1
+"""s per step of the simulated approach."""
+LONGEST = 12.0
+"""s that an approach may take."""
+CRAWL = 0.5 * CREEP
+"""m/s: an approach so bent that it is slower than this does not count as one. How long it crawls
+hangs on millimetres, so that what is simulated says little about what happens."""
+
+
+@dataclass(frozen=True, slots=True)
+class Arrival:
+    """End of a simulated approach. ahead, left: of the goal, in its own frame, m. yaw: off it, rad.
+
+    room: least room on the way, m. seconds: it takes. Infinite errors when it does not arrive.
+    """
+
+    ahead: float
+    left: float
+    yaw: float
+    room: float
+    seconds: float
+
+    def within(self, distance: float, angle: float, margin: float) -> bool:
+        """Whether it ends near enough to the goal, with room all along."""
+        return (
+            math.hypot(self.ahead, self.left) < distance
+            and abs(self.yaw) < angle
+            and self.room > margin
+        )
+
+
+def command(pose: Pose2D, goal: Pose2D, limits: BaseLimits) -> tuple[float, float] | None:
+    """Next (m/s, rad/s) towards the goal; None at the goal's line, where the base must stop."""
+    x, y, yaw = float(pose.x), float(pose.y), float(pose.yaw)
+    goal_x, goal_y, goal_yaw = float(goal.x), float(goal.y), float(goal.yaw)
+    v, w = _law(x, y, yaw, goal_x, goal_y, goal_yaw, limits.angular, _top(limits))
+    return None if v == 0.0 else (float(v), float(w))
+
+
+def simulate(
+    pose: Pose2D,
+    speed: tuple[float, float],
+    goal: Pose2D,
+    limits: BaseLimits,
+    costmap: Costmap,
+    discs: Array,
+) -> Arrival:
+    """Where the law leads from a pose and a measured (m/s, rad/s), and how much room it leaves."""
+    start = np.array([pose.x, pose.y, pose.yaw, *speed], dtype=np.float64)
+    end = np.array([goal.x, goal.y, goal.yaw], dtype=np.float64)
+    bounds = np.array(
+        [
+            limits.angular,
+            limits.linear_acceleration,
+            limits.angular_acceleration,
+            _top(limits),
+        ]
+    )
+    return Arrival(*_simulate(start, end, bounds, costmap.field, costmap.frame, discs))
+
+
+def _top(limits: BaseLimits) -> float:
+    """Fastest that the base goes on its approach, m/s."""
+    return min(TOP_SPEED, limits.linear)
+
+
+@numba.njit(cache=True)
+def _law(
+    x: float,
+    y: float,
+    yaw: float,
+    goal_x: float,
+    goal_y: float,
+    goal_yaw: float,
+    fastest: float,
+    top: float,
+) -> tuple[float, float]:
+    dx = goal_x - x
+    dy = goal_y - y
+    ahead = math.cos(goal_yaw) * dx + math.sin(goal_yaw) * dy
+    distance = math.hypot(dx, dy)
+    if ahead < ARRIVED or distance < ARRIVED:
+        return 0.0, 0.0
+    sight = math.atan2(dy, dx)
+    theta = math.atan2(math.sin(goal_yaw - sight), math.cos(goal_yaw - sight))
+    delta = math.atan2(math.sin(yaw - sight), math.cos(yaw - sight))
+    pull = FOLLOW * (delta - math.atan(-TURN_IN * theta))
+    pull += (1.0 + TURN_IN / (1.0 + (TURN_IN * theta) ** 2)) * math.sin(delta)
+    curvature = -pull / max(distance, 0.15)
+    v = top / (1.0 + SLOW_IN_CURVES * curvature * curvature)
+    v = min(v, math.sqrt(2.0 * BRAKE * ahead), EASE * ahead + CREEP)
+    if abs(v * curvature) > fastest:
+        v = fastest / abs(curvature)
+    return v, v * curvature
+
+
+@numba.njit(cache=True)
+def _simulate(
+    start: Array, goal: Array, bounds: Array, field: Field, frame: Array, discs: Array
+) -> tuple[float, float, float, float, float]:
+    x, y, yaw, v, w = start[0], start[1], start[2], start[3], start[4]
+    least = 1e9
+    c = math.cos(goal[2])
+    s = math.sin(goal[2])
+    stopping = False
+    for i in range(int(LONGEST / STEP)):
+        if not stopping:
+            to_v, to_w = _law(x, y, yaw, goal[0], goal[1], goal[2], bounds[0], bounds[3])
+            stopping = to_v == 0.0
+            if not stopping and to_v < CRAWL:
+                break
+        if stopping:
+            to_v, to_w = 0.0, 0.0
+        v += min(max(to_v - v, -bounds[1] * STEP), bounds[1] * STEP)
+        w += min(max(to_w - w, -bounds[2] * STEP), bounds[2] * STEP)
+        yaw += 0.5 * w * STEP
+        x += v * math.cos(yaw) * STEP
+        y += v * math.sin(yaw) * STEP
+        yaw += 0.5 * w * STEP
+        least = min(least, room(field, frame, discs, x, y, yaw))
+        if stopping and v < 1e-6 and abs(w) < 1e-6:
+            dx = x - goal[0]
+            dy = y - goal[1]
+            turn = math.atan2(math.sin(yaw - goal[2]), math.cos(yaw - goal[2]))
+            return c * dx + s * dy, -s * dx + c * dy, turn, least, i * STEP
+    return 1e9, 1e9, 1e9, least, LONGEST

@@ -1,0 +1,1 @@
+"""A whole trip: the vehicle, its moves, cruising, arriving, recovering."""

@@ -1,0 +1,143 @@
+"""From where the base is to where the last metre begins."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Generator
+from typing import Any
+
+import numpy as np
+
+from momantu_bt.failure import Failure
+from momantu_bt.geometry import Pose2D, wrap_angle
+from momantu_bt.skill import Compute, compute
+from momantu_skills.navigation.control.mppi import Mppi
+from momantu_skills.navigation.drive.manoeuvre import approach_is_sure
+from momantu_skills.navigation.drive.moves import back_off, can_turn, clear_behind, turn_to
+from momantu_skills.navigation.drive.route import Route, no_way, route_to
+from momantu_skills.navigation.drive.vehicle import Vehicle
+
+REPLAN = 2.0
+"""s between plans even where nothing crosses the path: the map's unknown parts come into view."""
+TURN_FIRST = 0.9
+"""rad off the path's direction at which a standing base turns on the spot first."""
+NEAR = 0.25
+"""Weighted metres from the lead-in at which the way has ended."""
+APPROACH_FROM = 2.0
+"""m from the stand within which the approach is tried in simulation."""
+DETOURS = 8
+"""Replans onto a longer way before the base is said to go round in circles."""
+LONGEST_BACK = 0.8
+"""m that the base backs off from a table to get its arm free."""
+PROGRESS = 0.1
+"""Weighted metres nearer that count as progress."""
+
+Drive = Generator[str | Compute, Any, None]
+
+
+def leave(vehicle: Vehicle, heading: float) -> Drive:
+    """Back off until arm and load are free and the base can turn to `heading`."""
+    pose = vehicle.pose()
+
+    def free(at: Pose2D) -> bool:
+        turn = abs(wrap_angle(heading - at.yaw)) > TURN_FIRST
+        return vehicle.room(at, whole=True) > 0.0 and (not turn or can_turn(vehicle, at, heading))
+
+    for distance in np.arange(0.0, LONGEST_BACK + 0.01, 0.1):
+        at = pose @ Pose2D(-float(distance), 0.0, 0.0)
+        if not clear_behind(vehicle, pose, float(distance)):
+            return
+        if free(at):
+            if distance > 0.0:
+                yield from back_off(vehicle, float(distance), "leave")
+            return
+
+
+def cruise(vehicle: Vehicle, mppi: Mppi, route: Route, distance: float) -> Drive:
+    """Drive until the approach to the route's stand is sure to end within `distance` m of it.
+
+    Ends at the latest at the lead-in. Raises PATH_BLOCKED or NO_PROGRESS.
+    """
+    watch = _Watch(vehicle, route)
+    mppi.restart()
+    while True:
+        vehicle.sense()
+        pose = vehicle.pose()
+        near = pose.distance_to(route.stand) < APPROACH_FROM
+        if near and approach_is_sure(vehicle, route.stand, distance):
+            return
+        if route.to_go(vehicle, pose) < NEAR:
+            return
+        if watch.replan_due(route, pose):
+            route = yield from _replanned(vehicle, route, watch)
+            continue
+        watch.check(route.to_go(vehicle, pose))
+        off = wrap_angle(route.heading(pose) - pose.yaw)
+        turn_first = abs(off) > TURN_FIRST and abs(vehicle.speed()[0]) < 0.1
+        if turn_first and (yield from turn_to(vehicle, pose.yaw + off, "turn to the path")):
+            mppi.restart()
+            continue
+        linear, angular = mppi.command(
+            pose, vehicle.speed(), vehicle.costmap, vehicle.discs, route.plan
+        )
+        yield from vehicle.drive(linear, angular, "drive")
+
+
+def _replanned(vehicle: Vehicle, route: Route, watch: _Watch) -> Generator[Any, Any, Route]:
+    def work() -> Route | None:
+        vehicle.costmap.refresh()
+        return route_to(vehicle, route.stand)
+
+    found = yield from compute(work, vehicle.config.planning_time)
+    if found is None:
+        yield from vehicle.stop("blocked")
+        yield from vehicle.wait(0.5, "blocked")
+        vehicle.sense()
+        found = yield from compute(work, vehicle.config.planning_time)
+    if found is None:
+        raise no_way(vehicle, route.stand)
+    watch.planned(found)
+    return found
+
+
+class _Watch:
+    """Keeps time: when to plan anew, and when there is no progress any more."""
+
+    def __init__(self, vehicle: Vehicle, route: Route) -> None:
+        self._vehicle = vehicle
+        self._detours = 0
+        self._best = math.inf
+        self._best_at = self._planned_at = vehicle.now()
+        self.planned(route)
+
+    def planned(self, route: Route) -> None:
+        """A new plan holds from now on; a longer way is a detour."""
+        self._planned_at = self._vehicle.now()
+        to_go = route.to_go(self._vehicle, self._vehicle.pose())
+        if to_go > self._best + 1.0:
+            self._detours += 1
+            self._best, self._best_at = to_go, self._vehicle.now()
+        if self._detours > DETOURS:
+            raise Failure(
+                "NO_PROGRESS", f"{self._detours} detours did not lead past what is in the way"
+            )
+
+    def replan_due(self, route: Route, pose: Pose2D) -> bool:
+        """Whether the plan is old, or something has come to stand on its path."""
+        age = self._vehicle.now() - self._planned_at
+        if age > REPLAN:
+            return True
+        return age > 0.4 and route.crossed(self._vehicle, pose)
+
+    def check(self, to_go: float) -> None:
+        """Raise NO_PROGRESS when the base has not got nearer for too long."""
+        now = self._vehicle.now()
+        if to_go < self._best - PROGRESS:
+            self._best, self._best_at = to_go, now
+        if now - self._best_at > self._vehicle.config.patience:
+            raise Failure(
+                "NO_PROGRESS",
+                f"the base got no nearer for {self._vehicle.config.patience:.0f} s",
+                to_go=to_go,
+                blocked=self._vehicle.blocked_total,
+            )

@@ -1,0 +1,162 @@
+"""Getting into a pose nearby: the approach itself, or what must be done before it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from momantu_bt.failure import Failure
+from momantu_bt.geometry import Pose2D, wrap_angle
+from momantu_skills.navigation.control import graceful
+from momantu_skills.navigation.drive.moves import Move, back_off, can_turn, clear_behind, turn_to
+from momantu_skills.navigation.drive.vehicle import Vehicle
+
+AIM = 0.5
+"""Share of the tolerance that an approach must promise, so that noise does not spoil it."""
+TURN_AT_END = 0.35
+"""rad that may be left to a turn on the spot at the goal."""
+BACKS = 0.15
+"""m between the retreats that are tried."""
+FARTHEST_BACK = 1.2
+"""m of retreat at most."""
+HOP = 1.3
+"""m that are driven straight between two turns on the spot, at most."""
+TURN_TIME = 1.0
+"""rad/s on average over a turn, for comparing manoeuvres."""
+DRIVE_TIME = 0.4
+"""m/s on average over a short straight."""
+BACK_SPEED = 0.25
+"""m/s on average backwards."""
+SWITCH = 0.5
+"""s lost at each change of direction."""
+
+
+def prepare(vehicle: Vehicle, goal: Pose2D, distance: float) -> Move:
+    """Do what makes a goal (map) reachable by `run_in` within `distance` m.
+
+    Backing into it when it lies straight behind; else nothing, a retreat, or turning towards the
+    goal, driving there and turning again, whichever is quickest; False when none has room.
+    """
+    vehicle.sense()
+    behind = straight_behind(vehicle, goal, distance)
+    if behind is not None:
+        return (yield from back_off(vehicle, behind))
+    retreat = quickest_retreat(vehicle, goal, distance)
+    bearing = hop_bearing(vehicle, goal)
+    if bearing is not None and (
+        retreat is None or _hop_time(vehicle, goal, bearing) < retreat.seconds
+    ):
+        return (yield from _hop(vehicle, goal, bearing))
+    if retreat is None or retreat.back == 0.0:
+        return retreat is not None
+    return (yield from back_off(vehicle, retreat.back))
+
+
+def straight_behind(vehicle: Vehicle, goal: Pose2D, distance: float) -> float | None:
+    """How far behind the base the goal lies, m, when backing up leads into it, else None."""
+    here = vehicle.pose().inverse() @ goal
+    aligned = abs(here.y) < AIM * distance and abs(here.yaw) < TURN_AT_END
+    if not (aligned and -FARTHEST_BACK < here.x < -AIM * distance):
+        return None
+    return -here.x if clear_behind(vehicle, vehicle.pose(), -here.x) else None
+
+
+@dataclass(frozen=True, slots=True)
+class Retreat:
+    """How far to back up for the approach to succeed, m (0: not at all); seconds: both take."""
+
+    back: float
+    seconds: float
+
+
+def approach_is_sure(vehicle: Vehicle, goal: Pose2D, distance: float) -> bool:
+    """Whether `run_in`, begun now, ends within `distance` m of the goal with room all along."""
+    return _arrival(vehicle, vehicle.pose(), vehicle.speed(), goal).within(
+        distance * AIM, TURN_AT_END, _margin(vehicle, goal)
+    )
+
+
+def quickest_retreat(vehicle: Vehicle, goal: Pose2D, distance: float) -> Retreat | None:
+    """The quickest way to back up and approach, backing up by 0 m included; None without room."""
+    pose, best = vehicle.pose(), None
+    for back in (float(b) for b in np.arange(0.0, FARTHEST_BACK + 0.01, BACKS)):
+        if back > 0.0 and not clear_behind(vehicle, pose, back):
+            break
+        start = pose @ Pose2D(-back, 0.0, 0.0)
+        speed = vehicle.speed() if back == 0.0 else (0.0, 0.0)
+        end = _arrival(vehicle, start, speed, goal)
+        seconds = end.seconds + (back / BACK_SPEED + SWITCH if back else 0.0)
+        sure = end.within(distance * AIM, TURN_AT_END, _margin(vehicle, goal))
+        if sure and (best is None or seconds < best.seconds):
+            best = Retreat(back, seconds)
+    return best
+
+
+def _arrival(
+    vehicle: Vehicle, pose: Pose2D, speed: tuple[float, float], goal: Pose2D
+) -> graceful.Arrival:
+    return graceful.simulate(pose, speed, goal, vehicle.limits, vehicle.costmap, vehicle.low_discs)
+
+
+def _margin(vehicle: Vehicle, goal: Pose2D) -> float:
+    """Room that an approach must keep: the goal itself may offer less than the usual margin."""
+    return min(vehicle.config.margin, vehicle.room(goal, whole=False) - 0.005)
+
+
+def hop_bearing(vehicle: Vehicle, goal: Pose2D) -> float | None:
+    """Direction to the goal (map, rad) when the way there and both turns have room, else None."""
+    pose = vehicle.pose()
+    way = pose.distance_to(goal)
+    if not 0.02 < way < HOP:
+        return None
+    bearing = math.atan2(goal.y - pose.y, goal.x - pose.x)
+    there = Pose2D(goal.x, goal.y, bearing)
+    if not (can_turn(vehicle, pose, bearing) and can_turn(vehicle, there, goal.yaw)):
+        return None
+    steps = (
+        Pose2D(pose.x, pose.y, bearing) @ Pose2D(float(d), 0.0, 0.0)
+        for d in np.arange(0, way, 0.05)
+    )
+    least = min(0.0, vehicle.room(pose, whole=True), vehicle.room(goal, whole=True))
+    return bearing if all(vehicle.room(step, whole=True) >= least for step in steps) else None
+
+
+def _hop_time(vehicle: Vehicle, goal: Pose2D, bearing: float) -> float:
+    pose = vehicle.pose()
+    turns = abs(wrap_angle(bearing - pose.yaw)) + abs(wrap_angle(goal.yaw - bearing))
+    return 2.0 * SWITCH + turns / TURN_TIME + pose.distance_to(goal) / DRIVE_TIME
+
+
+def _hop(vehicle: Vehicle, goal: Pose2D, bearing: float) -> Move:
+    there = Pose2D(goal.x, goal.y, bearing)
+    if not (yield from turn_to(vehicle, bearing, "turn to the goal")):
+        return False
+    if not (yield from run_in(vehicle, lambda: there)):
+        return False
+    yield from vehicle.stop("settle")
+    return (yield from turn_to(vehicle, goal.yaw, "square up"))
+
+
+def run_in(vehicle: Vehicle, goal: Callable[[], Pose2D]) -> Move:
+    """Follow the approach to `goal()` (map); True at its line, False when time is up.
+
+    Raises:
+        Failure: PATH_BLOCKED when something stands in the way.
+    """
+    deadline = vehicle.now() + graceful.LONGEST
+    while vehicle.now() < deadline:
+        vehicle.sense()
+        wanted = graceful.command(vehicle.pose(), goal(), vehicle.limits)
+        if wanted is None:
+            return True
+        yield from vehicle.drive(*wanted, "approach")
+        if vehicle.blocked_for > vehicle.config.blocked_patience:
+            raise Failure(
+                "PATH_BLOCKED",
+                "something stands between the base and its goal",
+                to_go=vehicle.pose().distance_to(goal()),
+            )
+    return False

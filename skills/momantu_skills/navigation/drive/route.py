@@ -1,0 +1,131 @@
+"""Choosing where to stand among candidates, and keeping a plan that leads there."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from momantu_bt.failure import Failure
+from momantu_bt.geometry import Pose2D
+from momantu_skills.navigation.drive.vehicle import Vehicle
+from momantu_skills.navigation.plan.goals import Stand
+from momantu_skills.navigation.plan.planner import UNREACHED, Plan, plan
+
+LEAD_IN = (0.6, 0.4, 0.2, 0.0)
+"""m before the goal, on its axis, where the way hands over to the approach; longest first."""
+TRIED = 5
+"""Stands for which a way is sought before giving up."""
+EXTRA = 0.02
+"""m that the planner keeps beyond the footprint."""
+LOOK_AHEAD = 4.0
+"""m of the path that are watched for new obstacles."""
+CROSSED_BY = 0.05
+"""m of missing room on the path that asks for a new one."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Route:
+    """stand: where it ends (map). lead_in: where the approach begins (map). plan: leads there."""
+
+    stand: Pose2D
+    lead_in: Pose2D
+    plan: Plan
+
+    def to_go(self, vehicle: Vehicle, pose: Pose2D) -> float:
+        """Weighted metres from a pose to the lead-in; large where the plan does not reach."""
+        row, column = vehicle.costmap.grid.index(pose.x, pose.y)
+        rows, columns = self.plan.cost.shape
+        if not (0 <= row < rows and 0 <= column < columns):
+            return float(UNREACHED)
+        return float(self.plan.cost[row, column])
+
+    def crossed(self, vehicle: Vehicle, pose: Pose2D) -> bool:
+        """Whether something now stands on the path before the base."""
+        field, grid = vehicle.costmap.field, vehicle.costmap.grid
+        away = np.hypot(self.plan.path[:, 0] - pose.x, self.plan.path[:, 1] - pose.y)
+        ahead = self.plan.path[int(np.argmin(away)) :]
+        count = int(LOOK_AHEAD / (0.5 * grid.resolution))
+        cells = ((ahead[:count] - vehicle.costmap.frame[:2]) / grid.resolution).astype(np.int64)
+        room = field[cells[:, 1], cells[:, 0]]
+        return bool((room < planning_radius(vehicle) - CROSSED_BY).any())
+
+    def heading(self, pose: Pose2D, ahead: float = 0.5) -> float:
+        """Direction from a pose to the path `ahead` m farther on, rad."""
+        away = np.hypot(self.plan.path[:, 0] - pose.x, self.plan.path[:, 1] - pose.y)
+        first = int(np.argmin(away))
+        beyond = np.nonzero(away[first:] > ahead)[0]
+        x, y = self.plan.path[first + int(beyond[0])] if len(beyond) else self.plan.path[-1]
+        return math.atan2(float(y) - pose.y, float(x) - pose.x)
+
+
+def planning_radius(vehicle: Vehicle) -> float:
+    """Room that driving straight needs on either side of the base's axis, m."""
+    return vehicle.half_width + EXTRA
+
+
+def free_stands(vehicle: Vehicle, stands: list[Stand]) -> list[Stand]:
+    """The nearest free stand of each variant, best variant first."""
+    best: dict[int, Stand] = {}
+    for stand in stands:
+        free = vehicle.room(stand.pose, whole=False) > vehicle.config.margin
+        if free and (stand.variant not in best or stand.cost < best[stand.variant].cost):
+            best[stand.variant] = stand
+    return sorted(best.values(), key=lambda stand: stand.cost)
+
+
+def first_choice(vehicle: Vehicle, stands: list[Stand], side: int) -> Stand | None:
+    """The `side`-th best stand that is free, whether or not it can be reached; None: none is."""
+    free = free_stands(vehicle, stands)
+    return free[side % len(free)] if free else None
+
+
+def choose(vehicle: Vehicle, stands: list[Stand], side: int) -> Route:
+    """A route to the `side`-th best stand that is free and can be reached.
+
+    Raises:
+        Failure: GOAL_BLOCKED, PATH_BLOCKED or NO_PATH.
+    """
+    vehicle.costmap.refresh()
+    free = free_stands(vehicle, stands)
+    if not free:
+        raise Failure(
+            "GOAL_BLOCKED",
+            f"something stands at each of {len(stands)} places where the base could stand",
+            places=[[s.pose.x, s.pose.y, s.pose.yaw] for s in stands[:4]],
+        )
+    turn = side % len(free)
+    for stand in (free[turn:] + free[:turn])[:TRIED]:
+        route = route_to(vehicle, stand.pose)
+        if route is not None:
+            return route
+    raise no_way(vehicle, free[turn].pose)
+
+
+def route_to(vehicle: Vehicle, stand: Pose2D) -> Route | None:
+    """The cheapest way to a stand, by way of a lead-in on its axis; None when there is none."""
+    pose = vehicle.pose()
+    comfort = vehicle.config.comfort
+    for distance in LEAD_IN:
+        lead_in = stand @ Pose2D(-distance, 0.0, 0.0)
+        wanted = vehicle.config.margin if distance else -math.inf
+        if vehicle.room(lead_in, whole=False) < wanted:
+            continue
+        found = plan(vehicle.costmap, pose, lead_in, planning_radius(vehicle), comfort)
+        if found is not None:
+            return Route(stand, lead_in, found)
+    return None
+
+
+def no_way(vehicle: Vehicle, stand: Pose2D) -> Failure:
+    """PATH_BLOCKED when the map alone has a way, else NO_PATH."""
+    pose = vehicle.pose()
+    known = plan(
+        vehicle.costmap, pose, stand, planning_radius(vehicle), vehicle.config.comfort, known=True
+    )
+    where = f"({stand.x:.2f}, {stand.y:.2f})"
+    data = {"from": [pose.x, pose.y], "to": [stand.x, stand.y], "radius": planning_radius(vehicle)}
+    if known is not None:
+        return Failure("PATH_BLOCKED", f"what the sensors see closes every way to {where}", **data)
+    return Failure("NO_PATH", f"the map has no way wide enough to {where}", **data)

@@ -1,0 +1,160 @@
+"""A whole trip: be sure where one is, choose where to stand, go there, recover, give up."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator
+from typing import Any
+
+from momantu_bt.failure import Failure
+from momantu_bt.geometry import Pose2D
+from momantu_bt.skill import Compute, compute
+from momantu_skills.navigation.control.mppi import Mppi
+from momantu_skills.navigation.drive.arrive import arrive, within
+from momantu_skills.navigation.drive.cruise import cruise, leave
+from momantu_skills.navigation.drive.manoeuvre import approach_is_sure, prepare, straight_behind
+from momantu_skills.navigation.drive.moves import back_off, turn_to
+from momantu_skills.navigation.drive.route import Route, choose, first_choice
+from momantu_skills.navigation.drive.vehicle import Vehicle
+from momantu_skills.navigation.localize.confidence import is_localized, sigmas
+from momantu_skills.navigation.plan.goals import Stand
+
+Trip = Generator[str | Compute, Any, None]
+
+SURE_WITHIN = 2.5
+"""s that localization gets at the start: its scans at rest take 1.5 s."""
+RECOVERABLE = ("PATH_BLOCKED", "NO_PROGRESS", "GOAL_BLOCKED", "NO_PATH")
+LOCAL = 1.5
+"""m from the goal within which it is reached by manoeuvres instead of by a planned way."""
+PATIENCE = (1.0, 3.0, 6.0)
+"""s that recoveries wait: what stands in the way may be on its way."""
+WALK = 3.0
+"""m: nearer goals that were seen are kept in odometry's frame, which does not jump."""
+
+
+class Destination:
+    """Candidate stands (map) computed anew when asked, and the tolerance to meet.
+
+    in_odom: the chosen stand stays fixed in odometry's frame, for what was measured from here.
+    chosen: the stand of the newest attempt, map; None before the first.
+    """
+
+    def __init__(
+        self,
+        stands: Callable[[], list[Stand]],
+        tolerance: tuple[float, float],
+        *,
+        side: int = 0,
+        in_odom: bool = False,
+    ) -> None:
+        self.stands, self.tolerance = stands, tolerance
+        self.side, self.in_odom = side, in_odom
+        self.chosen: Pose2D | None = None
+
+
+def travel(vehicle: Vehicle, mppi: Mppi, to: Destination, *, recovery: bool) -> Trip:
+    """Go there, and recover where that is allowed.
+
+    Raises:
+        Failure: NOT_LOCALIZED, GOAL_BLOCKED, NO_PATH, PATH_BLOCKED, NO_PROGRESS.
+    """
+    yield from be_sure(vehicle)
+    attempts = vehicle.config.attempts if recovery else 1
+    for attempt in range(attempts):
+        try:
+            yield from _go(vehicle, mppi, to)
+            return
+        except Failure as failure:
+            if failure.code not in RECOVERABLE or attempt == attempts - 1:
+                yield from vehicle.stop("give up")
+                raise
+            yield from _recover(vehicle, attempt)
+
+
+def be_sure(vehicle: Vehicle) -> Trip:
+    """Wait a little until localization is sure; NOT_LOCALIZED when it is not."""
+    end = vehicle.now() + SURE_WITHIN
+    while not is_localized(vehicle.localization):
+        if vehicle.now() > end:
+            position, yaw = sigmas(vehicle.localization.covariance)
+            raise Failure(
+                "NOT_LOCALIZED",
+                f"the base may be anywhere within {position:.2f} m and {yaw:.2f} rad; the newest "
+                f"scan fits the map by {vehicle.localization.quality:.2f}",
+                sigma_position=position,
+                sigma_yaw=yaw,
+                quality=vehicle.localization.quality,
+            )
+        yield from vehicle.wait(vehicle.config.period, "localize")
+
+
+def _go(vehicle: Vehicle, mppi: Mppi, to: Destination) -> Trip:
+    distance, angle = to.tolerance
+    vehicle.sense()
+    if (yield from _straight_back(vehicle, to)):
+        return
+    route: Route = yield from compute(
+        lambda: choose(vehicle, to.stands(), to.side), vehicle.config.planning_time
+    )
+    to.chosen, goal = route.stand, _kept(vehicle, route.stand, to.in_odom)
+    if within(vehicle.pose(), goal(), distance, angle):
+        return
+    for _ in range(3):
+        if not (yield from _near(vehicle, goal(), distance)):
+            yield from leave(vehicle, route.heading(vehicle.pose()))
+            yield from cruise(vehicle, mppi, route, distance)
+            yield from _line_up(vehicle, goal(), distance)
+        if (yield from arrive(vehicle, goal, distance, angle)):
+            return
+        route = yield from compute(
+            lambda: choose(vehicle, to.stands(), to.side), vehicle.config.planning_time
+        )
+        to.chosen, goal = route.stand, _kept(vehicle, route.stand, to.in_odom)
+    raise Failure("NO_PROGRESS", "three approaches did not end at the goal")
+
+
+def _straight_back(vehicle: Vehicle, to: Destination) -> Trip | Any:
+    """Whether the first choice lay straight behind and was backed into.
+
+    No way is planned: the arm may stand out too far for any turn.
+    """
+    distance, angle = to.tolerance
+    first = first_choice(vehicle, to.stands(), to.side)
+    behind = None if first is None else straight_behind(vehicle, first.pose, distance)
+    if first is None or behind is None or not (yield from back_off(vehicle, behind)):
+        return False
+    to.chosen, goal = first.pose, _kept(vehicle, first.pose, to.in_odom)
+    return (yield from arrive(vehicle, goal, distance, angle))
+
+
+def _near(vehicle: Vehicle, goal: Pose2D, distance: float) -> Trip | Any:
+    """Whether the goal is near enough to be reached by a manoeuvre, which is then done."""
+    if vehicle.pose().distance_to(goal) > LOCAL:
+        return False
+    return (yield from prepare(vehicle, goal, distance))
+
+
+def _line_up(vehicle: Vehicle, goal: Pose2D, distance: float) -> Trip:
+    """At the lead-in, but the approach is not sure: turn or hop until it is."""
+    if approach_is_sure(vehicle, goal, distance):
+        return
+    yield from vehicle.stop("line up")
+    yield from prepare(vehicle, goal, distance)
+
+
+def _kept(vehicle: Vehicle, stand: Pose2D, in_odom: bool) -> Callable[[], Pose2D]:
+    if not in_odom or vehicle.pose().distance_to(stand) > WALK:
+        return lambda: stand
+    odom_from_stand = vehicle.map_from_odom().inverse() @ stand
+    return lambda: vehicle.map_from_odom() @ odom_from_stand
+
+
+def _recover(vehicle: Vehicle, attempt: int) -> Trip:
+    """Forget what was seen and look again; then back up; then turn as well."""
+    yield from vehicle.stop("recover")
+    vehicle.costmap.clear_ahead(vehicle.pose())
+    vehicle.sense()
+    if attempt >= 1:
+        yield from back_off(vehicle, 0.3, "recover")
+    if attempt >= 2:
+        yield from turn_to(vehicle, vehicle.pose().yaw + 2.0, "recover")
+    yield from vehicle.wait(PATIENCE[min(attempt, len(PATIENCE) - 1)], "recover")

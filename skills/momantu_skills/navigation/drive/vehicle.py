@@ -1,0 +1,221 @@
+"""The base on its way: what it senses, and the only place that commands it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from momantu_bt.frames import MAP, ODOM
+from momantu_bt.geometry import Array, Pose2D, Transform
+from momantu_bt.messages import BaseVelocity, JointPositions
+from momantu_bt.robot import CAMERA_CARRIER, CameraSensor, Robot, read_camera, read_laser
+from momantu_bt.service import Localization, PlanningScene
+from momantu_bt.skill import Run, Skill
+from momantu_skills.navigation.config import NavigationConfig
+from momantu_skills.navigation.control.footprint import discs, half_width
+from momantu_skills.navigation.control.guard import safe_share
+from momantu_skills.navigation.map.costmap import Costmap
+from momantu_skills.navigation.map.maps import read_map
+from momantu_skills.navigation.map.sensing import Rays, obstacles_and_floor
+
+GAZE = (2.0, 0.0, 0.1)
+"""Where the camera looks while driving, base frame, m: two metres ahead, at the floor."""
+POSTURE_CHANGE = 0.02
+"""rad (or m) by which a joint must move before the footprint is asked for anew."""
+OUTLINE_CHANGE = 0.01
+"""m by which the footprint must change before its discs are computed anew."""
+TURN_BETWEEN_LOOKS = 0.8
+"""rad of turning that counts like `depth_every` metres: about half of a camera's view."""
+HANDS_OVER = 0.03
+"""m above a surface's nominal top that arm and load must keep to count as being over it."""
+AT_REST = 0.01
+"""m/s and rad/s below which the base stands."""
+
+
+class Vehicle:
+    """Senses once per control period and drives for one. Poses are in the map unless named.
+
+    The laser is taken to be fixed to the base.
+
+    base_discs: of the base alone, which every obstacle meets. low_discs: with what hangs lower of
+    arm and load than the surface that is driven up to. discs: with all of arm and load.
+    """
+
+    def __init__(
+        self,
+        skill: Skill,
+        robot: Robot,
+        localization: Localization,
+        scene: PlanningScene,
+        config: NavigationConfig,
+        top: float = 0.0,
+    ) -> None:
+        """top: height of the surface that is driven up to, m; arms reach over it."""
+        site, description = skill.site, robot.description
+        if site.map_file is None:
+            raise ValueError(f"site {site.name!r} has no map_file to drive in")
+        overhang = None if site.overhang_file is None else read_map(site.overhang_file)
+        self.config, self.limits = config, description.base
+        self.costmap = Costmap(read_map(site.map_file), overhang, config)
+        self.localization = localization
+        self._skill, self._robot, self._scene = skill, robot, scene
+        self._frames, self._clock = skill.frames, skill.clock
+        self._base_frame = description.base_frame
+        outline = np.array(description.footprint)
+        self.base_discs = self.low_discs = self.discs = discs(outline)
+        self.half_width = half_width(outline)
+        self._outline = self._low_outline = outline
+        self._low = top + HANDS_OVER
+        self._posture: Array | None = None
+        self._base_from_laser: Transform | None = None
+        self._sees = any(isinstance(s, CameraSensor) for s in description.sensors.values())
+        resolved = description.resolve_use(CAMERA_CARRIER) if self._sees else None
+        self._head = None if description.eye_in_hand else resolved
+        self._gaze = self._gaze_goal()
+        self._looked: Pose2D | None = None
+        self._hits = np.zeros((0, 2))
+        self.blocked_for = 0.0
+        self.blocked_total = 0.0
+
+    def now(self) -> float:
+        """The world's clock, s."""
+        return self._clock.now()
+
+    def pose(self) -> Pose2D:
+        """`map_from_base` of now."""
+        return self.map_from_odom() @ self.odom_from_base()
+
+    def odom_from_base(self) -> Pose2D:
+        """Odometry of now."""
+        return Pose2D.from_transform(self._robot.state().odom_from_base)
+
+    def map_from_odom(self) -> Pose2D:
+        """Localization's newest word."""
+        return Pose2D.from_transform(self._frames.lookup(MAP, ODOM))
+
+    def speed(self) -> tuple[float, float]:
+        """Measured m/s and rad/s."""
+        state = self._robot.state()
+        return state.linear, state.angular
+
+    def sense(self, *, depth: bool = True) -> None:
+        """Take a scan into the costmap, and a depth picture when the last one is far behind."""
+        pose = self.pose()
+        self._follow_footprint()
+        scan = read_laser(self._robot)
+        if self._base_from_laser is None:
+            self._base_from_laser = self._frames.lookup(self._base_frame, scan.frame, scan.stamp)
+        rays = Rays.from_scan(scan, self._base_from_laser)
+        self._hits = rays.points()
+        self.costmap.see_laser(pose, rays)
+        if depth and self._look_due(pose):
+            self._see_depth(pose)
+        self.costmap.refresh(pose)
+
+    def _follow_footprint(self) -> None:
+        state = self._robot.state()
+        before = self._posture
+        if before is not None and np.abs(state.positions - before).max() < POSTURE_CHANGE:
+            return
+        self._posture = state.positions
+        outline = np.asarray(self._scene.footprint(state))
+        if not _same(outline, self._outline):
+            self._outline, self.discs = outline, discs(outline)
+            self.half_width = half_width(outline)
+        low = np.asarray(self._scene.footprint(state, self._low))
+        if not _same(low, self._low_outline):
+            self._low_outline, self.low_discs = low, discs(low)
+
+    def _look_due(self, pose: Pose2D) -> bool:
+        if not self._sees:
+            return False
+        if self._looked is None:
+            return True
+        turned = abs((self._looked.inverse() @ pose).yaw)
+        way = self._looked.distance_to(pose) / self.config.depth_every
+        return way + turned / TURN_BETWEEN_LOOKS > 1.0
+
+    def _see_depth(self, pose: Pose2D) -> None:
+        image = read_camera(self._robot)
+        state = self._robot.state()
+        obstacles, floor = obstacles_and_floor(
+            image, self._frames, self._robot.description, state, self._scene, self.config
+        )
+        self.costmap.see_depth(_moved(pose, obstacles), _moved(pose, floor))
+        self._looked = pose
+
+    def _gaze_goal(self) -> JointPositions | None:
+        """Where a head looks while driving; an arm, or a camera that is fixed, stays as it is."""
+        description = self._robot.description
+        if self._head is None:
+            return None
+        joints = description.actuators[self._head].joints
+        from momantu_skills.perception.camera.aiming import aim
+
+        aimed = aim(
+            self._frames.kinematics,
+            description.camera()[1].frame,
+            joints,
+            description.joint_limits,
+            self._robot.state().joints(),
+            np.array(GAZE),
+        )
+        return JointPositions(joints, aimed.positions)
+
+    def drive(self, linear: float, angular: float, phase: str) -> Run:
+        """Command the base for one control period, as far as the newest scan allows."""
+        share = safe_share(
+            (linear, angular), self.speed(), self.limits, self.base_discs, self._hits
+        )
+        period = self.config.period
+        stuck = share == 0.0 and (linear, angular) != (0.0, 0.0)
+        self.blocked_for = self.blocked_for + period if stuck else 0.0
+        self.blocked_total += period if stuck else 0.0
+        yield from self._command(BaseVelocity(linear * share, angular * share), phase)
+
+    def _command(self, goal: BaseVelocity, phase: str) -> Run:
+        slot = self._slot()
+        while self._slot() == slot:
+            self._robot.command("base", goal)
+            if self._gaze is not None and self._head is not None:
+                self._robot.command(self._head, self._gaze)
+            yield phase
+
+    def _slot(self) -> int:
+        return int(self.now() / self.config.period + 1e-6)
+
+    def stop(self, phase: str) -> Run:
+        """Brake and wait until the base stands, at most as long as braking can take, twice."""
+        longest = 2.0 * max(
+            self.limits.linear / self.limits.linear_acceleration,
+            self.limits.angular / self.limits.angular_acceleration,
+        )
+        begun = self.now()
+        while not self.stands() and self.now() < begun + longest:
+            yield from self._command(BaseVelocity(0.0, 0.0), phase)
+
+    def stands(self) -> bool:
+        """Whether the base is at rest."""
+        linear, angular = self.speed()
+        return abs(linear) < AT_REST and abs(angular) < AT_REST
+
+    def wait(self, seconds: float, phase: str) -> Run:
+        """Stand still."""
+        end = self.now() + seconds - 1e-6
+        while self.now() < end:
+            yield from self._command(BaseVelocity(0.0, 0.0), phase)
+
+    def room(self, pose: Pose2D, *, whole: bool) -> float:
+        """Room at a pose, m: with all of arm and load (`whole`), or what hangs low of them."""
+        return self.costmap.room(pose, self.discs if whole else self.low_discs)
+
+
+def _same(outline: Array, other: Array) -> bool:
+    return outline.shape == other.shape and float(np.abs(outline - other).max()) < OUTLINE_CHANGE
+
+
+def _moved(map_from_base: Pose2D, points: Array) -> Array:
+    c, s = math.cos(map_from_base.yaw), math.sin(map_from_base.yaw)
+    x, y = points[:, 0], points[:, 1]
+    return np.stack([map_from_base.x + c * x - s * y, map_from_base.y + s * x + c * y], axis=1)

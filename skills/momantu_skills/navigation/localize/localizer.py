@@ -1,0 +1,169 @@
+"""Adaptive Monte Carlo localization on a likelihood field, apart from robots and clocks."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from momantu_bt.geometry import Array, Pose2D
+from momantu_skills.navigation.config import LocalizationConfig
+from momantu_skills.navigation.localize.belief import covariance, main_cluster
+from momantu_skills.navigation.localize.fit import scan_fit
+from momantu_skills.navigation.localize.particle_filter import (
+    kld_resample,
+    likelihood_field,
+    log_likelihoods,
+)
+from momantu_skills.navigation.map.fields import surface_distance
+from momantu_skills.navigation.map.maps import FREE, OCCUPIED, GridMap
+from momantu_skills.navigation.map.sensing import Rays
+
+COARSE = 3.0
+"""After a global spread the first scans are weighed with hits this many times wider: the poses
+that are tried lie far apart."""
+
+
+class Localizer:
+    """Particles in the map: moved by odometry, weighed by scans.
+
+    estimate: mean of the main cluster. covariance: (3, 3) of the whole cloud, m2, m rad, rad2.
+    quality: 0..1, fit of the newest scan at the estimate.
+    """
+
+    def __init__(
+        self, grid: GridMap, config: LocalizationConfig, random: np.random.Generator
+    ) -> None:
+        self._grid, self._config, self._random = grid, config, random
+        self._field = surface_distance(grid.cells == OCCUPIED, grid.resolution, config.reach)
+        self._free = grid.centers(grid.cells == FREE)
+        if not len(self._free):
+            raise ValueError("the map has no free cell, so a robot cannot be anywhere on it")
+        self._search = False
+        self._widening = 1.0
+        self._weighed_with = 0.0
+        self._likelihood = self._field
+        self.reset(Pose2D(0.0, 0.0, 0.0), 0.0, 0.0)
+
+    def reset(self, pose: Pose2D, sigma_position: float, sigma_yaw: float) -> None:
+        """Start over around a pose; standard deviations in m (each axis) and rad."""
+        spread = np.array([sigma_position, sigma_position, sigma_yaw])
+        count = max(2_000, self._config.particles[0])
+        noise = self._random.standard_normal((count, 3)) * spread
+        self._start(np.array([pose.x, pose.y, pose.yaw]) + noise, pose)
+        self._search = False
+        self._widening = 1.0
+
+    def spread(self) -> None:
+        """Start over anywhere on the free floor; the next scan is compared with every pose."""
+        self._start(self._anywhere(self._config.particles[1]), self.estimate)
+        self._search = True
+        self._widening = COARSE
+
+    def _start(self, poses: Array, guess: Pose2D) -> None:
+        self._poses = poses
+        self._slow = self._fast = 0.0
+        self.quality = 0.0
+        self._settle(np.ones(len(poses)), guess)
+
+    def _settle(self, weights: Array, guess: Pose2D) -> None:
+        self.estimate = main_cluster(self._poses, weights, guess)
+        self.covariance = covariance(self._poses, weights, self.estimate)
+
+    def _anywhere(self, count: int) -> Array:
+        cells = self._free[self._random.integers(len(self._free), size=count)]
+        offsets = (self._random.random((count, 2)) - 0.5) * self._grid.resolution
+        yaw = self._random.uniform(-math.pi, math.pi, (count, 1))
+        return np.concatenate([cells + offsets, yaw], axis=1)
+
+    def move(self, delta: Pose2D) -> None:
+        """Odometry says that the base moved by `delta`, in its own frame before the motion.
+
+        Noise grows with the way and the turn (the sampled odometry model, in one step).
+        """
+        config, count = self._config, len(self._poses)
+        way, turn = math.hypot(delta.x, delta.y), abs(delta.yaw)
+        along = config.translation_noise * way + 0.01 * turn
+        round_about = config.rotation_noise * turn + config.turn_per_metre * way
+        noise = self._random.standard_normal((count, 3)) * (along, along / 2, round_about)
+        yaw = self._poses[:, 2] + 0.5 * noise[:, 2]
+        x, y = delta.x + noise[:, 0], delta.y + noise[:, 1]
+        self._poses[:, 0] += np.cos(yaw) * x - np.sin(yaw) * y
+        self._poses[:, 1] += np.sin(yaw) * x + np.cos(yaw) * y
+        self._poses[:, 2] += delta.yaw + noise[:, 2]
+        self.estimate = self.estimate @ delta
+
+    def jitter(self, sigma: float) -> None:
+        """Move every particle a little, sigma in m and rad, so that rest does not impoverish."""
+        self._poses += self._random.standard_normal(self._poses.shape) * (sigma, sigma, 0.7 * sigma)
+
+    def observe(self, rays: Rays) -> None:
+        """Weigh the particles by a scan, estimate, and draw the next ones."""
+        points = rays.thinned(self._config.beams)
+        if not len(points):
+            self.quality = 0.0
+            return
+        if self._search:
+            self._search = False
+            self._poses = self._every_pose()
+        logs = self._logs(points)
+        weights = np.exp(self._config.trust * (logs - logs.max()))
+        self._settle(weights, self.estimate)
+        self.quality = scan_fit(self._grid, self._field, self.estimate, rays)
+        self._resample(weights / weights.sum(), self._injected(logs, len(points)))
+        self._widening = max(1.0, self._widening * 0.7)
+
+    def _logs(self, points: Array) -> Array:
+        config, grid = self._config, self._grid
+        if self._weighed_with != self._widening:
+            self._weighed_with = self._widening
+            sigma = config.hit_sigma * self._widening
+            self._likelihood = likelihood_field(self._field, sigma, config.random_share)
+        result: Array = log_likelihoods(
+            self._poses,
+            points,
+            self._likelihood,
+            *grid.origin,
+            grid.resolution,
+            config.random_share,
+        )
+        return result
+
+    def _every_pose(self) -> Array:
+        """Free cells on a lattice, each with evenly spaced headings: (n, 3)."""
+        skip = max(1, round(self._config.global_spacing / self._grid.resolution))
+        lattice = np.zeros(self._grid.cells.shape, dtype=np.bool_)
+        lattice[::skip, ::skip] = self._grid.cells[::skip, ::skip] == FREE
+        spots = self._grid.centers(lattice)
+        yaws = np.arange(self._config.global_headings) * (
+            2 * math.pi / self._config.global_headings
+        )
+        repeated = np.repeat(spots, len(yaws), axis=0)
+        return np.concatenate([repeated, np.tile(yaws, len(spots))[:, None]], axis=1)
+
+    def _injected(self, logs: Array, beams: int) -> float:
+        """Share of random particles, from how the best fits of late compare with those of old."""
+        config = self._config
+        typical = float(np.exp(logs.max() / beams))
+        if self._slow == 0.0:
+            self._slow = self._fast = typical
+        self._slow += config.slow * (typical - self._slow)
+        self._fast += config.fast * (typical - self._fast)
+        return min(config.injected_most, max(0.0, 1.0 - self._fast / self._slow - 0.1))
+
+    def _resample(self, weights: Array, injected: float) -> None:
+        config = self._config
+        chosen = kld_resample(
+            self._poses,
+            weights,
+            self._random.random(config.particles[1]),
+            config.particles[0],
+            *config.bin_size,
+            config.kld_error,
+            config.kld_quantile,
+        )
+        drawn = self._poses[chosen]
+        if self._widening > 1.0:
+            drawn += self._random.standard_normal(drawn.shape) * (0.06, 0.06, 0.04)
+        extra = int(injected * len(drawn))
+        self._poses = np.concatenate([drawn, self._anywhere(extra)]) if extra else drawn

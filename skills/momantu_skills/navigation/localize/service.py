@@ -1,0 +1,141 @@
+"""The localization service: says at each scan where odometry's frame lies in the map."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from momantu_bt.failure import SENSOR_DEAD, Failure
+from momantu_bt.geometry import Array, Pose2D, Transform
+from momantu_bt.robot import Robot, read_laser
+from momantu_bt.service import Service, ServiceContext
+from momantu_skills.navigation.config import LocalizationConfig, configured
+
+if TYPE_CHECKING:
+    from momantu_skills.navigation.localize.localizer import Localizer
+    from momantu_skills.navigation.map.sensing import Rays
+
+MOVING = 1e-4
+"""Odometry per update below which the base rests, m and rad."""
+
+
+class LocalizationService(Service):
+    """Adaptive Monte Carlo localization; see `LocalizationConfig` for the site's parameters.
+
+    Reads the laser when odometry has moved, and for a while at rest after a reset or a stop. The
+    laser is taken to be fixed to the base. While the laser is dead it follows odometry alone:
+    who drives meets the dead laser himself. The first scan that comes again is weighed.
+    """
+
+    rate: ClassVar[float] = 10.0
+    publishes: ClassVar[Mapping[str, type]] = {
+        "quality": float,
+        "sigma_position": float,
+        "sigma_yaw": float,
+        "pose": Pose2D,
+    }
+    senses = ("laser",)
+
+    def start(self, context: ServiceContext) -> None:
+        """Read the map and begin around the site's start pose."""
+        from momantu_skills.navigation.localize.localizer import Localizer
+        from momantu_skills.navigation.map.maps import read_map
+
+        if context.site.map_file is None:
+            raise ValueError(f"site {context.site.name!r} has no map_file to be localized in")
+        self._config = configured(LocalizationConfig, context.parameters, "localization")
+        self._frames = context.frames
+        self._laser = context.description.laser()[0]
+        self._base = context.description.base_frame
+        self._localizer: Localizer = Localizer(
+            read_map(context.site.map_file), self._config, context.random
+        )
+        self._odom_from_base: Pose2D | None = None
+        self._since_scan = [0.0, 0.0]
+        self._rest_scans = 0
+        self._base_from_laser: Transform | None = None
+        self._told = False
+        self.reset(context.site.start, *context.site.start_sigma)
+
+    def update(self, robot: Robot, now: float) -> None:
+        """Follow odometry; weigh a scan when it is due."""
+        odom_from_base = Pose2D.from_transform(robot.state().odom_from_base)
+        before = self._odom_from_base or odom_from_base
+        self._odom_from_base = odom_from_base
+        delta = before.inverse() @ odom_from_base
+        way, turn = before.distance_to(odom_from_base), abs(delta.yaw)
+        moving = way > MOVING or turn > MOVING
+        if moving:
+            self._localizer.move(delta)
+            self._since_scan[0] += way
+            self._since_scan[1] += turn
+            self._rest_scans = max(self._rest_scans, 3)
+        if self._due(moving):
+            self._weigh(robot, moving)
+        elif self._told:
+            return
+        self._told = True
+        map_from_odom = self._localizer.estimate @ odom_from_base.inverse()
+        self._frames.set_map_from_odom(map_from_odom.transform(), now)
+
+    def _due(self, moving: bool) -> bool:
+        far = self._since_scan[0] > self._config.move or self._since_scan[1] > self._config.turn
+        return far or (not moving and self._rest_scans > 0)
+
+    def _weigh(self, robot: Robot, moving: bool) -> None:
+        try:
+            rays = self._rays(robot)
+        except Failure as failure:
+            if failure.code != SENSOR_DEAD:
+                raise
+            return
+        if not moving:
+            self._rest_scans -= 1
+            self._localizer.jitter(self._config.rest_jitter)
+        self._since_scan = [0.0, 0.0]
+        self._localizer.observe(rays)
+
+    def _rays(self, robot: Robot) -> Rays:
+        from momantu_skills.navigation.map.sensing import Rays
+
+        scan = read_laser(robot, self._laser)
+        if self._base_from_laser is None:
+            self._base_from_laser = self._frames.lookup(self._base, scan.frame, scan.stamp)
+        return Rays.from_scan(scan, self._base_from_laser)
+
+    @property
+    def map_from_base(self) -> Pose2D:
+        """The best estimate of now."""
+        return self._localizer.estimate
+
+    @property
+    def covariance(self) -> Array:
+        """(3, 3) of x, y, yaw in m2, m rad, rad2: other hypotheses count."""
+        return self._localizer.covariance
+
+    @property
+    def quality(self) -> float:
+        """0..1: how well the newest scan fits the map at the estimate (see `scan_fit`)."""
+        return self._localizer.quality
+
+    def reset(self, map_from_base: Pose2D, sigma_position: float, sigma_yaw: float) -> None:
+        """Start over around a pose; standard deviations in m and rad."""
+        self._localizer.reset(map_from_base, sigma_position, sigma_yaw)
+        self._rest_scans = self._config.rest_scans
+
+    def spread(self) -> None:
+        """Start over everywhere on the map's free floor."""
+        self._localizer.spread()
+        self._rest_scans = self._config.rest_scans
+
+    def published(self) -> Mapping[str, Any]:
+        """quality, sigma_position in m, sigma_yaw in rad, pose in the map."""
+        from momantu_skills.navigation.localize.confidence import sigmas
+
+        position, yaw = sigmas(self.covariance)
+        return {
+            "quality": self.quality,
+            "sigma_position": position,
+            "sigma_yaw": yaw,
+            "pose": self.map_from_base,
+        }

@@ -1,0 +1,188 @@
+"""The layered costmap: what stands where, and how much room there is."""
+
+from __future__ import annotations
+
+import math
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from momantu_bt.geometry import Array, Pose2D
+from momantu_skills.navigation.config import NavigationConfig
+from momantu_skills.navigation.map.fields import Field, clearance, sample
+from momantu_skills.navigation.map.maps import FREE, OCCUPIED, GridMap
+from momantu_skills.navigation.map.sensing import Rays
+
+FAR = 1.0
+"""m beyond which more room makes no difference; also how far a window looks beyond its edge."""
+SURE = 4
+"""A hit counts this much; each beam that passes through a cell later takes one away."""
+RANGE_DOUBT = 0.02
+"""rad: hits this much off the map's walls are the estimate's heading error."""
+DEPTH_HITS = 3
+"""Depth pixels that must fall into a cell: lone ones fly between near and far edges."""
+
+
+class Costmap:
+    """Layers over the map's grid: map, overhang, laser, depth. Everything in map coordinates.
+
+    field: (rows, columns) distance to the nearest blocked cell, at most `FAR`, m.
+    frame: (x, y, resolution) of the grid, as kernels take it.
+    """
+
+    def __init__(self, grid: GridMap, overhang: GridMap | None, config: NavigationConfig) -> None:
+        self.grid, self._config = grid, config
+        self.frame = np.array([*grid.origin, grid.resolution])
+        self.known = grid.cells != FREE
+        if overhang is not None:
+            self.known |= _resampled(overhang, grid)
+        self._from_known = clearance(grid.cells == OCCUPIED, grid.resolution)
+        self._laser = np.zeros(grid.cells.shape, dtype=np.uint8)
+        self._depth = np.zeros(grid.cells.shape, dtype=np.uint8)
+        self.known_field = np.minimum(clearance(self.known, grid.resolution), np.float32(FAR))
+        self.field = self.known_field.copy()
+
+    def clear_ahead(self, map_from_base: Pose2D) -> None:
+        """Forget what was seen before the base, which can be seen again; keep what lies behind."""
+        rows, columns = np.mgrid[0 : self.grid.cells.shape[0], 0 : self.grid.cells.shape[1]]
+        x = self.frame[0] + (columns + 0.5) * self.frame[2] - map_from_base.x
+        y = self.frame[1] + (rows + 0.5) * self.frame[2] - map_from_base.y
+        ahead = math.cos(map_from_base.yaw) * x + math.sin(map_from_base.yaw) * y > 0.0
+        self._laser[ahead] = 0
+        self._depth[ahead] = 0
+        self.refresh()
+
+    def see_laser(self, map_from_base: Pose2D, rays: Rays) -> None:
+        """Mark what a scan hit and clear what it passed through."""
+        _trace(
+            self._laser,
+            self._from_known,
+            self.frame,
+            np.array([map_from_base.x, map_from_base.y, map_from_base.yaw], dtype=np.float64),
+            rays.origin,
+            rays.directions,
+            rays.ranges,
+            rays.hit,
+            self._config.laser_reach,
+            self._config.known_reach,
+        )
+
+    def see_depth(self, obstacles: Array, floor: Array) -> None:
+        """Mark cells that hold obstacle points (n, 2); clear those where floor (m, 2) was seen."""
+        bare = self._counts(floor) >= DEPTH_HITS
+        taken = self._counts(obstacles) >= DEPTH_HITS
+        self._depth[bare & ~taken] = 0
+        self._depth[taken & (self.known_field > self._config.known_reach)] = 1
+
+    def _counts(self, points: Array) -> NDArray[np.int64]:
+        rows, columns = self.grid.cells.shape
+        cells = np.floor((points - self.frame[:2]) / self.frame[2]).astype(np.int64)
+        inside = (cells >= 0).all(axis=1) & (cells[:, 0] < columns) & (cells[:, 1] < rows)
+        flat = cells[inside, 1] * columns + cells[inside, 0]
+        return np.bincount(flat, minlength=rows * columns).reshape(rows, columns)
+
+    def refresh(self, center: Pose2D | None = None, radius: float = 2.5) -> None:
+        """Measure the room anew: everywhere, or within a square about `center`."""
+        rows, columns = self.grid.cells.shape
+        window = pad = (slice(0, rows), slice(0, columns))
+        if center is not None:
+            row, column = self.grid.index(center.x, center.y)
+            reach, more = (math.ceil(r / self.grid.resolution) for r in (radius, radius + FAR))
+            window = _square(row, column, reach, rows, columns)
+            pad = _square(row, column, more, rows, columns)
+        blocked = self.known[pad] | (self._laser[pad] > 0) | (self._depth[pad] > 0)
+        if blocked.size == 0:
+            return
+        fresh = np.minimum(clearance(blocked, self.grid.resolution), np.float32(FAR))
+        r, c = window[0].start - pad[0].start, window[1].start - pad[1].start
+        height, width = window[0].stop - window[0].start, window[1].stop - window[1].start
+        self.field[window] = fresh[r : r + height, c : c + width]
+
+    def room(self, pose: Pose2D, discs: Array, *, known: bool = False) -> float:
+        """Room in m between a footprint (discs (m, 3)) at a pose and anything; < 0 in a collision.
+
+        known: by the map's layers alone.
+        """
+        field = self.known_field if known else self.field
+        x, y, yaw = float(pose.x), float(pose.y), float(pose.yaw)
+        return float(room(field, self.frame, discs, x, y, yaw))
+
+
+def _square(row: int, column: int, reach: int, rows: int, columns: int) -> tuple[slice, slice]:
+    def clipped(middle: int, end: int) -> slice:
+        low = min(max(middle - reach, 0), end)
+        return slice(low, min(max(middle + reach + 1, low), end))
+
+    return clipped(row, rows), clipped(column, columns)
+
+
+def _resampled(layer: GridMap, grid: GridMap) -> NDArray[np.bool_]:
+    """Where `layer` is occupied, on the cells of `grid`."""
+    blocked = np.zeros(grid.cells.shape, dtype=np.bool_)
+    points = layer.centers(layer.cells == OCCUPIED)
+    cells = np.floor((points - np.array(grid.origin)) / grid.resolution).astype(np.int64)
+    rows, columns = grid.cells.shape
+    inside = (cells >= 0).all(axis=1) & (cells[:, 0] < columns) & (cells[:, 1] < rows)
+    blocked[cells[inside, 1], cells[inside, 0]] = True
+    return blocked
+
+
+@numba.njit(cache=True)
+def room(field: Field, frame: Array, discs: Array, x: float, y: float, yaw: float) -> float:
+    """Least distance in m between any of the discs and a blocked cell; 0 off the grid."""
+    c = math.cos(yaw)
+    s = math.sin(yaw)
+    least = 1e9
+    for i in range(discs.shape[0]):
+        px = x + c * discs[i, 0] - s * discs[i, 1]
+        py = y + s * discs[i, 0] + c * discs[i, 1]
+        column = (px - frame[0]) / frame[2] - 0.5
+        row = (py - frame[1]) / frame[2] - 0.5
+        least = min(least, sample(field, column, row, 0.0) - discs[i, 2])
+    return least
+
+
+@numba.njit(cache=True)
+def _trace(
+    marks: NDArray[np.uint8],
+    from_known: Field,
+    frame: Array,
+    pose: Array,
+    origin: Array,
+    directions: Array,
+    ranges: Array,
+    hit: NDArray[np.bool_],
+    reach: float,
+    known_reach: float,
+) -> None:
+    rows, columns = marks.shape
+    c = math.cos(pose[2])
+    s = math.sin(pose[2])
+    x = (pose[0] + c * origin[0] - s * origin[1] - frame[0]) / frame[2]
+    y = (pose[1] + s * origin[0] + c * origin[1] - frame[1]) / frame[2]
+    for i in range(ranges.shape[0]):
+        dx = c * directions[i, 0] - s * directions[i, 1]
+        dy = s * directions[i, 0] + c * directions[i, 1]
+        length = min(ranges[i], reach) if hit[i] else reach
+        last_row = -1
+        last_column = -1
+        for step in range(int(length / frame[2]) - 1):
+            column = math.floor(x + dx * step)
+            row = math.floor(y + dy * step)
+            if not (0 <= row < rows and 0 <= column < columns):
+                break
+            if (row != last_row or column != last_column) and marks[row, column] > 0:
+                marks[row, column] -= 1
+            last_row = row
+            last_column = column
+    for i in range(ranges.shape[0]):
+        if not hit[i] or ranges[i] >= reach:
+            continue
+        length = ranges[i] / frame[2]
+        column = math.floor(x + (c * directions[i, 0] - s * directions[i, 1]) * length)
+        row = math.floor(y + (s * directions[i, 0] + c * directions[i, 1]) * length)
+        if not (0 <= row < rows and 0 <= column < columns):
+            continue
+        if from_known[row, column] > known_reach + RANGE_DOUBT * ranges[i]:
+            marks[row, column] = SURE

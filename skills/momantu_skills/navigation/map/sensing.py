@@ -1,0 +1,113 @@
+"""What laser and depth camera see of the floor, from the base: rays, obstacles, bare floor."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from momantu_bt.frames import FrameBuffer
+from momantu_bt.geometry import Array, Transform
+from momantu_bt.messages import CameraImage, LaserScan, RobotState
+from momantu_bt.robot import RobotDescription
+from momantu_bt.service import PlanningScene
+from momantu_skills.navigation.config import NavigationConfig
+
+SPREAD = 0.12
+"""m between hits that count as independent: beyond the noise of one, below any wall's length."""
+
+
+STRIDE = 6
+"""Every sixth pixel in each direction: 2 cm apart at 2 m for a usual camera."""
+TILT_DOUBT = 0.02
+"""m per m of distance by which floor may seem raised: camera mounting and depth noise."""
+LONGEST_ROBOT = 1.5
+"""m from the base's axis within which a point may belong to the robot itself."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Rays:
+    """One scan in the base frame, projected onto the floor.
+
+    origin: (2,) where the beams start, m. directions: (n, 2) unit vectors. ranges: (n,) m.
+    hit: (n,) bool, which beams met something within the sensor's range.
+    """
+
+    origin: Array
+    directions: Array
+    ranges: Array
+    hit: NDArray[np.bool_]
+
+    @classmethod
+    def from_scan(cls, scan: LaserScan, base_from_laser: Transform) -> Rays:
+        """The scan of a laser whose beams lie in a horizontal plane, upside down or not."""
+        angles = scan.angle_min + scan.angle_increment * np.arange(scan.ranges.size)
+        flat = np.stack([np.cos(angles), np.sin(angles), np.zeros_like(angles)], axis=1)
+        directions = (flat @ base_from_laser.rotation.T)[:, :2]
+        lengths = np.sqrt((directions**2).sum(axis=1, keepdims=True))
+        good = (scan.ranges >= scan.range_min) & (scan.ranges < scan.range_max)
+        return cls(
+            base_from_laser.position[:2].copy(),
+            np.ascontiguousarray(directions / lengths),
+            np.array(scan.ranges, dtype=np.float64),
+            np.asarray(good & np.isfinite(scan.ranges)),
+        )
+
+    def points(self) -> Array:
+        """Where the hits are: (k, 2) in the base frame, m."""
+        return np.asarray(self.origin + self.directions[self.hit] * self.ranges[self.hit, None])
+
+    def thinned(self, count: int) -> Array:
+        """About `count` hits, evenly spread over what was hit: (k, 2) in the base frame, m.
+
+        One hit per cell of `SPREAD` comes first: a table right before the robot fills half of the
+        view, and is not worth more than the wall behind it.
+        """
+        points = self.points()
+        cells = np.floor(points / SPREAD).astype(np.int64)
+        _, first = np.unique(cells[:, 0] * 100_003 + cells[:, 1], return_index=True)
+        points = points[np.sort(first)]
+        step = max(1, len(points) // count)
+        return np.ascontiguousarray(points[step // 2 :: step])
+
+
+def obstacles_and_floor(
+    image: CameraImage,
+    frames: FrameBuffer,
+    description: RobotDescription,
+    state: RobotState,
+    scene: PlanningScene,
+    config: NavigationConfig,
+) -> tuple[Array, Array]:
+    """Points (n, 2) in the base's way and points (m, 2) of bare floor, base frame, m.
+
+    The base frame's origin lies on the floor. The robot itself and what it holds are left out.
+    """
+    points = _points(image)
+    points = frames.lookup(description.base_frame, image.frame, image.stamp).apply(points)
+    distance = np.hypot(points[:, 0], points[:, 1])
+    points, distance = (
+        points[distance < config.depth_reach],
+        distance[distance < config.depth_reach],
+    )
+    doubt = TILT_DOUBT * distance
+    low, high = config.lowest_obstacle, description.height
+    in_way = (points[:, 2] > low + doubt) & (points[:, 2] < high)
+    bare = np.abs(points[:, 2]) < 0.5 * low + doubt
+    near = in_way & (distance < LONGEST_ROBOT)
+    own = np.zeros(len(points), dtype=bool)
+    if near.any():
+        own[near] = scene.is_robot(points[near], state)
+    return points[in_way & ~own, :2], points[bare, :2]
+
+
+def _points(image: CameraImage) -> Array:
+    """Measured pixels as points (n, 3) in the optical frame, m."""
+    depth = image.depth[::STRIDE, ::STRIDE].astype(np.float64)
+    rows, columns = np.nonzero(depth > 0.0)
+    z = depth[rows, columns]
+    k = image.intrinsics
+    x = (columns * STRIDE - k[0, 2]) / k[0, 0] * z
+    y = (rows * STRIDE - k[1, 2]) / k[1, 1] * z
+    return np.stack([x, y, z], axis=1)

@@ -1,0 +1,69 @@
+"""One look: a picture, where it was taken from, and the points in it that matter."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from momantu_bt.frames import ODOM
+from momantu_bt.geometry import Array, Transform
+from momantu_bt.messages import CameraImage, RobotState
+from momantu_bt.robot import Robot, read_camera
+from momantu_bt.service import PlanningScene
+from momantu_bt.skill import Skill
+from momantu_skills.perception.camera.cloud import points_from_depth
+from momantu_skills.perception.geometry.regions import Region
+
+STRIDE = 2
+"""Pixels between two samples: a can 1 m away still has 700 points."""
+
+
+@dataclass(frozen=True, slots=True)
+class Snapshot:
+    """A picture with what was true when it was taken."""
+
+    image: CameraImage
+    odom_from_camera: Transform
+    odom_from_base: Transform
+    state: RobotState
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """A snapshot and its points (n, 3) in odom, m: in the region asked, the robot taken out."""
+
+    snapshot: Snapshot
+    points: Array
+
+    @property
+    def camera(self) -> Array:
+        """Where the camera was, (3,) in odom, m."""
+        return self.snapshot.odom_from_camera.position
+
+
+def take(skill: Skill, robot: Robot) -> Snapshot:
+    """Read the robot's first camera and look up where it was at the picture's stamp."""
+    image = read_camera(robot)
+    return Snapshot(
+        image,
+        skill.frames.lookup(ODOM, image.frame, image.stamp),
+        skill.frames.lookup(ODOM, robot.description.base_frame, image.stamp),
+        robot.state(),
+    )
+
+
+def see(snapshot: Snapshot, region: Region, scene: PlanningScene, stride: int = STRIDE) -> View:
+    """The snapshot's points inside `region` that lie neither on the robot nor on what it holds."""
+    image = snapshot.image
+    optical = points_from_depth(image.depth, image.intrinsics, stride)
+    rotation, position = snapshot.odom_from_camera.rotation, snapshot.odom_from_camera.position
+    height = optical @ rotation[2] + position[2]
+    points = snapshot.odom_from_camera.apply(
+        optical[(height >= region.low) & (height <= region.high)]
+    )
+    points = points[region.contains(points)]
+    if len(points):
+        base = snapshot.odom_from_base.inverse().apply(points)
+        points = points[~np.asarray(scene.is_robot(base, snapshot.state), dtype=bool)]
+    return View(snapshot, points)

@@ -1,0 +1,1 @@
+"""Plane geometry that perception stands on: regions, grids, rectangles, revolution."""

@@ -1,0 +1,116 @@
+"""The smallest rectangle around points of the floor plan."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from momantu_bt.geometry import Array
+from momantu_skills.perception.geometry.regions import convex_hull
+
+NEAR = 0.008
+"""m; points of a face lie within this of the side that they are to decide."""
+CORNER = 0.005
+"""m from the corners within which a point may belong to either face."""
+LEAST_FACE = 20
+"""Points that decide where a side lies."""
+TRIM = 1.0
+"""Per cent of the points cut off at each side: noise makes the outermost ones lie outside."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Rectangle:
+    """centre: (2,) m. yaw: of its first side in rad, in [-pi/4, pi/4). size: (2,) m."""
+
+    centre: Array
+    yaw: float
+    size: Array
+
+    def distances(self, points: Array) -> Array:
+        """(n,) distance of points (n, 2) to the rectangle's boundary, m."""
+        own = np.abs((points - self.centre) @ _axes(self.yaw))
+        outside = own - self.size / 2
+        beyond = np.linalg.norm(np.maximum(outside, 0.0), axis=1)
+        return np.asarray(np.where((outside <= 0).all(axis=1), -outside.max(axis=1), beyond))
+
+    def outside(self, points: Array) -> Array:
+        """(n,) how far points (n, 2) lie outside, 0 within, m."""
+        own = np.abs((points - self.centre) @ _axes(self.yaw)) - self.size / 2
+        return np.asarray(np.linalg.norm(np.maximum(own, 0.0), axis=1))
+
+
+def smallest_rectangle(points: Array) -> Rectangle:
+    """The rectangle of least area around points (n, 2), then trimmed by TRIM.
+
+    (Freeman and Shapira 1975: the smallest rectangle shares an edge's direction with the hull.)
+    """
+    hull = convex_hull(points)
+    if len(hull) < 3:
+        low, high = points.min(axis=0), points.max(axis=0)
+        return Rectangle((low + high) / 2, 0.0, high - low)
+    edges = np.roll(hull, -1, axis=0) - hull
+    angles = np.unique(np.round(np.arctan2(edges[:, 1], edges[:, 0]) % (math.pi / 2), 3))
+    areas = [float(np.ptp(hull @ _axes(float(angle)), axis=0).prod()) for angle in angles]
+    yaw = float(angles[int(np.argmin(areas))])
+    return _rectangle(yaw, *_span(points, yaw))
+
+
+def fitted_to(rectangle: Rectangle, points: Array, faces: Array) -> Rectangle:
+    """The rectangle turned and its sides moved to where points (n, 2) on faces (m, 2) lie.
+
+    The outermost points are outermost by noise; the middle of a face is not. The side with the
+    most points turns it; sides without points stay where all points end.
+    """
+    turn = _turn_of_fullest_side(rectangle, faces)
+    yaw = rectangle.yaw + turn
+    low, high = _span(points, yaw)
+    own = faces @ _axes(yaw)
+    for axis in (0, 1):
+        other = 1 - axis
+        between = (own[:, other] > low[other] + CORNER) & (own[:, other] < high[other] - CORNER)
+        for limits in (low, high):
+            face = own[between & (np.abs(own[:, axis] - limits[axis]) < NEAR), axis]
+            if len(face) >= LEAST_FACE:
+                limits[axis] = np.median(face)
+    return _rectangle(yaw, low, high)
+
+
+def _turn_of_fullest_side(rectangle: Rectangle, faces: Array) -> float:
+    """Angle in rad between the side with the most points and the line through them."""
+    own = (faces - rectangle.centre) @ _axes(rectangle.yaw)
+    best, turn = LEAST_FACE, 0.0
+    for axis in (0, 1):
+        half = rectangle.size / 2
+        between = np.abs(own[:, 1 - axis]) < half[1 - axis] - CORNER
+        for sign in (-1.0, 1.0):
+            face = own[between & (np.abs(sign * own[:, axis] - half[axis]) < NEAR)]
+            if len(face) <= best or half[1 - axis] < 2 * NEAR:
+                continue
+            best, along = len(face), face[:, 1 - axis] - face[:, 1 - axis].mean()
+            slope = float(along @ face[:, axis]) / max(float(along @ along), 1e-9)
+            turn = math.atan(slope) * (1.0 if axis == 1 else -1.0)
+    return turn
+
+
+def _rectangle(yaw: float, low: Array, high: Array) -> Rectangle:
+    """From limits (2,) along its own axes, its yaw brought into [-pi/4, pi/4)."""
+    size, centre = high - low, _axes(yaw) @ ((low + high) / 2)
+    if yaw < -math.pi / 4:
+        yaw, size = yaw + math.pi / 2, size[::-1]
+    if yaw >= math.pi / 4:
+        yaw, size = yaw - math.pi / 2, size[::-1]
+    return Rectangle(centre, yaw, size)
+
+
+def _span(points: Array, yaw: float) -> tuple[Array, Array]:
+    own = points @ _axes(yaw)
+    low, high = np.percentile(own, [TRIM, 100.0 - TRIM], axis=0)
+    return low, high
+
+
+def _axes(yaw: float) -> Array:
+    """Columns are the rectangle's axes."""
+    c, s = math.cos(yaw), math.sin(yaw)
+    return np.array([[c, -s], [s, c]])

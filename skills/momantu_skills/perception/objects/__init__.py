@@ -1,0 +1,1 @@
+"""Things on a surface: told apart, measured, compared with what is asked."""

@@ -1,0 +1,128 @@
+"""From views of a surface to the things on it, scored against what is asked."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+
+from momantu_bt.frames import ODOM
+from momantu_bt.geometry import Array, Pose, Transform, quaternion_from_axis_angle
+from momantu_bt.messages import DetectedObject, ObjectClass
+from momantu_skills.perception.camera.views import View
+from momantu_skills.perception.objects.matching import MatchConfig, score
+from momantu_skills.perception.objects.shapes import Shape, describe
+from momantu_skills.perception.objects.splitting import split
+from momantu_skills.perception.surface.planes import PlaneConfig, Support, measure_support
+from momantu_skills.perception.surface.segment import SegmentConfig, Thing, things_on
+
+SIMPLE_MISFIT = 0.003
+"""m; median distance up to which one form explains a thing: twice the noise at 1.2 m."""
+SIMPLE_BEYOND = 0.15
+"""Share of points outside the form up to which it is one thing: a mug's handle has a tenth."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Detections:
+    """support: the surface as measured. things: everything on it, best score first."""
+
+    support: Support
+    things: tuple[DetectedObject, ...]
+
+
+class ObjectDetector(Protocol):
+    """Finds things on a surface. A learned detector may take the place of the geometric one."""
+
+    def detect(
+        self, views: Sequence[View], low: float, high: float, asked: ObjectClass
+    ) -> Detections | None:
+        """Everything that stands on the surface between the heights `low` and `high` (m, odom).
+
+        None when no view shows such a surface. Scores say how well each thing is `asked`; one
+        below `accepted` is another thing.
+        """
+        ...
+
+    @property
+    def accepted(self) -> float:
+        """Score from which on a thing is the asked one."""
+        ...
+
+
+@dataclass(frozen=True)
+class GeometricDetector:
+    """Measures the plane, groups what stands on it, and fits cylinders and boxes."""
+
+    planes: PlaneConfig = field(default_factory=PlaneConfig)
+    segments: SegmentConfig = field(default_factory=SegmentConfig)
+    matches: MatchConfig = field(default_factory=MatchConfig)
+
+    @property
+    def accepted(self) -> float:
+        """Score from which on a thing is the asked one."""
+        return self.matches.accepted
+
+    def detect(
+        self, views: Sequence[View], low: float, high: float, asked: ObjectClass
+    ) -> Detections | None:
+        """See `ObjectDetector.detect`."""
+        support = measure_support(views, low, high, self.planes)
+        if support is None:
+            return None
+        eyes = support.cameras - np.array([0.0, 0.0, support.height])
+        things = _whole(things_on(support, self.segments), eyes)
+        shapes = [shape for thing in things for shape in self._shapes(thing, eyes, asked)]
+        found = [self._object(shape, support, asked) for shape in shapes]
+        found.sort(key=lambda thing: -thing.score)
+        return Detections(support, tuple(found))
+
+    def _shapes(self, thing: Thing, eyes: Array, asked: ObjectClass) -> list[Shape]:
+        """The thing as a whole, or its parts where it is several that touch."""
+        radius = None if asked.diameter is None else asked.diameter / 2
+        whole = describe(thing, eyes, radius)
+        if whole.misfit <= SIMPLE_MISFIT and whole.beyond <= SIMPLE_BEYOND:
+            return [whole]
+        parts = [describe(part, eyes, radius) for part in split(thing, self.segments)]
+        if max(part.misfit for part in parts) < max(SIMPLE_MISFIT, 0.5 * whole.misfit):
+            return parts
+        return [whole]
+
+    def _object(self, shape: Shape, support: Support, asked: ObjectClass) -> DetectedObject:
+        middle = np.array([*shape.centre, support.height + shape.size[2] / 2])
+        turn = quaternion_from_axis_angle((0.0, 0.0, 1.0), shape.yaw)
+        worth = score(shape, asked, self.matches)
+        return DetectedObject(
+            category=asked.category if worth >= self.accepted else shape.category,
+            pose=Pose(Transform(middle, turn), ODOM, support.stamp),
+            size=shape.size,
+            shape=shape.kind,
+            score=worth,
+            support_height=support.height,
+        )
+
+
+def _whole(things: list[Thing], eyes: Array) -> list[Thing]:
+    """Things with the pieces put back that lie inside the round form of a larger one.
+
+    A look over the near rim of a bowl shows its far wall apart from it.
+    """
+    whole: list[Thing] = []
+    forms: list[Shape] = []
+    for thing in sorted(things, key=lambda thing: -len(thing.points)):
+        form = describe(thing, eyes)
+        inside = [n for n, other in enumerate(forms) if _within(form, other)]
+        if inside:
+            whole[inside[0]] = whole[inside[0]].joined_with(thing)
+            forms[inside[0]] = describe(whole[inside[0]], eyes)
+        else:
+            whole.append(thing)
+            forms.append(form)
+    return whole
+
+
+def _within(form: Shape, other: Shape) -> bool:
+    apart = math.dist(form.centre, other.centre)
+    return other.kind == "cylinder" and apart < 0.5 * other.size[0]

@@ -1,0 +1,66 @@
+"""How well a measured shape is the thing that was asked for."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from momantu_bt.messages import ObjectClass
+from momantu_skills.perception.objects.shapes import Shape
+
+KNOWN = ("can", "bottle", "mug", "bowl", "box")
+"""Categories that a form can be told to be."""
+
+
+@dataclass(frozen=True)
+class MatchConfig:
+    """Sizes are told to a few millimetres, and similar things differ by more than 20 % in one."""
+
+    relative: float = 0.10
+    """Largest relative difference of a size: half of what tells similar things apart."""
+    absolute: float = 0.006
+    """m; difference that measuring alone may cause."""
+    accepted: float = 0.5
+    """Score from which on a thing is the asked one."""
+    category_weight: float = 0.6
+    """Factor on the score of a thing of another form; with it nothing reaches `accepted`
+    unless all its sizes are nearly exact."""
+
+
+def score(shape: Shape, asked: ObjectClass, config: MatchConfig | None = None) -> float:
+    """0..1; 0 when a size is out of tolerance.
+
+    1 minus half the root mean square of the sizes' differences in units of their tolerance, times
+    `category_weight` when the form is another. An unknown asked category is no objection.
+    """
+    config = config or MatchConfig()
+    squares: list[float] = []
+    for measured, told in _sizes(shape, asked):
+        tolerance = max(config.absolute, config.relative * told)
+        if abs(measured - told) > tolerance:
+            return 0.0
+        squares.append(((measured - told) / tolerance) ** 2)
+    fit = 1.0 - 0.5 * math.sqrt(sum(squares) / len(squares)) if squares else 0.75
+    return fit if same_category(shape, asked) else fit * config.category_weight
+
+
+def same_category(shape: Shape, asked: ObjectClass) -> bool:
+    """Whether the form fits the asked category; a category that no form stands for fits all."""
+    return asked.category not in KNOWN or shape.category == asked.category
+
+
+def _sizes(shape: Shape, asked: ObjectClass) -> Iterator[tuple[float, float]]:
+    """Pairs of (measured, told) for the sizes that are told."""
+    across = sorted(shape.size[:2])
+    if asked.height is not None:
+        yield shape.size[2], asked.height
+    if asked.diameter is not None:
+        yield across[1], asked.diameter
+        if shape.kind == "box":
+            yield across[0], asked.diameter
+    flat = sorted(size for size in (asked.width, asked.depth) if size is not None)
+    if len(flat) == 2:
+        yield from zip(across, flat, strict=True)
+    elif flat:
+        yield min(across, key=lambda size: abs(size - flat[0])), flat[0]

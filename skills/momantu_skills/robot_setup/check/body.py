@@ -1,0 +1,239 @@
+"""What is wrong with poses, footprint, height and joints of a robot."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from lxml import etree
+
+from momantu_bt.robot import REQUIRED_POSES, ActuatorKind, RobotDescription
+from momantu_skills.manipulation.model.arm_model import ArmModel
+from momantu_skills.manipulation.model.collision import CollisionWorld, body_pairs
+from momantu_skills.robot_setup.check.remarks import Remark
+from momantu_skills.robot_setup.find.base import ABOVE, Stand
+from momantu_skills.robot_setup.urdf.body import Body
+from momantu_skills.robot_setup.urdf.cells import cuts_of, swallowed
+
+OUTSIDE = 0.01
+"""m by which the base may leave its footprint: hulls and rounding."""
+ROOMY = 0.06
+"""m by which the footprint may leave the base: a bumper, or caution."""
+TALL = 0.02
+"""m by which a posture may be taller than the robot says it is."""
+SLACK = 1e-3
+"""rad or m, and per second, by which a limit may pass the URDF's: rounding."""
+
+
+def check_poses(description: RobotDescription, model: ArmModel) -> Iterator[Remark]:
+    """Named poses that collide, or leave joints of the arm open."""
+    arm = description.groups["arm"].joints
+    met: dict[tuple[str, str], list[str]] = {}
+    for name, pose in description.named_poses.items():
+        place = ("named_poses", name)
+        required = name in REQUIRED_POSES
+        missing = [joint for joint in arm if joint not in pose]
+        if missing and required:
+            yield Remark(
+                "error",
+                "pose-incomplete",
+                f"the pose {name} leaves {', '.join(missing)} open",
+                "give every joint of the group `arm` a position",
+                place,
+            )
+            continue
+        world = CollisionWorld(body_pairs(model), model.posture(pose, 0.0))
+        q = np.array([pose.get(joint, 0.0) for joint in model.group.names])
+        for pair in dict.fromkeys(_links(a, b) for a, b in world.touching(q)):
+            met.setdefault(pair, []).append(name)
+    hand = set(description.end_effector.touch_links)
+    for pair, poses in met.items():
+        yield _closed_hand(pair) if set(pair) <= hand else _collision(pair, poses)
+
+
+def _collision(pair: tuple[str, str], poses: list[str]) -> Remark:
+    required = any(name in REQUIRED_POSES for name in poses)
+    return Remark(
+        "error" if required else "warning",
+        "pose-collides",
+        f"{pair[0]} meets {pair[1]} in {in_poses(poses)}",
+        "move the arm away from there, or name the pair in `ignored_collisions` if only the hulls "
+        "of the two overlap",
+        ("named_poses", poses[0]),
+    )
+
+
+def _closed_hand(pair: tuple[str, str]) -> Remark:
+    return Remark(
+        "warning",
+        "closed-hand-collides",
+        f"{pair[0]} meets {pair[1]} when the hand is closed: no motion is planned from there",
+        f"write [{pair[0]}, {pair[1]}] under `ignored_collisions`",
+        ("ignored_collisions",),
+    )
+
+
+def in_poses(names: list[str]) -> str:
+    """`the pose home`, `the poses home and carry`."""
+    if len(names) == 1:
+        return f"the pose {names[0]}"
+    return f"the poses {', '.join(names[:-1])} and {names[-1]}"
+
+
+def _links(one: str, other: str) -> tuple[str, str]:
+    """Shapes of long links are numbered: the links that they belong to."""
+    return one.split(":")[0], other.split(":")[0]
+
+
+def check_footprint(description: RobotDescription, body: Body, stand: Stand) -> Iterator[Remark]:
+    """A footprint that does not enclose the base, or is far too large; a wrong height."""
+    if stand.footprint is not None:
+        outline = np.array(description.footprint)
+        planes = _half_planes(outline)
+        beyond = (stand.low @ planes[:, :2].T - planes[:, 2]).max(axis=1)
+        worst = int(np.argmax(beyond))
+        if beyond[worst] > OUTSIDE:
+            x, y = stand.low[worst]
+            yield Remark(
+                "error",
+                "footprint-too-small",
+                f"the base reaches {beyond[worst]:.3f} m out of its footprint, at "
+                f"({x:.3f}, {y:.3f})",
+                f"enclose the base and what rolls up to {ABOVE:g} m above the floor",
+                ("footprint",),
+            )
+        around = _half_planes(stand.footprint)
+        room = (outline @ around[:, :2].T - around[:, 2]).max(axis=1).max()
+        if room > ROOMY:
+            yield Remark(
+                "warning",
+                "footprint-too-large",
+                f"the footprint reaches {room:.3f} m beyond the base: doors get narrower by it",
+                "draw it along the base",
+                ("footprint",),
+            )
+    yield from _height(description, body)
+
+
+def _height(description: RobotDescription, body: Body) -> Iterator[Remark]:
+    tops = {
+        name: float(body.corners(body.hulls, pose)[:, 2].max())
+        for name, pose in description.named_poses.items()
+        if body.hulls
+    }
+    tallest = max(tops, key=lambda name: tops[name], default=None)
+    if tallest is not None and tops[tallest] > description.height + TALL:
+        yield Remark(
+            "error",
+            "taller-than-height",
+            f"in the pose {tallest} the robot is {tops[tallest]:.2f} m tall, and its height is "
+            f"{description.height:g} m",
+            f"write `height: {tops[tallest] + 0.005:.2f}`, or lower the pose",
+            ("height",),
+        )
+
+
+def _half_planes(corners: np.ndarray) -> np.ndarray:
+    """(k, 3): outward normals and offsets of a counter-clockwise outline."""
+    edges = np.roll(corners, -1, axis=0) - corners
+    normals = np.stack([edges[:, 1], -edges[:, 0]], axis=1)
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9)
+    return np.column_stack([normals, (normals * corners).sum(axis=1)])
+
+
+def check_limits(description: RobotDescription, body: Body) -> Iterator[Remark]:
+    """Limits beyond the URDF's, and joints whose drive has no force."""
+    for name, limit in description.joint_limits.items():
+        joint = body.skeleton.joints[name]
+        place = ("joint_limits", name)
+        given = {"lower": limit.lower, "upper": limit.upper}
+        for key, value in given.items():
+            bound = getattr(joint, key)
+            sign = -1.0 if key == "lower" else 1.0
+            wide = value is not None and bound is not None and not joint.endless
+            if wide and sign * (value - bound) > SLACK:
+                yield Remark(
+                    "error",
+                    "limit-beyond-urdf",
+                    f"{key} of {name} is {value:g}, and the URDF's is {bound:g}",
+                    "take the URDF's, or mend the URDF",
+                    (*place, key),
+                )
+        if joint.velocity and limit.velocity > joint.velocity + SLACK:
+            yield Remark(
+                "warning",
+                "faster-than-urdf",
+                f"{name} may go {limit.velocity:g} per second, by the URDF {joint.velocity:g}",
+                "take the URDF's speed, unless you know better",
+                (*place, "velocity"),
+            )
+    yield from _forces(description, body)
+
+
+def _forces(description: RobotDescription, body: Body) -> Iterator[Remark]:
+    if description.simulation is None:
+        return
+    drives = description.simulation.drives
+    for name, actuator in description.actuators.items():
+        if actuator.kind is not ActuatorKind.JOINTS:
+            continue
+        strong = {joint for joint, gains in drives.items() if gains.force is not None}
+        strong |= {joint for joint in actuator.joints if body.skeleton.joints[joint].effort}
+        weak = [joint for joint in actuator.joints if joint not in strong]
+        if weak:
+            yield Remark(
+                "warning",
+                "no-force",
+                f"neither the URDF nor `drives` says how strong these are, and nothing limits "
+                f"them: {', '.join(weak)}",
+                f"write `drives: {{{weak[0]}: {{force: …}}}}`, Nm or N",
+                ("actuators", name),
+            )
+
+
+def check_hulls(description: RobotDescription, body: Body) -> Iterator[Remark]:
+    """Links that lie in the hull of a long mesh: a simulator pushes them out."""
+    if description.simulation is None:
+        return
+    cut = description.simulation.convex_cells
+    met: dict[tuple[str, str], list[str]] = {}
+    for pose, link, long in swallowed(
+        body, description.named_poses, description.ignored_collisions
+    ):
+        if long not in cut and pose not in met.setdefault((link, long), []):
+            met[link, long].append(pose)
+    for (link, long), poses in met.items():
+        cuts = ", ".join(f"{name}: {list(at)}" for name, at in cuts_of(body, long).items())
+        yield Remark(
+            "error",
+            "hull-swallows",
+            f"{link} lies in the convex hull of {long}, for which a simulator takes it, in "
+            f"{in_poses(poses)}",
+            f"cut the mesh: write `{long}: {{{cuts}}}` under `convex_cells`, or ignore the pair",
+            ("simulation",),
+        )
+
+
+def check_looks(description: RobotDescription) -> Iterator[Remark]:
+    """Links that touch things and that no camera sees."""
+    root = read_urdf(description)
+    bare = [
+        str(link.get("name"))
+        for link in root.findall("link")
+        if link.find("collision") is not None and link.find("visual") is None
+    ]
+    if bare:
+        yield Remark(
+            "warning",
+            "invisible",
+            f"{len(bare)} links have a collision shape and nothing to look at: simulated cameras "
+            f"and pictures do not show {', '.join(bare[:4])}{', …' if len(bare) > 4 else ''}",
+            "give them a <visual>, the same shape at least",
+            ("parts",),
+        )
+
+
+def read_urdf(description: RobotDescription) -> etree._Element:
+    """The assembled URDF's element."""
+    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False)
+    return etree.fromstring(description.urdf.read_bytes(), parser)

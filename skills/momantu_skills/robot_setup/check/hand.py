@@ -1,0 +1,205 @@
+"""A grasp frame that points elsewhere, and openings that do not fit the fingers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from momantu_bt.geometry import Array, Transform
+from momantu_bt.robot import RobotDescription
+from momantu_skills.robot_setup.check.remarks import Remark
+from momantu_skills.robot_setup.find.base import Stand
+from momantu_skills.robot_setup.find.reach import reached
+from momantu_skills.robot_setup.urdf.arm_ik import LimbSolver
+from momantu_skills.robot_setup.urdf.body import Body, placed
+from momantu_skills.robot_setup.urdf.rays import opening_between
+
+ALONG = 0.7
+"""Cosine between the grasp frame's axes and what they are to point along: less is a wrong frame."""
+SIDEWAYS = 0.5
+"""Share of a finger's way that is along y: fingers that turn also go out."""
+MISFIT = (0.012, 0.15)
+"""m, and share of the width, by which an opening may differ from the distance of the hulls."""
+SAMPLES = (0.3, 0.6, 1.0)
+"""Shares of the widest opening at which the table is held against the fingers."""
+HEIGHT_SHARE = 0.2
+"""Share of the tables' heights at which the farthest things must be within reach."""
+
+
+def check_hand(description: RobotDescription, body: Body) -> Iterator[Remark]:
+    """The end effector against the URDF's fingers."""
+    effector = description.end_effector
+    fingers = _fingers(description, body)
+    if not fingers:
+        yield Remark(
+            "error",
+            "no-fingers",
+            f"no link of `touch_links` moves with the joints of {effector.actuator}",
+            "name the links of the fingers and the palm in `touch_links`",
+            ("end_effector", "touch_links"),
+        )
+        return
+    yield from _beyond(description, body)
+    opened, closed = (
+        _in_grasp(description, body, fingers, width) for width in (effector.max_width, 0.0)
+    )
+    palm = [n for n in effector.touch_links if n in body.hulls and n not in fingers]
+    moves = np.array([c.mean(axis=0) - o.mean(axis=0) for c, o in zip(closed, opened, strict=True)])
+    yield from _closing(moves)
+    # the hull around a palm with a fixed jaw fills the hand: nothing is measured against it
+    if moves[:, 1].min() < 0 < moves[:, 1].max():
+        yield from _outwards(description, body, palm, closed)
+        yield from _widths(description, body, fingers)
+
+
+def _fingers(description: RobotDescription, body: Body) -> tuple[str, ...]:
+    joints = set(description.end_effector.opening)
+    return tuple(
+        link
+        for link in description.end_effector.touch_links
+        if link in body.hulls and joints & {j.name for j in body.skeleton.chain(link)}
+    )
+
+
+def _beyond(description: RobotDescription, body: Body) -> Iterator[Remark]:
+    for joint, rows in description.end_effector.opening.items():
+        lower, upper = body.skeleton.joints[joint].range
+        outside = [p for w, p in rows if w > 0 and not lower - 1e-3 <= p <= upper + 1e-3]
+        if outside and body.skeleton.joints[joint].mimic is None:
+            yield Remark(
+                "warning",
+                "opening-beyond-limits",
+                f"the opening of {joint} asks for {outside[0]:g}, and its range is {lower:g} to "
+                f"{upper:g}",
+                "give the positions that the joint can take",
+                ("end_effector", "opening", joint),
+            )
+
+
+def _posture(description: RobotDescription, width: float) -> dict[str, float]:
+    return {**description.named_poses["home"], **description.end_effector.positions(width)}
+
+
+def _grasp(description: RobotDescription, posture: dict[str, float]) -> Transform:
+    """base_from_grasp."""
+    effector = description.end_effector
+    link = description.kinematics().base_from_frame(effector.frame, posture)
+    return link @ Transform((effector.grasp_offset, 0.0, 0.0))
+
+
+def _in_grasp(
+    description: RobotDescription, body: Body, links: tuple[str, ...], width: float
+) -> list[Array]:
+    """Corners (n, 3) of links in the grasp frame at an opening."""
+    posture = _posture(description, width)
+    grasp_from_base = _grasp(description, posture).inverse()
+    poses = body.link_poses(posture, links)
+    return [grasp_from_base.apply(placed(body.hulls[link], poses[link])) for link in links]
+
+
+def _outwards(
+    description: RobotDescription, body: Body, palm: list[str], fingers: list[Array]
+) -> Iterator[Remark]:
+    if not palm:
+        return
+    own = np.vstack(_in_grasp(description, body, tuple(palm), 0.0))
+    way = np.vstack(fingers).mean(axis=0) - own.mean(axis=0)
+    along = way[0] / max(float(np.linalg.norm(way)), 1e-9)
+    if along < ALONG:
+        yield Remark(
+            "error",
+            "grasp-frame-x",
+            "x of the grasp frame does not point out along the fingers: from the palm to them it "
+            f"is ({way[0]:.3f}, {way[1]:.3f}, {way[2]:.3f}) m in that frame",
+            "put a frame between the pads under `frames`: x out along the fingers, y the closing "
+            "direction",
+            ("end_effector", "frame"),
+        )
+
+
+def _closing(moves: Array) -> Iterator[Remark]:
+    """moves: (n, 3), of each finger from open to closed in the grasp frame."""
+    lengths = np.linalg.norm(moves, axis=1)
+    largest = moves[int(np.argmax(lengths))]
+    if lengths.max() < 1e-4:
+        yield Remark(
+            "error",
+            "fingers-do-not-move",
+            "between open and closed the fingers stand still",
+            "look at the positions in `opening`",
+            ("end_effector", "opening"),
+        )
+    elif abs(largest[1]) < SIDEWAYS * lengths.max():
+        yield Remark(
+            "error",
+            "grasp-frame-y",
+            "y of the grasp frame is not the closing direction: a finger moves by "
+            f"({largest[0]:.3f}, {largest[1]:.3f}, {largest[2]:.3f}) m in that frame",
+            "turn the frame about its x",
+            ("end_effector", "frame"),
+        )
+
+
+def _widths(
+    description: RobotDescription, body: Body, fingers: tuple[str, ...]
+) -> Iterator[Remark]:
+    effector = description.end_effector
+    for share in SAMPLES:
+        width = share * effector.max_width
+        corners = _in_grasp(description, body, fingers, width)
+        gap = opening_between(corners, effector.pad_length, effector.pad_height)
+        if gap is None:
+            yield Remark(
+                "warning",
+                "no-pads-at-grasp",
+                f"{width:.3f} m open, there is no finger to both sides of the grasp frame",
+                "put the frame's origin between the pads",
+                ("end_effector", "frame"),
+            )
+            return
+        if abs(gap - width) > max(MISFIT[0], MISFIT[1] * width):
+            yield Remark(
+                "warning",
+                "opening-does-not-fit",
+                f"where `opening` says {width:.3f} m, the fingers' hulls are {gap:.3f} m apart",
+                "measure the table again: `momantu-bt robots setup` does",
+                ("end_effector", "opening") if effector.opening else ("end_effector",),
+            )
+            return
+
+
+def check_reach(description: RobotDescription, body: Body, stand: Stand) -> Iterator[Remark]:
+    """Working distances that the arm does not reach, or at which the base is in the table."""
+    working, effector = description.working, description.end_effector
+    front = max(x for x, _ in description.footprint)
+    if working.stand_off < front:
+        yield Remark(
+            "error",
+            "stands-in-table",
+            f"at a stand-off of {working.stand_off:g} m the footprint, {front:g} m long ahead, "
+            "reaches over the table's edge",
+            f"write at least `stand_off: {front + 0.05:.2f}`",
+            ("working", "stand_off"),
+        )
+    solver = LimbSolver(
+        description.kinematics(),
+        description.groups["arm"].joints,
+        description.joint_limits,
+        effector.frame,
+        Transform((effector.grasp_offset, 0.0, 0.0)),
+        seed=0,
+    )
+    _, heights = reached(solver, np.array(working.reach), stand.floor)
+    for which, distance, share in zip(
+        ("nearest", "best", "farthest"), working.reach, heights, strict=True
+    ):
+        if share < (0.5 if which == "best" else HEIGHT_SHARE):
+            yield Remark(
+                "error" if which == "best" else "warning",
+                "out-of-reach",
+                f"the {which} distance, {distance:g} m, is reached on {share:.0%} of the tables "
+                "0.4 to 0.8 m high",
+                "`momantu-bt robots setup` measures how far the arm reaches",
+                ("working", "reach"),
+            )

@@ -1,0 +1,147 @@
+"""Sensors that see the robot itself, or look where nobody wants them to."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from momantu_bt.geometry import Array, Transform
+from momantu_bt.robot import (
+    REQUIRED_POSES,
+    CameraSensor,
+    LaserSensor,
+    LidarSensor,
+    RobotDescription,
+)
+from momantu_skills.robot_setup.check.body import in_poses
+from momantu_skills.robot_setup.check.remarks import Remark
+from momantu_skills.robot_setup.urdf.body import Body, placed
+from momantu_skills.robot_setup.urdf.rays import blocked, planes_of
+
+COLUMNS, ROWS = 48, 36
+"""Rays through a camera's picture."""
+COVERED, BLIND = 0.2, 0.6
+"""Share of the picture that the robot covers: more is worth a look, or makes the camera useless."""
+SECTORS = 180
+"""Directions of a laser that are looked at."""
+SHADOW, DARK = 0.1, 0.5
+"""Share of the beams that the robot stops: more is worth a look, or makes the laser useless."""
+LEVEL = 0.05
+"""rad; a laser's plane may be tilted by this."""
+TILTED = 0.5
+"""Cosine between the picture's downward direction and the vertical: less is a wrong frame."""
+LOOKING = "look_around"
+"""The pose in which a camera is meant to see."""
+
+
+def check_sensors(description: RobotDescription, body: Body) -> Iterator[Remark]:
+    """All sensors, in every required pose."""
+    for name, sensor in description.sensors.items():
+        if isinstance(sensor, CameraSensor):
+            yield from _camera(description, body, name, sensor)
+        elif isinstance(sensor, LaserSensor):
+            yield from _level(description, name, sensor.frame)
+            yield from _laser(description, body, name, sensor)
+
+
+def _camera(
+    description: RobotDescription, body: Body, name: str, sensor: CameraSensor
+) -> Iterator[Remark]:
+    rays = _pixels(sensor)
+    shares = {
+        pose: float((_hits(description, body, pose, sensor.frame, rays) < sensor.max_depth).mean())
+        for pose in REQUIRED_POSES
+    }
+    covered = [pose for pose, share in shares.items() if share > COVERED]
+    if covered:
+        most = max(shares[pose] for pose in covered)
+        yield Remark(
+            "error" if shares[LOOKING] > BLIND else "warning",
+            "camera-sees-itself",
+            f"the robot covers up to {most:.0%} of the picture of {name} in {in_poses(covered)}",
+            "turn the camera or move the arm out of the picture in that pose",
+            ("named_poses", covered[0]),
+        )
+    optical = _frame(description, LOOKING, sensor.frame)
+    if optical.rotation[:, 1] @ (0.0, 0.0, -1.0) < TILTED:
+        yield Remark(
+            "warning",
+            "camera-tilted",
+            f"in the pose {LOOKING} the picture of {name} does not stand upright",
+            "name an optical frame: z out of the camera, x to the right, y down",
+            ("sensors", name, "frame"),
+        )
+
+
+def _level(description: RobotDescription, name: str, frame: str) -> Iterator[Remark]:
+    upright = abs(float(_frame(description, "home", frame).rotation[2, 2]))
+    if upright < math.cos(LEVEL):
+        yield Remark(
+            "error",
+            "laser-tilted",
+            f"the plane of {name} is tilted by {math.degrees(math.acos(min(1.0, upright))):.0f} "
+            "degrees: the floor plan is seen nowhere",
+            "name a frame whose z is vertical",
+            ("sensors", name, "frame"),
+        )
+
+
+def _laser(
+    description: RobotDescription, body: Body, name: str, sensor: LaserSensor
+) -> Iterator[Remark]:
+    """Beams that the robot stops; of a scan made from a lidar, sectors with no free ring."""
+    source = description.sensors.get(sensor.source or "")
+    rings = source.elevations if isinstance(source, LidarSensor) else (0.0,)
+    frame = source.frame if isinstance(source, LidarSensor) else sensor.frame
+    rays = _beams(sensor, rings)
+    shares = {
+        pose: float(
+            np.isfinite(_hits(description, body, pose, frame, rays))
+            .reshape(len(rings), SECTORS)
+            .all(axis=0)
+            .mean()
+        )
+        for pose in REQUIRED_POSES
+    }
+    stopped = [pose for pose, share in shares.items() if share > SHADOW]
+    if stopped:
+        most = max(shares.values())
+        yield Remark(
+            "error" if most > DARK else "warning",
+            "laser-sees-itself",
+            f"the robot stops up to {most:.0%} of the beams of {name} in {in_poses(stopped)}",
+            "move it, narrow its angles, or fold the arm elsewhere",
+            ("sensors", name),
+        )
+
+
+def _hits(description: RobotDescription, body: Body, pose: str, frame: str, rays: Array) -> Array:
+    """(n,) distance at which rays (n, 3), given in a frame, meet the robot's own hulls."""
+    base_from_sensor = _frame(description, pose, frame)
+    directions = rays @ base_from_sensor.rotation.T
+    origins = np.broadcast_to(base_from_sensor.position, directions.shape)
+    poses = body.link_poses(description.named_poses[pose], list(body.hulls))
+    solids = [planes_of(placed(body.hulls[link], poses[link])) for link in body.hulls]
+    return blocked(solids, origins, directions)
+
+
+def _frame(description: RobotDescription, pose: str, frame: str) -> Transform:
+    return description.kinematics().base_from_frame(frame, description.named_poses[pose])
+
+
+def _pixels(sensor: CameraSensor) -> Array:
+    """Unit directions (n, 3) through the picture, in the optical frame."""
+    half = math.tan(sensor.horizontal_fov / 2)
+    x, y = np.meshgrid(np.linspace(-half, half, COLUMNS), np.linspace(-half, half, ROWS))
+    rays = np.stack([x, y * sensor.height / sensor.width, np.ones_like(x)], axis=-1).reshape(-1, 3)
+    return np.asarray(rays / np.linalg.norm(rays, axis=1, keepdims=True))
+
+
+def _beams(sensor: LaserSensor, rings: tuple[float, ...]) -> Array:
+    """Unit directions (rings * SECTORS, 3), ring by ring; elevations of the rings in rad."""
+    sectors = np.linspace(sensor.angle_min, sensor.angle_max, SECTORS)
+    around, up = (values.ravel() for values in np.meshgrid(sectors, rings))
+    level = np.cos(up)
+    return np.stack([level * np.cos(around), level * np.sin(around), np.sin(up)], axis=1)

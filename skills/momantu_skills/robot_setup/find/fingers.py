@@ -1,0 +1,320 @@
+"""Finding hands: links on which fingers sit that open and close against each other."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+
+from momantu_bt.geometry import Array
+from momantu_skills.robot_setup.urdf.body import Body, placed
+from momantu_skills.robot_setup.urdf.skeleton import SetupJoint
+
+FINGER_JOINTS = 5
+"""A branch with more moving joints is no finger."""
+FINGER_REACH = 0.25
+"""m from its joint to its farthest point; what is longer is no finger."""
+NEAR = 0.03
+"""m; fingers that stay farther apart do not close."""
+TRAVEL = 0.008
+"""m by which fingers that open change the gap at least."""
+JAW = re.compile(r"gripper|jaw|finger|claw|pinc|grasp", re.IGNORECASE)
+"""What the joint of a single jaw is called: a last wrist joint looks the same."""
+STEPS = 41
+"""Openings that are looked at between open and closed."""
+SHUT = 0.03
+"""Share of the way before its end at which fingers that touch count as closed at the end."""
+
+
+@dataclass(frozen=True)
+class Branch:
+    """A finger. joint: where it begins. links: all of it. tip: its last rigid piece."""
+
+    joint: str
+    links: tuple[str, ...]
+    tip: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Hand:
+    """Fingers on a palm.
+
+    palm: the link that carries them; body: everything fixed to it. leaders: (open, closed)
+    position of each joint that closes the hand, and of those that follow them. widths: (k,)
+    openings in m while they go from open to closed evenly. ahead, behind: the fingers that move
+    along the closing direction, and those (or the palm) that they meet. closing: (3,) unit, in
+    the palm's frame. single: one jaw against the palm.
+    """
+
+    palm: str
+    body: tuple[str, ...]
+    branches: tuple[Branch, ...]
+    leaders: dict[str, tuple[float, float]]
+    widths: Array
+    ahead: tuple[str, ...]
+    behind: tuple[str, ...]
+    closing: Array
+    single: bool
+
+    def posture(self, share: float) -> dict[str, float]:
+        """The hand's joints, `share` of the way from open (0) to closed (1)."""
+        return {name: a + share * (b - a) for name, (a, b) in self.leaders.items()}
+
+    @property
+    def links(self) -> tuple[str, ...]:
+        """Palm and fingers."""
+        return (*self.body, *(link for branch in self.branches for link in branch.links))
+
+
+def find_hands(body: Body) -> tuple[Hand, ...]:
+    """Every hand below the base, in the order of the URDF."""
+    skeleton = body.skeleton
+    below = set(skeleton.subtree(body.base_frame))
+    base = set(skeleton.rigid(body.base_frame))
+    found: list[Hand] = []
+    taken: set[str] = set()
+    for link in skeleton.subtree(body.base_frame):
+        if link in base or link in taken or link not in below or skeleton.rigid_root(link) != link:
+            continue
+        hand = _hand(body, link)
+        if hand is not None:
+            found.append(hand)
+            taken |= set(skeleton.subtree(link))
+    order = {name: i for i, name in enumerate(skeleton.links)}
+    return tuple(sorted(found, key=lambda hand: order[hand.palm]))
+
+
+def _hand(body: Body, link: str) -> Hand | None:
+    joints = body.skeleton.branches(link)
+    if not joints or not all(_is_finger(body, joint) for joint in joints):
+        return None
+    branches = tuple(_branch(body, joint) for joint in joints)
+    branches = tuple(b for b in branches if any(link in body.hulls for link in b.tip))
+    if len(branches) >= 2:
+        return _gripper(body, link, branches)
+    if len(branches) == 1 and JAW.search(branches[0].joint + branches[0].links[0]):
+        return _jaw(body, link, branches[0])
+    return None
+
+
+def _is_finger(body: Body, joint: SetupJoint) -> bool:
+    links = body.skeleton.subtree(joint.child)
+    if 1 + len(body.skeleton.moving_below(joint.child)) > FINGER_JOINTS:
+        return False
+    origin = body.link_poses({})[joint.child][:3, 3]
+    corners = body.corners(links, {})
+    return len(corners) == 0 or float(np.linalg.norm(corners - origin, axis=1).max()) < FINGER_REACH
+
+
+def _branch(body: Body, joint: SetupJoint) -> Branch:
+    skeleton = body.skeleton
+    links = skeleton.subtree(joint.child)
+    shaped = [link for link in links if link in body.hulls]
+    depth = {link: sum(j.moving for j in skeleton.chain(link)) for link in shaped}
+    last = max(shaped, key=lambda link: depth[link], default=joint.child)
+    tip = tuple(name for name in skeleton.rigid(last) if name in links)
+    return Branch(joint.name, links, tip)
+
+
+def _joints_of(body: Body, branches: tuple[Branch, ...]) -> list[str]:
+    """The fingers' joints that follow no other."""
+    links = {link for branch in branches for link in branch.links}
+    return [name for name in body.free_joints if body.skeleton.joints[name].child in links]
+
+
+def _gripper(body: Body, link: str, branches: tuple[Branch, ...]) -> Hand | None:
+    joints = _joints_of(body, branches)
+    ranges = {name: body.skeleton.joints[name].range for name in joints}
+    middle = {name: (low + high) / 2 for name, (low, high) in ranges.items()}
+
+    def spread(posture: dict[str, float]) -> float:
+        tips = _tips(body, branches, posture)
+        return float(np.linalg.norm(tips - tips.mean(axis=0), axis=1).sum())
+
+    leaders: dict[str, tuple[float, float]] = {}
+    for name, (low, high) in ranges.items():
+        near, far = low + 0.4 * (high - low), low + 0.6 * (high - low)
+        change = spread({**middle, name: far}) - spread({**middle, name: near})
+        if abs(change) > 1e-4:
+            leaders[name] = (high, low) if change > 0 else (low, high)
+    if not leaders:
+        return None
+    # of a linkage, the pieces that hang on most joints hold; the others only guide them
+    depth = {b: sum(j.moving for j in body.skeleton.chain(b.tip[0])) for b in branches}
+    for some in (tuple(b for b in branches if depth[b] == max(depth.values())), branches):
+        closing, ahead, behind = _sides(body, link, some, leaders)
+        if behind:
+            return _measured(body, link, branches, leaders, closing, ahead, behind)
+    return None
+
+
+def _tips(body: Body, branches: tuple[Branch, ...], posture: dict[str, float]) -> Array:
+    return np.array([body.corners(branch.tip, posture).mean(axis=0) for branch in branches])
+
+
+def _sides(
+    body: Body, link: str, branches: tuple[Branch, ...], leaders: dict[str, tuple[float, float]]
+) -> tuple[Array, tuple[str, ...], tuple[str, ...]]:
+    """Closing direction in the palm's frame, and the tips that move along it and against it."""
+    at = [{n: a + s * (b - a) for n, (a, b) in leaders.items()} for s in (0.4, 0.6)]
+    moves = _tips(body, branches, at[1]) - _tips(body, branches, at[0])
+    lengths = np.linalg.norm(moves, axis=1)
+    moves = moves / np.maximum(lengths, 1e-9)[:, None]
+    agree = np.abs(moves @ moves.T).sum(axis=1) * (lengths > 1e-5)
+    signs = np.sign(moves @ moves[int(np.argmax(agree))])
+    axis = (moves * (signs * (lengths > 1e-5))[:, None]).sum(axis=0)
+    axis /= max(float(np.linalg.norm(axis)), 1e-9)
+    ahead = tuple(n for b, m in zip(branches, moves, strict=True) if m @ axis > 0.1 for n in b.tip)
+    behind = tuple(
+        n for b, m in zip(branches, moves, strict=True) if m @ axis < -0.1 for n in b.tip
+    )
+    if not behind:  # the others do not move: they are what is closed against
+        still = [b for b, length in zip(branches, lengths, strict=True) if length <= 1e-5]
+        behind = tuple(n for b in still for n in b.tip)
+    base_from_palm = body.link_poses({})[link]
+    closing = base_from_palm[:3, :3].T @ axis
+    return closing / max(float(np.linalg.norm(closing)), 1e-9), ahead, behind
+
+
+def _measured(
+    body: Body,
+    link: str,
+    branches: tuple[Branch, ...],
+    leaders: dict[str, tuple[float, float]],
+    closing: Array,
+    ahead: tuple[str, ...],
+    behind: tuple[str, ...],
+) -> Hand | None:
+    gap = _Gap(body, link, leaders, closing, ahead, behind)
+    shares = np.linspace(0.0, 1.0, STEPS)
+    gaps = np.array([gap(s) for s in shares])
+    shut = float(shares[np.argmax(gaps <= 0)]) if (gaps <= 0).any() else 1.0
+    if gaps[0] - gaps.min() < TRAVEL or max(gap(shut), 0.0) > NEAR or shut == 0.0:
+        return None
+    if shut < 1.0 - SHUT:
+        shut = _touch(gap, shut - 1 / (STEPS - 1), shut)
+        leaders = {n: (a, a + shut * (b - a)) for n, (a, b) in leaders.items()}
+    else:
+        shut = 1.0
+    widths = np.array([max(gap(s * shut), 0.0) for s in shares])
+    return Hand(
+        link,
+        body.skeleton.rigid(link),
+        branches,
+        _with_followers(body, leaders),
+        np.minimum.accumulate(widths),
+        ahead,
+        behind,
+        closing,
+        single=False,
+    )
+
+
+class _Gap:
+    """Distance between two sides of a hand along the closing direction, at their outer halves."""
+
+    def __init__(
+        self,
+        body: Body,
+        link: str,
+        leaders: dict[str, tuple[float, float]],
+        closing: Array,
+        ahead: tuple[str, ...],
+        behind: tuple[str, ...],
+    ) -> None:
+        self._body, self._leaders = body, leaders
+        base_from_palm = body.link_poses({}, [link])[link]
+        self._axis = base_from_palm[:3, :3] @ closing
+        middle = self._posture(0.5)
+        shaped = [name for name in body.skeleton.rigid(link) if name in body.hulls]
+        palm = body.points(shaped, middle)
+        root = palm.mean(axis=0) if len(palm) else base_from_palm[:3, 3]
+        tips = body.points((*ahead, *behind), middle)
+        out = tips.mean(axis=0) - root
+        self._out = out - (out @ self._axis) * self._axis
+        self._sides = [self._outer(side, middle) for side in (ahead, behind)]
+
+    def _posture(self, share: float) -> dict[str, float]:
+        return {name: a + share * (b - a) for name, (a, b) in self._leaders.items()}
+
+    def _outer(self, side: tuple[str, ...], posture: dict[str, float]) -> dict[str, Array]:
+        """The corners of each tip, in its own frame, that lie in the outer half of all of them."""
+        shaped = [name for name in side if name in self._body.hulls]
+        poses = self._body.link_poses(posture, shaped)
+        local = {name: self._body.link_points(name) for name in shaped}
+        along = {name: placed(local[name], poses[name]) @ self._out for name in shaped}
+        every = np.concatenate(list(along.values()))
+        half = (every.min() + every.max()) / 2
+        return {n: local[n][along[n] >= half] for n in shaped if (along[n] >= half).any()}
+
+    def __call__(self, share: float) -> float:
+        posture = self._posture(share)
+        ends = []
+        for side, extreme in zip(self._sides, (np.max, np.min), strict=True):
+            poses = self._body.link_poses(posture, side)
+            ends.append(extreme(np.vstack([placed(side[n], poses[n]) for n in side]) @ self._axis))
+        return float(ends[1] - ends[0])
+
+
+def _touch(gap: _Gap, apart: float, together: float) -> float:
+    """The share at which the gap closes, between one where it is open and one where it is not."""
+    for _ in range(20):
+        middle = (apart + together) / 2
+        apart, together = (middle, together) if gap(middle) > 0 else (apart, middle)
+    return together
+
+
+def _with_followers(
+    body: Body, leaders: dict[str, tuple[float, float]]
+) -> dict[str, tuple[float, float]]:
+    """The joints that lead and those that follow them, in the order of the URDF."""
+    every = dict(leaders)
+    for name, joint in body.skeleton.joints.items():
+        if joint.mimic is not None and joint.mimic.leader in leaders and name in body.index:
+            a, b = leaders[joint.mimic.leader]
+            ratio, offset = joint.mimic.multiplier, joint.mimic.offset
+            every[name] = (ratio * a + offset, ratio * b + offset)
+    return every
+
+
+def _jaw(body: Body, link: str, branch: Branch) -> Hand | None:
+    """One jaw against the palm, judged by the jaw's tip and the point of the palm it meets."""
+    name = branch.joint
+    low, high = body.skeleton.joints[name].range
+    palm = tuple(n for n in body.skeleton.rigid(link) if n in body.hulls)
+    if not palm or high <= low:
+        return None
+    hinge = body.link_poses({})[branch.links[0]][:3, 3]
+    own = body.points(branch.tip, {name: low})
+    farthest = int(np.argmax(np.linalg.norm(own - hinge, axis=1)))
+    reach = float(np.linalg.norm(own[farthest] - hinge))
+    path = [
+        body.points(branch.tip, {name: float(q)})[farthest] for q in np.linspace(low, high, STEPS)
+    ]
+    fixed = body.points(palm, {})
+    fixed = fixed[np.linalg.norm(fixed - hinge, axis=1) > 0.5 * reach]
+    if not len(fixed):
+        return None
+    between = np.linalg.norm(np.array(path)[:, None] - fixed[None], axis=2)
+    shut, meets = np.unravel_index(int(np.argmin(between)), between.shape)
+    opened = 0 if shut > STEPS / 2 else STEPS - 1
+    step = (high - low) / (STEPS - 1)
+    leaders = {name: (low + opened * step, low + float(shut) * step)}
+    track = np.array(path)[np.linspace(opened, shut, STEPS).round().astype(int)]
+    widths = np.linalg.norm(track - track[-1], axis=1)
+    if widths[0] < TRAVEL or between.min() > NEAR:
+        return None
+    move = fixed[meets] - track[STEPS // 2]
+    closing = body.link_poses({})[link][:3, :3].T @ move
+    return Hand(
+        link,
+        body.skeleton.rigid(link),
+        (branch,),
+        _with_followers(body, leaders),
+        np.minimum.accumulate(widths),
+        branch.tip,
+        palm,
+        closing / np.linalg.norm(closing),
+        single=True,
+    )

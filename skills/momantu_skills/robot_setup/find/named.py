@@ -1,0 +1,151 @@
+"""The four poses that every robot has, and what each of them is for."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+from momantu_bt.geometry import Transform
+from momantu_skills.robot_setup.find.limits import short_range
+from momantu_skills.robot_setup.find.poses import (
+    AROUND,
+    FLOOR_AHEAD,
+    HELD,
+    HIGH,
+    LOW,
+    TABLE,
+    TARGETS,
+    FoundPose,
+    PoseFinder,
+    looking,
+    posed,
+)
+from momantu_skills.robot_setup.urdf.arm_ik import LimbSolver
+
+DIGITS = 3
+"""A thousandth of a radian or a millimetre is near enough for a pose that somebody will edit."""
+
+
+def find_poses(
+    finder: PoseFinder, hand: LimbSolver | None, camera: LimbSolver | None
+) -> dict[str, FoundPose]:
+    """The poses by name.
+
+    hand: brings the grasp frame to poses. camera: brings the camera to them, where the arm
+    carries it.
+    """
+    floor, front = finder.stand.floor, finder.stand.front
+    ahead = np.array([front + FLOOR_AHEAD, 0.0, floor])
+    table = np.array([front + 0.5, 0.0, floor + TABLE])
+    far = np.array([front + AROUND, 0.0, floor + TABLE])
+    closed = {**finder.still, **posed(finder.arm.hand, 1.0)}
+    home = _fold(finder, {**closed, **finder.lifted(LOW)}, ahead)
+    if camera is None:
+        ready = _raised(finder, home, table) or _fold(finder, _at_work(finder, closed), table)
+        around = _raised(finder, home, far) or _fold(finder, _at_work(finder, closed), far)
+    else:
+        ready = _view(finder, camera, closed, table, 0.9) or home
+        around = _view(finder, camera, closed, far, 1.2) or home
+    carry = _carry(finder, hand, ahead) or home
+    found = {"home": home, "ready": ready, "carry": carry, "look_around": around}
+    return {name: _finished(finder, pose) for name, pose in found.items()}
+
+
+def _fold(finder: PoseFinder, fixed: dict[str, float], target: np.ndarray) -> FoundPose:
+    fixed = finder.aimed(dict(fixed), target)
+    eye_in_hand = finder.eye is not None and finder.eye.in_hand
+
+    def cost(posture: Mapping[str, float]) -> float:
+        corners = finder.corners(posture)
+        low = 0.2 * float(corners[:, 2].mean() - finder.stand.floor)
+        aside = 0.15 * finder.aside(posture, target) if eye_in_hand else 0.0
+        return 2 * finder.outside(corners) + low + finder.covered(posture, corners) + aside
+
+    posture, margin = finder.folded(cost, fixed)
+    notes = () if margin is not None else ("no posture without self-collision was found",)
+    return _pose(finder, posture, margin, notes)
+
+
+def _at_work(finder: PoseFinder, closed: dict[str, float]) -> dict[str, float]:
+    return {**closed, **finder.lifted(HIGH)}
+
+
+def _raised(finder: PoseFinder, home: FoundPose, target: np.ndarray) -> FoundPose | None:
+    """The arm folded as at home, lifted, and the head turned to a point; None if it is not free."""
+    posture = finder.aimed({**home.joints, **finder.lifted(HIGH)}, target)
+    if home.clear is None or not finder.clear(posture, home.clear):
+        return None
+    if finder.covered(posture, finder.corners(posture)) > 0:
+        return None
+    return _pose(finder, posture, home.clear)
+
+
+def _view(
+    finder: PoseFinder,
+    camera: LimbSolver,
+    fixed: dict[str, float],
+    target: np.ndarray,
+    height: float,
+) -> FoundPose | None:
+    """The arm holds the camera so that it looks at a point, from as near to `height` as it can."""
+    floor, front = finder.stand.floor, finder.stand.front
+    draws = finder.random.uniform((-0.3, -0.15, 0.4), (0.2, 0.15, 1.4), (TARGETS, 3))
+    eyes = draws + np.array([front, 0.0, floor])
+    eyes[:, 0] = np.minimum(eyes[:, 0], target[0] - 0.25)
+    views = [looking(eye, target) for eye in eyes]
+
+    def cost(posture: Mapping[str, float]) -> float:
+        off = abs(float(finder.optical(posture).position[2]) - floor - height)
+        return off + finder.outside(finder.corners(posture))
+
+    found = finder.solved(camera, views, fixed, cost)
+    return None if found is None else _pose(finder, *found)
+
+
+def _carry(finder: PoseFinder, hand: LimbSolver | None, ahead: np.ndarray) -> FoundPose | None:
+    """The hand level, what it holds within the footprint as far as that can be."""
+    if hand is None:
+        return None
+    floor, front, half = finder.stand.floor, finder.stand.front, finder.stand.width / 2
+    low = (front - 0.35, -half, 0.45)
+    places = finder.random.uniform(low, (front + 0.3, half, 1.1), (2 * TARGETS, 3))
+    yaws = finder.random.uniform(-math.pi, math.pi, 2 * TARGETS)
+    targets = [
+        Transform.from_rpy((x, y, z + floor), (roll, 0.0, yaw))
+        for i, ((x, y, z), yaw) in enumerate(zip(places, yaws, strict=True))
+        for roll in [math.pi * (i % 2)]
+    ]
+    fixed = finder.aimed({**finder.still, **posed(finder.arm.hand, 0.4)}, ahead)
+
+    def cost(posture: Mapping[str, float]) -> float:
+        corners = finder.corners(posture)
+        return 2 * finder.outside(corners, HELD) + finder.covered(posture, corners)
+
+    found = finder.solved(hand, targets, fixed, cost)
+    return None if found is None else _pose(finder, *found)
+
+
+def _pose(
+    finder: PoseFinder,
+    posture: dict[str, float],
+    margin: float | None,
+    notes: tuple[str, ...] = (),
+) -> FoundPose:
+    corners = finder.corners(posture)
+    return FoundPose(
+        posture, finder.outside(corners), finder.covered(posture, corners), margin, notes
+    )
+
+
+def _finished(finder: PoseFinder, pose: FoundPose) -> FoundPose:
+    """The joints that a named pose gives, in the order of arm, head and the rest."""
+    head = finder.limbs.head.joints if finder.limbs.head else ()
+    wanted = (*finder.arm.joints, *head, *finder.still)
+    joints = {}
+    for name in wanted:
+        low, high = short_range(finder.body.skeleton.joints[name])
+        value = pose.joints.get(name, finder.body.rest()[name])
+        joints[name] = round(min(max(round(value, DIGITS), low), high), 5) + 0.0
+    return FoundPose(joints, pose.outside, pose.covered, pose.clear, pose.notes)

@@ -1,0 +1,102 @@
+"""How far from its base an arm reaches things on tables."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from momantu_bt.geometry import Array, Transform
+from momantu_skills.robot_setup.find.base import Stand
+from momantu_skills.robot_setup.urdf.arm_ik import LimbSolver
+
+HEIGHTS = (0.4, 0.5, 0.6, 0.7, 0.8)
+"""m; of the tables."""
+ABOVE = 0.06
+"""m above the table that something is grasped."""
+STEP = 0.05
+"""m between distances that are tried."""
+FARTHEST = 1.6
+"""m; no arm on a mobile base reaches farther."""
+YAWS = (-1.0, -0.5, 0.0, 0.5, 1.0)
+"""rad; directions of the hand from which something is grasped, level."""
+PITCHES = (0.0, math.pi / 4, math.pi / 2)
+"""rad; how far the hand points down."""
+SEEDS = 8
+"""Starts of the inverse kinematics per pose."""
+GOOD = 0.8
+"""Share of the heights at which something must be reached for a distance to count."""
+ROOM = 0.13
+"""m between the footprint and a table's edge."""
+BESIDE = 0.08
+"""m from a table's edge that things stand at least."""
+LOOK_BACK = 0.18
+"""m farther back that the robot stands when it looks."""
+
+
+@dataclass(frozen=True)
+class Reach:
+    """shares: (k,) of grasps that are reached at distances (k,) from the base, m.
+
+    stand_off, look_off, reach: see `Working`. measured: whether the arm reached anything.
+    """
+
+    distances: Array
+    shares: Array
+    stand_off: float
+    look_off: float
+    reach: tuple[float, float, float]
+    measured: bool
+
+
+def find_reach(solver: LimbSolver | None, stand: Stand) -> Reach:
+    """Sample grasps before the robot at the heights of tables."""
+    distances = np.arange(STEP, FARTHEST + STEP / 2, STEP)
+    shares, heights = np.zeros(len(distances)), np.zeros(len(distances))
+    if solver is not None:
+        shares, heights = reached(solver, distances, stand.floor)
+    stand_off = math.ceil((stand.front + ROOM) * 100) / 100
+    least = stand_off + BESIDE
+    good = np.flatnonzero((heights >= GOOD) & (distances >= least - 1e-9))
+    if not len(good):
+        fallback = (least, least + 0.2, least + 0.4)
+        return Reach(distances, shares, stand_off, stand_off + LOOK_BACK, _cm(fallback), False)
+    near, far = float(distances[good[0]]), float(distances[good[-1]])
+    strong = good[shares[good] >= 0.8 * shares[good].max()]
+    best = float(distances[strong].mean())
+    return Reach(
+        distances, shares, stand_off, round(stand_off + LOOK_BACK, 2), _cm((near, best, far)), True
+    )
+
+
+def reached(solver: LimbSolver, distances: Array, floor: float) -> tuple[Array, Array]:
+    """What is reached straight ahead at distances (k,), m.
+
+    Returns the share of grasps (k,), and the share of the tables' heights with one of them (k,).
+    """
+    targets = np.array([_poses(distance, floor) for distance in distances])
+    flat = solver.reaches(targets.reshape(-1, 4, 4), SEEDS)
+    good = flat.reshape(len(distances), len(HEIGHTS), -1)
+    return good.mean(axis=(1, 2)), good.any(axis=2).mean(axis=1)
+
+
+def _cm(values: tuple[float, float, float]) -> tuple[float, float, float]:
+    a, b, c = (round(v, 2) for v in values)
+    return a, b, c
+
+
+def _poses(distance: float, floor: float) -> Array:
+    """base_from_grasp (heights, ways, 4, 4) straight ahead: level from five sides, or pitched."""
+    ways = [(0.0, yaw) for yaw in YAWS] + [(pitch, 0.0) for pitch in PITCHES[1:]]
+    return np.array(
+        [
+            [
+                Transform.from_rpy(
+                    (distance, 0.0, floor + height + ABOVE), (0.0, pitch, yaw)
+                ).matrix
+                for pitch, yaw in ways
+            ]
+            for height in HEIGHTS
+        ]
+    )

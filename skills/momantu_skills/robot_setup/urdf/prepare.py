@@ -1,0 +1,209 @@
+"""Making a URDF of anybody's readable: meshes found, what nobody can use left out and told."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from lxml import etree
+from scipy.spatial import QhullError
+
+from momantu_bt.robots.errors import PartError
+from momantu_bt.robots.parts import MOST_BYTES, load_part
+from momantu_bt.robots.robot_file import PartSource
+from momantu_skills.manipulation.model.hulls import hull_points, part_points
+from momantu_skills.manipulation.model.urdf import BaseUrdf, CollisionPart, base_urdf
+from momantu_skills.robot_setup.urdf.skeleton import (
+    MOVING,
+    TURNING,
+    SetupError,
+    Skeleton,
+    read_skeleton,
+)
+
+SOLIDS = ("box", "cylinder", "sphere", "mesh")
+HALF_TURN = "3.14159"
+"""rad; the range that a hinge without limits is looked at in."""
+LEAST_ROOM = 1e-4
+"""rad or m; a joint with less is taken as fixed, as are slides without limits."""
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A URDF that can be worked on.
+
+    kind: urdf or xacro. urdf: the cleaned copy. notes: what was left out, and why.
+    """
+
+    source: Path
+    kind: str
+    urdf: Path
+    skeleton: Skeleton
+    document: etree._Element
+    notes: tuple[str, ...]
+
+
+@dataclass
+class Placed:
+    """A cleaned URDF and the link that serves as its base; see `UrdfSource`."""
+
+    urdf: Path
+    base_frame: str
+    mesh_directories: tuple[Path, ...] = ()
+
+    def cut(self) -> BaseUrdf:
+        """What hangs below the base."""
+        return base_urdf(self)
+
+
+@dataclass
+class _Notes:
+    lines: list[str] = field(default_factory=list)
+    missing: list[str] = field(default_factory=list)
+
+    def all(self) -> tuple[str, ...]:
+        if not self.missing:
+            return tuple(self.lines)
+        if len(self.missing) == 1:
+            said = f"the collision mesh {self.missing[0]} was not found and is left out: its link "
+            return (*self.lines, f"{said}has no shape until the file lies where the URDF says")
+        names = ", ".join(self.missing[:3]) + (", …" if len(self.missing) > 3 else "")
+        return (
+            *self.lines,
+            f"{len(self.missing)} collision meshes were not found and are left out ({names}): "
+            "the links have no shape until the files lie where the URDF says",
+        )
+
+
+def prepare(source: Path, folder: Path) -> Prepared:
+    """Read a URDF or a xacro file, and write a copy into `folder` that planning's readers take.
+
+    Raises:
+        SetupError: it is neither, or not one robot.
+    """
+    kind = "xacro" if _is_xacro(source) else "urdf"
+    try:
+        file = str(source.resolve())
+        given = PartSource(xacro=file) if kind == "xacro" else PartSource(urdf=file)
+        part = load_part("robot", given, source.parent, None)
+    except PartError as error:
+        raise SetupError(str(error)) from None
+    root = part.root
+    skeleton = read_skeleton(root)
+    notes = _Notes()
+    for joint in root.findall("joint"):
+        _mend_joint(joint, notes)
+    for link in root.findall("link"):
+        for collision in link.findall("collision"):
+            _mend_shape(link, collision, source, notes)
+    path = folder / "robot.urdf"
+    path.write_bytes(etree.tostring(root))
+    _drop_flat(root, path, skeleton.root, notes)
+    path.write_bytes(etree.tostring(root))
+    return Prepared(source, kind, path, read_skeleton(root), root, notes.all())
+
+
+def _is_xacro(source: Path) -> bool:
+    """By its ending, or because it has xacro's elements; expanded files only name xacro."""
+    if source.suffix == ".xacro":
+        return True
+    try:
+        with source.open("rb") as file:
+            return b"<xacro:" in file.read(MOST_BYTES)
+    except OSError:
+        return False
+
+
+def _mend_joint(joint: etree._Element, notes: _Notes) -> None:
+    name, kind = joint.get("name"), joint.get("type", "fixed")
+    if kind in ("floating", "planar"):
+        return
+    if kind not in (*MOVING, "fixed"):
+        notes.lines.append(f"the joint {name} is of the unknown type {kind!r}; taken as fixed")
+        joint.set("type", "fixed")
+        return
+    limit = joint.find("limit")
+    if kind in ("revolute", "prismatic") and (
+        limit is None or limit.get("lower") is None or limit.get("upper") is None
+    ):
+        notes.lines.append(f"the joint {name} has no limits in the URDF")
+        limit = etree.SubElement(joint, "limit") if limit is None else limit
+        far = HALF_TURN if kind in TURNING else "0"
+        limit.set("lower", limit.get("lower", f"-{far}"))
+        limit.set("upper", limit.get("upper", far))
+    if limit is not None and _is_stuck(kind, limit):
+        notes.lines.append(f"the limits of the joint {name} leave it no room; taken as fixed")
+        joint.set("type", "fixed")
+    if limit is not None:
+        for what in ("effort", "velocity"):
+            limit.set(what, limit.get(what, "0"))
+
+
+def _is_stuck(kind: str, limit: etree._Element) -> bool:
+    """Whether a joint cannot move; a hinge from 0 to 0 is one whose limits nobody gave."""
+    if kind not in ("revolute", "prismatic"):
+        return False
+    room = float(limit.get("upper", "0")) - float(limit.get("lower", "0"))
+    return room < LEAST_ROOM and (kind == "prismatic" or room > 0)
+
+
+def _mend_shape(
+    link: etree._Element, collision: etree._Element, source: Path, notes: _Notes
+) -> None:
+    shape = collision.find("geometry/*")
+    if shape is None or shape.tag not in SOLIDS:
+        what = "nothing" if shape is None else f"<{shape.tag}>"
+        notes.lines.append(f"a collision of {link.get('name')} is {what}; left out")
+        link.remove(collision)
+    elif shape.tag == "mesh":
+        path = find_mesh(shape.get("filename", ""), source)
+        if path is None:
+            notes.missing.append(shape.get("filename", ""))
+            link.remove(collision)
+        else:
+            shape.set("filename", str(path))
+
+
+def find_mesh(name: str, source: Path) -> Path | None:
+    """The file that a mesh address means: beside the URDF, or below a folder that it lies in.
+
+    A package's folder need not be called like the package.
+    """
+    if name.startswith("file://"):
+        name = name.removeprefix("file://")
+        return Path(name) if Path(name).is_file() else None
+    relative = name.removeprefix("package://").lstrip("/")
+    tails = [relative]
+    if name.startswith("package://") and "/" in relative:
+        tails.append(relative.split("/", 1)[1])
+    for folder in (source.parent, *source.resolve().parents):
+        for tail in tails:
+            if (folder / tail).is_file():
+                return (folder / tail).resolve()
+    return None
+
+
+def _drop_flat(root: etree._Element, path: Path, base: str, notes: _Notes) -> None:
+    """Take out what has no volume or cannot be read: no hull goes around it."""
+    links = {link.get("name"): link for link in root.findall("link")}
+    left = {name: list(link.findall("collision")) for name, link in links.items()}
+    for part in Placed(path, base).cut().parts:
+        element = left[part.link].pop(0)
+        reason = _unusable(part)
+        if reason is not None:
+            links[part.link].remove(element)
+            notes.lines.append(f"a collision {part.kind} of {part.link} {reason}; left out")
+
+
+def _unusable(part: CollisionPart) -> str | None:
+    try:
+        points = part_points(part)
+        if not np.isfinite(points).all():
+            return "has coordinates that are no numbers"
+        hull_points(points)
+    except (QhullError, ValueError):
+        return "has no volume"
+    except Exception as error:  # the mesh reader raises whatever its libraries raise
+        return f"cannot be read ({error})"
+    return None

@@ -1,0 +1,1 @@
+"""A robot file from what was found."""

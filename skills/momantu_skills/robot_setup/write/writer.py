@@ -1,0 +1,237 @@
+"""A robot file from a proposal, with comments that say what to trust."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+import numpy as np
+
+from momantu_bt.geometry import Transform
+from momantu_skills.robot_setup.find.matrix import Why
+from momantu_skills.robot_setup.find.proposal import Proposal
+from momantu_skills.robot_setup.find.reach import HEIGHTS
+from momantu_skills.robot_setup.write.arm_writer import (
+    actuator_lines,
+    end_effector_lines,
+    group_lines,
+    limit_lines,
+    pose_lines,
+)
+from momantu_skills.robot_setup.write.file_text import comment, listed, number, scalar
+from momantu_skills.robot_setup.write.sensor_writer import sensor_frames, sensor_lines
+
+ON_FLOOR = 0.01
+"""m; a base frame this near to the floor lies on it."""
+PUSH = 3.0
+"""m/s2; rubber wheels on a floor push with a third of the weight, not more."""
+MOST_UP = 2
+"""Folders that a relative path goes up at most."""
+FLOOR_LINK = "base_footprint"
+"""The frame that is put on the floor where the URDF has none there."""
+
+
+def robot_file(proposal: Proposal, folder: Path) -> str:
+    """The text of `folder/robot.yaml`."""
+    blocks = (
+        _head(proposal),
+        _parts(proposal, folder),
+        _frames(proposal),
+        _footprint(proposal),
+        _working(proposal),
+        _base(proposal),
+        actuator_lines(proposal),
+        limit_lines(proposal),
+        sensor_lines(proposal),
+        group_lines(proposal),
+        end_effector_lines(proposal),
+        pose_lines(proposal),
+        _ignored(proposal),
+        _simulation(proposal),
+    )
+    return "\n\n".join("\n".join(block) for block in map(list, blocks) if block) + "\n"
+
+
+def missing(proposal: Proposal) -> tuple[str, ...]:
+    """What the person has to fill in before the file can be read."""
+    found = []
+    if proposal.stand.footprint is None:
+        found.append("`footprint`: the base has no collision shape to take it from")
+    if proposal.limbs.arm is None:
+        found.append("`groups.arm` and its `actuators`: no arm was found")
+        found.append("`named_poses`: they need the arm")
+    if proposal.grasp is None:
+        found.append(
+            "`end_effector` and `actuators.gripper`: no two links were found that open and close "
+            "against each other"
+        )
+    return tuple(found)
+
+
+def base_frame(proposal: Proposal) -> str:
+    """The frame on the floor: the URDF's own, or one that is put below it."""
+    return FLOOR_LINK if _put_on_floor(proposal) else proposal.base.frame
+
+
+def _put_on_floor(proposal: Proposal) -> bool:
+    """Whether the robot gets a base frame of its own.
+
+    It does where the URDF's is not on the floor, or hangs below another link.
+    """
+    skeleton = proposal.prepared.skeleton
+    unfit = abs(proposal.stand.floor) > ON_FLOOR or proposal.base.frame != skeleton.root
+    return unfit and not proposal.base.virtual and FLOOR_LINK not in skeleton.links
+
+
+def _head(proposal: Proposal) -> Iterator[str]:
+    yield f"# {proposal.name}, proposed by `momantu-bt robots setup` from"
+    yield f"# {proposal.prepared.source.name}. Lengths in m, angles in rad."
+    yield "#"
+    yield "# Measured: found in the URDF's geometry. From the URDF: copied. Guessed: look at it."
+    yield "# FILL IN: could not be found; the file cannot be read before it is there."
+    for note in proposal.notes:
+        yield from comment(f"Note: {note}.")
+    yield "momantu_robot: 1"
+    yield f"name: {proposal.name}"
+
+
+def _parts(proposal: Proposal, folder: Path) -> Iterator[str]:
+    path = _path(proposal.prepared.source.resolve(), folder.resolve())
+    yield "parts:"
+    yield f"  {proposal.name}: {{{proposal.prepared.kind}: {scalar(path)}}}"
+    if _put_on_floor(proposal):
+        height, base = number(-proposal.stand.floor), proposal.base.frame
+        link = "" if base == proposal.prepared.skeleton.root else f", link: {scalar(base)}"
+        yield f"# Measured: {base} lies {height} m above the robot's lowest point; a base frame is"
+        yield "# put on the floor below it."
+        yield "mounts:"
+        yield f"  {proposal.name}: {{on: {FLOOR_LINK}, xyz: [0, 0, {height}]{link}}}"
+    elif abs(proposal.stand.floor) > ON_FLOOR:
+        yield from comment(
+            f"Look at it: the robot's lowest point lies {number(proposal.stand.floor)} m from the "
+            "base frame, which must lie on the floor."
+        )
+    yield f"base_frame: {scalar(base_frame(proposal))}"
+
+
+def _path(source: Path, folder: Path) -> str:
+    """As seen from the folder where both lie near each other, so that they can be moved as one."""
+    relative = os.path.relpath(source, folder)
+    return relative if relative.count("..") <= MOST_UP else str(source)
+
+
+def _frames(proposal: Proposal) -> Iterator[str]:
+    frames = dict(sensor_frames(proposal))
+    for limb, grasp in proposal.grasps.items():
+        if grasp.link_from_grasp is not None:
+            name = "grasp" if limb == "arm" else f"{limb}_grasp"
+            frames[name] = (grasp.link, grasp.link_from_grasp)
+    if not frames:
+        return
+    yield "# Measured: between the pads, x out along the fingers, y the closing direction. Optical"
+    yield "# frames are guessed to look along x of the link that they sit on."
+    yield "frames:"
+    for name, (link, place) in frames.items():
+        turns = ", ".join(number(v) for v in _rpy(place))
+        shift = ", ".join(number(v) for v in place.position)
+        yield f"  {name}: {{on: {scalar(link)}, xyz: [{shift}], rpy: [{turns}]}}"
+
+
+def _rpy(place: Transform) -> tuple[float, float, float]:
+    r = place.rotation
+    level = math.hypot(r[0, 0], r[1, 0])
+    pitch = math.atan2(-r[2, 0], level)
+    if level < 1e-9:
+        return 0.0, pitch, math.atan2(-r[0, 1], r[1, 1])
+    return math.atan2(r[2, 1], r[2, 2]), pitch, math.atan2(r[1, 0], r[0, 0])
+
+
+def _footprint(proposal: Proposal) -> Iterator[str]:
+    outline = proposal.stand.footprint
+    if outline is None:
+        yield "# FILL IN: the base has no collision shape. Corners counter-clockwise, for example"
+        yield "# footprint: [[0.25, 0.2], [-0.25, 0.2], [-0.25, -0.2], [0.25, -0.2]]"
+    else:
+        yield "# Measured: outline of the base and what rolls, up to 25 cm above the floor."
+        yield "footprint:"
+        yield from (f"  - [{number(x)}, {number(y)}]" for x, y in outline)
+    yield "# Measured: the tallest of the named poses."
+    yield f"height: {number(proposal.height)}"
+
+
+def _working(proposal: Proposal) -> Iterator[str]:
+    reach = proposal.reach
+    tables = f"{HEIGHTS[0]:g}-{HEIGHTS[-1]:g} m"
+    if reach.measured:
+        text = f"Measured: inverse kinematics of level and pitched grasps on tables {tables} high."
+    else:
+        text = f"Guessed: no grasp on tables {tables} high was reached beyond the footprint."
+    yield from comment(text)
+    yield "working:"
+    yield f"  stand_off: {number(reach.stand_off)}    # the footprint's front and 13 cm"
+    yield f"  look_off: {number(reach.look_off)}"
+    yield f"  reach: [{', '.join(number(v) for v in reach.reach)}]"
+
+
+def _base(proposal: Proposal) -> Iterator[str]:
+    stand = proposal.stand
+    force = float(np.clip(stand.mass * PUSH, 50.0, 1000.0))
+    torque = force * max(stand.width, 0.2) / 2
+    yield "# Guessed: a brisk walk. Its makers' data sheet knows better."
+    if not stand.wheels and proposal.virtual is None:
+        yield "# Look at it: nothing that rolls was found. Without `drive` it is not simulated."
+    yield "base:"
+    yield "  linear: 0.8"
+    yield "  angular: 1.5"
+    yield "  linear_acceleration: 0.8"
+    yield "  angular_acceleration: 2.0"
+    yield f"  # Guessed: the wheels push with a third of the weight of {number(stand.mass, 1)} kg."
+    yield "  drive:"
+    if proposal.virtual is not None:
+        x, y, yaw = map(scalar, proposal.virtual)
+        yield f"    joints: {{x: {x}, y: {y}, yaw: {yaw}}}"
+    yield f"    force: {number(round(force))}"
+    yield f"    torque: {number(round(torque, 1))}"
+
+
+def _ignored(proposal: Proposal) -> Iterator[str]:
+    matrix = proposal.matrix
+    counts = {why: len(matrix.pairs(why)) for why in dict.fromkeys(matrix.why.values())}
+    told = ", ".join(f"{count} {why.value}" for why, count in counts.items())
+    yield from comment(
+        f"Measured in {matrix.samples} random postures: {told or 'no pairs'}. Pairs that share a "
+        "joint are never checked. Pairs that never met are: a check costs little, and random "
+        "postures prove nothing. These overlap for good, where every joint stands at rest, or "
+        "where the hand is closed; neighbours would be pushed apart by a simulator:"
+    )
+    if not matrix.ignored:
+        yield "ignored_collisions: []"
+        return
+    yield "ignored_collisions:"
+    for one, other in matrix.ignored:
+        why, share = matrix.why[one, other], matrix.share[one, other]
+        said = f"{why.value}, met in {share:.0%}" if why is not Why.ADJACENT else "neighbours"
+        yield f"  - {listed((one, other))}    # {said}"
+
+
+def _simulation(proposal: Proposal) -> Iterator[str]:
+    arm, skeleton = proposal.limbs.arm, proposal.prepared.skeleton
+    hand = arm.hand if arm is not None else None
+    fingers: Iterable[str] = ()
+    if hand is not None:
+        moving = {link for branch in hand.branches for link in branch.links}
+        fingers = [n for n in (*hand.ahead, *hand.behind) if n in moving]
+        fingers = [n for n in fingers if skeleton.links[n].shapes]
+    yield "# What a simulator must know beside all this. Friction is guessed: rubber pads."
+    yield "simulation:"
+    yield f"  floor_links: {listed(proposal.stand.grounded)}"
+    yield f"  finger_links: {listed(fingers)}"
+    yield "  finger_friction: 1.0"
+    if proposal.cells:
+        yield "  # Measured: other links lie in the hulls around these meshes. Guessed: even cuts."
+        yield "  convex_cells:"
+        for link, cuts in proposal.cells.items():
+            inside = ", ".join(f"{n}: [{', '.join(map(number, at))}]" for n, at in cuts.items())
+            yield f"    {scalar(link)}: {{{inside}}}"
