@@ -39,3 +39,12 @@ class MomantuError(Exception):
     def __init__(self, *arguments: object, hint: str | None = None) -> None:
         super().__init__(*arguments)
         self.hint = hint
+
+    def printed(self) -> str:
+        """What the command line prints: the message, and the hint in a line of its own."""
+        message = f"momantu-bt: {self}"
+        return message if self.hint is None else f"{message}\n{self.hint}"
+
+
+class InputError(MomantuError):
+    """An argument, or a file that it names, is wrong; the message says what would be right."""

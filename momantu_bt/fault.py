@@ -12,6 +12,8 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Protocol, TypeAlias, runtime_checkable
 
+from momantu_bt.errors import MomantuError
+
 FaultParameter: TypeAlias = float | int | str | bool
 
 
@@ -68,5 +70,5 @@ class FaultyWorld(Protocol):
         ...
 
 
-class FaultError(Exception):
+class FaultError(MomantuError):
     """A fault that cannot be made; the message says why and what would be valid."""

@@ -9,9 +9,10 @@ from functools import cache
 from pathlib import Path
 
 from momantu_bt.cache import cache_folder
+from momantu_bt.errors import MomantuError
 
 
-class OutputError(OSError):
+class OutputError(MomantuError, OSError):
     """A file cannot be written where the user wants it; the message says why."""
 
 

@@ -12,6 +12,8 @@ from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any, TypeAlias
 
+from momantu_bt.errors import MomantuError
+
 SKILLS = "momantu_bt.skills"
 SERVICES = "momantu_bt.services"
 ROBOTS = "momantu_bt.robots"
@@ -34,7 +36,7 @@ _WHAT = {
 _Found: TypeAlias = Mapping[str, tuple[EntryPoint, ...]]
 
 
-class PluginError(Exception):
+class PluginError(MomantuError):
     """A plug-in is missing, broken, or named twice; the message says which and what to do."""
 
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
+from momantu_bt.errors import ExitCode, MomantuError
 from momantu_bt.geometry import Pose2D
 from momantu_bt.messages import ObjectClass
 
@@ -259,8 +260,10 @@ class WorldEntry(Protocol):
         ...
 
 
-class WorldError(Exception):
+class WorldError(MomantuError):
     """A world could not start; the message says why and what to do."""
+
+    exit_code = ExitCode.NO_WORLD
 
 
 def seeded(*parts: str | float) -> np.random.Generator:

@@ -6,9 +6,10 @@ from collections.abc import Generator, Iterable
 from typing import Protocol
 
 from momantu_bt.bench.spec import EpisodeSpec, Row
+from momantu_bt.errors import MomantuError
 
 
-class EngineError(Exception):
+class EngineError(MomantuError):
     """An engine cannot run episodes; the message says why and what to do."""
 
 

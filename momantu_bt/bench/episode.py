@@ -17,8 +17,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import momantu_bt.cli.threads  # noqa: F401 - before numpy, which the next imports load
-from momantu_bt.bench.process import EXIT_IMPOSSIBLE, EXIT_REFUSED
 from momantu_bt.bench.spec import EpisodeSpec, Row
+from momantu_bt.errors import MomantuError
 from momantu_bt.fault import FaultError
 from momantu_bt.files import write_whole
 
@@ -42,15 +42,15 @@ _KEPT = (
 """What a row takes over from a report as it is."""
 
 
-class Refused(Exception):
+class Refused(MomantuError):
     """The episode cannot be what was asked for; nothing was started."""
 
 
 def main(arguments: Sequence[str]) -> int:
     """Run the episode.
 
-    Exit code 0 when a row was written, EXIT_IMPOSSIBLE when its fault cannot happen here,
-    EXIT_REFUSED when it cannot begin.
+    Exit code EX_OK when a row was written, EX_UNAVAILABLE when its fault cannot happen here,
+    EX_TEMPFAIL when it cannot begin.
     """
     told, row, parent = arguments
     _end_with(int(parent))
@@ -60,14 +60,12 @@ def main(arguments: Sequence[str]) -> int:
         report, tries = run(spec)
     except FaultError as error:
         print(error, file=sys.stderr)
-        return EXIT_IMPOSSIBLE
-    except Exception as error:
-        if type(error) in _refusals():
-            print(error, file=sys.stderr)
-            return EXIT_REFUSED
-        raise
+        return os.EX_UNAVAILABLE
+    except MomantuError as error:
+        print(error, file=sys.stderr)
+        return os.EX_TEMPFAIL
     write_whole(Path(row), json.dumps(row_of(report, tries), default=str) + "\n")
-    return 0
+    return os.EX_OK
 
 
 def run(spec: EpisodeSpec) -> tuple[Report, int]:
@@ -139,7 +137,7 @@ def _record(spec: EpisodeSpec) -> Path | None:
 def _tries(node: TreeNode) -> int:
     """How often a node began its first child anew after a failure."""
     if node.model.type not in _RETRYING or not node.kids:
-        return 0
+        return os.EX_OK
     return max(0, node.kids[0].runs - node.runs)
 
 
@@ -150,23 +148,6 @@ def row_of(report: Report, tries: int) -> Row:
     row["tries"] = tries
     row["nodes"] = [{k: v for k, v in node.items() if v} for node in told["nodes"]]
     return row
-
-
-def _refusals() -> tuple[type[Exception], ...]:
-    """What is wrong with the machine or the files, and not with the robot."""
-    from momantu_bt.engine.launch import LaunchError
-    from momantu_bt.engine.makers import BuildError
-    from momantu_bt.engine.services import ServiceCycleError
-    from momantu_bt.files import OutputError
-    from momantu_bt.plugins import PluginClash, PluginError
-    from momantu_bt.tree.files.lookup import TreeNotFound
-    from momantu_bt.tree.problems import TreeError
-    from momantu_bt.world import WorldError
-
-    return (
-        *(Refused, LaunchError, BuildError, ServiceCycleError, OutputError),
-        *(PluginError, PluginClash, TreeNotFound, TreeError, WorldError),
-    )
 
 
 def _end_with(parent: int) -> None:

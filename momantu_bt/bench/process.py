@@ -26,9 +26,8 @@ IMPOSSIBLE = "impossible"
 """Its fault cannot happen in this tree, robot or world."""
 REFUSED = "refused"
 """It could not begin, for a reason that has nothing to do with what was asked for."""
-EXIT_IMPOSSIBLE, EXIT_REFUSED = 69, 75
-"""Exit codes of these two (EX_UNAVAILABLE, EX_TEMPFAIL of sysexits.h); the process says why."""
-_WITHOUT_ROW = {EXIT_IMPOSSIBLE: IMPOSSIBLE, EXIT_REFUSED: REFUSED}
+_WITHOUT_ROW = {os.EX_UNAVAILABLE: IMPOSSIBLE, os.EX_TEMPFAIL: REFUSED}
+"""How a process ended that left no row, by its exit code; what it printed says why."""
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "LP_NUM_THREADS": "1"}
 """Numerical libraries and the software renderer, each with one thread: episodes share the cores."""
 _TRACEBACKS = re.compile(r"^Timeout \(\d+:\d\d:\d\d", re.MULTILINE)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
+from momantu_bt.errors import MomantuError
+
 MOST = 1_000_000
 """Seeds of one bench."""
 MOST_NAMED = 8
@@ -13,7 +15,7 @@ _PART = re.compile(r"(\d+)(?::(\d+))?")
 _VALID = "write 0:500 (500 itself is not among them), 3,5,7 or 0:10,20:30"
 
 
-class SeedsError(ValueError):
+class SeedsError(MomantuError, ValueError):
     """These are no seeds; the message says what would be."""
 
 

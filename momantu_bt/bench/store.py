@@ -14,12 +14,13 @@ from pathlib import Path
 from types import TracebackType
 
 from momantu_bt.bench.spec import Row
+from momantu_bt.errors import MomantuError
 from momantu_bt.files import OutputError
 
 RESULTS, LOCK = "results.jsonl", ".lock"
 
 
-class StoreError(Exception):
+class StoreError(MomantuError):
     """A folder of results cannot be used; the message says why and what to do."""
 
 

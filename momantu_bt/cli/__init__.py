@@ -16,16 +16,10 @@ import typer
 
 import momantu_bt.cli.threads  # noqa: F401 - before numpy, which the next imports load
 from momantu_bt import __version__, plugins
+from momantu_bt.cli.notices import notice
 from momantu_bt.cli.subverbs import add_command, with_subverbs
 from momantu_bt.cli.usage import usage_message
-from momantu_bt.world import WorldError
-
-EXIT_OK = 0
-EXIT_FAILED = 1
-EXIT_WRONG_INPUT = 2
-EXIT_NO_WORLD = 3
-EXIT_INTERNAL = 4
-EXIT_INTERRUPTED = 130
+from momantu_bt.errors import ExitCode, MomantuError
 
 TRACEBACK = "MOMANTU_BT_TRACEBACK"
 """Environment variable: set to anything, internal errors come with their traceback."""
@@ -49,24 +43,30 @@ VERBS = {
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run one command line and return its exit code; arguments default to the process's."""
+    """Run one command line and return its exit code; arguments default to the process's.
+
+    A verb returns its exit code or raises; what it raises is told here, and nowhere else.
+    """
     given = list(sys.argv[1:] if arguments is None else arguments)
     try:
         if not given:
             _app(given)(args=["--help"], prog_name="momantu-bt", standalone_mode=False)
-            return EXIT_WRONG_INPUT
+            return ExitCode.WRONG_INPUT
         result = _app(given)(args=given, prog_name="momantu-bt", standalone_mode=False)
     except KeyboardInterrupt:
-        return EXIT_INTERRUPTED
+        return ExitCode.INTERRUPTED
     except SystemExit as error:
-        return error.code if isinstance(error.code, int) else EXIT_WRONG_INPUT
+        return error.code if isinstance(error.code, int) else ExitCode.WRONG_INPUT
     except BrokenPipeError:
         # whoever read the output has gone; nobody is left to tell
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return EXIT_FAILED
+        return ExitCode.FAILURE
+    except MomantuError as error:
+        typer.echo(error.printed(), err=True)
+        return error.exit_code
     except Exception as error:
-        return _explain(error)
-    return result if isinstance(result, int) else EXIT_OK
+        return _other_error(error)
+    return result if isinstance(result, int) else ExitCode.SUCCESS
 
 
 def _app(given: Sequence[str]) -> typer.Typer:
@@ -117,32 +117,13 @@ def _never() -> None:
     """Stand for a verb that was not asked for."""
 
 
-def _explain(error: Exception) -> int:
-    """Say what went wrong in one place, without a stack trace, and choose the exit code."""
-    from momantu_bt.descriptions.reading import DescriptionError
-    from momantu_bt.tree.files.lookup import TreeNotFound
-    from momantu_bt.tree.problems import TreeError
-
-    if isinstance(error, TreeError):
-        from momantu_bt.cli.check import report
-
-        report(error.problems, error.source)
-        return EXIT_WRONG_INPUT
-    if isinstance(error, TreeNotFound | plugins.PluginError | DescriptionError):
-        return _say(str(error), EXIT_WRONG_INPUT)
-    if isinstance(error, WorldError):
-        return _say(str(error), EXIT_NO_WORLD)
+def _other_error(error: Exception) -> ExitCode:
+    """Tell a command line that cannot be understood, or a mistake in the program."""
     usage = usage_message(error)
     if usage is not None:
-        return _say(usage, EXIT_WRONG_INPUT)
+        notice(usage)
+        return ExitCode.WRONG_INPUT
     if os.environ.get(TRACEBACK):
         raise error
-    return _say(
-        f"internal error: {type(error).__name__}: {error} (set {TRACEBACK}=1 for the traceback)",
-        EXIT_INTERNAL,
-    )
-
-
-def _say(message: str, code: int) -> int:
-    typer.echo(f"momantu-bt: {message}", err=True)
-    return code
+    notice(f"internal error: {type(error).__name__}: {error} (set {TRACEBACK}=1 for the traceback)")
+    return ExitCode.INTERNAL

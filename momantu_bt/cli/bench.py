@@ -10,9 +10,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from momantu_bt.cli.bench_setup import (
-    EXIT_INCOMPLETE,
-    EXIT_INTERRUPTED,
-    EXIT_OK,
     OUT,
     RECORD,
     HowToRun,
@@ -20,7 +17,6 @@ from momantu_bt.cli.bench_setup import (
     choose,
     demands_of,
     engine_of,
-    guarded,
     keep_plan,
     one_tree,
     plan_of,
@@ -41,6 +37,7 @@ from momantu_bt.cli.options import (
     Seeds,
     Values,
 )
+from momantu_bt.errors import ExitCode
 
 if TYPE_CHECKING:
     from momantu_bt.bench.plan import Plan
@@ -97,7 +94,7 @@ def bench(
         float | None,
         typer.Option(min=0.0, max=1.0, help="Exit 1 when the rate's lower limit is below it."),
     ] = None,
-) -> int:
+) -> ExitCode:
     """Run a tree many times, each time with another seed and in a process of its own.
 
     With --fault or --faults something is broken in each, and a table says what became of it.
@@ -117,24 +114,21 @@ def bench(
     """
     options = _Options(out, shard, (engine, jobs, ray_address), coverage, report, demand)
 
-    def start() -> int:
-        from momantu_bt.bench.seeds import parse_seeds
-        from momantu_bt.cli.bench_merge import merge_folders
-        from momantu_bt.cli.given import given_values
+    from momantu_bt.bench.seeds import parse_seeds
+    from momantu_bt.cli.bench_merge import merge_folders
+    from momantu_bt.cli.given import given_values
 
-        if merge:
-            return merge_folders(tree, out, report)
-        place = one_tree(tree)
-        chosen = choose(record, RECORD, "--record")
-        board = given_values(set_ or [], values)
-        demands = demands_of(fault or [], faults)
-        broken: list[str | None] = [demand.fault for demand in demands] or [None]
-        how = HowToRun(world, robot, board, max_time, referee, episode_limit, chosen, broken)
-        plan, document = plan_of(place, parse_seeds(seeds), how)
-        check_faults(fault or [], document, how)
-        return _bench(plan, document, demands, options)
-
-    return guarded(start)
+    if merge:
+        return merge_folders(tree, out, report)
+    place = one_tree(tree)
+    chosen = choose(record, RECORD, "--record")
+    board = given_values(set_ or [], values)
+    demands = demands_of(fault or [], faults)
+    broken: list[str | None] = [demand.fault for demand in demands] or [None]
+    how = HowToRun(world, robot, board, max_time, referee, episode_limit, chosen, broken)
+    plan, document = plan_of(place, parse_seeds(seeds), how)
+    check_faults(fault or [], document, how)
+    return _bench(plan, document, demands, options)
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,7 +141,9 @@ class _Options:
     demand: float | None
 
 
-def _bench(plan: Plan, document: Document, demands: Sequence[Demand], options: _Options) -> int:
+def _bench(
+    plan: Plan, document: Document, demands: Sequence[Demand], options: _Options
+) -> ExitCode:
     """Run what is missing, then say what all of it comes to."""
     from momantu_bt.bench.carry_out import carry_out
     from momantu_bt.bench.store import Store
@@ -168,8 +164,9 @@ def _bench(plan: Plan, document: Document, demands: Sequence[Demand], options: _
     say_refused(ended)
     say_missing(missing)
     if ended.interrupted:
-        return EXIT_INTERRUPTED
-    return EXIT_INCOMPLETE if missing or _falls_short(rows, options.demand) else EXIT_OK
+        return ExitCode.INTERRUPTED
+    failed = missing or _falls_short(rows, options.demand)
+    return ExitCode.FAILURE if failed else ExitCode.SUCCESS
 
 
 def _say(

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from momantu_bt.cli.bench_setup import EXIT_INCOMPLETE, EXIT_OK, ArgumentError
+from momantu_bt.errors import ExitCode, InputError
 
 if TYPE_CHECKING:
     from momantu_bt.bench.merge import Merged
     from momantu_bt.bench.spec import Row
 
 
-def merge_folders(words: Sequence[str], out: Path | None, report: Path | None) -> int:
+def merge_folders(words: Sequence[str], out: Path | None, report: Path | None) -> ExitCode:
     """Join folders in another one, and say what all of it comes to.
 
     Exit code 0: every episode that any of them was to run has a row; 1: some are missing, or
@@ -28,7 +28,7 @@ def merge_folders(words: Sequence[str], out: Path | None, report: Path | None) -
     from momantu_bt.files import check_writable
 
     if out is None:
-        raise ArgumentError("--merge needs --out, a folder for all of it")
+        raise InputError("--merge needs --out, a folder for all of it")
     if report is not None:
         check_writable(report)
     folders = list(dict.fromkeys(Path(word) for word in words))
@@ -44,7 +44,7 @@ def merge_folders(words: Sequence[str], out: Path | None, report: Path | None) -
     missing = merged.wanted.missing(merged.rows)
     if missing:
         typer.echo(f"missing: {'; '.join(missing)}", err=True)
-    return EXIT_INCOMPLETE if missing else EXIT_OK
+    return ExitCode.FAILURE if missing else ExitCode.SUCCESS
 
 
 def _copy_record(row: Row, folders: Sequence[Path], out: Path) -> None:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import typer
+
+from momantu_bt.cli.notices import notice
+from momantu_bt.errors import InputError
 
 if TYPE_CHECKING:
     from momantu_bt.bench.carry_out import Ended
@@ -19,15 +22,10 @@ if TYPE_CHECKING:
     from momantu_bt.tree.files.settings import Given
     from momantu_bt.tree.model import Document
 
-EXIT_OK, EXIT_INCOMPLETE, EXIT_WRONG_ARGUMENTS, EXIT_INTERRUPTED = 0, 1, 2, 130
 ENGINES = ("local", "ray")
 OUT = Path("runs/bench")
 """Where results are kept unless something else is said, in a folder for each tree."""
 RECORD = ("failures", "all", "none")
-
-
-class ArgumentError(Exception):
-    """An argument is wrong; the message says what would be right."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +50,8 @@ def plan_of(tree: str, seeds: Sequence[int], how: HowToRun) -> tuple[Plan, Docum
     """
     from momantu_bt.bench.made_of import made_of
     from momantu_bt.bench.plan import Plan, Wanted
+    from momantu_bt.engine.build import skills_in
+    from momantu_bt.engine.launch import check_world
     from momantu_bt.plugin_files import absolute, by_path
     from momantu_bt.plugins import ROBOTS, WORLDS
     from momantu_bt.tree.check.named_world import world_of
@@ -66,7 +66,7 @@ def plan_of(tree: str, seeds: Sequence[int], how: HowToRun) -> tuple[Plan, Docum
         "robot": absolute(ROBOTS, how.robot),
     }
     document = load(place, registry, values=how.values, **told).document
-    _check_world(document, how.world, registry)
+    check_world(document, how.world, skills_in(document), registry)
     if by_path(WORLDS, document.world or ""):
         # an episode elsewhere has the tree in another folder
         told["world"] = told["world"] or absolute(WORLDS, world_of(document, None))
@@ -112,35 +112,22 @@ def check_faults(faults: Sequence[str], document: Document, how: HowToRun) -> No
     plan(wanted, document, skills, Substitution(), with_world=with_world)
 
 
-def _check_world(document: Document, world: str | None, registry: Any) -> None:
-    from momantu_bt.engine.build import skills_in
-    from momantu_bt.engine.launch import LaunchError
-    from momantu_bt.tree.check.named_world import world_of
-
-    skills = skills_in(document)
-    if skills and world_of(document, world) is None:
-        raise LaunchError(
-            f"{document.main} needs a world for {', '.join(skills)}; worlds: "
-            f"{', '.join(registry.worlds) or 'none'}; give one with --world"
-        )
-
-
 def one_tree(words: Sequence[str]) -> str:
-    """The tree that is given; ArgumentError for several."""
+    """The tree that is given; InputError for several."""
     if len(words) == 1:
         return words[0]
-    raise ArgumentError(
+    raise InputError(
         f"a bench is of one tree, not of {', '.join(words)}; several folders go with --merge, "
         "two trees with `momantu-bt compare`"
     )
 
 
 def choose(value: str, valid: Sequence[str], option: str) -> str:
-    """A value that is one of a few; ArgumentError says which."""
+    """A value that is one of a few; InputError says which."""
     from momantu_bt.tree.problems import valid_names
 
     if value not in valid:
-        raise ArgumentError(f"{option} {value}: {valid_names(value, valid, 'valid values')}")
+        raise InputError(f"{option} {value}: {valid_names(value, valid, 'valid values')}")
     return value
 
 
@@ -151,7 +138,7 @@ def shard_of(text: str | None) -> tuple[int, int]:
     number, _, of = text.partition("/")
     valid = number.isdecimal() and of.isdecimal() and 1 <= int(number) <= int(of)
     if not valid:
-        raise ArgumentError(f"--shard {text}: expected I/N with I from 1 to N, such as 2/4")
+        raise InputError(f"--shard {text}: expected I/N with I from 1 to N, such as 2/4")
     return int(number), int(of)
 
 
@@ -164,7 +151,7 @@ def engine_of(name: str, jobs: int | None, address: str | None) -> Engine:
     if name == "ray":
         return RayEngine(jobs, address)
     if address is not None:
-        raise ArgumentError("--ray-address needs --engine ray")
+        raise InputError("--ray-address needs --engine ray")
     return LocalEngine(jobs or os.cpu_count() or 1)
 
 
@@ -191,26 +178,6 @@ def say_missing(missing: Sequence[str]) -> None:
 def say_refused(ended: Ended) -> None:
     """Tell which episodes could not begin."""
     for row in ended.refused[-1:]:
-        typer.echo(
-            f"momantu-bt: {len(ended.refused)} episodes could not begin; "
-            f"of seed {row['seed']}: {row['output']}",
-            err=True,
+        notice(
+            f"{len(ended.refused)} episodes could not begin; of seed {row['seed']}: {row['output']}"
         )
-
-
-def guarded(start: Callable[[], int]) -> int:
-    """Run; what is wrong with arguments, files or folders becomes a sentence and an exit code."""
-    from momantu_bt.bench.engine import EngineError
-    from momantu_bt.bench.seeds import SeedsError
-    from momantu_bt.bench.store import StoreError
-    from momantu_bt.engine.launch import LaunchError
-    from momantu_bt.engine.makers import BuildError
-    from momantu_bt.fault import FaultError
-    from momantu_bt.files import OutputError
-
-    wrong = (ArgumentError, SeedsError, FaultError, StoreError, EngineError)
-    try:
-        return start()
-    except (*wrong, LaunchError, BuildError, OutputError) as error:
-        typer.echo(f"momantu-bt: {error}", err=True)
-        return EXIT_WRONG_ARGUMENTS

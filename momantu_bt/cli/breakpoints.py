@@ -17,11 +17,11 @@ import typer
 from momantu_bt.cli.terminal import Terminal
 from momantu_bt.engine.blackboard import Board
 from momantu_bt.engine.executor import Executor
-from momantu_bt.engine.launch import LaunchError
 from momantu_bt.engine.node import TreeNode
 from momantu_bt.engine.nodes.subtree import SubTree
 from momantu_bt.engine.ports import Inputs
 from momantu_bt.engine.status import RUNNING, Status
+from momantu_bt.errors import InputError
 from momantu_bt.failure import Failure
 from momantu_bt.messages import plain
 from momantu_bt.record.lines import tree_lines
@@ -48,7 +48,7 @@ class Breakpoints:
     """Where a person wants to stop. wanted: names, types, skills, trees, patterns, or lines.
 
     Raises:
-        LaunchError: one of them names no node that the run can reach.
+        InputError: one of them names no node that the run can reach.
     """
 
     def __init__(
@@ -121,14 +121,14 @@ def _named(wanted: str, nodes: Sequence[Node]) -> list[Node]:
         if not at:
             lines = sorted({node.place.line for node in nodes})
             line = min(lines, key=lambda line: abs(line - int(wanted)))
-            raise LaunchError(f"--break {wanted}: no node begins there; one does in line {line}")
+            raise InputError(f"--break {wanted}: no node begins there; one does in line {line}")
         return at[:1]
     found = [n for n in nodes if any(fnmatchcase(name, wanted) for name in names(n))]
     if not found:
         known = [name for node in nodes for name in names(node)]
         near = nearest(wanted, known)
         hint = f"did you mean {near}?" if near else valid_names(wanted, known, "nodes")
-        raise LaunchError(f"--break {wanted}: no node that runs is called so; {hint}")
+        raise InputError(f"--break {wanted}: no node that runs is called so; {hint}")
     return found
 
 

@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any
 
 import typer
 
+from momantu_bt.errors import ExitCode, InputError
 from momantu_bt.tree.load import Checked, TreeError, TreeNotFound, load
-from momantu_bt.tree.problems import Problem, Severity, show, valid_names
-from momantu_bt.tree.show.problem_pages import UnknownCode, codes, explanation
+from momantu_bt.tree.problems import Problem, report
+from momantu_bt.tree.show.problem_pages import explanation
 from momantu_bt.tree.show.sarif import sarif
-
-EXIT_WRONG_INPUT = 2
-MOST_SHOWN = 50
-"""Problems printed in full; a terminal holds no more, and the rest often follow from them."""
 
 
 def check(
@@ -34,7 +31,7 @@ def check(
     explain: Annotated[
         str | None, typer.Option(metavar="CODE", help="Explain a problem's code, with examples.")
     ] = None,
-) -> int:
+) -> ExitCode:
     """Say everything that is wrong with tree files: all errors at once, each with its place.
 
     Exit code 0: they can run (there may be warnings); 2: they cannot.
@@ -46,11 +43,12 @@ def check(
       momantu-bt check --explain read-before-write
     """
     if explain is not None:
-        return _explain(explain)
+        typer.echo(explanation(explain).rstrip())
+        return ExitCode.SUCCESS
     if not trees:
-        return _refuse("name at least one tree file; see momantu-bt check --help")
+        raise InputError("name at least one tree file; see momantu-bt check --help")
     if as_json and as_sarif:
-        return _refuse("choose one of --json and --sarif")
+        raise InputError("choose one of --json and --sarif")
     findings = [_checked(tree, world, robot, quiet=as_json or as_sarif) for tree in trees]
     fine = all(finding.ok for finding in findings)
     if as_json:
@@ -58,7 +56,7 @@ def check(
     if as_sarif:
         unread = [finding.unread for finding in findings if finding.unread is not None]
         _print_json(sarif([p for finding in findings for p in finding.problems], unread))
-    return 0 if fine else EXIT_WRONG_INPUT
+    return ExitCode.SUCCESS if fine else ExitCode.WRONG_INPUT
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,50 +78,17 @@ def _checked(tree: str, world: str | None, robot: str | None, *, quiet: bool) ->
     """Check one file, and unless quiet say what is found."""
     try:
         checked = load(tree, world=world, robot=robot)
-    except TreeNotFound as error:
+    except (TreeNotFound, TreeError) as error:
         if not quiet:
-            typer.echo(f"momantu-bt: {error}", err=True)
+            typer.echo(error.printed(), err=True)
+        if isinstance(error, TreeError):
+            return _Finding(tree, False, error.problems)
         return _Finding(tree, False, unread=str(error))
-    except TreeError as error:
-        if not quiet:
-            report(error.problems, error.source)
-        return _Finding(tree, False, error.problems)
     if not quiet:
-        report(checked.notes, checked.document.source)
+        if checked.notes:
+            typer.echo(report(checked.notes, checked.document.source), err=True)
         typer.echo(_fine(tree, checked))
     return _Finding(tree, True, checked.notes)
-
-
-def report(problems: Sequence[Problem], source: Mapping[str, str]) -> None:
-    """Print problems to standard error, each with its line and a caret, and count them."""
-    if not problems:
-        return
-    for problem in problems[:MOST_SHOWN]:
-        typer.echo(show(problem, source), err=True)
-    if len(problems) > MOST_SHOWN:
-        typer.echo(f"… and {len(problems) - MOST_SHOWN} more (--json has them all)", err=True)
-    counts = [
-        f"{count} {severity.name.lower()}{'s' if count > 1 else ''}"
-        for severity in Severity
-        if (count := sum(problem.severity is severity for problem in problems))
-    ]
-    gravest = min(problems, key=lambda problem: problem.severity)
-    more = f"momantu-bt check --explain {gravest.code} says more"
-    typer.echo(f"{', '.join(counts)}; {more}", err=True)
-
-
-def _explain(code: str) -> int:
-    try:
-        typer.echo(explanation(code).rstrip())
-    except UnknownCode:
-        hint = valid_names(code, codes(), "codes")
-        return _refuse(f"no problem has the code {code!r}; {hint}")
-    return 0
-
-
-def _refuse(message: str) -> int:
-    typer.echo(f"momantu-bt: {message}", err=True)
-    return EXIT_WRONG_INPUT
 
 
 def _print_json(value: Any) -> None:

@@ -9,16 +9,11 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from momantu_bt.cli.bench_setup import (
-    EXIT_INCOMPLETE,
-    EXIT_INTERRUPTED,
-    EXIT_OK,
     OUT,
     RECORD,
-    ArgumentError,
     HowToRun,
     choose,
     engine_of,
-    guarded,
     keep_plan,
     plan_of,
     say_missing,
@@ -37,6 +32,7 @@ from momantu_bt.cli.options import (
     Seeds,
     Values,
 )
+from momantu_bt.errors import ExitCode, InputError
 
 if TYPE_CHECKING:
     from momantu_bt.bench.engine import Engine
@@ -65,7 +61,7 @@ def compare(
     ray_address: RayAddress = None,
     record: Kept = "failures",
     report: Annotated[Path | None, typer.Option(help="Write all figures to this JSON.")] = None,
-) -> int:
+) -> ExitCode:
     """Run two trees on the same seeds, and say whether one works more often or faster.
 
     Rows are kept where `bench` keeps them, so that what either has run already is not run again.
@@ -77,26 +73,22 @@ def compare(
       momantu-bt compare bring_object bring_object_plain --seeds 0:100
       momantu-bt compare old.yaml new.yaml --seeds 0:50 --report comparison.json
     """
+    from momantu_bt.bench.seeds import parse_seeds
+    from momantu_bt.cli.given import given_values
+    from momantu_bt.files import check_writable
 
-    def start() -> int:
-        from momantu_bt.bench.seeds import parse_seeds
-        from momantu_bt.cli.given import given_values
-        from momantu_bt.files import check_writable
-
-        chosen = choose(record, RECORD, "--record")
-        board = given_values(set_ or [], values)
-        how = HowToRun(world, robot, board, max_time, referee, episode_limit, chosen)
-        plans = [plan_of(tree, parse_seeds(seeds), how)[0] for tree in (tree_a, tree_b)]
-        if plans[0].wanted == plans[1].wanted:
-            raise ArgumentError(f"{tree_a} and {tree_b} are the same; name two different trees")
-        if report is not None:
-            check_writable(report)
-        return _compare(plans, engine_of(engine, jobs, ray_address), out, report)
-
-    return guarded(start)
+    chosen = choose(record, RECORD, "--record")
+    board = given_values(set_ or [], values)
+    how = HowToRun(world, robot, board, max_time, referee, episode_limit, chosen)
+    plans = [plan_of(tree, parse_seeds(seeds), how)[0] for tree in (tree_a, tree_b)]
+    if plans[0].wanted == plans[1].wanted:
+        raise InputError(f"{tree_a} and {tree_b} are the same; name two different trees")
+    if report is not None:
+        check_writable(report)
+    return _compare(plans, engine_of(engine, jobs, ray_address), out, report)
 
 
-def _compare(plans: list[Plan], engine: Engine, out: Path, report: Path | None) -> int:
+def _compare(plans: list[Plan], engine: Engine, out: Path, report: Path | None) -> ExitCode:
     """Run what is missing of both, turn about, then say how they differ."""
     from momantu_bt.bench.carry_out import carry_out
     from momantu_bt.bench.store import Store
@@ -122,8 +114,8 @@ def _compare(plans: list[Plan], engine: Engine, out: Path, report: Path | None) 
     say_refused(ended)
     say_missing(missing)
     if ended.interrupted:
-        return EXIT_INTERRUPTED
-    return EXIT_INCOMPLETE if missing else EXIT_OK
+        return ExitCode.INTERRUPTED
+    return ExitCode.FAILURE if missing else ExitCode.SUCCESS
 
 
 def _say(names: list[str], rows: list[list[Row]], report: Path | None) -> None:

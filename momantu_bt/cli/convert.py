@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from momantu_bt.errors import ExitCode, InputError
 from momantu_bt.files import OutputError, check_writable, write_whole
 from momantu_bt.tree.convert import (
     CannotWrite,
@@ -22,8 +23,6 @@ from momantu_bt.tree.files.lookup import find
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.registry import Registry
 
-EXIT_WRONG_INPUT = 2
-
 
 def convert(
     tree: Annotated[str, typer.Argument(help="A tree file, or the name of a bundled tree.")],
@@ -34,7 +33,7 @@ def convert(
         Spelling | None, typer.Option(help="yaml or xml; else what OUTPUT ends with, or the other.")
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Overwrite OUTPUT.")] = False,
-) -> int:
+) -> ExitCode:
     """Write a tree file in the other spelling, YAML or BehaviorTree.CPP's XML. Nothing is lost.
 
     Comments come along. Nodes need not be installed, but a file that is wrong in form is refused.
@@ -45,31 +44,23 @@ def convert(
       momantu-bt convert from_groot.xml -o trees/mine.yaml
       momantu-bt convert mine.yaml --to yaml -o mine.yaml --force
     """
+    if output is not None:
+        _check(output, force)
+    registry = Registry.installed()
     try:
-        if output is not None:
-            _check(output, force)
-        registry = Registry.installed()
         document = read_right(find(tree), registry)
         spelling = to or _wanted(document, output)
         if output is not None:
             _move_includes(document, output)
         text = write(document, spelling, registry)
-        if output is not None:
-            write_whole(output, text)
     except CannotWrite as error:
-        return _refuse(f"{error.place or tree}: {error}")
-    except OutputError as error:
-        return _refuse(str(error))
+        raise InputError(f"{error.place or tree}: {error}") from None
     if output is None:
         typer.echo(text, nl=False)
     else:
+        write_whole(output, text)
         typer.echo(f"wrote {output}")
-    return 0
-
-
-def _refuse(message: str) -> int:
-    typer.echo(f"momantu-bt: {message}", err=True)
-    return EXIT_WRONG_INPUT
+    return ExitCode.SUCCESS
 
 
 def _check(output: Path, force: bool) -> None:

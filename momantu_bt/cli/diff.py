@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from momantu_bt.cli.records import open_record
+from momantu_bt.errors import ExitCode
 
 if TYPE_CHECKING:
     from momantu_bt.replay.compare import Comparison
@@ -23,7 +24,7 @@ def diff(
     left: Annotated[Path, typer.Argument(help="The folder of a record.")],
     right: Annotated[Path, typer.Argument(help="The folder of another one.")],
     json_: Annotated[bool, typer.Option("--json", help="The differences as JSON.")] = False,
-) -> int:
+) -> ExitCode:
     """Say where two recorded runs part, and how they differ as a whole.
 
     Wall times, folders and tracebacks do not count. Exit code 0: they are equal; 1: they are
@@ -42,7 +43,7 @@ def diff(
     else:
         for line in _lines(comparison):
             typer.echo(line)
-    return 0 if comparison.equal else 1
+    return ExitCode.SUCCESS if comparison.equal else ExitCode.FAILURE
 
 
 def _lines(found: Comparison) -> Iterator[str]:

@@ -13,8 +13,7 @@ from momantu_bt.diagnosis import Diagnosis
 from momantu_bt.diagnosis.machine import machine
 from momantu_bt.diagnosis.packages import packages
 from momantu_bt.diagnosis.plugins import plugins
-
-EXIT_WRONG = 1
+from momantu_bt.errors import ExitCode
 
 
 def doctor(
@@ -23,7 +22,7 @@ def doctor(
     output: Annotated[
         Path, typer.Option(help="The folder that reports and videos shall go to.")
     ] = Path(),
-) -> None:
+) -> ExitCode:
     """Look at Python, packages, Vulkan, memory and folders, and name the cure for what is wrong.
 
     Exit code 0: nothing is wrong; 1: something is.
@@ -46,8 +45,7 @@ def doctor(
         typer.echo(json.dumps(report, indent=2))
     else:
         typer.echo(_closing(wrong))
-    if wrong:
-        raise typer.Exit(EXIT_WRONG)
+    return ExitCode.FAILURE if wrong else ExitCode.SUCCESS
 
 
 def diagnose(output: Path) -> Iterator[Diagnosis]:

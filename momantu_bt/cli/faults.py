@@ -8,11 +8,11 @@ from typing import Annotated
 import typer
 
 from momantu_bt.cli.help import help_of
+from momantu_bt.errors import ExitCode
 
 faults = typer.Typer(rich_markup_mode=None, invoke_without_command=True)
 
 _JSON = Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")]
-EXIT_WRONG_ARGUMENTS = 2
 
 
 @faults.callback(help="List the faults of `run --fault`. `momantu-bt faults show NAME` shows one.")
@@ -43,24 +43,19 @@ def list_all(as_json: _JSON = False) -> None:
 def show_one(
     name: Annotated[str, typer.Argument(help="The fault's name, such as camera.dead.")],
     as_json: _JSON = False,
-) -> int:
+) -> ExitCode:
     """Show when a fault begins, its parameters, and how a run with it must end.
 
     Examples:
       momantu-bt faults show gripper.slips
     """
-    from momantu_bt.fault import FaultError
     from momantu_bt.faults.catalogue import KINDS
     from momantu_bt.faults.pages import as_data, as_text
     from momantu_bt.faults.spec import parse_fault
 
-    try:
-        kind = KINDS[parse_fault(name).name]
-    except FaultError as error:
-        typer.echo(f"momantu-bt: {error}", err=True)
-        return EXIT_WRONG_ARGUMENTS
+    kind = KINDS[parse_fault(name).name]
     typer.echo(json.dumps(as_data(kind), indent=2) if as_json else as_text(kind))
-    return 0
+    return ExitCode.SUCCESS
 
 
 def _list(as_json: bool) -> None:

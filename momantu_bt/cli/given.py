@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from momantu_bt.errors import InputError
+
 if TYPE_CHECKING:
     from momantu_bt.tree.files.settings import Given
 
@@ -14,10 +16,9 @@ def given_values(settings: Sequence[str], file: Path | None) -> Given:
     """Values of the root's board.
 
     Raises:
-        LaunchError: a setting is none.
+        InputError: a setting is not written as key=value.
         TreeNotFound, TreeError: the file cannot be read, or is no mapping.
     """
-    from momantu_bt.engine.launch import LaunchError
     from momantu_bt.tree.files.settings import Given
     from momantu_bt.tree.load import read_values
 
@@ -25,5 +26,5 @@ def given_values(settings: Sequence[str], file: Path | None) -> Given:
     try:
         board.set(settings)
     except ValueError as error:
-        raise LaunchError(str(error)) from None
+        raise InputError(str(error)) from None
     return board

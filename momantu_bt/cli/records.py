@@ -5,36 +5,24 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import typer
+from momantu_bt.cli.notices import notice
 
 if TYPE_CHECKING:
     from momantu_bt.record.recording import Recording
-
-EXIT_WRONG_ARGUMENTS = 2
-
-
-def complain(message: object) -> None:
-    """Say it on standard error."""
-    typer.echo(f"momantu-bt: {message}", err=True)
 
 
 def open_record(folder: Path) -> Recording:
     """The record in a folder; says so when it was cut off.
 
     Raises:
-        typer.Exit: there is none that can be read, which has been said.
+        RecordError: there is none that can be read, or it ends before the first tick.
     """
     from momantu_bt.record.reader import RecordError, read_record
 
-    try:
-        recording = read_record(folder)
-    except RecordError as error:
-        complain(error)
-        raise typer.Exit(EXIT_WRONG_ARGUMENTS) from None
+    recording = read_record(folder)
     if not recording.ticks or not recording.nodes:
-        complain(f"{folder}: the record ends before the first tick")
-        raise typer.Exit(EXIT_WRONG_ARGUMENTS)
+        raise RecordError(f"{folder}: the record ends before the first tick")
     if not recording.complete:
         last = recording.ticks[-1].now
-        complain(f"{folder}: the record was cut off after {last:.2f} s; it is read up to there")
+        notice(f"{folder}: the record was cut off after {last:.2f} s; it is read up to there")
     return recording

@@ -9,13 +9,12 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from momantu_bt import __version__
-from momantu_bt.cli.records import EXIT_WRONG_ARGUMENTS, complain, open_record
+from momantu_bt.cli.records import open_record
+from momantu_bt.errors import ExitCode
 
 if TYPE_CHECKING:
     from momantu_bt.record.recording import Recording
     from momantu_bt.replay.timeline import Timeline
-
-EXIT_DIFFERENT = 1
 
 
 def replay(
@@ -37,7 +36,7 @@ def replay(
     check: Annotated[
         bool, typer.Option("--check", help="Tick the tree again; it must do what it did.")
     ] = False,
-) -> int:
+) -> ExitCode:
     """Go through a recorded run; without a terminal print what it said.
 
     On a terminal, keys step through it; ? shows them. With --at and --node, --node is sought from
@@ -54,7 +53,6 @@ def replay(
       momantu-bt replay runs/3 --check
     """
     from momantu_bt.cli.terminal import is_interactive
-    from momantu_bt.replay.seek import SeekError
     from momantu_bt.replay.timeline import Timeline
 
     recording = open_record(run)
@@ -64,18 +62,14 @@ def replay(
         return _write_page(recording, html)
     timeline = Timeline(recording)
     chosen = (at, node, failure) != (None, None, None)
-    try:
-        index = _chosen(timeline, at, node, failure)
-    except (SeekError, ValueError) as error:
-        complain(error)
-        return EXIT_WRONG_ARGUMENTS
+    index = _chosen(timeline, at, node, failure)
     if chosen or json_:
         _print_instant(timeline, index, as_json=json_)
     elif is_interactive():
         _step(timeline)
     else:
         _print_all(recording)
-    return 0
+    return ExitCode.SUCCESS
 
 
 def _chosen(timeline: Timeline, at: float | None, node: str | None, failure: int | None) -> int:
@@ -103,17 +97,12 @@ def _chosen(timeline: Timeline, at: float | None, node: str | None, failure: int
     return index
 
 
-def _write_page(recording: Recording, path: Path) -> int:
-    from momantu_bt.files import OutputError
+def _write_page(recording: Recording, path: Path) -> ExitCode:
     from momantu_bt.page import write_page
 
-    try:
-        write_page(recording, path)
-    except OutputError as error:
-        complain(error)
-        return EXIT_WRONG_ARGUMENTS
+    write_page(recording, path)
     typer.echo(f"{path}: open it in a browser")
-    return 0
+    return ExitCode.SUCCESS
 
 
 def _print_instant(timeline: Timeline, index: int, *, as_json: bool) -> None:
@@ -149,7 +138,7 @@ def _step(timeline: Timeline) -> None:
     typer.echo(ending(recording))
 
 
-def _check(recording: Recording) -> int:
+def _check(recording: Recording) -> ExitCode:
     from momantu_bt.replay.rebuild import RebuildError
     from momantu_bt.replay.recheck import recheck
     from momantu_bt.tree.registry import Registry
@@ -157,12 +146,11 @@ def _check(recording: Recording) -> int:
     try:
         result = recheck(recording, Registry.installed())
     except RebuildError as error:
-        complain(f"{recording.folder}: {error}")
-        return EXIT_WRONG_ARGUMENTS
+        raise RebuildError(f"{recording.folder}: {error}") from None
     different = result.difference
     if different is None:
         typer.echo(f"the tree did the same in all {result.ticks} ticks")
-        return 0
+        return ExitCode.SUCCESS
     where = f" of {different.where}" if different.where else ""
     typer.echo(
         f"after {result.ticks} equal ticks, in tick {different.tick}, {different.now:.2f} s: "
@@ -173,4 +161,4 @@ def _check(recording: Recording) -> int:
     recorded = recording.about["versions"].get("momantu-bt", "an unknown version")
     if recorded != __version__:
         typer.echo(f"the record is of momantu-bt {recorded}, this is {__version__}")
-    return EXIT_DIFFERENT
+    return ExitCode.FAILURE

@@ -6,6 +6,7 @@ from typing import Any
 
 from momantu_bt.cli.schema_file import Out, put_schema
 from momantu_bt.descriptions.schema import editor_schema
+from momantu_bt.errors import ExitCode
 
 
 def robot_schema() -> dict[str, Any]:
@@ -16,7 +17,7 @@ def robot_schema() -> dict[str, Any]:
     return editor_schema(made, "momantu-bt robot file")
 
 
-def schema(out: Out = None) -> int:
+def schema(out: Out = None) -> ExitCode:
     """Print a JSON Schema of robot files.
 
     With it editors complete keys, show what they mean, and mark what is wrong while it is typed;

@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from momantu_bt.cli.notices import notice
 from momantu_bt.cli.options import Robot
+from momantu_bt.errors import ExitCode, InputError, MomantuError
 
 if TYPE_CHECKING:
     from momantu_bt.cli.breakpoints import Breakpoints
@@ -22,7 +24,6 @@ if TYPE_CHECKING:
     from momantu_bt.tree.model import Document
     from momantu_bt.tree.substitute.substitution import Substitution
 
-EXIT_WRONG_ARGUMENTS, EXIT_INTERRUPTED = 2, 130
 VIEW_PORT = 8080
 
 
@@ -72,7 +73,7 @@ def run(
         bool, typer.Option("--unattended", help="Nobody answers: questions take their default.")
     ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Only the last line.")] = False,
-) -> int:
+) -> ExitCode:
     """Run a tree until it ends, and say what happened.
 
     Exit code 0: the tree succeeded and no referee denies it; 1: it failed, or the referee denies
@@ -90,15 +91,24 @@ def run(
 
     terminal = Terminal() if is_interactive() and not unattended else None
     wanted = _Outputs(video, view, view_port, record, report, quiet, terminal, break_ or [])
-    return _guarded(
-        lambda: _run(tree, world, robot, seed, set_ or [], values, substitute, wanted)(
+    try:
+        start = _run(tree, world, robot, seed, set_ or [], values, substitute, wanted)
+        result = start(
             max_time=max_time,
             realtime=realtime,
             referee=referee,
             patience=patience,
             faults=_faults(fault or []),
         )
-    )
+    except KeyboardInterrupt:
+        raise NotStarted("interrupted before the first tick; nothing was started") from None
+    return result.exit_code
+
+
+class NotStarted(MomantuError):
+    """Ctrl-C came before the first tick."""
+
+    exit_code = ExitCode.INTERRUPTED
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,32 +123,10 @@ class _Outputs:
     breaks: Sequence[str]
 
 
-def _guarded(start: Callable[[], Report]) -> int:
-    """Run; what is wrong with the arguments becomes a sentence and an exit code."""
-    from momantu_bt.engine.launch import LaunchError
-    from momantu_bt.engine.makers import BuildError
-    from momantu_bt.engine.services import ServiceCycleError
-    from momantu_bt.fault import FaultError
-    from momantu_bt.files import OutputError
-
-    try:
-        return start().exit_code
-    except (LaunchError, BuildError, ServiceCycleError, OutputError, FaultError) as error:
-        _complain(error)
-        return EXIT_WRONG_ARGUMENTS
-    except KeyboardInterrupt:
-        _complain("interrupted before the first tick; nothing was started")
-        return EXIT_INTERRUPTED
-
-
 def _faults(texts: Sequence[str]) -> tuple[Fault, ...]:
     from momantu_bt.faults.spec import parse_fault
 
     return tuple(parse_fault(text) for text in texts)
-
-
-def _complain(message: object) -> None:
-    typer.echo(f"momantu-bt: {message}", err=True)
 
 
 def _run(
@@ -174,7 +162,7 @@ def _run(
             world=world,
             robot=robot,
             seed=seed,
-            remark=_complain,
+            remark=notice,
             substitution=replacing,
             record=wanted.record,
             **how,
@@ -193,12 +181,11 @@ def _breakpoints(
 ) -> Breakpoints | None:
     """Where a person wants to stop, who must be there for it."""
     from momantu_bt.cli.breakpoints import Breakpoints
-    from momantu_bt.engine.launch import LaunchError
 
     if not wanted.breaks:
         return None
     if wanted.terminal is None:
-        raise LaunchError("--break needs a person at a terminal, and no --unattended")
+        raise InputError("--break needs a person at a terminal, and no --unattended")
     return Breakpoints(wanted.breaks, document, wanted.terminal, replacing)
 
 
@@ -212,7 +199,6 @@ def _check_outputs(wanted: _Outputs) -> None:
 
 def _watch(run: Executor, wanted: _Outputs, stops: Breakpoints | None) -> list[Observer]:
     """Observers of what the user asked to see; those opened are closed when one cannot be."""
-    from momantu_bt.engine.launch import LaunchError
     from momantu_bt.record.film import FilmObserver, ViewObserver
 
     observers: list[Observer] = []
@@ -223,7 +209,7 @@ def _watch(run: Executor, wanted: _Outputs, stops: Breakpoints | None) -> list[O
             observers.append(observer)
 
         if (wanted.video is not None or wanted.view) and run.world is None:
-            raise LaunchError("--video and --view need a world; this run has none")
+            raise InputError("--video and --view need a world; this run has none")
         if wanted.video is not None and run.world is not None:
             add(FilmObserver(run.world.open_video(wanted.video, run.built.root.model.place.file)))
         if wanted.view and run.world is not None:

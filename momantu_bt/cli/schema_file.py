@@ -9,26 +9,21 @@ from typing import Annotated, Any, TypeAlias
 
 import typer
 
-from momantu_bt.files import OutputError, check_writable, write_whole
-
-EXIT_WRONG_INPUT = 2
+from momantu_bt.errors import ExitCode
+from momantu_bt.files import check_writable, write_whole
 
 Out: TypeAlias = Annotated[
     Path | None, typer.Option("--out", "-o", help="Write to this file; else print it.")
 ]
 
 
-def put_schema(schema: Mapping[str, Any], out: Path | None, what: str) -> int:
+def put_schema(schema: Mapping[str, Any], out: Path | None, what: str) -> ExitCode:
     """Print or write a schema, and say how a file of its kind names it. what: "a tree"."""
     text = json.dumps(schema, indent=2) + "\n"
     if out is None:
         typer.echo(text, nl=False)
-        return 0
-    try:
-        check_writable(out)
-        write_whole(out, text)
-    except OutputError as error:
-        typer.echo(f"momantu-bt: {error}", err=True)
-        return EXIT_WRONG_INPUT
+        return ExitCode.SUCCESS
+    check_writable(out)
+    write_whole(out, text)
     typer.echo(f"schema: {out}; begin {what} with `# yaml-language-server: $schema={out}`")
-    return 0
+    return ExitCode.SUCCESS

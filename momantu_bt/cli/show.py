@@ -11,7 +11,8 @@ import typer
 from momantu_bt.drawing.boxes import pictures
 from momantu_bt.drawing.difference import difference
 from momantu_bt.drawing.wires import Wire, wire_lines, wires
-from momantu_bt.files import OutputError, write_whole
+from momantu_bt.errors import ExitCode
+from momantu_bt.files import write_whole
 from momantu_bt.tree.check.named_world import world_of
 from momantu_bt.tree.load import load
 from momantu_bt.tree.model import Document
@@ -19,7 +20,6 @@ from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.show.printing import lines, value_text
 
 INDENT = "  "
-EXIT_DIFFERENT = 1
 
 
 def show(
@@ -37,7 +37,7 @@ def show(
     output: Annotated[
         Path | None, typer.Option("--output", "-o", help="Write to this file instead.")
     ] = None,
-) -> int:
+) -> ExitCode:
     """Print a tree in plain words, with what is wrapped around each node, and its wires.
 
     The tree is checked first; exit code 2: it has errors, and they are shown instead.
@@ -57,11 +57,11 @@ def show(
         raise typer.BadParameter(f"the difference of two trees is text; leave --{kinds[0]} out")
     registry = Registry.installed()
     document = load(tree, registry, world=world).document
-    code = 0
+    code = ExitCode.SUCCESS
     if other is not None:
         found = difference(document, load(other, registry, world=world).document)
         text = "".join(f"{line.mark} {INDENT * line.depth}{line.text}\n" for line in found)
-        code = EXIT_DIFFERENT if found else 0
+        code = ExitCode.FAILURE if found else ExitCode.SUCCESS
     elif kinds:
         text = _picture(kinds[0], document, registry, with_wires)
     else:
@@ -107,7 +107,4 @@ def _write(text: str, output: Path | None) -> None:
     if output is None:
         typer.echo(text, nl=False)
         return
-    try:
-        write_whole(output, text)
-    except OutputError as error:
-        raise typer.BadParameter(str(error)) from None
+    write_whole(output, text)

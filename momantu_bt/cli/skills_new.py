@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-EXIT_WRONG_INPUT = 2
+from momantu_bt.errors import ExitCode
 
 
 def new(
@@ -15,19 +15,15 @@ def new(
     into: Annotated[
         Path, typer.Option(help="The folder to make the package's folder in.")
     ] = Path(),
-) -> int:
+) -> ExitCode:
     """Make a package with a skill that works, its entry point, a test that passes and a README.
 
     Examples:
       momantu-bt skills new turn
       momantu-bt skills new turn --into ~/robots
     """
-    from momantu_bt.scaffold import CannotCreate, new_skill
+    from momantu_bt.scaffold import new_skill
 
-    try:
-        folder = new_skill(name, into)
-    except CannotCreate as error:
-        typer.echo(f"momantu-bt: {error}", err=True)
-        return EXIT_WRONG_INPUT
+    folder = new_skill(name, into)
     typer.echo(f"{folder}: `pip install -e {folder}`, then trees may say `{name}:`")
-    return 0
+    return ExitCode.SUCCESS

@@ -8,11 +8,10 @@ from typing import Annotated
 import typer
 
 from momantu_bt import plugins
-from momantu_bt.files import OutputError, write_whole
+from momantu_bt.errors import ExitCode
+from momantu_bt.files import write_whole
 from momantu_bt.skill import Skill
 from momantu_bt.tree.show.skill_page import pages as pages_of
-
-EXIT_WRONG_INPUT = 2
 
 
 def pages(
@@ -20,7 +19,7 @@ def pages(
     names: Annotated[
         list[str] | None, typer.Argument(help="Skills, as in trees; all when none is named.")
     ] = None,
-) -> int:
+) -> ExitCode:
     """Write a page of Markdown per skill, and an index, from what `skills show` knows.
 
     Examples:
@@ -28,11 +27,7 @@ def pages(
     """
     chosen = names or list(plugins.installed(plugins.SKILLS))
     skills: dict[str, type[Skill]] = {name: plugins.load(plugins.SKILLS, name) for name in chosen}
-    try:
-        for file, text in pages_of(skills).items():
-            write_whole(folder / file, text, folders=True)
-    except OutputError as error:
-        typer.echo(f"momantu-bt: {error}", err=True)
-        return EXIT_WRONG_INPUT
+    for file, text in pages_of(skills).items():
+        write_whole(folder / file, text, folders=True)
     typer.echo(f"{len(skills)} pages and an index in {folder}")
-    return 0
+    return ExitCode.SUCCESS

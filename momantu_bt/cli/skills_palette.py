@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import typer
 
+from momantu_bt.cli.notices import notice
 from momantu_bt.plugins import PluginError
 from momantu_bt.skill import Skill
 from momantu_bt.tree.files.xml.palette import palette
@@ -18,5 +19,5 @@ def print_palette() -> None:
         try:
             found[name] = registry.skills[name]
         except PluginError as error:
-            typer.echo(f"momantu-bt: left out: {error}", err=True)
+            notice(f"left out: {error}")
     typer.echo(palette(found), nl=False)

@@ -6,7 +6,9 @@ from typing import Annotated
 
 import typer
 
+from momantu_bt.cli.notices import notice
 from momantu_bt.cli.schema_file import Out, put_schema
+from momantu_bt.errors import ExitCode
 from momantu_bt.plugins import ROBOTS, WORLDS, PluginError, load
 from momantu_bt.skill import Skill
 from momantu_bt.tree.registry import Registry
@@ -20,7 +22,7 @@ def schema(
         str | None, typer.Option(help="Complete this world's places and surfaces.")
     ] = None,
     robot: Annotated[str | None, typer.Option(help="Complete the poses of a name or file.")] = None,
-) -> int:
+) -> ExitCode:
     """Print a JSON Schema of tree files, made from the installed skills.
 
     With it editors complete nodes, ports, codes and modifiers; `momantu-bt check` says more.
@@ -40,7 +42,7 @@ def _skills(registry: Registry) -> dict[str, type[Skill]]:
         try:
             found[name] = registry.skills[name]
         except PluginError as error:
-            typer.echo(f"momantu-bt: left out: {error}", err=True)
+            notice(f"left out: {error}")
     return found
 
 

@@ -9,8 +9,7 @@ from typing import Annotated
 import typer
 
 from momantu_bt import plugins
-
-EXIT_FAILED = 1
+from momantu_bt.errors import ExitCode
 
 
 def promises(
@@ -22,7 +21,7 @@ def promises(
         int, typer.Option(min=1, help="At how many ticks of a run each is halted, at most.")
     ] = 20,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,
-) -> int:
+) -> ExitCode:
     """Run skills in a scripted room, without a simulator, and say what is wrong with them.
 
     Ports, codes, docs, clocks and random numbers; halting at each tick, starting again, dead
@@ -52,4 +51,4 @@ def promises(
     if as_json:
         shown = {name: [asdict(finding) for finding in found] for name, found in told.items()}
         typer.echo(json.dumps({"ok": passed, "skills": shown}, indent=2))
-    return 0 if passed else EXIT_FAILED
+    return ExitCode.SUCCESS if passed else ExitCode.FAILURE

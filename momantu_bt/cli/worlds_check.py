@@ -9,10 +9,10 @@ import typer
 
 from momantu_bt.bench.seeds import SeedsError, parse_seeds
 from momantu_bt.cli.naming import robot_of, world_of
+from momantu_bt.errors import ExitCode, InputError
 from momantu_bt.findings import findings_json, findings_text
 from momantu_bt.world import CheckableWorld, WorldError
 
-EXIT_WRONG_INPUT = 2
 MOST_SEEDS = 1000
 """Episodes of one check; more of them find nothing new."""
 
@@ -24,7 +24,7 @@ def check(
     ] = None,
     seeds: Annotated[str, typer.Option(help="Episodes to look at: 0:20, 3,5,7.")] = "0:20",
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,
-) -> int:
+) -> ExitCode:
     """Find whatever makes a world unusable.
 
     Looked for, without a simulator: overlaps, tables and places that the robot does not get to,
@@ -39,19 +39,18 @@ def check(
       momantu-bt worlds check my_flat.yaml --robot fetch --seeds 0:50
       momantu-bt worlds check my_flat.yaml --json
     """
+    episodes = parse_seeds(seeds)
+    if len(episodes) > MOST_SEEDS:
+        raise SeedsError(f"--seeds {seeds} are more than {MOST_SEEDS} seeds")
+    entry = world_of(world)
+    if not isinstance(entry, CheckableWorld):
+        raise InputError(f"the world {world!r} cannot check itself")
     try:
-        episodes = parse_seeds(seeds)
-        if len(episodes) > MOST_SEEDS:
-            raise SeedsError(f"--seeds {seeds} are more than {MOST_SEEDS} seeds")
-        entry = world_of(world)
-        if not isinstance(entry, CheckableWorld):
-            raise WorldError(f"the world {world!r} cannot check itself")
         findings = entry.check(robot_of(robot or entry.default_robot), episodes)
-    except (SeedsError, WorldError) as error:
-        typer.echo(f"momantu-bt: {error}", err=True)
-        return EXIT_WRONG_INPUT
+    except WorldError as error:
+        raise InputError(str(error)) from None
     if as_json:
         typer.echo(json.dumps(findings_json(world, findings), indent=2))
     else:
         typer.echo(findings_text(world, findings))
-    return 1 if findings else 0
+    return ExitCode.FAILURE if findings else ExitCode.SUCCESS

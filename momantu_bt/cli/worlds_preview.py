@@ -8,10 +8,9 @@ from typing import Annotated
 import typer
 
 from momantu_bt.cli.naming import robot_of, world_of
+from momantu_bt.errors import ExitCode, InputError
 from momantu_bt.files import OutputError, check_writable, write_whole
 from momantu_bt.world import PreviewableWorld, WorldError
-
-EXIT_WRONG_INPUT, EXIT_NO_WORLD = 2, 3
 
 
 def preview(
@@ -24,7 +23,7 @@ def preview(
     plan: Annotated[
         bool, typer.Option("--plan", help="Only the plan; needs no simulator and no Vulkan driver.")
     ] = False,
-) -> int:
+) -> ExitCode:
     """Draw a world from above.
 
     The picture is a plan with names, and beneath it a view with the walls cut low.
@@ -37,27 +36,17 @@ def preview(
       momantu-bt worlds preview my_flat.yaml --seed 3 --robot fetch -o flat.png
       momantu-bt worlds preview my_flat.yaml --plan -o plan.png
     """
+    check_writable(out)
+    if out.suffix.lower() != ".png":
+        raise OutputError(f"{out} is no .png file; the picture is a PNG")
+    entry = world_of(world)
+    if not isinstance(entry, PreviewableWorld):
+        raise InputError(f"the world {world!r} cannot draw itself")
     try:
-        check_writable(out)
-        if out.suffix.lower() != ".png":
-            raise OutputError(f"{out} is no .png file; the picture is a PNG")
-        entry = world_of(world)
-        if not isinstance(entry, PreviewableWorld):
-            raise WorldError(f"the world {world!r} cannot draw itself")
         entry.site()  # a file that is wrong is told before anything starts
         description = robot_of(robot or entry.default_robot)
-    except (OutputError, WorldError) as error:
-        return _complain(error, EXIT_WRONG_INPUT)
-    try:
-        write_whole(out, entry.preview(description, seed, view=not plan))
-    except OutputError as error:
-        return _complain(error, EXIT_WRONG_INPUT)
     except WorldError as error:
-        return _complain(error, EXIT_NO_WORLD)
+        raise InputError(str(error)) from None
+    write_whole(out, entry.preview(description, seed, view=not plan))
     typer.echo(f"{out}: {world}, seed {seed}")
-    return 0
-
-
-def _complain(error: Exception, code: int) -> int:
-    typer.echo(f"momantu-bt: {error}", err=True)
-    return code
+    return ExitCode.SUCCESS

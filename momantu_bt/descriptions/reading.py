@@ -11,7 +11,7 @@ from ruamel.yaml import YAML
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
 from ruamel.yaml.nodes import MappingNode, Node, SequenceNode
 
-from momantu_bt.world import WorldError
+from momantu_bt.errors import MomantuError
 
 Place: TypeAlias = tuple[str | int, ...]
 """Keys and indices from the top of a file down to a value."""
@@ -34,7 +34,7 @@ class Problem:
     place: Place = ()
 
 
-class DescriptionError(WorldError):
+class DescriptionError(MomantuError):
     """A description is wrong; the message lists every problem with its line and a caret."""
 
     what: ClassVar[str] = "description"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 import traceback
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -23,6 +23,7 @@ from momantu_bt.engine.person import Person, Scripted
 from momantu_bt.engine.reporting import report_of
 from momantu_bt.engine.services import Services, in_order
 from momantu_bt.engine.watchdog import PATIENCE, Watchdog
+from momantu_bt.errors import MomantuError
 from momantu_bt.fault import Fault
 from momantu_bt.faults.stage import Planned, Stage, plan
 from momantu_bt.frames import FrameBuffer
@@ -45,7 +46,7 @@ if TYPE_CHECKING:
 Watch: TypeAlias = Callable[[Executor], Sequence[Observer]]
 
 
-class LaunchError(Exception):
+class LaunchError(MomantuError):
     """The run cannot begin as it was asked for; nothing was started."""
 
 
@@ -166,19 +167,33 @@ def _open(
     kinds: Mapping[str, type[Skill]],
     needed: Mapping[str, type[Service]],
 ) -> World | None:
+    check_world(document, options.world, kinds, registry)
     name = world_of(document, options.world)
     if name is None:
-        if kinds:
-            raise LaunchError(
-                f"{document.main} needs a world for {', '.join(kinds)}; worlds: "
-                f"{', '.join(registry.worlds) or 'none'}; give one with --world"
-            )
         return None
     entry = registry.worlds[name]
     description = registry.description(options.robot or entry.default_robot)
     _check_uses(kinds, description)
     _check_sensors(needed, description)
     return entry.open(description, options.seed, referee=options.referee)
+
+
+def check_world(
+    document: Document, asked: str | None, skills: Iterable[str], registry: Registry
+) -> None:
+    """Refuse a tree with skills that is to run without a world.
+
+    asked: the world that is given instead of the tree's own. skills: what the tree starts.
+
+    Raises:
+        LaunchError: there are skills and no world.
+    """
+    names = ", ".join(skills)
+    if names and world_of(document, asked) is None:
+        raise LaunchError(
+            f"{document.main} needs a world for {names}; worlds: "
+            f"{', '.join(registry.worlds) or 'none'}; give one with --world"
+        )
 
 
 def _check_uses(kinds: Mapping[str, type[Skill]], description: RobotDescription) -> None:

@@ -39,11 +39,12 @@ from momantu_bt.engine.nodes import (
     updates,
 )
 from momantu_bt.engine.ports import Inputs, cell_of, inputs_of, outputs_of
+from momantu_bt.errors import MomantuError
 from momantu_bt.tree.catalogue import SWITCHES, NodeSpec, ScriptText
 from momantu_bt.tree.model import Node, Reference
 
 
-class BuildError(Exception):
+class BuildError(MomantuError):
     """The model cannot become nodes: the checker would have said so."""
 
 

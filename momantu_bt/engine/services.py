@@ -7,6 +7,7 @@ from typing import Any, TypeAlias
 
 from momantu_bt.engine.actuators import Actuators
 from momantu_bt.engine.session import CLOCK_SLACK
+from momantu_bt.errors import MomantuError
 from momantu_bt.frames import FrameBuffer
 from momantu_bt.robot import Robot
 from momantu_bt.service import Service, ServiceContext
@@ -16,7 +17,7 @@ from momantu_bt.world import Site, seeded
 ServiceFinder: TypeAlias = Callable[[str], type[Service]]
 
 
-class ServiceCycleError(Exception):
+class ServiceCycleError(MomantuError):
     """Services need each other in a circle; the message shows it."""
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from momantu_bt.engine.role import Role
+from momantu_bt.errors import MomantuError
 from momantu_bt.record.about import FORMAT
 from momantu_bt.record.codec import CodecError, from_json
 from momantu_bt.record.folder import LOG
@@ -34,7 +35,7 @@ __all__ = [
 _AGAIN = "$again"
 
 
-class RecordError(Exception):
+class RecordError(MomantuError):
     """A folder holds no record that can be read; the message says why and what to do."""
 
 

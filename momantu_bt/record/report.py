@@ -9,14 +9,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from momantu_bt.errors import ExitCode
 from momantu_bt.failure import FailureValue
 from momantu_bt.files import write_whole
 from momantu_bt.messages import plain
 from momantu_bt.world import Incident
 
 SUCCESS, FAILURE, INTERRUPTED, ERROR = "SUCCESS", "FAILURE", "INTERRUPTED", "ERROR"
-
-EXIT_SUCCESS, EXIT_FAILURE, EXIT_ERROR, EXIT_INTERRUPTED = 0, 1, 4, 130
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,15 +126,14 @@ class Report:
         return self.sim_time_s / self.wall_time_s if self.wall_time_s > 0.0 else 0.0
 
     @property
-    def exit_code(self) -> int:
+    def exit_code(self) -> ExitCode:
         """What the command line exits with."""
         if self.status == ERROR:
-            return EXIT_ERROR
+            return ExitCode.INTERNAL
         if self.status == INTERRUPTED:
-            return EXIT_INTERRUPTED
-        return (
-            EXIT_SUCCESS if self.status == SUCCESS and self.success is not False else EXIT_FAILURE
-        )
+            return ExitCode.INTERRUPTED
+        good = self.status == SUCCESS and self.success is not False
+        return ExitCode.SUCCESS if good else ExitCode.FAILURE
 
     def as_dict(self) -> dict[str, Any]:
         """Plain data for JSON."""

@@ -11,6 +11,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, NoReturn
 
+from momantu_bt.errors import MomantuError
 from momantu_bt.record.codec import from_json
 from momantu_bt.record.recording import Recording
 from momantu_bt.robot import RobotDescription
@@ -27,7 +28,7 @@ _MOST = 3
 """Problems of a tree that are told."""
 
 
-class RebuildError(Exception):
+class RebuildError(MomantuError):
     """A record's tree cannot be made again here; the message says why."""
 
 

@@ -7,12 +7,13 @@ from dataclasses import dataclass
 
 from momantu_bt.engine.role import Role
 from momantu_bt.engine.status import FAILURE
+from momantu_bt.errors import MomantuError
 from momantu_bt.failure import FailureValue
 from momantu_bt.record.recording import NodeInfo, Recording
 from momantu_bt.tree.problems import valid_names
 
 
-class SeekError(Exception):
+class SeekError(MomantuError, ValueError):
     """There is no such instant; the message says what there is."""
 
 

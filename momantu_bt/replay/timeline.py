@@ -8,6 +8,7 @@ from functools import lru_cache
 
 from momantu_bt.record.recording import Recording, TickRecord
 from momantu_bt.replay.moment import Moment, ShownNode
+from momantu_bt.replay.seek import SeekError
 from momantu_bt.replay.statuses import Statuses
 from momantu_bt.skill import MISSING
 
@@ -42,10 +43,10 @@ class Timeline:
         """The index of the last tick that is not later than a time, s; the first one's before.
 
         Raises:
-            ValueError: the time is not a number.
+            SeekError: the time is not a number.
         """
         if math.isnan(time):
-            raise ValueError("nan is no time; write seconds, such as 42.5")
+            raise SeekError("nan is no time; write seconds, such as 42.5")
         return max(0, bisect_right(self.times, time + _SLACK) - 1)
 
     def _build(self, index: int) -> Moment:

@@ -9,6 +9,7 @@ from pathlib import Path
 from string import Template
 
 from momantu_bt import plugins
+from momantu_bt.errors import MomantuError
 from momantu_bt.plugin_checks import bad_skill_name
 
 FILES = {
@@ -25,7 +26,7 @@ _IMPORTED = ("Failure", "In", "Out", "Robot", "Run", "Skill")
 _HERE = Path(__file__).parent
 
 
-class CannotCreate(Exception):
+class CannotCreate(MomantuError):
     """The package cannot be made as asked; the message says why. Nothing was written."""
 
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 import difflib
 import re
 import unicodedata
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from functools import lru_cache
 from itertools import islice
 from typing import Any
 
+from momantu_bt.errors import MomantuError
 from momantu_bt.tree.model import Place
 
 NOT_TEXT = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
@@ -60,13 +61,17 @@ class Problem:
         }
 
 
-class TreeError(Exception):
+class TreeError(MomantuError):
     """A tree file with errors. problems: all of them, in the order of the file."""
 
     def __init__(self, problems: Iterable[Problem], source: Mapping[str, str]) -> None:
         self.problems = sort(problems)
         self.source = dict(source)
         super().__init__("\n".join(f"{p.place}: {p.message}" for p in self.problems))
+
+    def printed(self) -> str:
+        """Every problem in its line, and how many there are."""
+        return report(self.problems, self.source)
 
 
 class TooManyProblems(TreeError):
@@ -185,6 +190,25 @@ def show(problem: Problem, source: Mapping[str, str]) -> str:
     caret = f"  {' ' * len(number)} | {gap}{'^' * max(1, sum(map(cells, marked)))}"
     shown = "".join(c if c == "\t" or c.isprintable() else "\ufffd" for c in shown)
     return f"{head}\n  {number} | {shown}\n{caret}{' ' + problem.hint if problem.hint else ''}"
+
+
+MOST_SHOWN = 50
+"""Problems printed in full; a terminal holds no more, and the rest often follow from them."""
+
+
+def report(problems: Sequence[Problem], source: Mapping[str, str]) -> str:
+    """Problems as a person reads them: each with its line and a caret, then how many there are."""
+    lines = [show(problem, source) for problem in problems[:MOST_SHOWN]]
+    if len(problems) > MOST_SHOWN:
+        lines.append(f"… and {len(problems) - MOST_SHOWN} more (--json has them all)")
+    counts = [
+        f"{count} {severity.name.lower()}{'s' if count > 1 else ''}"
+        for severity in Severity
+        if (count := sum(problem.severity is severity for problem in problems))
+    ]
+    gravest = min(problems, key=lambda problem: problem.severity)
+    more = f"momantu-bt check --explain {gravest.code} says more"
+    return "\n".join([*lines, f"{', '.join(counts)}; {more}"])
 
 
 def cells(character: str) -> int:

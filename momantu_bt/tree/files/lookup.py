@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from momantu_bt.errors import MomantuError
 from momantu_bt.tree.problems import nearest
 
 SUFFIX = ".yaml"
@@ -15,7 +16,7 @@ VALUES = "values"
 _PACKAGE = Path(__file__).resolve().parents[2]
 
 
-class TreeNotFound(Exception):
+class TreeNotFound(MomantuError):
     """No file and no bundled tree of that name; the message says what there is."""
 
 

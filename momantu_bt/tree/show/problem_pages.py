@@ -9,11 +9,14 @@ from __future__ import annotations
 from functools import cache
 from pathlib import Path
 
+from momantu_bt.errors import MomantuError
+from momantu_bt.tree.problems import valid_names
+
 _PACKAGE = Path(__file__).resolve().parents[2]
 
 
-class UnknownCode(LookupError):
-    """No problem has this code."""
+class UnknownCode(MomantuError):
+    """No problem has this code; the message names the nearest ones."""
 
 
 def pages_folder() -> Path:
@@ -33,10 +36,12 @@ def explanation(code: str) -> str:
     """The page of a code, as Markdown.
 
     Raises:
-        UnknownCode: there is no such code; its argument is the code.
+        UnknownCode: there is no such code.
     """
     if code not in codes():
-        raise UnknownCode(code)
+        raise UnknownCode(
+            f"no problem has the code {code!r}; {valid_names(code, codes(), 'codes')}"
+        )
     return (pages_folder() / f"{code}.md").read_text(encoding="utf-8")
 
 

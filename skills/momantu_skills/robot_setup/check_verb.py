@@ -7,18 +7,17 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from momantu_bt.errors import ExitCode, InputError
+
 if TYPE_CHECKING:
     from momantu_bt.findings import Finding
     from momantu_bt.robot import RobotDescription
-
-EXIT_FOUND = 1
-EXIT_WRONG_INPUT = 2
 
 
 def check(
     robot: Annotated[str, typer.Argument(help="An installed robot's name, or a robot file.")],
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,
-) -> int:
+) -> ExitCode:
     """Say what is wrong with a robot: collisions, sensors that see it, hand, reach, footprint.
 
     Errors make the robot useless for something; warnings are worth a look.
@@ -38,13 +37,12 @@ def check(
     try:
         findings = check_robot(description)
     except SetupError as error:
-        typer.echo(f"momantu-bt: {description.source or description.urdf}: {error}", err=True)
-        return EXIT_WRONG_INPUT
+        raise InputError(f"{description.source or description.urdf}: {error}") from None
     if as_json:
         typer.echo(json.dumps(findings_json(description.name, findings), indent=2))
     else:
         typer.echo(findings_text(description.name, findings))
-    return EXIT_FOUND if findings else 0
+    return ExitCode.FAILURE if findings else ExitCode.SUCCESS
 
 
 def check_robot(description: RobotDescription) -> list[Finding]:

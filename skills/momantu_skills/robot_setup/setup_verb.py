@@ -8,13 +8,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from momantu_bt.errors import ExitCode
 from momantu_bt.files import OutputError, write_whole
 
 if TYPE_CHECKING:
     from momantu_skills.robot_setup.find.proposal import Proposal
 
-EXIT_TO_DO = 1
-EXIT_WRONG_INPUT = 2
 FILE = "robot.yaml"
 
 
@@ -29,7 +28,7 @@ def setup(
     seed: Annotated[int, typer.Option(min=0, help="The same seed proposes the same.")] = 0,
     force: Annotated[bool, typer.Option("--force", help="Write over a file there is.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,
-) -> int:
+) -> ExitCode:
     """Write a robot file for a URDF: hand, arm, poses, footprint, sensors, self-collisions.
 
     What cannot be found out is said, on the terminal and in the file; nothing is asked.
@@ -42,40 +41,28 @@ def setup(
       momantu-bt robots setup my_robot.urdf.xacro -o robots/my_robot
       momantu-bt robots setup my_robot.urdf --samples 50000 --force
     """
-    from momantu_skills.robot_setup.urdf.skeleton import SetupError
+    from momantu_skills.robot_setup.find.proposal import propose
 
-    if output is not None and (output / FILE).exists() and not force:
-        return _in_the_way(output / FILE)
-    try:
-        from momantu_skills.robot_setup.find.proposal import propose
-
-        proposal = propose(urdf, samples=samples, seed=seed)
-    except SetupError as error:
-        return _refuse(str(error))
+    if output is not None:
+        _check_free(output / FILE, force)
+    proposal = propose(urdf, samples=samples, seed=seed)
     folder = output or Path(proposal.name)
     path = folder / FILE
-    if path.exists() and not force:
-        return _in_the_way(path)
+    _check_free(path, force)
     text, fill_in = _text(proposal, folder)
-    try:
-        write_whole(path, text, folders=True)
-    except OutputError as error:
-        return _refuse(str(error))
+    write_whole(path, text, folders=True)
     wrong = _read_again(path)
     if as_json:
         typer.echo(json.dumps(_plain(proposal, path, fill_in, wrong), indent=2))
     else:
         _say(proposal, path, fill_in, wrong)
-    return EXIT_TO_DO if fill_in or wrong else 0
+    return ExitCode.FAILURE if fill_in or wrong else ExitCode.SUCCESS
 
 
-def _in_the_way(path: Path) -> int:
-    return _refuse(f"{path} is there already; --force writes over it, -o FOLDER elsewhere")
-
-
-def _refuse(message: str) -> int:
-    typer.echo(f"momantu-bt: {message}", err=True)
-    return EXIT_WRONG_INPUT
+def _check_free(path: Path, force: bool) -> None:
+    """OutputError where a file is in the way and may not be written over."""
+    if path.exists() and not force:
+        raise OutputError(f"{path} is there already; --force writes over it, -o FOLDER elsewhere")
 
 
 def _text(proposal: Proposal, folder: Path) -> tuple[str, tuple[str, ...]]:

@@ -9,7 +9,7 @@ import pytest
 
 from momantu_bt import __version__, plugins
 from momantu_bt.cli import VERBS, main
-from momantu_bt.cli.check import MOST_SHOWN
+from momantu_bt.tree.problems import MOST_SHOWN
 from momantu_bt.world import WorldError
 
 TREES = Path(__file__).parents[3] / "trees"

@@ -14,6 +14,7 @@ from momantu_worlds.robots import fetch
 from typer import Typer
 from typer.testing import CliRunner
 
+from momantu_bt.errors import MomantuError
 from momantu_bt.findings import Finding
 from momantu_bt.plugins import PluginError
 from momantu_bt.robots import read_robot
@@ -213,6 +214,8 @@ def test_working_distances_out_of_reach(wrong: Wrong, rolling_proposal: Proposal
 
 def run(*arguments: object) -> tuple[int, str]:
     result = CliRunner().invoke(app, [str(a) for a in arguments], standalone_mode=False)
+    if isinstance(result.exception, MomantuError):
+        return result.exception.exit_code, result.exception.printed()
     assert result.exception is None, result.exception
     return result.return_value, result.output
 

@@ -12,6 +12,7 @@ from momantu_skills.robot_setup.write.writer import missing, robot_file
 from typer import Typer
 from typer.testing import CliRunner
 
+from momantu_bt.errors import MomantuError
 from momantu_bt.robot import CameraSensor
 from momantu_bt.robots import read_robot
 
@@ -21,6 +22,8 @@ app.command()(setup)
 
 def run(*arguments: object) -> tuple[int, str]:
     result = CliRunner().invoke(app, [str(a) for a in arguments], standalone_mode=False)
+    if isinstance(result.exception, MomantuError):
+        return result.exception.exit_code, result.exception.printed()
     assert result.exception is None, result.exception
     return result.return_value, result.output
 

@@ -16,6 +16,7 @@ from PIL import Image
 from typer import Typer
 from typer.testing import CliRunner
 
+from momantu_bt.errors import MomantuError
 from momantu_bt.plugins import PluginError
 from momantu_bt.robot import RobotDescription
 from momantu_bt.world import WorldError
@@ -26,6 +27,8 @@ app.command()(preview)
 
 def run(*arguments: object) -> tuple[int, str]:
     result = CliRunner().invoke(app, [str(a) for a in arguments], standalone_mode=False)
+    if isinstance(result.exception, MomantuError):
+        return result.exception.exit_code, result.exception.printed()
     assert result.exception is None, result.exception
     return result.return_value, result.output
 

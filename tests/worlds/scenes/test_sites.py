@@ -5,6 +5,7 @@ import dataclasses
 import pytest
 from momantu_worlds.robots import fetch
 from momantu_worlds.scenes import loading
+from momantu_worlds.scenes.file.reader import WorldFileError
 from momantu_worlds.scenes.loading import load_world, nominal, nominal_site, world_path
 from momantu_worlds.scenes.site.maps import MOST_KEPT, with_maps
 from momantu_worlds.scenes.site.nominal import kept_nominal
@@ -12,7 +13,6 @@ from momantu_worlds.scenes.site.nominal import kept_nominal
 from momantu_bt.cache import CACHE_VARIABLE
 from momantu_bt.files import write_whole
 from momantu_bt.robot import laser_band
-from momantu_bt.world import WorldError
 
 PATH = world_path("four_rooms")
 FETCH = fetch()
@@ -116,14 +116,14 @@ def test_a_half_written_map_is_drawn_again():
 def test_a_map_that_the_file_names_is_taken(copy):
     own = copy.parent / "own.yaml"
     change(copy, "  resolution: 5 cm", "  resolution: 5 cm\n  map: own.yaml")
-    with pytest.raises(WorldError, match=r"no file 'own.yaml'"):
+    with pytest.raises(WorldFileError, match=r"no file 'own.yaml'"):
         load_world(copy)
     own.write_text("image: own.pgm\n")
     assert maps(copy) == (own, None)
 
 
-def test_a_missing_world_file_is_a_world_error(tmp_path):
-    with pytest.raises(WorldError, match="cannot be read"):
+def test_a_missing_world_file_is_refused(tmp_path):
+    with pytest.raises(WorldFileError, match="cannot be read"):
         nominal(tmp_path / "none.yaml")
 
 

@@ -13,6 +13,7 @@ from momantu_worlds.scenes.loading import nominal_site
 from momantu_worlds.scenes.site.floor_plan import draw_plans
 from ruamel.yaml import YAML
 
+from momantu_bt.descriptions.reading import DescriptionError
 from momantu_bt.world import WorldError
 
 WORLD = """momantu_world: 1
@@ -108,7 +109,7 @@ def test_a_spoilt_world_is_drawn_or_refused_in_words(block):
         plain = spoilt(copy.deepcopy(PLAIN), random.Random(seed))
         try:
             drawn(plain, seed)
-        except WorldError as error:
+        except (WorldError, DescriptionError) as error:
             refused.append(str(error))
     assert len(refused) > 4
     assert all(refused)

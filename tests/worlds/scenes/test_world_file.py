@@ -6,8 +6,6 @@ import pytest
 from momantu_worlds.scenes.file.reader import WorldFileError, parse_world, read_world
 from momantu_worlds.scenes.loading import FOLDER, load_world
 
-from momantu_bt.world import WorldError
-
 TEXT = (FOLDER / "four_rooms.yaml").read_text(encoding="utf-8")
 PATH = Path("rooms.yaml")
 
@@ -103,21 +101,21 @@ def test_what_is_no_world_is_refused_in_words(text, words):
     assert words in str(refusal(text))
 
 
-def test_a_missing_file_and_a_folder_are_world_errors(tmp_path):
+def test_a_missing_file_and_a_folder_are_refused(tmp_path):
     for path in (tmp_path / "none.yaml", tmp_path):
-        with pytest.raises(WorldError, match="cannot be read"):
+        with pytest.raises(WorldFileError, match="cannot be read"):
             read_world(path)
 
 
 def test_a_huge_file_is_not_parsed(tmp_path):
     path = tmp_path / "big.yaml"
     path.write_bytes(b"#" * 2_000_000)
-    with pytest.raises(WorldError, match="2000000 bytes"):
+    with pytest.raises(WorldFileError, match="2000000 bytes"):
         read_world(path)
 
 
-def test_a_world_that_does_not_exist_is_a_world_error():
-    with pytest.raises(WorldError, match="no_such_world"):
+def test_a_world_that_does_not_exist_is_refused():
+    with pytest.raises(WorldFileError, match="no_such_world"):
         load_world("no_such_world")
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import jsonschema
 import pytest
-from momantu_worlds.scenes.file.reader import parse_world
+from momantu_worlds.scenes.file.reader import WorldFileError, parse_world
 from momantu_worlds.scenes.loading import world_path
 from momantu_worlds.verbs.schema import world_schema
 from momantu_worlds.verbs.schema_descriptions import WORDS, words_of
@@ -16,7 +16,6 @@ from ruamel.yaml import YAML
 
 from momantu_bt.cli import main
 from momantu_bt.descriptions.quantities import UNITS_KEY
-from momantu_bt.world import WorldError
 
 SCHEMA = world_schema()
 VALIDATOR = jsonschema.Draft202012Validator(SCHEMA)
@@ -62,7 +61,7 @@ def test_what_it_refuses_the_reader_refuses_too(place: tuple[str, ...], value: A
         inner = inner[key]
     inner[place[-1]] = value
     assert not VALIDATOR.is_valid(data)
-    with pytest.raises(WorldError):
+    with pytest.raises(WorldFileError):
         parse_world(json.dumps(data), Path("flat.yaml"))
 
 

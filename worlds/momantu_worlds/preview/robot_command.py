@@ -7,9 +7,8 @@ from typing import Annotated
 
 import typer
 
+from momantu_bt.errors import ExitCode
 from momantu_bt.files import OutputError, write_whole
-
-EXIT_WRONG_INPUT, EXIT_NO_WORLD = 2, 3
 
 
 def preview(
@@ -17,7 +16,7 @@ def preview(
     out: Annotated[
         Path | None, typer.Option("-o", "--out", help="The PNG file; else the robot's name.")
     ] = None,
-) -> int:
+) -> ExitCode:
     """Draw a robot in its named poses, with its frames and what its camera sees.
 
     It stands before a table, as far off as it stands to look, on squares of half a metre. Axes are
@@ -31,26 +30,15 @@ def preview(
       momantu-bt robots preview robots/my_robot/robot.yaml -o my_robot.png
     """
     from momantu_bt.robots.named import robot_of
-    from momantu_bt.world import WorldError
 
     if out is not None and out.suffix.lower() != ".png":
-        return _complain(f"{out} is no .png file; the picture is a PNG", EXIT_WRONG_INPUT)
+        raise OutputError(f"{out} is no .png file; the picture is a PNG")
     if out is not None and not out.absolute().parent.is_dir():
-        return _complain(f"there is no folder {out.absolute().parent}", EXIT_WRONG_INPUT)
+        raise OutputError(f"there is no folder {out.absolute().parent}")
     description = robot_of(robot)
+    from momantu_worlds.preview.robot_sheet import robot_sheet
+
     path = out or Path(f"{description.name}.png")
-    try:
-        from momantu_worlds.preview.robot_sheet import robot_sheet
-
-        write_whole(path, robot_sheet(description))
-    except WorldError as error:
-        return _complain(str(error), EXIT_NO_WORLD)
-    except OutputError as error:
-        return _complain(str(error), EXIT_WRONG_INPUT)
+    write_whole(path, robot_sheet(description))
     typer.echo(f"{path}: {description.name}, {len(description.named_poses)} poses")
-    return 0
-
-
-def _complain(message: str, code: int) -> int:
-    typer.echo(f"momantu-bt: {message}", err=True)
-    return code
+    return ExitCode.SUCCESS

@@ -9,12 +9,11 @@ from typing import Annotated
 
 import typer
 
+from momantu_bt.errors import ExitCode, InputError
+from momantu_bt.files import OutputError
 from momantu_bt.world import WorldError
 from momantu_worlds.sdf.findings import Fate, Finding
 from momantu_worlds.sdf.importing import Import, import_world
-
-EXIT_LISTED = 1
-EXIT_WRONG_INPUT = 2
 
 
 def import_sdf(
@@ -33,7 +32,7 @@ def import_sdf(
     ] = False,
     force: Annotated[bool, typer.Option("--force", help="Overwrite the world file.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,
-) -> int:
+) -> ExitCode:
     """Turn a world of Gazebo's into a world file, and list what is different.
 
     Models are looked for in --models, in GAZEBO_MODEL_PATH and GZ_SIM_RESOURCE_PATH, and beside
@@ -46,26 +45,22 @@ def import_sdf(
       momantu-bt run trees/bring_object.yaml --world office.yaml
     """
     if output.suffix.lower() not in (".yaml", ".yml"):
-        return _refuse(f"{output} ends with neither .yaml nor .yml")
+        raise OutputError(f"{output} ends with neither .yaml nor .yml")
     if output.exists() and not force:
-        return _refuse(f"{output} is there already; --force overwrites it")
+        raise OutputError(f"{output} is there already; --force overwrites it")
     if not output.parent.is_dir():
-        return _refuse(f"{output} cannot be written: there is no folder {output.parent}")
+        raise OutputError(f"{output} cannot be written: there is no folder {output.parent}")
     try:
         found = import_world(file, output, models or (), heed_up=heed_up_axis)
         count = found.write(output)
     except WorldError as error:
-        return _refuse(str(error))
+        raise InputError(str(error)) from None
     if as_json:
         typer.echo(json.dumps(_plain(found, output), indent=2))
     else:
         _print(found, output, count)
-    return EXIT_LISTED if strict and len(found.findings) else 0
-
-
-def _refuse(message: str) -> int:
-    typer.echo(f"momantu-bt: {message}", err=True)
-    return EXIT_WRONG_INPUT
+    listed = strict and len(found.findings) > 0
+    return ExitCode.FAILURE if listed else ExitCode.SUCCESS
 
 
 def _print(found: Import, output: Path, assets: int) -> None:

@@ -8,7 +8,7 @@ from enum import StrEnum
 from itertools import islice
 from pathlib import Path
 
-from momantu_bt.world import WorldError
+from momantu_bt.errors import MomantuError
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -29,7 +29,7 @@ MOST_SHOWN_OF = 32_000_000
 """Bytes of a file of which messages show lines."""
 
 
-class SdfError(WorldError):
+class SdfError(MomantuError):
     """An SDF world cannot be imported; the message says where, why and what to do."""
 
     def __init__(self, place: Place, message: str) -> None:

@@ -7,9 +7,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from momantu_bt.files import OutputError, write_whole
+from momantu_bt.files import write_whole
 from momantu_bt.geometry import Pose2D, Transform
-from momantu_bt.world import WorldError
 from momantu_worlds.scenes.file.reader import parse_world
 from momantu_worlds.sdf.body.bodies import BodyMaker, ImportedBody, plain_name
 from momantu_worlds.sdf.body.frames import PlacedModel
@@ -47,14 +46,11 @@ class Import:
         """Write the assets, then the world file; returns how many assets there are.
 
         Raises:
-            WorldError: they cannot be written.
+            OutputError: they cannot be written.
         """
-        try:
-            count = self.assets.write(output)
-            parse_world(self.text, output)  # a file that the reader refuses is not left behind
-            write_whole(output, self.text)
-        except OutputError as error:
-            raise WorldError(str(error)) from error
+        count = self.assets.write(output)
+        parse_world(self.text, output)  # a file that the reader refuses is not left behind
+        write_whole(output, self.text)
         return count
 
 

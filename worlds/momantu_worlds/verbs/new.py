@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-EXIT_WRONG_INPUT = 2
+from momantu_bt.errors import ExitCode
+from momantu_bt.files import OutputError
 
 
 def new(
@@ -18,7 +19,7 @@ def new(
     schema: Annotated[
         Path | None, typer.Option(help="Where the JSON Schema for the editor lies, if anywhere.")
     ] = None,
-) -> int:
+) -> ExitCode:
     """Make a small world with comments, to be changed by hand.
 
     Two rooms with a door between them, two tables, a can and a tag: the bundled tree bring_object
@@ -29,30 +30,24 @@ def new(
       momantu-bt worlds new hall.yaml --size 12x7
       momantu-bt run bring_object --world ./my_flat.yaml
     """
-    from momantu_worlds.verbs.template import CannotMake, two_rooms
+    from momantu_worlds.verbs.template import two_rooms
 
+    text = two_rooms(file, size, schema)
     try:
-        text = two_rooms(file, size, schema)
         with file.open("x", encoding="utf-8") as made:
             made.write(text)
-    except CannotMake as error:
-        return _complain(str(error))
     except FileExistsError:
-        return _complain(f"{file} exists already; choose another name, or remove it first")
+        message = f"{file} exists already; choose another name, or remove it first"
+        raise OutputError(message) from None
     except OSError as error:
-        return _complain(f"{file} cannot be written: {error.strerror}")
+        raise OutputError(f"{file} cannot be written: {error.strerror}") from None
     typer.echo(
         f"{file}: `momantu-bt worlds preview {file} -o {file.stem}.png` draws it, "
         f"`momantu-bt run bring_object --world {_path(file)}` runs a job in it"
     )
-    return 0
+    return ExitCode.SUCCESS
 
 
 def _path(file: Path) -> str:
     """The file as `--world` takes it."""
     return str(file) if file.suffix in (".yaml", ".yml") else f"./{file}"
-
-
-def _complain(message: str) -> int:
-    typer.echo(f"momantu-bt: {message}", err=True)
-    return EXIT_WRONG_INPUT

@@ -9,16 +9,15 @@ from typing import Annotated, Any
 import typer
 
 from momantu_bt.descriptions.schema import editor_schema
+from momantu_bt.errors import ExitCode
 from momantu_worlds.verbs.schema_descriptions import words_of
-
-EXIT_WRONG_INPUT = 2
 
 
 def schema(
     out: Annotated[
         Path | None, typer.Option("--out", "-o", help="Write to this file; else print it.")
     ] = None,
-) -> int:
+) -> ExitCode:
     """Print a JSON Schema of world files.
 
     With it editors complete keys, show what they mean, and mark what is wrong while it is typed;
@@ -32,14 +31,10 @@ def schema(
     text = json.dumps(world_schema(), indent=2) + "\n"
     if out is None:
         typer.echo(text, nl=False)
-        return 0
-    try:
-        write_whole(out, text)
-    except OSError as error:
-        typer.echo(f"momantu-bt: {error}", err=True)
-        return EXIT_WRONG_INPUT
+        return ExitCode.SUCCESS
+    write_whole(out, text)
     typer.echo(f"schema: {out}; begin a world file with `# yaml-language-server: $schema={out}`")
-    return 0
+    return ExitCode.SUCCESS
 
 
 def world_schema() -> dict[str, Any]:

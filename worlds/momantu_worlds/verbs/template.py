@@ -5,13 +5,15 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from momantu_bt.errors import MomantuError
+
 LEAST, MOST = (6.0, 4.0), (40.0, 40.0)
 """m; extents along x and y between which the furniture fits and a robot finds its way."""
 _SIZE = re.compile(r"(\d+(?:\.\d+)?)\s*[xX×]\s*(\d+(?:\.\d+)?)")
 _NAME = re.compile(r"[a-z][a-z0-9_]{0,59}")
 
 
-class CannotMake(Exception):
+class CannotMake(MomantuError):
     """No world can be made so; the message says what would be right."""
 
 

@@ -6,6 +6,7 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
+from momantu_bt.errors import MomantuError
 from momantu_bt.tree.files.yaml.core import resolve
 from momantu_bt.tree.files.yaml.values import KEY
 from momantu_bt.tree.files.yaml.words import BTCPP
@@ -18,7 +19,7 @@ _NEVER_IN_FLOW = re.compile(r"[,\[\]{}]")
 _ESCAPES = {"\n": "\\n", "\t": "\\t", "\r": "\\r", '"': '\\"', "\\": "\\\\", "\0": "\\0"}
 
 
-class CannotWrite(ValueError):
+class CannotWrite(MomantuError, ValueError):
     """A value or node for which a spelling has no words; the message says which.
 
     place: of the node, where that is known.

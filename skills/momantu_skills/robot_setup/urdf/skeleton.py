@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from lxml import etree
 
+from momantu_bt.errors import MomantuError
 from momantu_bt.geometry import Transform
 
 TURNING = ("revolute", "continuous")
@@ -15,7 +16,7 @@ MOVING = (*TURNING, "prismatic")
 """Types of joints with one degree of freedom."""
 
 
-class SetupError(Exception):
+class SetupError(MomantuError):
     """A URDF that nothing can be found out of; the message says why and what to do."""
 
 
