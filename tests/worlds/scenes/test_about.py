@@ -3,9 +3,10 @@
 from pathlib import Path
 
 import pytest
-from momantu_worlds.scenes.file.reader import WorldFileError
 from momantu_worlds.scenes.file.summary import about
 from momantu_worlds.scenes.loading import world_path
+
+from momantu_bt.descriptions.reading import DescriptionError
 
 
 def test_four_rooms() -> None:
@@ -24,5 +25,5 @@ def test_sections_that_are_missing_are_left_out(tmp_path: Path) -> None:
 
 
 def test_a_file_that_cannot_be_read(tmp_path: Path) -> None:
-    with pytest.raises(WorldFileError, match="cannot be read"):
+    with pytest.raises(DescriptionError, match="cannot be read"):
         about(tmp_path / "none.yaml")
