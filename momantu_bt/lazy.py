@@ -9,7 +9,8 @@ only when it works says so where imports belong:
 
 Inside the block write `import module` or `from package import module`, never `from module import
 name`: asking a module for a name loads it. Type checkers, editors and import contracts see ordinary
-imports.
+imports. A library that is not installed is told where it is first used, so that an installation
+without it can list and check.
 """
 
 from __future__ import annotations
@@ -41,6 +42,48 @@ class _Pending(ModuleType):
         return getattr(self, name)
 
 
+class _Missing(ModuleType):
+    """Stands for a module of a library that is not installed; its first use raises."""
+
+    def __getattribute__(self, name: str) -> Any:
+        having = super().__getattribute__("__dict__")
+        if name in _KNOWN_BEFORE or name == "__path__" or name in having:
+            return super().__getattribute__(name)
+        spec = self.__spec__
+        assert spec is not None
+        if isinstance(spec.loader, _MissingFinder) and spec.loader.open:
+            raise AttributeError(name)  # `from library import module` then asks for the module
+        raise ModuleNotFoundError(f"No module named {spec.name!r}", name=spec.name)
+
+
+class _MissingFinder(MetaPathFinder, Loader):
+    """Finds nothing of libraries that are not installed, and makes modules that say so."""
+
+    def __init__(self) -> None:
+        self.open = True
+        self.names: set[str] = set()
+
+    def find_spec(
+        self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        """The spec of a library that no finder knows, or of a module in it."""
+        parent = fullname.rpartition(".")[0]
+        if parent and parent not in self.names:
+            return None  # the library is there and lacks this module: a mistake, told at once
+        self.names.add(fullname)
+        return ModuleSpec(fullname, self, is_package=True)
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Make the module one that raises."""
+        module.__class__ = _Missing
+
+    def close(self) -> None:
+        """Leave no trace where others look for what is installed."""
+        self.open = False
+        for name in self.names:
+            sys.modules.pop(name, None)
+
+
 class _PendingLoader(Loader):
     """Makes a pending module, and runs it with the loader that Python would have used."""
 
@@ -57,8 +100,9 @@ class _PendingLoader(Loader):
         assert module.__spec__ is not None
         module.__class__ = ModuleType
         module.__spec__.loader = self._loader
-        put_off = [finder for finder in sys.meta_path if isinstance(finder, _LazyFinder)]
-        sys.meta_path[:] = [finder for finder in sys.meta_path if finder not in put_off]
+        first = [finder for finder in sys.meta_path if isinstance(finder, _LazyFinder)]
+        last = [finder for finder in sys.meta_path if isinstance(finder, _MissingFinder)]
+        sys.meta_path[:] = [f for f in sys.meta_path if f not in first and f not in last]
         try:
             self._loader.exec_module(module)
         except BaseException:  # the next use tries again and tells the same
@@ -66,7 +110,7 @@ class _PendingLoader(Loader):
             module.__class__ = _Pending
             raise
         finally:
-            sys.meta_path[:0] = put_off
+            sys.meta_path[:] = [*first, *sys.meta_path, *last]
 
 
 class _LazyFinder(MetaPathFinder):
@@ -87,12 +131,15 @@ class _LazyFinder(MetaPathFinder):
 def lazily() -> Iterator[None]:
     """Put off running the modules that are imported inside the block until they are used.
 
-    A module that is not installed is told at once, by ModuleNotFoundError. An error inside a
-    module is raised where the module is first used.
+    An error inside a module, and ModuleNotFoundError of a library that is not installed, are
+    raised where the module is first used. A module that an installed library lacks is told at once.
     """
-    finder = _LazyFinder()
+    finder, missing = _LazyFinder(), _MissingFinder()
     sys.meta_path.insert(0, finder)
+    sys.meta_path.append(missing)
     try:
         yield
     finally:
         sys.meta_path.remove(finder)
+        sys.meta_path.remove(missing)
+        missing.close()

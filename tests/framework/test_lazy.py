@@ -1,4 +1,5 @@
 import importlib
+import importlib.util
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -56,9 +57,36 @@ def test_everybody_gets_the_same_module(package: Path) -> None:
     assert again.TEETH == 24
 
 
-def test_a_missing_module_is_told_at_once() -> None:
-    with pytest.raises(ModuleNotFoundError, match="no_such_module"), lazily():
-        import no_such_module  # type: ignore[import-not-found]  # noqa: F401
+def test_a_library_that_is_not_installed_is_told_at_its_first_use() -> None:
+    with lazily():
+        import no_such_library  # type: ignore[import-not-found]
+        import no_such_library.part
+        from no_such_library import other
+    for use in (
+        lambda: no_such_library.saw,
+        lambda: no_such_library.part.saw,
+        lambda: other.saw,
+    ):
+        with pytest.raises(ModuleNotFoundError, match="no_such_library"):
+            use()
+    assert importlib.util.find_spec("no_such_library") is None
+    assert not any(name.startswith("no_such_library") for name in sys.modules)
+
+
+def test_a_module_that_needs_a_library_that_is_not_installed_says_so(package: Path) -> None:
+    (package / "needy.py").write_text("import no_such_library\n")
+    with lazily():
+        from slow_tools import needy
+
+        with pytest.raises(ModuleNotFoundError, match="no_such_library"):
+            _ = needy.ANYTHING
+
+
+def test_a_module_that_an_installed_library_lacks_is_told_at_once(package: Path) -> None:
+    with pytest.raises(ModuleNotFoundError, match="axe"), lazily():
+        import slow_tools.axe  # type: ignore[import-not-found]  # noqa: F401
+    with pytest.raises(ImportError, match="axe"), lazily():
+        from slow_tools import axe  # type: ignore[attr-defined]  # noqa: F401
 
 
 def test_an_error_inside_is_raised_at_each_use(package: Path) -> None:
