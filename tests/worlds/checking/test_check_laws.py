@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from momantu_worlds.checking.access import places, start, surfaces
 from momantu_worlds.checking.overlaps import TOUCHING, overlaps
-from momantu_worlds.checking.remark import Remark
+from momantu_worlds.checking.remarks import Remark
 from momantu_worlds.checking.run import CHECKS
 from momantu_worlds.checking.scenario import Scenario
 from momantu_worlds.checking.upright import TIPPING, upright

@@ -68,7 +68,7 @@ def test_the_worst_episode_words_a_finding_and_one_that_cannot_be_is_told() -> N
     ],
 )
 def test_where_a_body_comes_from(name: str, line: str) -> None:
-    from momantu_worlds.checking.where import Where
+    from momantu_worlds.checking.remarks import Where
 
     where = Where(PATH)
     number, _ = where.at(where.body(name))

@@ -10,8 +10,8 @@ import sapien
 import trimesh
 from momantu_worlds.robots import fetch, kinova_jackal
 from momantu_worlds.sapien.build.bodies import add_bodies
-from momantu_worlds.sapien.build.cells import convex_cells
 from momantu_worlds.sapien.build.meshes import body_mesh, collision_mesh, map_triangles, volume
+from momantu_worlds.sapien.build.robot_model import convex_cells
 from momantu_worlds.sapien.simulator import Simulator
 from momantu_worlds.scenes.geometry.bodies import Body, Box, Cylinder, Geometry, Hull, Mesh, Part
 from momantu_worlds.testing import plain_episode

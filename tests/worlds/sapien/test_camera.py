@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import sapien
 from momantu_worlds.robots import fetch
-from momantu_worlds.sapien import rendering
+from momantu_worlds.sapien import simulator
 from momantu_worlds.sapien.config import CameraErrors, SimulatorConfig
 from momantu_worlds.sapien.sensors.camera import Camera
 from momantu_worlds.sapien.sensors.camera_view import ViewCamera
@@ -163,4 +163,4 @@ def test_without_a_rendering_device_the_cure_is_named(monkeypatch: pytest.Monkey
 
     monkeypatch.setattr(sapien.render, "RenderSystem", fail)
     with pytest.raises(WorldError, match=r"Vulkan.*make setup.*doctor"):
-        rendering.render_system()
+        simulator.render_system()

@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 from momantu_worlds.robots import kinova_jackal
-from momantu_worlds.sapien.sensors.band_laser import BandLaser
+from momantu_worlds.sapien.sensors.laser import BandLaser
 from momantu_worlds.sapien.sensors.lidar import Lidar
 from momantu_worlds.sapien.simulator import Simulator
 from momantu_worlds.scenes.geometry.bodies import Body, Box, Cylinder, Episode, Part

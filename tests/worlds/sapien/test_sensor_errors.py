@@ -10,8 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from momantu_worlds.robots import fetch
 from momantu_worlds.sapien.config import CameraErrors, JointErrors, OdometryErrors
-from momantu_worlds.sapien.drives.encoders import Encoders
-from momantu_worlds.sapien.drives.odometry import Odometry
+from momantu_worlds.sapien.drives.proprioception import Encoders, Odometry
 from momantu_worlds.sapien.sensors.camera import noisy_color, noisy_depth
 
 from momantu_bt.geometry import Pose2D

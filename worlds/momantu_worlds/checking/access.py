@@ -9,7 +9,7 @@ import numpy as np
 
 from momantu_bt.geometry import Array
 from momantu_worlds.checking.overlaps import TOUCHING
-from momantu_worlds.checking.remark import Remark
+from momantu_worlds.checking.remarks import Remark
 from momantu_worlds.checking.scenario import UNKNOWN, Scenario
 
 DOOR = 0.1

@@ -10,7 +10,7 @@ import numpy as np
 
 from momantu_bt.geometry import Array, Transform
 from momantu_worlds.checking.convex import Convex, solids_of
-from momantu_worlds.checking.remark import Remark
+from momantu_worlds.checking.remarks import Remark
 from momantu_worlds.checking.scenario import Scenario
 from momantu_worlds.scenes.geometry.bodies import Body, Goal
 from momantu_worlds.scenes.geometry.solids import FLUSH

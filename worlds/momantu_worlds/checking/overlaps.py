@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from momantu_worlds.checking.remark import Remark
+from momantu_worlds.checking.remarks import Remark
 from momantu_worlds.checking.scenario import WALL, Scenario
 from momantu_worlds.scenes.geometry.bodies import Body
 

@@ -12,11 +12,10 @@ from momantu_worlds.checking.access import doorways, places, start, surfaces
 from momantu_worlds.checking.goals import goals
 from momantu_worlds.checking.measures import Measures, measured
 from momantu_worlds.checking.overlaps import overlaps
-from momantu_worlds.checking.remark import Place, Remark
+from momantu_worlds.checking.remarks import Place, Remark, Where
 from momantu_worlds.checking.scenario import Scenario
 from momantu_worlds.checking.tags import tags
 from momantu_worlds.checking.upright import upright
-from momantu_worlds.checking.where import Where
 from momantu_worlds.scenes.geometry.bodies import Episode
 
 CHECKS: tuple[Callable[[Scenario], Iterable[Remark]], ...] = (

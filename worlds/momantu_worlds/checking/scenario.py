@@ -12,7 +12,7 @@ from momantu_bt.geometry import Array, Transform
 from momantu_worlds.checking.convex import Convex, solids_of
 from momantu_worlds.checking.ground import Ground, Obstacle, obstacle
 from momantu_worlds.checking.measures import Measures
-from momantu_worlds.checking.remark import Place
+from momantu_worlds.checking.remarks import Place
 from momantu_worlds.scenes.geometry.bodies import Body, Episode
 from momantu_worlds.scenes.geometry.standing import Top
 

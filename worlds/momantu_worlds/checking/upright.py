@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 
 from momantu_bt.geometry import Array
-from momantu_worlds.checking.remark import Remark
+from momantu_worlds.checking.remarks import Remark
 from momantu_worlds.checking.scenario import Scenario
 from momantu_worlds.scenes.geometry.bodies import Body
 from momantu_worlds.scenes.geometry.solids import FLUSH

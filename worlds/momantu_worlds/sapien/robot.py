@@ -19,11 +19,10 @@ from momantu_bt.robot import (
 from momantu_worlds.sapien.build.robot_model import RobotModel
 from momantu_worlds.sapien.config import SimulatorConfig
 from momantu_worlds.sapien.drives.base import BaseDrive
-from momantu_worlds.sapien.drives.encoders import Encoders, prismatic_joints
 from momantu_worlds.sapien.drives.fingers import Tips
 from momantu_worlds.sapien.drives.gripper import GripperDrive
 from momantu_worlds.sapien.drives.joints import JointDrive
-from momantu_worlds.sapien.drives.odometry import Odometry
+from momantu_worlds.sapien.drives.proprioception import Encoders, Odometry, prismatic_joints
 
 
 class Sensor(Protocol):

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import ctypes
+import gc
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import sapien
@@ -14,9 +17,7 @@ from momantu_worlds.sapien.build.bodies import Addition, add_bodies, add_body, a
 from momantu_worlds.sapien.build.robot_model import build_robot
 from momantu_worlds.sapien.build.truth import Truth
 from momantu_worlds.sapien.config import STEP, SUB_STEPS, Physics, SimulatorConfig
-from momantu_worlds.sapien.memory import tidy
 from momantu_worlds.sapien.poses import pose_of
-from momantu_worlds.sapien.rendering import render_system
 from momantu_worlds.sapien.robot import SimulatedRobot
 from momantu_worlds.sapien.sensors.builder import SensorBuilder
 from momantu_worlds.sapien.sensors.wrench import Wrench
@@ -24,6 +25,7 @@ from momantu_worlds.scenes.geometry.bodies import Body, Episode
 
 START_POSE = "home"
 """The named pose in which an episode begins."""
+SHADERS = Path(__file__).parent / "shaders" / "lambert"
 
 
 class Simulator:
@@ -43,7 +45,7 @@ class Simulator:
         config: SimulatorConfig | None = None,
         pose: Mapping[str, float] | None = None,
     ) -> None:
-        """Build everything; see `momantu_worlds.sapien.rendering` for what rendering needs.
+        """Build everything; see `render_system` for what rendering needs.
 
         render: without it there is no camera, and no Vulkan driver is needed.
         pose: joint positions to begin with; the named pose `home` when None.
@@ -174,3 +176,34 @@ def _new_scene(physics: Physics, render: bool) -> Any:
     scene = sapien.Scene(systems)
     scene.set_timestep(STEP)
     return scene
+
+
+def tidy() -> None:
+    """Collect cycles, in which a closed scene hangs, and return free pages to the system.
+
+    Without it a process that runs many episodes grows: scenes hold buffers that Python does not
+    count, so that it collects them late, between allocations that then stay.
+    """
+    gc.collect()
+    trim = getattr(ctypes.CDLL(None), "malloc_trim", None)  # glibc alone has it
+    if trim is not None:
+        trim(0)
+
+
+def render_system() -> Any:
+    """A render system with our shaders: one pass, Lambert, no shadows.
+
+    Raises:
+        WorldError: SAPIEN finds no rendering device.
+    """
+    sapien.render.set_log_level("error")
+    sapien.render.set_camera_shader_dir(str(SHADERS))
+    sapien.render.set_picture_format("Color", "r8g8b8a8unorm")
+    try:
+        return sapien.render.RenderSystem()
+    except RuntimeError as error:
+        raise WorldError(
+            f"SAPIEN cannot render: {error}. It needs a Vulkan driver, in software at least; "
+            "`make setup` brings one without touching the system, and `momantu-bt doctor` tells "
+            "what is missing"
+        ) from None

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import sapien
 
 from momantu_bt.geometry import Array, Pose2D, Transform
 from momantu_bt.world import TICK
@@ -77,8 +78,6 @@ class Truth:
 
     def speed(self, body: str) -> tuple[float, float]:
         """Speed of a moving body, m/s and rad/s; (0, 0) for what never moves."""
-        import sapien
-
         part = self.entity(body).find_component_by_type(sapien.physx.PhysxRigidDynamicComponent)
         if part is None:
             return 0.0, 0.0

@@ -22,9 +22,8 @@ from momantu_worlds.sapien.build.robot_model import RobotModel
 from momantu_worlds.sapien.config import SimulatorConfig
 from momantu_worlds.sapien.poses import transform_of
 from momantu_worlds.sapien.robot import Sensor as Readable
-from momantu_worlds.sapien.sensors.band_laser import BandLaser
 from momantu_worlds.sapien.sensors.camera import Camera
-from momantu_worlds.sapien.sensors.laser import Laser
+from momantu_worlds.sapien.sensors.laser import BandLaser, Laser
 from momantu_worlds.sapien.sensors.lidar import Lidar
 from momantu_worlds.sapien.sensors.own_body import OwnBody, housing
 from momantu_worlds.sapien.sensors.rays import Triangles

@@ -1,4 +1,4 @@
-"""What a robot did that was dangerous, by ground truth, whether or not a goal forbids it."""
+"""Incidents: what a robot did that was dangerous, whether or not a goal forbids it."""
 
 from __future__ import annotations
 
@@ -10,7 +10,9 @@ from momantu_worlds.scenes.referee.drops import Drops
 from momantu_worlds.scenes.referee.ground_truth import GroundTruth, TouchingForce
 from momantu_worlds.scenes.referee.hand import Hand
 from momantu_worlds.scenes.referee.impacts import Blows
-from momantu_worlds.scenes.referee.restless import still_moving
+
+LINEAR, ANGULAR = 0.02, 0.05
+"""m/s and rad/s; what is slower rests."""
 
 
 class Incidents:
@@ -43,3 +45,24 @@ class Incidents:
         found = [*self._blows.incidents(), *self._drops.incidents]
         found += still_moving(self._truth, self._hand, now)
         return tuple(sorted(found, key=lambda incident: incident.time))
+
+
+def still_moving(truth: GroundTruth, hand: Hand, now: float) -> list[Incident]:
+    """An incident for the base and for each joint of arm and gripper that moves; value: speed."""
+    linear, angular = truth.base_speed()
+    speeds = [("the base", linear, True), ("the base", angular, False)]
+    speeds += [
+        (name, joint.speed, joint.linear)
+        for name, joint in truth.joint_speeds().items()
+        if name in hand.joints
+    ]
+    return [
+        Incident(
+            now,
+            "moving",
+            f"{what} still moves at {speed:.2f} {'m/s' if slides else 'rad/s'}",
+            speed,
+        )
+        for what, speed, slides in speeds
+        if speed > (LINEAR if slides else ANGULAR)
+    ]

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
+from pathlib import Path
 from typing import TypeVar
 
 from momantu_worlds.sdf.findings import SdfError
-from momantu_worlds.sdf.read.document import Element
+from momantu_worlds.sdf.read.document import Element, parse_document
 from momantu_worlds.sdf.read.lights import lights_of, read_light
 from momantu_worlds.sdf.read.model import MOVING_JOINTS, Frame, Joint, Light, Link, Model
 from momantu_worlds.sdf.read.reading import Reading
 from momantu_worlds.sdf.read.shapes import shapes_of
-from momantu_worlds.sdf.read.standard_models import standard_model
 from momantu_worlds.sdf.read.unread import list_leftovers
 from momantu_worlds.sdf.read.uris import MissingFile, model_file, version_of
 from momantu_worlds.sdf.read.values import flag, name_of, number, pose_of
@@ -26,6 +26,23 @@ MASSES = (1e-5, 1e5)
 _OF_MODEL = ("pose", "static", "link", "joint", "frame", "model", "include")
 _OF_LINK = ("pose", "inertial", "visual", "collision", "light")
 _OF_INCLUDE = ("uri", "name", "pose", "static", "placement_frame")
+_SUN = b"""<sdf version='1.6'>
+  <light name='sun' type='directional'>
+    <diffuse>0.8 0.8 0.8 1</diffuse>
+    <direction>-0.4 0.2 -0.9</direction>
+  </light>
+</sdf>"""
+_GROUND = b"""<sdf version='1.6'>
+  <model name='ground_plane'>
+    <static>true</static>
+    <link name='link'>
+      <collision name='collision'>
+        <geometry><plane><normal>0 0 1</normal><size>100 100</size></plane></geometry>
+      </collision>
+    </link>
+  </model>
+</sdf>"""
+_TEXTS = {"sun": _SUN, "ground_plane": _GROUND}
 
 
 def read_model(element: Element, around: str, reading: Reading) -> Model:
@@ -206,3 +223,10 @@ def unique(what: str, things: Iterable[Named]) -> tuple[Named, ...]:
             )
         found[thing.name] = thing
     return tuple(found.values())
+
+
+def standard_model(uri: str) -> Element | None:
+    """The root of a model that is known by its name, whatever server it is named on; or None."""
+    words = uri.lower().replace("%20", "_").replace(" ", "_").split("/")
+    name = next((word for word in words if word in _TEXTS), None)
+    return None if name is None else parse_document(_TEXTS[name], Path(f"<{name}>"))

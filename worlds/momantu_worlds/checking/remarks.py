@@ -1,19 +1,39 @@
-"""Where in a world file something of an episode comes from."""
+"""What a check finds in one episode, and where in the world file it comes from."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 from momantu_bt.descriptions.reading import DescriptionError, Reading, read_text
-from momantu_worlds.checking.remark import Place
+from momantu_bt.findings import Severity
 
+Place: TypeAlias = tuple[str | int, ...]
+"""Keys and indices from the top of a world file down to what is meant."""
 SECTIONS = ("tables", "furniture", "objects", "tags", "bodies", "doors", "doorways", "rooms")
 """Parts of a world file whose keys are names of what they describe."""
 NAMED = ("item", "tag")
 """Parts of a world file that say their name themselves."""
 WALL = "wall_"
 """How the names of walls' bodies begin."""
+
+
+@dataclass(frozen=True, slots=True)
+class Remark:
+    """One thing that is wrong in one episode.
+
+    code, place and about tell remarks apart: the same in several episodes is one finding, which
+    keeps the words of the episode with the greatest `amount`.
+    """
+
+    severity: Severity
+    code: str
+    place: Place
+    about: tuple[str, ...]
+    message: str
+    cure: str
+    amount: float = 0.0
 
 
 class Where:
