@@ -1,9 +1,11 @@
-# make setup   everything that is missing, into .venv (quick when nothing is)
-# make demo    setup, then the main job: bring the can from table A to table B
-# make test    setup with a headless browser, then linters, types and tests
-# make lint    setup, then linters and types alone
+# make setup   installs what is missing, into .venv (quick when nothing is missing)
+# make demo    setup, then runs the main job: bring the can from table A to table B
+# make test    setup with a headless browser, then runs linters, type checks and tests
+# make lint    setup, then runs linters and type checks
+# make docs    setup, then builds the API reference in build/docs
+# make clean   removes .venv, build outputs and caches
 
-# The first Python that is new and old enough; `make PYTHON=…` names another.
+# The first supported Python that is found; `make PYTHON=…` names another.
 PYTHON ?= $(shell for name in python3 python3.12 python3.11; do \
 	$$name -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 12))' 2>/dev/null \
 	&& echo $$name && break; done)
@@ -12,10 +14,10 @@ BIN := .venv/bin
 ARGS ?=
 # Options for pytest, such as `make test TESTS="tests/skills -k navigate"`.
 TESTS ?=
-# Processes that run tests; each takes up to 1.5 GB.
+# Number of processes that run tests; each takes up to 1.5 GB.
 JOBS ?= 2
 
-.PHONY: help setup demo test lint clean
+.PHONY: help setup demo test lint docs clean
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
 
@@ -35,10 +37,13 @@ lint: setup
 	$(BIN)/mypy
 	$(BIN)/lint-imports --no-logo
 
-# One thread per process: the numerical libraries would otherwise quarrel over few cores.
+# One thread per process: the numerical libraries would otherwise compete for few cores.
 test: lint
 	@$(BIN)/python setup/browser.py
 	OMP_NUM_THREADS=1 LP_NUM_THREADS=1 $(BIN)/pytest -q -n $(JOBS) --dist loadfile $(TESTS)
+
+docs: setup
+	@$(BIN)/python setup/reference.py
 
 clean:
 	rm -rf .venv build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
