@@ -33,7 +33,7 @@ from slips.trees import BLOCKS, GOOD_TREES, GoodTree, Mutant, good_trees, mutant
 from slips.xml import XML_SLIPS
 from slips.yaml import SLIPS
 
-from momantu_bt.tree.problems import errors
+from momantu_bt.formats.problems import errors
 from momantu_bt.tree.registry import Registry
 
 

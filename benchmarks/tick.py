@@ -39,10 +39,11 @@ from momantu_bt.engine.context import RunContext
 from momantu_bt.engine.executor import Executor
 from momantu_bt.engine.launch import Options
 from momantu_bt.engine.no_world import NoWorld
+from momantu_bt.formats.places import Place
 from momantu_bt.record.fingerprint import Fingerprint
 from momantu_bt.record.recorder import Recorder
 from momantu_bt.testing import ManualClock
-from momantu_bt.tree.model import Document, Literal, Node, Place, PortValue, Reference, Tree
+from momantu_bt.tree.model import Document, Literal, Node, PortValue, Reference, Tree
 
 Tick: TypeAlias = Callable[[], object]
 

@@ -4,72 +4,77 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any, Literal, TypeAlias
+from typing import Any
 
-from momantu_bt.bench.seeds import seeds_text
-
-Severity: TypeAlias = Literal["error", "warning"]
-"""error: the description cannot be used so. warning: it can, but probably not as it is meant."""
-
-_ORDER: dict[Severity, int] = {"error": 0, "warning": 1}
+from momantu_bt.formats.places import NOWHERE, KeyPath, Place
+from momantu_bt.formats.problems import Problem, Severity
+from momantu_bt.formats.seeds import seeds_text
 
 
 @dataclass(frozen=True, slots=True)
-class Finding:
-    """One thing that is wrong with what a file describes.
+class Finding(Problem):
+    """A problem of what a file describes, rather than of how it is written.
 
-    code: what kind, in lower-case words joined by "-". message: one sentence with the numbers.
-    cure: what a person does about it. file, line, column: where, counted from 1; None and 0 where
-    no place is to blame. seeds: the episodes in which it is so; empty where seeds do not matter.
+    seeds: the episodes in which it is so; empty where seeds do not matter.
     """
 
-    severity: Severity
-    code: str
-    message: str
-    cure: str
-    file: Path | None = None
-    line: int = 0
-    column: int = 0
     seeds: tuple[int, ...] = ()
 
     def as_dict(self) -> dict[str, Any]:
         """Plain data for JSON."""
         return {
-            "severity": self.severity,
+            "severity": self.severity.label,
             "code": self.code,
             "message": self.message,
-            "cure": self.cure,
-            "file": None if self.file is None else str(self.file),
-            "line": self.line,
-            "column": self.column,
+            "cure": self.hint,
+            "file": self.place.file or None,
+            "line": self.place.line,
+            "column": self.place.column,
             "seeds": list(self.seeds),
         }
 
     def as_text(self) -> str:
-        """`FILE:LINE:COLUMN: severity: message (code)`, and the cure in a line beneath it."""
-        place = "" if self.file is None else f"{self.file}:{self.line}:{self.column}: "
+        """`FILE:LINE:COLUMN: severity: message (code)`, and the hint in a line beneath it."""
+        place = "" if self.place == NOWHERE else f"{self.place}: "
         many = "s" if len(self.seeds) > 1 else ""
         seeds = f" [seed{many} {seeds_text(self.seeds)}]" if self.seeds else ""
-        return f"{place}{self.severity}: {self.message} ({self.code}){seeds}\n    {self.cure}"
+        return f"{place}{self.severity.label}: {self.message} ({self.code}){seeds}\n    {self.hint}"
 
 
-def in_order(findings: Iterable[Finding]) -> list[Finding]:
+@dataclass(frozen=True, slots=True)
+class FindingAtKeys:
+    """A finding before its line is known: the keys of a description file lead to what is wrong.
+
+    Of one episode: code, keys and about tell findings apart. The same in several episodes is one
+    finding, which keeps the words of the episode with the greatest `amount`.
+    """
+
+    severity: Severity
+    code: str
+    message: str
+    hint: str
+    keys: KeyPath
+    about: tuple[str, ...] = ()
+    amount: float = 0.0
+
+    def at(self, place: Place, seeds: Iterable[int] = ()) -> Finding:
+        """The finding at its place. seeds: of the episodes in which it is so."""
+        return Finding(self.code, self.message, place, self.hint, self.severity, tuple(seeds))
+
+
+def worst_first(findings: Iterable[Finding]) -> list[Finding]:
     """Errors first, then by place, code and words."""
-    return sorted(
-        findings,
-        key=lambda f: (_ORDER[f.severity], str(f.file or ""), f.line, f.column, f.code, f.message),
-    )
+    return sorted(findings, key=lambda f: (f.severity, f.place, f.code, f.message))
 
 
 def findings_text(subject: str, findings: Sequence[Finding]) -> str:
     """What a terminal shows: every finding and one line that counts them."""
-    errors = sum(finding.severity == "error" for finding in findings)
+    errors = sum(finding.severity is Severity.ERROR for finding in findings)
     warnings = len(findings) - errors
     if not findings:
         return f"{subject}: nothing is wrong"
     counted = [_count(errors, "error"), _count(warnings, "warning")]
-    lines = [finding.as_text() for finding in in_order(findings)]
+    lines = [finding.as_text() for finding in worst_first(findings)]
     return "\n".join([*lines, f"{subject}: {' and '.join(c for c in counted if c)}"])
 
 
@@ -78,7 +83,7 @@ def findings_json(subject: str, findings: Sequence[Finding]) -> dict[str, Any]:
     return {
         "subject": subject,
         "ok": not findings,
-        "findings": [finding.as_dict() for finding in in_order(findings)],
+        "findings": [finding.as_dict() for finding in worst_first(findings)],
     }
 
 

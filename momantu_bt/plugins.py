@@ -6,13 +6,13 @@ told by `load`; all the others go on working.
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Callable, Iterable, Mapping
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any, TypeAlias
 
 from momantu_bt.errors import MomantuError
+from momantu_bt.formats.names import nearest
 
 SKILLS = "momantu_bt.skills"
 SERVICES = "momantu_bt.services"
@@ -76,8 +76,8 @@ def load(group: str, name: str) -> Any:
     having = _installed(entry_points, group)
     what = _WHAT.get(group, "plug-in")
     if name not in having:
-        near = difflib.get_close_matches(name, having, n=1)
-        meant = near_file(group, name) or (f"did you mean {near[0]!r}?" if near else "")
+        near = nearest(name, having)
+        meant = near_file(group, name) or (f"did you mean {near!r}?" if near else "")
         hint = f" ({meant})" if meant else ""
         names = ", ".join(having) or "none"
         raise PluginError(f"no {what} is called {name!r}{hint}; installed: {names}")

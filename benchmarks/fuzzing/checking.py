@@ -6,8 +6,9 @@ import json
 from collections.abc import Mapping
 from pathlib import Path
 
+from momantu_bt.formats.problems import Problem, show
 from momantu_bt.tree.load import load
-from momantu_bt.tree.problems import Problem, TreeError, show
+from momantu_bt.tree.problems import TreeError
 from momantu_bt.tree.registry import Registry
 
 MOST_SHOWN = 50

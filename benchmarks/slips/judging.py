@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from typing import Literal, TypeAlias
 
+from momantu_bt.formats.problems import Problem, errors
 from momantu_bt.tree.model import Document
-from momantu_bt.tree.problems import Problem, errors
 from slips.trees import BLOCKS, OPTIONAL_FIELDS, GoodTree, Mutant
 
 Verdict: TypeAlias = Literal["right", "elsewhere", "missed", "same", "free", "allowed"]

@@ -7,6 +7,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import MISSING, dataclass, field, fields, is_dataclass
 from pathlib import Path
 
+from momantu_bt.formats.places import Place
+from momantu_bt.formats.problems import Problem
 from momantu_bt.messages import VALUE_TYPES
 from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue import SUBTREE, CodeText
@@ -16,8 +18,8 @@ from momantu_bt.tree.files.lookup import bundled
 from momantu_bt.tree.files.xml.format import read as read_xml
 from momantu_bt.tree.files.xml.writer import write as write_xml
 from momantu_bt.tree.files.yaml.format import read as read_yaml
-from momantu_bt.tree.model import Document, Node, Place
-from momantu_bt.tree.problems import Problem, Problems, TreeError
+from momantu_bt.tree.model import Document, Node
+from momantu_bt.tree.problems import Problems, TreeError
 from momantu_bt.tree.registry import Registry
 from slips.xml import XML_SLIPS, Slip
 from slips.yaml import SLIPS

@@ -7,9 +7,9 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from momantu_bt.bench.seeds import few_seeds
 from momantu_bt.bench.spec import Row
 from momantu_bt.bench.table import columns
+from momantu_bt.formats.seeds import few_seeds
 
 _LIES = "lies"
 _COLUMNS = {

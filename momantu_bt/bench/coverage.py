@@ -8,8 +8,9 @@ from typing import Any
 
 from momantu_bt.bench.spec import Row
 from momantu_bt.engine.conditions import ASKED
+from momantu_bt.formats.places import Place
 from momantu_bt.tree.catalogue import SUBTREE
-from momantu_bt.tree.model import Document, Node, Place
+from momantu_bt.tree.model import Document, Node
 
 NODE, HANDLER, GUARD = "node", "handler", "guard"
 

@@ -9,11 +9,11 @@ from typing import Any
 from momantu_bt.bench.intervals import wilson
 from momantu_bt.bench.outcome import Outcome, outcome
 from momantu_bt.bench.process import IMPOSSIBLE
-from momantu_bt.bench.seeds import seeds_text
 from momantu_bt.bench.spec import Row
 from momantu_bt.bench.table import columns
 from momantu_bt.bench.tables import rate_text
 from momantu_bt.faults.matrix import Row as Demand
+from momantu_bt.formats.seeds import seeds_text
 
 _COUNTED = tuple(how for how in Outcome if how is not Outcome.IMPOSSIBLE)
 _NOT_HAPPENED = (Outcome.NOT_MET, Outcome.IMPOSSIBLE)

@@ -8,8 +8,8 @@ from typing import Any
 
 from momantu_bt.bench.intervals import Interval, mcnemar, paired_difference, quantile
 from momantu_bt.bench.outcome import succeeded
-from momantu_bt.bench.seeds import seeds_text
 from momantu_bt.bench.spec import Row
+from momantu_bt.formats.seeds import seeds_text
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,10 +9,10 @@ from momantu_bt.bench.blame import REFEREE, blame
 from momantu_bt.bench.claims import claims_text
 from momantu_bt.bench.outcome import succeeded
 from momantu_bt.bench.process import IMPOSSIBLE, REPORT
-from momantu_bt.bench.seeds import few_seeds
 from momantu_bt.bench.spec import Row
 from momantu_bt.bench.summary import Spread, Summary
 from momantu_bt.bench.table import columns
+from momantu_bt.formats.seeds import few_seeds
 
 
 def row_text(row: Row) -> str:

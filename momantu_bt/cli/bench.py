@@ -114,9 +114,9 @@ def bench(
     """
     options = _Options(out, shard, (engine, jobs, ray_address), coverage, report, demand)
 
-    from momantu_bt.bench.seeds import parse_seeds
     from momantu_bt.cli.bench_merge import merge_folders
     from momantu_bt.cli.given import given_values
+    from momantu_bt.formats.seeds import parse_seeds
 
     if merge:
         return merge_folders(tree, out, report)

@@ -124,7 +124,7 @@ def one_tree(words: Sequence[str]) -> str:
 
 def choose(value: str, valid: Sequence[str], option: str) -> str:
     """A value that is one of a few; InputError says which."""
-    from momantu_bt.tree.problems import valid_names
+    from momantu_bt.formats.names import valid_names
 
     if value not in valid:
         raise InputError(f"{option} {value}: {valid_names(value, valid, 'valid values')}")

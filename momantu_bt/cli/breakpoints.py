@@ -23,11 +23,11 @@ from momantu_bt.engine.ports import Inputs
 from momantu_bt.engine.status import RUNNING, Status
 from momantu_bt.errors import InputError
 from momantu_bt.failure import Failure
+from momantu_bt.formats.names import nearest, valid_names
 from momantu_bt.messages import plain
 from momantu_bt.record.lines import tree_lines
 from momantu_bt.skill import MISSING
 from momantu_bt.tree.model import Document, Node
-from momantu_bt.tree.problems import nearest, valid_names
 from momantu_bt.tree.script.nodes import part
 from momantu_bt.tree.show.printing import value_text
 from momantu_bt.tree.substitute.substitution import Substitution, names, reached

@@ -10,8 +10,9 @@ from typing import Annotated, Any
 import typer
 
 from momantu_bt.errors import ExitCode, InputError
+from momantu_bt.formats.problems import Problem
 from momantu_bt.tree.load import Checked, TreeError, TreeNotFound, load
-from momantu_bt.tree.problems import Problem, report
+from momantu_bt.tree.problems import report
 from momantu_bt.tree.show.problem_pages import explanation
 from momantu_bt.tree.show.sarif import sarif
 

@@ -73,9 +73,9 @@ def compare(
       momantu-bt compare bring_object bring_object_plain --seeds 0:100
       momantu-bt compare old.yaml new.yaml --seeds 0:50 --report comparison.json
     """
-    from momantu_bt.bench.seeds import parse_seeds
     from momantu_bt.cli.given import given_values
     from momantu_bt.files import check_writable
+    from momantu_bt.formats.seeds import parse_seeds
 
     chosen = choose(record, RECORD, "--record")
     board = given_values(set_ or [], values)

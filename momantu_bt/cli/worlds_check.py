@@ -7,10 +7,10 @@ from typing import Annotated
 
 import typer
 
-from momantu_bt.bench.seeds import SeedsError, parse_seeds
 from momantu_bt.cli.naming import robot_of, world_of
 from momantu_bt.errors import ExitCode, InputError
 from momantu_bt.findings import findings_json, findings_text
+from momantu_bt.formats.seeds import SeedsError, parse_seeds
 from momantu_bt.world import CheckableWorld, WorldError
 
 MOST_SEEDS = 1000

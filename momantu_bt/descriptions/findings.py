@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import difflib
-from dataclasses import replace
 from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from momantu_bt.descriptions.reading import DescriptionError, Place, Problem, Reading
+from momantu_bt.descriptions.reading import DescriptionError, KeyProblem, Reading
 from momantu_bt.descriptions.wording import said
+from momantu_bt.formats.names import nearest
+from momantu_bt.formats.places import KeyPath
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -34,7 +34,7 @@ class _Findings:
         self._reading, self._what = reading, what
         self._schema: dict[str, Any] = model.model_json_schema()
 
-    def problems(self, error: ValidationError) -> list[Problem]:
+    def problems(self, error: ValidationError) -> list[KeyProblem]:
         """Every finding, once: not what lacks because it is misspelt or wrong within."""
         findings = [(self._place(finding["loc"]), dict(finding)) for finding in error.errors()]
         misspelt = {
@@ -44,14 +44,14 @@ class _Findings:
         }
         within = {place[:i] for place, _ in findings for i in range(len(place))}
         told = {
-            replace(self._problem(place, finding), place=place): None
+            self._problem(place, finding): None
             for place, finding in findings
             if not (finding["type"] == "missing" and place in misspelt)
             and not (finding["type"] == "too_short" and place in within)
         }
         return list(told)
 
-    def _place(self, location: tuple[str | int, ...]) -> Place:
+    def _place(self, location: tuple[str | int, ...]) -> KeyPath:
         """Where a finding is in the file: without the names of a union's members."""
         place: list[str | int] = []
         here: Any = self._reading.plain
@@ -65,26 +65,26 @@ class _Findings:
                 place.append(part)
         return tuple(place)
 
-    def _problem(self, place: Place, finding: dict[str, Any]) -> Problem:
+    def _problem(self, place: KeyPath, finding: dict[str, Any]) -> KeyProblem:
         kind, name = finding["type"], str(place[-1]) if place else ""
-        at = self._reading.at
         if kind == "extra_forbidden":
-            return Problem(*at(place, key=True), self._unknown_key(name, place))
+            return self._reading.problem(place, self._unknown_key(name, place), key=True)
         if kind == "missing" and isinstance(finding["loc"][-1], int):
             values = len(self._reading.value(place))
             message = f"expected more values, found {values}"
             wanted = self._schema_at(place).get("minItems")
             if wanted is not None:
                 message = f"expected {wanted} values, found {values}"
-            return Problem(*at(place), f"{self._dotted(place)}: {message}")
+            return self._reading.problem(place, f"{self._dotted(place)}: {message}")
         if kind == "missing":
-            return Problem(*at(place[:-1]), f"{self._dotted(place[:-1])} needs a key {name!r}")
+            message = f"{self._dotted(place[:-1])} needs a key {name!r}"
+            return KeyProblem("", message, self._reading.at(place[:-1]), keys=place)
         if kind in ("union_tag_invalid", "union_tag_not_found"):
             return self._unknown_kind(place, finding)
         message = said(finding, self._known_keys(place))
-        return Problem(*at(place), f"{self._dotted(place)}: {message}")
+        return self._reading.problem(place, f"{self._dotted(place)}: {message}")
 
-    def _unknown_kind(self, place: Place, finding: dict[str, Any]) -> Problem:
+    def _unknown_kind(self, place: KeyPath, finding: dict[str, Any]) -> KeyProblem:
         """What kinds there are of a thing whose kind is missing or unknown."""
         key = str(finding["ctx"]["discriminator"]).strip("'")
         union = _inner(self._schema_at(place[:-1]), place[-1])
@@ -96,26 +96,26 @@ class _Findings:
             place_of, words = place, f"{self._dotted(place)} needs a key {key!r}"
         else:
             place_of, words = (*place, key), f"{given!r} is not possible here"
-        return Problem(*self._reading.at(place_of), f"{words}; possible: {kinds}")
+        at = self._reading.at(place_of)
+        return KeyProblem("", f"{words}; possible: {kinds}", at, keys=place)
 
-    def _dotted(self, place: Place) -> str:
+    def _dotted(self, place: KeyPath) -> str:
         return ".".join(str(part) for part in place) or f"the {self._what}"
 
-    def _unknown_key(self, name: str, place: Place) -> str:
+    def _unknown_key(self, name: str, place: KeyPath) -> str:
         """Says what would have been right beside an unknown key."""
         near = self._nearest(name, place[:-1])
         hint = f"did you mean {near!r}? Keys" if near else "keys"
         known = ", ".join(self._known_keys(place[:-1]))
         return f"unknown key {name!r} in {self._dotted(place[:-1])}; {hint}: {known}"
 
-    def _nearest(self, name: str, place: Place) -> str:
-        near = difflib.get_close_matches(name, self._known_keys(place), n=1)
-        return near[0] if near else ""
+    def _nearest(self, name: str, place: KeyPath) -> str:
+        return nearest(name, self._known_keys(place)) or ""
 
-    def _known_keys(self, place: Place) -> list[str]:
+    def _known_keys(self, place: KeyPath) -> list[str]:
         return list(self._schema_at(place).get("properties", {}))
 
-    def _schema_at(self, place: Place) -> dict[str, Any]:
+    def _schema_at(self, place: KeyPath) -> dict[str, Any]:
         here, data = self._resolved(self._schema, self._reading.plain), self._reading.plain
         for part in place:
             data = _item(data, part)

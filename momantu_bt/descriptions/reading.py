@@ -12,9 +12,8 @@ from ruamel.yaml.error import MarkedYAMLError, YAMLError
 from ruamel.yaml.nodes import MappingNode, Node, SequenceNode
 
 from momantu_bt.errors import MomantuError
-
-Place: TypeAlias = tuple[str | int, ...]
-"""Keys and indices from the top of a file down to a value."""
+from momantu_bt.formats.places import KeyPath, Place, excerpt
+from momantu_bt.formats.problems import Problem
 
 MOST_BYTES = 1_000_000
 """A description is written by hand; a longer one is a mistake, or an attack on the reader."""
@@ -24,14 +23,15 @@ MOST_VALUES = 100_000
 MOST_ERRORS = 30
 
 
-@dataclass(frozen=True, slots=True)
-class Problem:
-    """One thing that is wrong. line and column count from 1; place: whose they are."""
+KeyMessage: TypeAlias = tuple[KeyPath, str]
+"""Keys, and what is wrong there."""
 
-    line: int
-    column: int
-    message: str
-    place: Place = ()
+
+@dataclass(frozen=True, slots=True)
+class KeyProblem(Problem):
+    """A problem of a file whose values are known. keys: those that lead to what is wrong."""
+
+    keys: KeyPath = ()
 
 
 class DescriptionError(MomantuError):
@@ -40,16 +40,13 @@ class DescriptionError(MomantuError):
     what: ClassVar[str] = "description"
     """What the file describes, as a person would say it."""
 
-    def __init__(self, path: Path, text: str, problems: Iterable[Problem]) -> None:
+    def __init__(self, path: Path, text: str, problems: Iterable[KeyProblem]) -> None:
         self.path, self.text = path, text
-        self.problems = tuple(sorted(problems, key=lambda p: (p.line, p.column)))
-        lines = text.splitlines()
+        self.problems = tuple(sorted(problems, key=lambda p: p.place))
         shown = []
         for problem in self.problems[:MOST_ERRORS]:
-            shown.append(f"{path}:{problem.line}:{problem.column}: {problem.message}")
-            if 0 < problem.line <= len(lines):
-                shown.append(f"    {lines[problem.line - 1]}")
-                shown.append(f"    {' ' * (problem.column - 1)}^")
+            shown.append(f"{problem.place}: {problem.message}")
+            shown += filter(None, [excerpt(problem.place, text, problem.hint)])
         left = len(self.problems) - MOST_ERRORS
         if left > 0:
             shown.append(f"... and {left} more")
@@ -66,10 +63,10 @@ def read_text(path: Path, error: type[DescriptionError]) -> str:
         data = path.read_bytes()
     except OSError as trouble:
         message = f"the {error.what} file cannot be read: {trouble.strerror}"
-        raise error(path, "", [Problem(1, 1, message)]) from trouble
+        raise error(path, "", [KeyProblem("", message, Place(str(path)))]) from trouble
     if len(data) > MOST_BYTES:
         message = f"the {error.what} file has {len(data)} bytes; at most {MOST_BYTES}"
-        raise error(path, "", [Problem(1, 1, message)])
+        raise error(path, "", [KeyProblem("", message, Place(str(path)))])
     return data.decode("utf-8", errors="replace")
 
 
@@ -87,33 +84,43 @@ class Reading:
                 class `error`.
         """
         self.path, self.text, self._error = path, text, error
-        self._problems: list[Problem] = []
-        self._places: dict[Place, Node] = {}
-        self._keys: dict[Place, Node] = {}
+        self._problems: list[KeyProblem] = []
+        self._places: dict[KeyPath, Node] = {}
+        self._keys: dict[KeyPath, Node] = {}
         self._values = 0
         self.plain: Any = self._plain(self._compose(), (), 0)
         if self._problems:
             raise error(path, text, self._problems)
 
-    def refuse(self, problems: Iterable[tuple[Place, str]]) -> None:
-        """Raise a DescriptionError for what is wrong at these places, if anything is."""
-        found = [Problem(*self.at(place), message) for place, message in problems]
+    def refuse(self, wrong: Iterable[KeyMessage]) -> None:
+        """Raise a DescriptionError for what is wrong at these keys, if anything is."""
+        found = [self.problem(keys, message) for keys, message in wrong]
         if found:
             raise self._error(self.path, self.text, found)
 
-    def at(self, place: Place, *, key: bool = False) -> tuple[int, int]:
-        """Line and column of a place, or of the nearest thing around it that stands there."""
-        while place:
-            node = (self._keys if key else self._places).get(place) or self._places.get(place)
-            if node is not None:
-                return node.start_mark.line + 1, node.start_mark.column + 1
-            place = place[:-1]
-        return 1, 1
+    def problem(self, keys: KeyPath, message: str, *, key: bool = False) -> KeyProblem:
+        """What is wrong at some keys, at its place in the file; `key` as of `at`."""
+        return KeyProblem("", message, self.at(keys, key=key), keys=keys)
 
-    def value(self, place: Place) -> Any:
-        """The plain value at a place; KeyError or IndexError when there is none."""
+    def at(self, keys: KeyPath, *, key: bool = False) -> Place:
+        """The place of the value at some keys, or of the nearest thing around it that is there.
+
+        key: the place of the last key itself.
+        """
+        while keys:
+            node = (self._keys if key else self._places).get(keys) or self._places.get(keys)
+            if node is not None:
+                return self._place(node)
+            keys = keys[:-1]
+        return Place(str(self.path))
+
+    def _place(self, node: Node) -> Place:
+        return Place(str(self.path), node.start_mark.line + 1, node.start_mark.column + 1)
+
+    def value(self, keys: KeyPath) -> Any:
+        """The plain value at some keys; KeyError or IndexError when there is none."""
         here = self.plain
-        for part in place:
+        for part in keys:
             here = here[part]
         return here
 
@@ -122,26 +129,29 @@ class Reading:
             root: Node | None = YAML(typ="safe", pure=True).compose(self.text)
         except MarkedYAMLError as error:
             mark = error.problem_mark or error.context_mark
-            line, column = (mark.line + 1, mark.column + 1) if mark else (1, 1)
+            at = (mark.line + 1, mark.column + 1) if mark else (1, 1)
             message = f"this is not YAML: {error.problem or error.context}"
-            raise self._error(self.path, self.text, [Problem(line, column, message)]) from None
+            raise self._error(
+                self.path, self.text, [KeyProblem("", message, Place(str(self.path), *at))]
+            ) from None
         except (YAMLError, RecursionError) as error:
             message = f"this is not YAML: {str(error) or 'it nests too deep'}".splitlines()[0]
-            raise self._error(self.path, self.text, [Problem(1, 1, message)]) from None
+            raise self._error(
+                self.path, self.text, [KeyProblem("", message, Place(str(self.path)))]
+            ) from None
         if root is None:
             message = f"the file is empty; expected a {self._error.what}"
-            raise self._error(self.path, self.text, [Problem(1, 1, message)])
+            raise self._error(
+                self.path, self.text, [KeyProblem("", message, Place(str(self.path)))]
+            )
         return root
 
-    def _plain(self, node: Node, place: Place, depth: int) -> Any:
+    def _plain(self, node: Node, place: KeyPath, depth: int) -> Any:
         self._places.setdefault(place, node)
         self._values += 1
         if self._values > MOST_VALUES:
             message = f"more than {MOST_VALUES} values, counted where aliases repeat them"
-            mark = node.start_mark
-            raise self._error(
-                self.path, self.text, [Problem(mark.line + 1, mark.column + 1, message)]
-            )
+            raise self._error(self.path, self.text, [KeyProblem("", message, self._place(node))])
         if depth > MOST_DEPTH:
             self._complain(node, f"more than {MOST_DEPTH} levels deep")
             return None
@@ -151,7 +161,7 @@ class Reading:
             return [self._plain(n, (*place, i), depth + 1) for i, n in enumerate(node.value)]
         return self._scalar(node)
 
-    def _mapping(self, node: MappingNode, place: Place, depth: int) -> dict[str, Any]:
+    def _mapping(self, node: MappingNode, place: KeyPath, depth: int) -> dict[str, Any]:
         found: dict[str, Any] = {}
         for key_node, value_node in node.value:
             key = str(key_node.value)
@@ -182,5 +192,4 @@ class Reading:
         return None if tag == "null" else text
 
     def _complain(self, node: Node, message: str) -> None:
-        mark = node.start_mark
-        self._problems.append(Problem(mark.line + 1, mark.column + 1, message))
+        self._problems.append(KeyProblem("", message, self._place(node)))

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any, TypeAlias
+
+from momantu_bt.formats.names import nearest
 
 _LONGEST = 60
 """Characters of a value that a message repeats."""
@@ -47,8 +48,8 @@ def _count(finding: dict[str, Any]) -> str:
 
 def _choice(finding: dict[str, Any]) -> str:
     possible = re.findall(r"'([^']*)'", str(finding["ctx"]["expected"]))
-    near = difflib.get_close_matches(str(finding["input"]), possible, n=1)
-    hint = f"did you mean {near[0]!r}? Possible" if near else "possible"
+    near = nearest(str(finding["input"]), possible)
+    hint = f"did you mean {near!r}? Possible" if near else "possible"
     listed = ", ".join(map(repr, possible)) or finding["ctx"]["expected"]
     return f"{_found(finding)} is not possible here; {hint}: {listed}"
 

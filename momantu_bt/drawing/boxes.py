@@ -8,9 +8,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from momantu_bt.drawing.wires import Wire, wires
+from momantu_bt.formats.places import cells
 from momantu_bt.tree.catalogue import BUILT_IN, SUBTREE
 from momantu_bt.tree.model import Document, Handler, Node, Tree
-from momantu_bt.tree.problems import cells
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.show.printing import (
     below,

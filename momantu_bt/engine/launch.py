@@ -26,6 +26,7 @@ from momantu_bt.engine.watchdog import PATIENCE, Watchdog
 from momantu_bt.errors import MomantuError
 from momantu_bt.fault import Fault
 from momantu_bt.faults.stage import Planned, Stage, plan
+from momantu_bt.formats.names import valid_names
 from momantu_bt.frames import FrameBuffer
 from momantu_bt.record.report import ERROR, Report
 from momantu_bt.robot import Robot, RobotDescription
@@ -34,7 +35,6 @@ from momantu_bt.skill import Skill
 from momantu_bt.tree.check.checker import ROBOT_KEY
 from momantu_bt.tree.check.named_world import world_of
 from momantu_bt.tree.model import Document
-from momantu_bt.tree.problems import valid_names
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.substitute.substitution import Substitution
 from momantu_bt.tree.values.conversion import natural

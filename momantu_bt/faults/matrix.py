@@ -10,7 +10,7 @@ from momantu_bt.fault import Fault, FaultError
 from momantu_bt.faults.catalogue import KINDS
 from momantu_bt.faults.kind import FaultKind
 from momantu_bt.faults.spec import format_fault, parse_fault
-from momantu_bt.tree.problems import valid_names
+from momantu_bt.formats.names import valid_names
 
 RECOVERED, ENDED = "recovered", "process ended"
 

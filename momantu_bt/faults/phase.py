@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from momantu_bt.tree.values.units import UnitError, in_unit
+from momantu_bt.formats.units import UnitError, in_unit
 
 START = "start"
 FORMS = "start, 12 s, NAME, OUTER/INNER, after-NAME, NAME#2 or NAME+3 s"

@@ -9,10 +9,10 @@ from typing import TypeAlias
 from momantu_bt.fault import FaultError
 from momantu_bt.faults.kind import FIRST_ANSWER, FIRST_SKILL, FaultKind
 from momantu_bt.faults.phase import START, Phase, parse_phase
+from momantu_bt.formats.names import valid_names
 from momantu_bt.skill import Skill
 from momantu_bt.tree.catalogue import BUILT_IN, SUBTREE
 from momantu_bt.tree.model import Document, Node
-from momantu_bt.tree.problems import valid_names
 from momantu_bt.tree.substitute.substitution import Substitution, names, reached
 
 Skills: TypeAlias = Mapping[str, type[Skill]]

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from momantu_bt.fault import Fault, FaultError
-from momantu_bt.tree.problems import valid_names
+from momantu_bt.formats.names import valid_names
 from momantu_bt.world import Site, seeded
 
 NEAR = 5.0

@@ -11,8 +11,9 @@ from momantu_bt.fault import Fault, FaultError, FaultParameter
 from momantu_bt.faults.catalogue import KINDS
 from momantu_bt.faults.kind import FOR, FaultKind
 from momantu_bt.faults.phase import parse_phase
+from momantu_bt.formats.names import valid_names
+from momantu_bt.formats.places import cells
 from momantu_bt.skill import Port
-from momantu_bt.tree.problems import cells, valid_names
 from momantu_bt.tree.types import label
 from momantu_bt.tree.values.conversion import convert
 from momantu_bt.tree.values.words import ConversionError

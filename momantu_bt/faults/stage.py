@@ -22,10 +22,10 @@ from momantu_bt.faults.process import Killed
 from momantu_bt.faults.skills import skill_fault
 from momantu_bt.faults.skills.victim import SkillFault
 from momantu_bt.faults.watch import PhaseWatch
+from momantu_bt.formats.names import valid_names
 from momantu_bt.robot import Robot
 from momantu_bt.skill import Skill
 from momantu_bt.tree.model import Document
-from momantu_bt.tree.problems import valid_names
 from momantu_bt.tree.substitute.substitution import Substitution
 from momantu_bt.world import Site, World
 

@@ -12,13 +12,14 @@ from tempfile import TemporaryDirectory
 from typing import Any, NoReturn
 
 from momantu_bt.errors import MomantuError
+from momantu_bt.formats.problems import errors
 from momantu_bt.record.codec import from_json
 from momantu_bt.record.recording import Recording
 from momantu_bt.robot import RobotDescription
 from momantu_bt.tree.check.named_world import NO_WORLD
 from momantu_bt.tree.load import load
 from momantu_bt.tree.model import Document
-from momantu_bt.tree.problems import TreeError, errors
+from momantu_bt.tree.problems import TreeError
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.substitute.substitution import Substitution, load_substitution
 from momantu_bt.world import Site, World, WorldError

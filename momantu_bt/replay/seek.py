@@ -9,8 +9,8 @@ from momantu_bt.engine.role import Role
 from momantu_bt.engine.status import FAILURE
 from momantu_bt.errors import MomantuError
 from momantu_bt.failure import FailureValue
+from momantu_bt.formats.names import valid_names
 from momantu_bt.record.recording import NodeInfo, Recording
-from momantu_bt.tree.problems import valid_names
 
 
 class SeekError(MomantuError, ValueError):

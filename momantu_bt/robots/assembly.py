@@ -8,7 +8,7 @@ from pathlib import Path
 
 from lxml import etree
 
-from momantu_bt.descriptions.reading import Place
+from momantu_bt.formats.places import KeyPath
 from momantu_bt.robot_simulation import BaseJoints
 from momantu_bt.robots.cache import keep_urdf
 from momantu_bt.robots.errors import PartError
@@ -110,7 +110,7 @@ def _meshes(parts: list[LoadedPart], folder: Path) -> list[Mapping[str, Path]]:
     """The mesh files of each part, the user's in place of its own."""
     troubles, found = [], []
     for part in parts:
-        place: Place = ("parts", part.name)
+        place: KeyPath = ("parts", part.name)
         troubles += [PartError((*place, "meshes"), said) for said in replace_meshes(part)]
         located = locate_meshes(part, folder)
         troubles += [PartError(place, said) for said in located.missing]

@@ -4,19 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable, Iterator
-from typing import TypeAlias
 
 from lxml import etree
 
-from momantu_bt.descriptions.names import nearest
-from momantu_bt.descriptions.quantities import LENGTH, unit_of
-from momantu_bt.descriptions.reading import Place, Reading
+from momantu_bt.descriptions.reading import KeyMessage, Reading
+from momantu_bt.formats.names import valid_names
+from momantu_bt.formats.places import KeyPath
+from momantu_bt.formats.units import quantity
 from momantu_bt.frames import Joint, KinematicTree
 from momantu_bt.robot import ARM, REQUIRED_POSES
 from momantu_bt.robot_parts import ActuatorKind, CameraSensor, LaserSensor, LidarSensor
 from momantu_bt.robots.robot_file import RobotFile
-
-Finding: TypeAlias = tuple[Place, str]
 
 ROLES = {"base": ActuatorKind.BASE, ARM: ActuatorKind.JOINTS, "gripper": ActuatorKind.GRIPPER}
 """Actuators that skills name in their `uses`."""
@@ -24,19 +22,15 @@ SLACK = 1e-9
 """rad or m by which a named pose may lie beyond a limit: rounding."""
 
 
-def findings(robot: RobotFile, root: etree._Element, reading: Reading) -> list[Finding]:
+def findings(robot: RobotFile, root: etree._Element, reading: Reading) -> list[KeyMessage]:
     """Everything that does not fit; empty when the robot is as it should be.
 
     root: the assembled URDF's element. reading: the file, as it is written.
     """
     links = [str(link.get("name")) for link in root.findall("link")]
     if robot.base_frame not in links:
-        return [
-            (
-                ("base_frame",),
-                f"there is no link {robot.base_frame!r}{nearest(robot.base_frame, links)}",
-            )
-        ]
+        hint = valid_names(robot.base_frame, links, "links")
+        return [(("base_frame",), f"there is no link {robot.base_frame!r}; {hint}")]
     tree = KinematicTree.from_element(root, robot.base_frame)
     return list(_Checks(robot, tree, root, links, reading).run())
 
@@ -55,7 +49,7 @@ class _Checks:
         self._moving: dict[str, Joint] = {j.name: j for j in tree.joints() if j.kind != "fixed"}
         self._every_joint = [str(joint.get("name")) for joint in root.findall("joint")]
 
-    def run(self) -> Iterator[Finding]:
+    def run(self) -> Iterator[KeyMessage]:
         yield from self._base()
         yield from self._actuators()
         yield from self._roles()
@@ -69,17 +63,19 @@ class _Checks:
                 yield from self._in(link, self._links, "link", ("ignored_collisions", i, k))
         yield from self._simulation()
 
-    def _in(self, name: str, known: Collection[str], what: str, place: Place) -> Iterator[Finding]:
+    def _in(
+        self, name: str, known: Collection[str], what: str, place: KeyPath
+    ) -> Iterator[KeyMessage]:
         if name not in known:
-            yield place, f"there is no {what} {name!r}{nearest(name, known)}"
+            yield place, f"there is no {what} {name!r}; {valid_names(name, known, f'{what}s')}"
 
     def _every(
-        self, names: Iterable[str], known: Collection[str], what: str, place: Place
-    ) -> Iterator[Finding]:
+        self, names: Iterable[str], known: Collection[str], what: str, place: KeyPath
+    ) -> Iterator[KeyMessage]:
         for i, name in enumerate(names):
             yield from self._in(name, known, what, (*place, i))
 
-    def _base(self) -> Iterator[Finding]:
+    def _base(self) -> Iterator[KeyMessage]:
         drive = self._robot.base.drive
         if drive is not None and drive.joints is not None:
             for key, joint in drive.joints.model_dump().items():
@@ -94,9 +90,9 @@ class _Checks:
         if area <= 0:
             yield ("footprint",), "the corners go round clockwise; write them counter-clockwise"
 
-    def _actuators(self) -> Iterator[Finding]:
+    def _actuators(self) -> Iterator[KeyMessage]:
         for name, actuator in self._robot.actuators.items():
-            place: Place = ("actuators", name, "joints")
+            place: KeyPath = ("actuators", name, "joints")
             yield from self._every(actuator.joints, self._moving, "moving joint", place)
             if actuator.kind is ActuatorKind.JOINTS and not actuator.joints:
                 yield ("actuators", name), f"{name} moves joints: write which, `joints: [...]`"
@@ -104,7 +100,7 @@ class _Checks:
                 if joint in self._moving and joint not in self._robot.joint_limits:
                     yield (*place, i), f"{joint!r} needs a line in `joint_limits`"
 
-    def _roles(self) -> Iterator[Finding]:
+    def _roles(self) -> Iterator[KeyMessage]:
         """Skills know a robot's actuators, and the group that plans for its arm, by name."""
         actuators, groups = self._robot.actuators, self._robot.groups
         for name, kind in ROLES.items():
@@ -123,11 +119,12 @@ class _Checks:
                 "the group and the actuator of this name need the same joints in the same order",
             )
 
-    def _limits(self) -> Iterator[Finding]:
+    def _limits(self) -> Iterator[KeyMessage]:
         for name, limit in self._robot.joint_limits.items():
-            place: Place = ("joint_limits", name)
+            place: KeyPath = ("joint_limits", name)
             if name not in self._moving:
-                yield place, f"there is no moving joint {name!r}{nearest(name, self._moving)}"
+                hint = valid_names(name, self._moving, "moving joints")
+                yield place, f"there is no moving joint {name!r}; {hint}"
                 continue
             if (limit.lower is None) != (limit.upper is None):
                 yield place, f"{name} has one limit; give `lower` and `upper`, or neither"
@@ -141,20 +138,20 @@ class _Checks:
                 yield place, f"{name} slides: it needs `lower` and `upper`"
             yield from self._units(name, place)
 
-    def _units(self, joint: str, place: Place) -> Iterator[Finding]:
+    def _units(self, joint: str, place: KeyPath) -> Iterator[KeyMessage]:
         """Lengths are for joints that slide, angles for joints that turn."""
         written = self._reading.value(place)
         values = written.items() if isinstance(written, dict) else [(None, written)]
         slides = self._moving[joint].kind == "prismatic"
         for key, value in values:
-            unit = unit_of(value)
-            if unit is not None and (unit.partition("/")[0] in LENGTH) != slides:
+            found = quantity(value) if isinstance(value, str) else None
+            if found is not None and (found.unit.partition("/")[0] == "m") != slides:
                 fitting = "slides: write it in m" if slides else "turns: write it in rad or deg"
                 yield (*place, key) if key else place, f"{value!r}, but {joint} {fitting}"
 
-    def _groups(self) -> Iterator[Finding]:
+    def _groups(self) -> Iterator[KeyMessage]:
         for name, group in self._robot.groups.items():
-            place: Place = ("groups", name)
+            place: KeyPath = ("groups", name)
             yield from self._every(group.joints, self._moving, "moving joint", (*place, "joints"))
             yield from self._in(group.tip, self._frames, "link", (*place, "tip"))
             if group.tip not in self._frames:
@@ -172,10 +169,10 @@ class _Checks:
                 if joint in self._moving and joint not in self._robot.joint_limits:
                     yield (*place, "joints", i), f"{joint!r} needs a line in `joint_limits`"
 
-    def _sensors(self) -> Iterator[Finding]:
+    def _sensors(self) -> Iterator[KeyMessage]:
         sensors = self._robot.sensors
         for name, sensor in sensors.items():
-            place: Place = ("sensors", name)
+            place: KeyPath = ("sensors", name)
             yield from self._in(sensor.frame, self._frames, "link", (*place, "frame"))
             if isinstance(sensor, CameraSensor) and sensor.carrier is not None:
                 yield from self._in(
@@ -185,7 +182,7 @@ class _Checks:
                 lidars = [k for k, s in sensors.items() if isinstance(s, LidarSensor)]
                 yield from self._in(sensor.source, lidars, "lidar", (*place, "source"))
 
-    def _hand(self) -> Iterator[Finding]:
+    def _hand(self) -> Iterator[KeyMessage]:
         hand = self._robot.end_effector
         grippers = {
             k: a for k, a in self._robot.actuators.items() if a.kind is ActuatorKind.GRIPPER
@@ -199,13 +196,13 @@ class _Checks:
         )
         joints = grippers[hand.actuator].joints if hand.actuator in grippers else ()
         for joint in hand.opening:
-            place: Place = ("end_effector", "opening", joint)
+            place: KeyPath = ("end_effector", "opening", joint)
             yield from self._in(joint, joints, f"joint of {hand.actuator}", place)
         missing = [joint for joint in joints if hand.opening and joint not in hand.opening]
         if missing:
             yield ("end_effector", "opening"), f"there is no table for {', '.join(missing)}"
 
-    def _poses(self) -> Iterator[Finding]:
+    def _poses(self) -> Iterator[KeyMessage]:
         missing = [name for name in REQUIRED_POSES if name not in self._robot.named_poses]
         if missing:
             yield (
@@ -216,9 +213,10 @@ class _Checks:
         limits = self._robot.joint_limits
         for name, pose in self._robot.named_poses.items():
             for joint, value in pose.items():
-                place: Place = ("named_poses", name, joint)
+                place: KeyPath = ("named_poses", name, joint)
                 if joint not in limits:
-                    yield place, f"there is no joint {joint!r}{nearest(joint, limits)}"
+                    hint = valid_names(joint, limits, "joints with limits")
+                    yield place, f"there is no joint {joint!r}; {hint}"
                     continue
                 limit = limits[joint]
                 low = -math.inf if limit.lower is None else limit.lower
@@ -228,7 +226,7 @@ class _Checks:
                 if joint in self._moving:
                     yield from self._units(joint, place)
 
-    def _simulation(self) -> Iterator[Finding]:
+    def _simulation(self) -> Iterator[KeyMessage]:
         drives = {*self._robot.actuators, *self._moving}
         for name in self._robot.drives:
             yield from self._in(name, drives, "actuator or moving joint", ("drives", name))
@@ -244,6 +242,6 @@ class _Checks:
         hand = self._robot.actuators.get(self._robot.end_effector.actuator)
         fingers = () if hand is None else hand.joints
         for joint, linkage in contacts.linkages.items():
-            place: Place = ("simulation", "linkages", joint)
+            place: KeyPath = ("simulation", "linkages", joint)
             yield from self._in(joint, self._moving, "moving joint", place)
             yield from self._in(linkage.motor, fingers, "finger joint", (*place, "motor"))

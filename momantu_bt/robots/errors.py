@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from momantu_bt.descriptions.reading import DescriptionError, Place
+from momantu_bt.descriptions.reading import DescriptionError
+from momantu_bt.formats.places import KeyPath
 from momantu_bt.world import WorldError
 
 
@@ -19,6 +20,6 @@ class RobotNotInstalled(WorldError):
 class PartError(Exception):
     """One thing is wrong with what the robot file says at `place`."""
 
-    def __init__(self, place: Place, message: str) -> None:
+    def __init__(self, place: KeyPath, message: str) -> None:
         super().__init__(message)
         self.place, self.message = place, message

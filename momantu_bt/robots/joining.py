@@ -9,8 +9,8 @@ from collections.abc import Iterator
 import numpy as np
 from lxml import etree
 
-from momantu_bt.descriptions.names import nearest
-from momantu_bt.descriptions.reading import Place
+from momantu_bt.formats.names import valid_names
+from momantu_bt.formats.places import KeyPath
 from momantu_bt.frames import KinematicTree
 from momantu_bt.geometry import Transform
 from momantu_bt.robot_simulation import BaseJoints
@@ -82,7 +82,7 @@ class Joining:
                 yield PartError(("parts", name), f"the part {name!r} has no mount; {where}")
         for name in self._robot.mounts:
             if name not in self._robot.parts:
-                said = f"there is no part {name!r}{nearest(name, self._robot.parts)}"
+                said = f"there is no part {name!r}; {valid_names(name, self._robot.parts, 'parts')}"
                 yield PartError(("mounts", name), said)
         mount = self._robot.mounts.get(first)
         if mount is not None and mount.on != self._robot.base_frame:
@@ -93,7 +93,7 @@ class Joining:
             )
 
     def _mount(self, part: LoadedPart, mount: Mount) -> Iterator[PartError]:
-        place: Place = ("mounts", part.name)
+        place: KeyPath = ("mounts", part.name)
         if part is not self._parts[0]:
             yield from self._unknown_link(mount.on, (*place, "on"))
         root, pose = root_link(part), Transform.from_rpy(mount.xyz, mount.rpy)
@@ -105,16 +105,16 @@ class Joining:
         yield from self._fix(f"{part.name}_mount", mount.on, root, pose, place)
 
     def _fix(
-        self, name: str, parent: str, child: str, pose: Transform, place: Place
+        self, name: str, parent: str, child: str, pose: Transform, place: KeyPath
     ) -> Iterator[PartError]:
         yield from self._taken("joint", name, place)
         self._joint(name, "fixed", parent, child, pose)
 
-    def _new_link(self, name: str, place: Place) -> Iterator[PartError]:
+    def _new_link(self, name: str, place: KeyPath) -> Iterator[PartError]:
         yield from self._taken("link", name, place)
         etree.SubElement(self.root, "link", name=name)
 
-    def _taken(self, tag: str, name: str, place: Place) -> Iterator[PartError]:
+    def _taken(self, tag: str, name: str, place: KeyPath) -> Iterator[PartError]:
         owner, _ = self._owners.setdefault((tag, name), (str(place[0]), ""))
         if name in self._names(tag):
             yield PartError(place, f"the {tag} {name!r} is in {owner} already; choose another name")
@@ -122,10 +122,12 @@ class Joining:
     def _names(self, tag: str) -> list[str]:
         return [str(element.get("name")) for element in self.root.findall(tag)]
 
-    def _unknown_link(self, name: str, place: Place) -> Iterator[PartError]:
+    def _unknown_link(self, name: str, place: KeyPath) -> Iterator[PartError]:
         links = self._names("link")
         if name not in links:
-            yield PartError(place, f"there is no link {name!r}{nearest(name, links)}")
+            yield PartError(
+                place, f"there is no link {name!r}; {valid_names(name, links, 'links')}"
+            )
 
     def _joint(
         self, name: str, kind: str, parent: str, child: str, pose: Transform
@@ -164,7 +166,7 @@ class Joining:
                 "URDF's own virtual joints under `base.drive.joints`",
             )
             return
-        place: Place = ("base", "drive")
+        place: KeyPath = ("base", "drive")
         for link in _VIRTUAL_LINKS:
             yield from self._new_link(link, place)
         above = (*_VIRTUAL_LINKS, base)
@@ -187,12 +189,14 @@ def _twice(tag: str, name: str, owner: str, part: LoadedPart) -> str:
 
 def _root_from_link(part: LoadedPart, root: str, link: str) -> Transform:
     """Where a link lies below its part's root, over fixed joints alone."""
-    place: Place = ("mounts", part.name, "link")
+    place: KeyPath = ("mounts", part.name, "link")
     names = [str(each.get("name")) for each in part.root.findall("link")]
     within = f"{part.source.namespace}_{link}"
     link = within if link not in names and within in names else link
     if link not in names:
-        raise PartError(place, f"{part.name!r} has no link {link!r}{nearest(link, names)}")
+        raise PartError(
+            place, f"{part.name!r} has no link {link!r}; {valid_names(link, names, 'links')}"
+        )
     tree = KinematicTree.from_element(part.root, root)
     moving = [joint.name for joint in tree.chain(link) if joint.kind != "fixed"]
     if moving:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from lxml import etree
 
-from momantu_bt.descriptions.reading import Place
+from momantu_bt.formats.places import KeyPath
 from momantu_bt.robots.errors import PartError, RobotNotInstalled
 from momantu_bt.robots.robot_file import PackageFile, PartSource
 
@@ -54,7 +54,7 @@ def load_part(name: str, source: PartSource, folder: Path, meshes: Path | None) 
         RobotNotInstalled: it is in a Python package that is not installed.
     """
     kind = "urdf" if source.urdf is not None else "xacro"
-    place: Place = ("parts", name, kind)
+    place: KeyPath = ("parts", name, kind)
     given = source.urdf if source.urdf is not None else source.xacro
     assert given is not None
     path = _in_package(given, place) if isinstance(given, PackageFile) else folder / given
@@ -74,7 +74,7 @@ def load_part(name: str, source: PartSource, folder: Path, meshes: Path | None) 
     return LoadedPart(name, source, path, _parsed(text, path, place), files, meshes)
 
 
-def _in_package(where: PackageFile, place: Place) -> Path:
+def _in_package(where: PackageFile, place: KeyPath) -> Path:
     """Locate a file inside an installed package without importing that package."""
     spec = importlib.util.find_spec(where.package)
     if spec is None or not spec.submodule_search_locations:
@@ -99,7 +99,7 @@ def shown(path: Path, folder: Path) -> str:
     return path.relative_to(folder).as_posix() if inside else "/".join(path.parts[-_TAIL:])
 
 
-def _parsed(text: bytes, path: Path, place: Place) -> etree._Element:
+def _parsed(text: bytes, path: Path, place: KeyPath) -> etree._Element:
     parser = etree.XMLParser(
         resolve_entities=False, no_network=True, load_dtd=False, remove_comments=True
     )

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from lxml import etree
 
-from momantu_bt.descriptions.names import nearest
+from momantu_bt.formats.names import valid_names
 from momantu_bt.robots.errors import PartError
 from momantu_bt.robots.limits import LIMITED
 from momantu_bt.robots.parts import LoadedPart, line_of
@@ -47,7 +47,7 @@ def _of_joint(joint: etree._Element, links: list[str], carried: dict[str, str]) 
         link = linked(joint, end)
         if link not in links:
             said = f"the joint {name!r} has the {end} {link!r}, and there is no such link"
-            yield f"{said}{nearest(link, links)}"
+            yield f"{said}; {valid_names(link, links, 'links')}"
     child = linked(joint, "child")
     first = carried.setdefault(child, str(name))
     if first != name:

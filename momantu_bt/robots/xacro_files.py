@@ -7,7 +7,6 @@ file that was written to break through. Only files that one trusts may be expand
 
 from __future__ import annotations
 
-import difflib
 import importlib.util
 import sys
 import threading
@@ -17,7 +16,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from types import ModuleType
 
-from momantu_bt.descriptions.reading import Place
+from momantu_bt.formats.names import nearest
+from momantu_bt.formats.places import KeyPath
 from momantu_bt.robots.errors import PartError
 
 _LOCK = threading.Lock()
@@ -27,7 +27,7 @@ _INDEX = "ament_index_python"
 
 
 def expand(
-    path: Path, args: Mapping[str, object], folder: Path, place: Place
+    path: Path, args: Mapping[str, object], folder: Path, place: KeyPath
 ) -> tuple[bytes, tuple[Path, ...]]:
     """The URDF that a xacro file gives, and the files that it includes.
 
@@ -104,8 +104,8 @@ def _package(name: str, path: Path, folder: Path) -> Path:
     if spec is not None and spec.submodule_search_locations:
         return Path(next(iter(spec.submodule_search_locations)))
     beside = sorted(p.name for p in folder.iterdir() if p.is_dir())
-    near = difflib.get_close_matches(name, beside, n=1)
-    hint = f" (did you mean {near[0]!r}?)" if near else ""
+    near = nearest(name, beside)
+    hint = f" (did you mean {near!r}?)" if near else ""
     raise LookupError(
         f"$(find {name}) is neither a folder beside the robot file nor an installed "
         f"package{hint}; put a folder of that name into {folder}"

@@ -7,6 +7,7 @@ from dataclasses import fields, is_dataclass
 from enum import StrEnum
 from pathlib import Path
 
+from momantu_bt.formats.problems import errors
 from momantu_bt.tree.check.nodes import name_first_inputs
 from momantu_bt.tree.check.signatures import Context
 from momantu_bt.tree.files.resolve import resolve
@@ -18,7 +19,7 @@ from momantu_bt.tree.files.yaml.format import YamlSource
 from momantu_bt.tree.files.yaml.scalars import CannotWrite
 from momantu_bt.tree.load import read_file
 from momantu_bt.tree.model import Document, Node
-from momantu_bt.tree.problems import Problems, TreeError, errors
+from momantu_bt.tree.problems import Problems, TreeError
 from momantu_bt.tree.registry import Registry
 
 __all__ = [

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from momantu_bt.failure import CODE
-from momantu_bt.tree.model import Place
+from momantu_bt.formats.places import Place
 from momantu_bt.tree.problems import Problems
 
 VERSION = 1

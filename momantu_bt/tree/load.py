@@ -8,13 +8,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from momantu_bt.formats.names import valid_names
+from momantu_bt.formats.places import Place
+from momantu_bt.formats.problems import Problem, errors
 from momantu_bt.tree.check.checker import check
 from momantu_bt.tree.files.includes import read_project
 from momantu_bt.tree.files.lookup import TreeNotFound, find
 from momantu_bt.tree.files.settings import Given
 from momantu_bt.tree.files.text import read_text
-from momantu_bt.tree.model import Document, Literal, Place, Reference, Template
-from momantu_bt.tree.problems import Problem, Problems, TreeError, errors, valid_names
+from momantu_bt.tree.model import Document, Literal, Reference, Template
+from momantu_bt.tree.problems import Problems, TreeError
 from momantu_bt.tree.registry import Registry
 
 WORD = re.compile(r"[^\W\d]\w*")

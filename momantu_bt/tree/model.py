@@ -10,23 +10,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any, TypeAlias
 
-
-@dataclass(frozen=True, slots=True)
-class Place:
-    """A stretch of one line in a file; line and column count from 1."""
-
-    file: str
-    line: int
-    column: int
-    length: int = 1
-
-    def __str__(self) -> str:
-        """`file:line:column`, as editors understand it."""
-        return f"{self.file}:{self.line}:{self.column}"
-
-    def seen_from(self, here: Place) -> str:
-        """In words, for a person who looks at another place: "line 3", or with another file."""
-        return f"line {self.line}" + (f" of {self.file}" if self.file != here.file else "")
+from momantu_bt.formats.places import Place
 
 
 class Scope(Enum):

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Generator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from momantu_bt.claim import Claim, JointsAt
 from momantu_bt.failure import Failure, FailureValue
+from momantu_bt.formats.names import nearest
 from momantu_bt.geometry import Array
 from momantu_bt.messages import JointPositions, JointTrajectory
 from momantu_bt.robot import ARM, CAMERA_CARRIER, Robot
@@ -86,8 +86,8 @@ class ResetPose(Skill):
     def _wanted(self, robot: Robot) -> dict[str, float]:
         poses = robot.description.named_poses
         if self.pose not in poses:
-            near = difflib.get_close_matches(self.pose, poses, n=1)
-            hint = f"; did you mean {near[0]!r}?" if near else ""
+            near = nearest(self.pose, poses)
+            hint = f"; did you mean {near!r}?" if near else "."
             raise Failure(
                 "UNKNOWN_POSE",
                 f"{robot.description.name} has no pose {self.pose!r}{hint} "

@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from momantu_bt.formats.places import Place
 from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue import BUILT_IN, CONDITIONS, SUBTREE, Kind, NodeSpec, ScriptText
 from momantu_bt.tree.model import (
@@ -14,7 +15,6 @@ from momantu_bt.tree.model import (
     Handler,
     Literal,
     Node,
-    Place,
     PortDeclaration,
     PortValue,
     Reference,

@@ -1,19 +1,18 @@
 """Findings as a person and a program read them."""
 
 import json
-from pathlib import Path
 
-from momantu_bt.findings import Finding, findings_json, findings_text, in_order
+from momantu_bt.findings import Finding, findings_json, findings_text, worst_first
+from momantu_bt.formats.places import Place
+from momantu_bt.formats.problems import Severity
 
-LATE = Finding("error", "overlap", "a overlaps b by 2 cm", "move it", Path("w.yaml"), 9, 3, (7,))
-EARLY = Finding(
-    "error", "door-narrow", "too narrow", "widen it", Path("w.yaml"), 2, 1, (1, 2, 3, 9)
-)
-MILD = Finding("warning", "odd", "odd", "look at it")
+LATE = Finding("overlap", "a overlaps b by 2 cm", Place("w.yaml", 9, 3), "move it", seeds=(7,))
+EARLY = Finding("door-narrow", "too narrow", Place("w.yaml", 2, 1), "widen it", seeds=(1, 2, 3, 9))
+MILD = Finding("odd", "odd", hint="look at it", severity=Severity.WARNING)
 
 
 def test_errors_come_first_then_the_order_of_the_file() -> None:
-    assert in_order([MILD, LATE, EARLY]) == [EARLY, LATE, MILD]
+    assert worst_first([MILD, LATE, EARLY]) == [EARLY, LATE, MILD]
 
 
 def test_a_line_says_where_what_and_in_which_episodes_and_the_next_what_to_do() -> None:

@@ -6,6 +6,8 @@ from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
 
+from momantu_bt.formats.places import Place
+from momantu_bt.formats.problems import Problem
 from momantu_bt.messages import RobotState
 from momantu_bt.tree.catalogue import ScriptText
 from momantu_bt.tree.check.guards import check_guards
@@ -23,8 +25,8 @@ from momantu_bt.tree.check.trees import (
     check_unused,
     reached,
 )
-from momantu_bt.tree.model import Document, Literal, Node, Place, Reference, Scope, Tree
-from momantu_bt.tree.problems import Problem, Problems, TooManyProblems
+from momantu_bt.tree.model import Document, Literal, Node, Reference, Scope, Tree
+from momantu_bt.tree.problems import Problems, TooManyProblems
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.script import parse
 

@@ -16,11 +16,12 @@ from momantu_bt.failure import (
     TIMEOUT,
     WRONG_TYPE,
 )
+from momantu_bt.formats.names import nearest
+from momantu_bt.formats.places import Place, within
 from momantu_bt.tree.catalogue import SUBTREE
 from momantu_bt.tree.check.signatures import Context
 from momantu_bt.tree.language import ANY
-from momantu_bt.tree.model import Handler, Literal, Node, Place, Reference, Tree
-from momantu_bt.tree.problems import nearest, within
+from momantu_bt.tree.model import Handler, Literal, Node, Reference, Tree
 
 _ANY_SKILL = frozenset(ENGINE_CODES) - {TIMEOUT, FAILED, HALTED, SCRIPT_ERROR}
 """What the engine makes of a skill's end beside the codes that it declares."""

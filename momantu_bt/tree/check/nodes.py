@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from momantu_bt.failure import CODE
+from momantu_bt.formats.names import valid_names
+from momantu_bt.formats.places import Place
 from momantu_bt.messages import VALUE_TYPES
 from momantu_bt.skill import MISSING, Port
 from momantu_bt.tree.catalogue import AUTOREMAP, MODIFIERS, CodeText
@@ -11,14 +13,12 @@ from momantu_bt.tree.model import (
     FIRST_INPUT,
     Literal,
     Node,
-    Place,
     PortDeclaration,
     PortValue,
     Reference,
     Template,
     Tree,
 )
-from momantu_bt.tree.problems import valid_names
 from momantu_bt.tree.types import assignable, label
 from momantu_bt.tree.values.conversion import convert, port_of
 from momantu_bt.tree.values.words import ConversionError

@@ -6,12 +6,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from momantu_bt.formats.names import nearest, valid_names
+from momantu_bt.formats.places import Place
 from momantu_bt.plugins import PluginError
 from momantu_bt.robot import RobotDescription
 from momantu_bt.skill import Port, Skill
 from momantu_bt.tree.catalogue import AUTOREMAP, BUILT_IN, SUBTREE, NodeSpec
-from momantu_bt.tree.model import BROKEN, Document, Node, Place, Tree
-from momantu_bt.tree.problems import Problems, nearest, valid_names
+from momantu_bt.tree.model import BROKEN, Document, Node, Tree
+from momantu_bt.tree.problems import Problems
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.types import parse_type
 from momantu_bt.tree.values.conversion import port_of

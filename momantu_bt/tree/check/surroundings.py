@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from momantu_bt.descriptions.reading import DescriptionError
+from momantu_bt.formats.names import valid_names
+from momantu_bt.formats.places import Place
 from momantu_bt.plugin_files import near_file
 from momantu_bt.plugins import ROBOTS, WORLDS, PluginError
 from momantu_bt.tree.check.named_world import world_of
 from momantu_bt.tree.check.signatures import Context
-from momantu_bt.tree.model import Place
-from momantu_bt.tree.problems import valid_names
 from momantu_bt.world import WorldError
 
 WORLD_OPTION, ROBOT_OPTION = "--world", "--robot"
@@ -96,4 +96,4 @@ def _broken(code: str, context: Context, error: DescriptionError) -> None:
     file = str(error.path)
     context.document.source[file] = error.text
     for problem in error.problems:
-        context.problems.error(code, Place(file, problem.line, problem.column), problem.message)
+        context.problems.error(code, problem.place, problem.message, problem.hint)

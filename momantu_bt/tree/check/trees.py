@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TypeAlias
 
+from momantu_bt.formats.places import Place
 from momantu_bt.tree.catalogue import BUILT_IN, SUBTREE
 from momantu_bt.tree.check.signatures import Context
-from momantu_bt.tree.model import Document, Node, Place, Tree
+from momantu_bt.tree.model import Document, Node, Tree
 
 MAX_NESTING = 150
 """Nodes within nodes, decorators counted; bounds the stack of whatever walks a tree."""

@@ -8,13 +8,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
 
+from momantu_bt.formats.names import nearest
+from momantu_bt.formats.problems import Problem, errors
 from momantu_bt.tree.files.lookup import TreeNotFound, tree_files
 from momantu_bt.tree.files.resolve import resolve
 from momantu_bt.tree.files.text import is_xml, read_text
 from momantu_bt.tree.files.xml.format import XmlSource
 from momantu_bt.tree.files.yaml.format import YamlSource
 from momantu_bt.tree.model import Document, Include, Tree
-from momantu_bt.tree.problems import Problem, Problems, TooManyProblems, TreeError, errors, nearest
+from momantu_bt.tree.problems import Problems, TooManyProblems, TreeError
 from momantu_bt.tree.registry import Registry
 
 MAX_FILES = 64

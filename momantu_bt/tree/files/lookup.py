@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from momantu_bt.errors import MomantuError
-from momantu_bt.tree.problems import nearest
+from momantu_bt.formats.names import nearest
 
 SUFFIX = ".yaml"
 """Of bundled trees."""

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from momantu_bt.formats.names import valid_names
+from momantu_bt.formats.places import Place
 from momantu_bt.tree.catalogue import SUBTREE
-from momantu_bt.tree.model import BROKEN, Document, Place
-from momantu_bt.tree.problems import Problems, valid_names
+from momantu_bt.tree.model import BROKEN, Document
+from momantu_bt.tree.problems import Problems
 
 
 def resolve(document: Document, problems: Problems) -> None:

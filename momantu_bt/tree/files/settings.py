@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from momantu_bt.formats.places import Place, lines_of
+from momantu_bt.formats.problems import Problem
 from momantu_bt.tree.files.yaml.raw import Entries, plain_value
 from momantu_bt.tree.files.yaml.source import YamlSyntaxError, compose
 from momantu_bt.tree.files.yaml.values import KEY
-from momantu_bt.tree.model import Place
-from momantu_bt.tree.problems import Problem, TreeError, lines_of
+from momantu_bt.tree.problems import TreeError
 
 SET = "--set"
 """As a file's name: what was given so, one setting a line."""

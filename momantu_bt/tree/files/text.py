@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from momantu_bt.formats.places import Place
+from momantu_bt.formats.problems import Problem
 from momantu_bt.tree.files.lookup import TreeNotFound
 from momantu_bt.tree.files.yaml.source import MAX_BYTES
-from momantu_bt.tree.model import Place
-from momantu_bt.tree.problems import Problem, TreeError
+from momantu_bt.tree.problems import TreeError
 
 
 def read_text(path: Path, shown: str) -> str:

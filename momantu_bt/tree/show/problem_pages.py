@@ -10,7 +10,7 @@ from functools import cache
 from pathlib import Path
 
 from momantu_bt.errors import MomantuError
-from momantu_bt.tree.problems import valid_names
+from momantu_bt.formats.names import valid_names
 
 _PACKAGE = Path(__file__).resolve().parents[2]
 

@@ -8,7 +8,7 @@ from typing import Any
 from urllib.parse import quote
 
 from momantu_bt import __version__
-from momantu_bt.tree.problems import Problem, Severity
+from momantu_bt.formats.problems import Problem, Severity
 from momantu_bt.tree.show.problem_pages import codes, explanation
 
 SCHEMA = (

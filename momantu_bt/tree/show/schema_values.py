@@ -8,11 +8,11 @@ from collections.abc import Mapping, Sequence
 from enum import Enum
 from typing import Any, Literal, TypeAlias, get_args
 
+from momantu_bt.formats.units import units_of
 from momantu_bt.skill import MISSING, Port
 from momantu_bt.tree.catalogue import CodeText, ScriptText
 from momantu_bt.tree.files.yaml.words import BTCPP
 from momantu_bt.tree.types import ValueType, is_union, label, origin, without_none
-from momantu_bt.tree.values.units import units_of
 
 _KEPT = {"type": "object", "properties": {BTCPP: {"type": "string"}}, "required": [BTCPP]}
 SCRIPT: dict[str, Any] = {

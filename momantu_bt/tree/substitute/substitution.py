@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from momantu_bt.failure import ENGINE_CODES
+from momantu_bt.formats.names import valid_names
+from momantu_bt.formats.problems import errors
 from momantu_bt.tree.catalogue import BUILT_IN, SUBTREE
 from momantu_bt.tree.check.checker import ROBOT_KEY
 from momantu_bt.tree.check.keys.reads import references
@@ -17,7 +19,7 @@ from momantu_bt.tree.check.signatures import Context
 from momantu_bt.tree.files.text import read_text
 from momantu_bt.tree.files.yaml.source import YamlSyntaxError, compose
 from momantu_bt.tree.model import Document, Literal, Node, Reference, Scope
-from momantu_bt.tree.problems import Problems, TreeError, errors, valid_names
+from momantu_bt.tree.problems import Problems, TreeError
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.script import ScriptSyntaxError, parse
 from momantu_bt.tree.substitute.rules import Rule, RuleFile, Status, read_rules

@@ -7,7 +7,6 @@ input, so `convert` leaves alone what is of the right type already.
 from __future__ import annotations
 
 import dataclasses
-import difflib
 import inspect
 import math
 from collections.abc import Mapping, Sequence
@@ -17,13 +16,14 @@ from typing import Any, Literal, get_args, get_type_hints
 
 import numpy as np
 
+from momantu_bt.formats.names import nearest
+from momantu_bt.formats.units import UnitError, quantity
 from momantu_bt.skill import MISSING, Port
 from momantu_bt.tree import model
 from momantu_bt.tree.catalogue import Queue
 from momantu_bt.tree.script.nodes import part
 from momantu_bt.tree.types import ValueType, is_union, label, members, origin, parse_type
 from momantu_bt.tree.values.scalars import to_bool, to_choice, to_enum, to_number, to_text
-from momantu_bt.tree.values.units import UnitError, quantity
 from momantu_bt.tree.values.words import ConversionError, in_words, shown, unfit
 
 __all__ = ["ConversionError", "convert", "natural", "part", "port_of", "render"]
@@ -203,8 +203,8 @@ def _to_dataclass(value: Mapping[str, Any], type_: Any) -> Any:
     having = {field.name: field for field in dataclasses.fields(type_) if field.init}
     for key in value:
         if key not in having:
-            near = difflib.get_close_matches(str(key), having, n=1)
-            hint = f", did you mean {near[0]!r}?" if near else "."
+            near = nearest(str(key), having)
+            hint = f", did you mean {near!r}?" if near else "."
             raise ConversionError(
                 f"{label(type_)} has no field {key!r}{hint} Fields: {', '.join(having)}"
             )

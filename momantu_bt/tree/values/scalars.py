@@ -5,15 +5,15 @@ All raise ConversionError where a value does not fit.
 
 from __future__ import annotations
 
-import difflib
 import math
 import re
 from collections.abc import Sequence
 from enum import Enum
 from typing import Any
 
+from momantu_bt.formats.names import nearest
+from momantu_bt.formats.units import UnitError, in_unit, quantity
 from momantu_bt.tree.catalogue import CodeText
-from momantu_bt.tree.values.units import UnitError, in_unit, quantity
 from momantu_bt.tree.values.words import ConversionError, in_words, shown, unfit
 
 _NUMBER = re.compile(r"[-+]?([0-9]+|[0-9]*\.[0-9]+|[0-9]+\.)([eE][-+]?[0-9]+)?")
@@ -42,8 +42,8 @@ def to_enum(value: Any, type_: type[Enum]) -> Any:
 
 def _listed(value: Any, choices: Sequence[Any]) -> str:
     names = [str(c.value if isinstance(c, Enum) else c) for c in choices]
-    near = difflib.get_close_matches(str(value), names, n=1)
-    return ", ".join(names) + (f"; did you mean {near[0]}?" if near else "")
+    near = nearest(str(value), names)
+    return ", ".join(names) + (f"; did you mean {near}?" if near else "")
 
 
 def to_bool(value: Any) -> bool:

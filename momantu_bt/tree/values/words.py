@@ -6,8 +6,8 @@ import dataclasses
 from collections.abc import Mapping
 from typing import Any
 
+from momantu_bt.formats.units import units_of
 from momantu_bt.tree.types import ValueType, label
-from momantu_bt.tree.values.units import units_of
 
 
 class ConversionError(ValueError):

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from momantu_bt.descriptions.reading import Reading, read_text
 from momantu_bt.errors import ExitCode, InputError
+from momantu_bt.findings import Finding, FindingAtKeys, findings_json, findings_text, worst_first
+from momantu_bt.formats.places import NOWHERE
+from momantu_bt.robots import RobotFileError
 
 if TYPE_CHECKING:
-    from momantu_bt.findings import Finding
     from momantu_bt.robot import RobotDescription
 
 
@@ -29,7 +33,6 @@ def check(
       momantu-bt robots check robots/my_robot/robot.yaml
       momantu-bt robots check my_robot/ --json
     """
-    from momantu_bt.findings import findings_json, findings_text
     from momantu_bt.robots.named import robot_of
     from momantu_skills.robot_setup.urdf.skeleton import SetupError
 
@@ -61,7 +64,6 @@ def check_robot(description: RobotDescription) -> list[Finding]:
         read_urdf,
     )
     from momantu_skills.robot_setup.check.hand import check_hand, check_reach
-    from momantu_skills.robot_setup.check.remarks import located
     from momantu_skills.robot_setup.check.sensors import check_sensors
     from momantu_skills.robot_setup.find.base import find_stand
     from momantu_skills.robot_setup.urdf.body import Body
@@ -69,7 +71,7 @@ def check_robot(description: RobotDescription) -> list[Finding]:
 
     body = Body(read_skeleton(read_urdf(description)), description)
     stand = find_stand(body)
-    return located(
+    return _located(
         description,
         [
             *check_poses(description, ArmModel(description)),
@@ -82,3 +84,12 @@ def check_robot(description: RobotDescription) -> list[Finding]:
             *check_reach(description, body, stand),
         ],
     )
+
+
+def _located(description: RobotDescription, findings: Iterable[FindingAtKeys]) -> list[Finding]:
+    """The findings, each at its line of the robot file, the worst first."""
+    source = description.source
+    if source is None:
+        return worst_first(finding.at(NOWHERE) for finding in findings)
+    reading = Reading(source, read_text(source, RobotFileError), RobotFileError)
+    return worst_first(finding.at(reading.at(finding.keys, key=True)) for finding in findings)

@@ -8,12 +8,13 @@ import pytest
 
 from momantu_bt.cli import main
 from momantu_bt.findings import Finding
+from momantu_bt.formats.places import Place
 from momantu_bt.geometry import Pose2D
 from momantu_bt.plugins import ROBOTS, PluginError
 from momantu_bt.world import Site, Surface, WorldError
 
 Out = pytest.CaptureFixture[str]
-FINDING = Finding("error", "overlap", "a overlaps b", "move a", Path("w.yaml"), 3, 5, (2,))
+FINDING = Finding("overlap", "a overlaps b", Place("w.yaml", 3, 5), "move a", seeds=(2,))
 PICTURE = b"a picture"
 
 

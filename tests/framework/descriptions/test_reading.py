@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
 
 from momantu_bt.descriptions.findings import checked
-from momantu_bt.descriptions.quantities import JointPosition, JointSpeed, Length, unit_of
+from momantu_bt.descriptions.quantities import JointPosition, JointSpeed, Length
 from momantu_bt.descriptions.reading import DescriptionError, Reading, read_text
 
 FILE = Path("thing.yaml")
@@ -37,7 +37,11 @@ def cart(text: str) -> Cart:
     ("text", "place", "words"),
     [
         ("wheels: {left: {radus: 5 cm}}", "1:17", "did you mean 'radius'"),
-        ("wheels:\n  left:\n    radius: 5 kg", "3:13", "'kg' is not a unit of a length"),
+        (
+            "wheels:\n  left:\n    radius: 5 kg",
+            "3:13",
+            "'5 kg' is a mass; expected a length, in: mm, cm, m",
+        ),
         ("wheels: {left: {}}", "1:16", "wheels.left needs a key 'radius'"),
         ("spare: {radius: 1, nam: x}", "1:20", "did you mean 'name'"),
         ("wheels: [", "1:10", "not YAML"),
@@ -64,7 +68,7 @@ def test_every_problem_is_told_in_order_with_a_caret() -> None:
     lines = str(caught.value).splitlines()
     places = [line.partition(" ")[0] for line in lines[::3]]
     assert places == ["thing.yaml:2:15:", "thing.yaml:3:15:"]
-    assert lines[2] == " " * 4 + " " * 14 + "^"
+    assert lines[2] == "    | " + " " * 14 + "^"
 
 
 def test_a_missing_file_and_a_huge_one_are_refused(tmp_path: Path) -> None:
@@ -91,4 +95,3 @@ def test_what_is_no_length_is_refused(wrong: object) -> None:
 
 def test_units_of_speeds_have_a_slash() -> None:
     assert TypeAdapter(JointSpeed).validate_python("36 deg/s") == pytest.approx(math.radians(36))
-    assert [unit_of(text) for text in ("36 deg/s", "5", 5, "2 m")] == ["deg/s", None, None, "m"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import pytest
 from hypothesis import given
@@ -13,15 +13,14 @@ from hypothesis import strategies as st
 from pydantic import BaseModel, ConfigDict, Field
 
 from momantu_bt.descriptions.findings import checked
-from momantu_bt.descriptions.names import MOST_LISTED, nearest
 from momantu_bt.descriptions.reading import (
     MOST_BYTES,
     MOST_ERRORS,
     DescriptionError,
-    Problem,
     Reading,
     read_text,
 )
+from momantu_bt.formats.places import Place
 
 FILE = Path("thing.yaml")
 
@@ -117,10 +116,10 @@ def test_mistakes_are_told_together_each_at_its_line(some: list[tuple[str, str, 
         return
     with pytest.raises(DescriptionError) as told:
         toy(text)
-    assert [p.line for p in told.value.problems] == list(range(1, len(some) + 1))
+    assert [p.place.line for p in told.value.problems] == list(range(1, len(some) + 1))
     for problem, (line, place, words) in zip(told.value.problems, some, strict=True):
         assert words in problem.message
-        assert problem.column == int(place.split(":")[1])
+        assert problem.place.column == int(place.split(":")[1])
         assert line in str(told.value)
 
 
@@ -154,28 +153,13 @@ def test_files_that_cannot_be_read_are_told(tmp_path: Path) -> None:
 def test_what_is_wrong_elsewhere_is_told_at_the_nearest_place() -> None:
     reading = Reading(FILE, "shape:\n  kind: ball\n", DescriptionError)
     assert reading.value(("shape", "kind")) == "ball"
-    assert reading.at(("shape", "kind", "no", "such")) == (2, 9)
-    assert reading.at(("shape", "kind"), key=True) == (2, 3)
-    assert reading.at(("nothing",)) == (1, 1)
+    assert reading.at(("shape", "kind", "no", "such")) == Place("thing.yaml", 2, 9)
+    assert reading.at(("shape", "kind"), key=True) == Place("thing.yaml", 2, 3)
+    assert reading.at(("nothing",)) == Place("thing.yaml", 1, 1)
     reading.refuse([])
     with pytest.raises(DescriptionError) as told:
         reading.refuse([(("shape", "kind"), "too round"), (("shape",), "too small")])
-    assert told.value.problems == (Problem(2, 3, "too small"), Problem(2, 9, "too round"))
-
-
-NAMES: Any = st.lists(st.text("abcdefgh_", min_size=3, max_size=12), unique=True, max_size=50)
-
-
-@given(NAMES, st.text("abcdefgh_", min_size=3, max_size=12))
-def test_an_unknown_name_is_answered_with_names_there_are(known: list[str], name: str) -> None:
-    said = nearest(name, [*known, *known])
-    if not known:
-        assert said == "; there is none"
-    elif "did you mean" in said:
-        assert set(re.findall("'([^']*)'", said)) <= set(known)
-    else:
-        listed = said.removeprefix("; there are: ").split(", ")
-        assert [each for each in listed if each != "…"] == known[:MOST_LISTED]
-        assert ("…" in listed) == (len(known) > MOST_LISTED)
-    if name in known:
-        assert f"{name!r}" in said
+    assert [(p.place, p.message, p.keys) for p in told.value.problems] == [
+        (Place("thing.yaml", 2, 3), "too small", ("shape",)),
+        (Place("thing.yaml", 2, 9), "too round", ("shape", "kind")),
+    ]

@@ -11,10 +11,11 @@ from momantu_bt.engine.context import RunContext
 from momantu_bt.engine.node import TreeNode
 from momantu_bt.engine.ports import Inputs
 from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Status
+from momantu_bt.formats.places import Place
 from momantu_bt.skill import MISSING, Skill
 from momantu_bt.testing import ManualClock, ScriptedWorld
 from momantu_bt.tree.catalogue import BUILT_IN
-from momantu_bt.tree.model import Node, Place
+from momantu_bt.tree.model import Node
 from momantu_bt.tree.registry import Registry
 
 LETTERS = {"R": RUNNING, "S": SUCCESS, "F": FAILURE, "K": SKIPPED, "I": IDLE}

@@ -21,11 +21,12 @@ from momantu_bt.engine.node import TreeNode
 from momantu_bt.engine.nodes.recovery import Catch, Handle, Recover
 from momantu_bt.engine.nodes.subtree import SubTree
 from momantu_bt.engine.ports import inputs_of
+from momantu_bt.formats.places import Place
 from momantu_bt.geometry import Pose2D
 from momantu_bt.skill import MISSING
 from momantu_bt.tree.catalogue import BUILT_IN
 from momantu_bt.tree.files.xml.values import attribute_value
-from momantu_bt.tree.model import Literal, Node, Place, PortValue, Reference
+from momantu_bt.tree.model import Literal, Node, PortValue, Reference
 from tests.framework.engine.conftest import Bench, Leaf
 
 _ROW = re.compile(r"(?P<head>[^\[]+)\[(?P<kids>[^\]]*)\] (?P<trace>.+)")

@@ -188,10 +188,10 @@ UNFIT: list[tuple[dict[str, tuple[str, str]], str]] = [
         {"robot": (", namespace: arm", ""), "arm": (FOOT, TWICE)},
         "robot.yaml:6:8: 'cart' and 'arm' both have a link called 'mast'; .*`namespace: arm`",
     ),
-    ({"robot": ("on: base_link", "on: base_lnk")}, "8:13: .*'base_lnk'; did you mean 'base_link'"),
+    ({"robot": ("on: base_link", "on: base_lnk")}, "8:13: .*'base_lnk'; did you mean base_link"),
     ({"robot": ("on: base_link", "on: arm_forearm")}, "8:13: 'arm' hangs on .*: a ring"),
     ({"robot": (f"mounts:\n  {MOUNT}\n", "")}, "6:8: .*'arm' has no mount; write `mounts: {arm"),
-    ({"robot": ("  arm: {on", "  arn: {on")}, "there is no part 'arn'; did you mean 'arm'"),
+    ({"robot": ("  arm: {on", "  arn: {on")}, "there is no part 'arn'; did you mean arm"),
     ({"robot": ("on: base_link,", "on: base_link, link: hnad,")}, "'arm' has no link 'hnad'"),
     (
         {"robot": ("on: base_link,", "on: base_link, link: forearm,")},

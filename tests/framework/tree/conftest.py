@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from momantu_bt.formats.problems import Problem
 from momantu_bt.geometry import Pose, Pose2D
 from momantu_bt.messages import DetectedObject, ObjectClass, SupportPlane
 from momantu_bt.robot import CAMERA_CARRIER
@@ -12,7 +13,7 @@ from momantu_bt.skill import In, Out, Skill
 from momantu_bt.tree.check.checker import check as check_document
 from momantu_bt.tree.files.xml.format import read as read_xml
 from momantu_bt.tree.files.yaml.format import read
-from momantu_bt.tree.problems import Problem, TreeError
+from momantu_bt.tree.problems import TreeError
 from momantu_bt.tree.registry import Registry
 from momantu_bt.world import Site, Surface
 

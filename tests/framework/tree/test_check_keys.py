@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import pytest
 
-from momantu_bt.tree.problems import Problem, Severity
+from momantu_bt.formats.problems import Problem, Severity
 
 Expect = Callable[..., None]
 Fine = Callable[[str], None]

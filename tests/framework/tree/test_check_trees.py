@@ -2,8 +2,8 @@
 
 from collections.abc import Callable
 
+from momantu_bt.formats.problems import Problem, Severity
 from momantu_bt.tree.check.trees import MAX_NESTING
-from momantu_bt.tree.problems import Problem, Severity
 
 Expect = Callable[..., None]
 Fine = Callable[[str], None]

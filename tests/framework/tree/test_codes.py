@@ -9,12 +9,13 @@ from typing import Any
 
 import pytest
 
+from momantu_bt.formats.problems import Problem, Severity
 from momantu_bt.plugins import PluginError
 from momantu_bt.tree.check.checker import check
 from momantu_bt.tree.files.xml import format as xml_format
 from momantu_bt.tree.files.yaml.format import read
 from momantu_bt.tree.load import read_file
-from momantu_bt.tree.problems import Problem, Severity, TreeError
+from momantu_bt.tree.problems import TreeError
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.show.problem_pages import UnknownCode, codes, explanation, pages_folder
 from momantu_bt.tree.substitute.substitution import load_substitution

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from momantu_bt.formats.problems import Problem
 from momantu_bt.tree.catalogue import BUILT_IN
-from momantu_bt.tree.problems import Problem
 from momantu_bt.tree.show.problem_pages import codes
 
 ROOT = Path(__file__).parents[3]

@@ -6,12 +6,12 @@ from collections.abc import Callable
 
 import pytest
 
+from momantu_bt.formats.problems import Problem, Severity
 from momantu_bt.tree.catalogue import BUILT_IN, SWITCHES
 from momantu_bt.tree.files.xml.format import read as read_xml
 from momantu_bt.tree.files.xml.writer import write as write_xml
 from momantu_bt.tree.files.yaml.format import read
 from momantu_bt.tree.model import Literal, Reference, Scope
-from momantu_bt.tree.problems import Problem, Severity
 
 Check = Callable[[str], list[Problem]]
 

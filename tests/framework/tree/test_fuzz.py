@@ -10,12 +10,13 @@ from types import SimpleNamespace
 
 import pytest
 
+from momantu_bt.formats.problems import Problem
 from momantu_bt.tree.catalogue import SPELLED
 from momantu_bt.tree.check.checker import check as check_document
 from momantu_bt.tree.files.xml.format import read as read_xml
 from momantu_bt.tree.files.yaml.format import read as read_yaml
 from momantu_bt.tree.load import TreeError
-from momantu_bt.tree.problems import MOST_PROBLEMS, Problem, Problems, TooManyProblems
+from momantu_bt.tree.problems import MOST_PROBLEMS, Problems, TooManyProblems
 from momantu_bt.tree.registry import Registry
 
 BENCHMARKS = Path(__file__).resolve().parents[3] / "benchmarks"

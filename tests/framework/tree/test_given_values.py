@@ -6,9 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from momantu_bt.formats.places import lines_of
+from momantu_bt.formats.problems import show
 from momantu_bt.tree.files.settings import SET, Given
 from momantu_bt.tree.load import TreeError, load, read_values
-from momantu_bt.tree.problems import lines_of, show
 from momantu_bt.tree.registry import Registry
 
 NODES = "[{wait: $pause}, {succeed: , retry: $n}]"

@@ -5,12 +5,12 @@ from pathlib import Path
 
 import pytest
 
+from momantu_bt.formats.problems import Problem
 from momantu_bt.tree.check.checker import check
 from momantu_bt.tree.files import includes
 from momantu_bt.tree.files.includes import project_folder
 from momantu_bt.tree.load import TreeError, TreeNotFound, load, read_file
 from momantu_bt.tree.model import Document, Include, Literal
-from momantu_bt.tree.problems import Problem
 from momantu_bt.tree.registry import Registry
 
 NODE = "<AlwaysSuccess/>"

@@ -4,7 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from momantu_bt.descriptions.reading import DescriptionError, Problem
+from momantu_bt.descriptions.reading import DescriptionError, KeyProblem
+from momantu_bt.formats.places import Place
 from momantu_bt.tree.files.lookup import bundled, find
 from momantu_bt.tree.load import TreeError, TreeNotFound, load, read_values
 from momantu_bt.tree.model import Literal
@@ -117,7 +118,10 @@ def test_a_wrong_description_is_told_in_its_own_lines(folder: Path, registry: Re
         default_robot = "toy"
 
         def site(self) -> None:
-            found = [Problem(3, 8, "expected rooms"), Problem(2, 7, "expected a name")]
+            found = [
+                KeyProblem("", "expected rooms", Place(str(file), 3, 8)),
+                KeyProblem("", "expected a name", Place(str(file), 2, 7)),
+            ]
             raise DescriptionError(file, text, found)
 
     wrong = Registry(registry.skills, {"rooms": Wrong()}, registry.robots)  # type: ignore

@@ -2,9 +2,9 @@
 
 import pytest
 
+from momantu_bt.formats.places import Place
+from momantu_bt.formats.problems import Problem, Severity, show
 from momantu_bt.tree.files.yaml.format import read
-from momantu_bt.tree.model import Place
-from momantu_bt.tree.problems import Problem, Severity, show
 from momantu_bt.tree.show.printing import lines, text, tree_lines, unwrap
 
 

@@ -9,9 +9,9 @@ import pytest
 import momantu_bt
 from momantu_bt.engine.node import TreeNode
 from momantu_bt.failure import INPUT_MISSING
+from momantu_bt.formats.problems import Problem, errors
 from momantu_bt.tree.check.checker import check
 from momantu_bt.tree.files.xml.format import read
-from momantu_bt.tree.problems import Problem, errors
 from momantu_bt.tree.registry import Registry
 
 KEYS = [f"v{i}" for i in range(6)]

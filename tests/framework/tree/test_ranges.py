@@ -8,11 +8,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import momantu_bt
+from momantu_bt.formats.problems import Problem
 from momantu_bt.skill import In, Port, Skill
 from momantu_bt.tree.catalogue import BUILT_IN
 from momantu_bt.tree.check.checker import check as check_document
 from momantu_bt.tree.files.yaml.format import read
-from momantu_bt.tree.problems import Problem
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.values.conversion import convert
 from momantu_bt.tree.values.words import ConversionError

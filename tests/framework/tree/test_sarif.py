@@ -3,8 +3,8 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from momantu_bt.tree.model import Place
-from momantu_bt.tree.problems import Problem, Severity
+from momantu_bt.formats.places import Place
+from momantu_bt.formats.problems import Problem, Severity
 from momantu_bt.tree.show.problem_pages import codes
 from momantu_bt.tree.show.sarif import sarif
 

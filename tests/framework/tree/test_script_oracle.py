@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from momantu_bt.tree.problems import Problem
+from momantu_bt.formats.problems import Problem
 from momantu_bt.tree.script import ScriptError, ScriptSyntaxError, canonical, parse, yaml_spelling
 
 Check = Callable[[str], list[Problem]]

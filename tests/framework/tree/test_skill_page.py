@@ -8,12 +8,12 @@ from typing import Literal
 
 import pytest
 
+from momantu_bt.formats.problems import errors
 from momantu_bt.messages import DetectedObject, ObjectClass
 from momantu_bt.skill import In, Out, Skill
 from momantu_bt.tree.check.checker import check
 from momantu_bt.tree.files.xml.format import read as read_xml
 from momantu_bt.tree.files.yaml.format import read
-from momantu_bt.tree.problems import errors
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.show.skill_example import Wire, example_ports, xml_example, yaml_example
 from momantu_bt.tree.show.skill_page import as_data, as_markdown, as_text, pages

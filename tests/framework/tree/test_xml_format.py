@@ -5,6 +5,8 @@ from typing import Any
 
 import pytest
 
+from momantu_bt.formats.places import Place
+from momantu_bt.formats.problems import Problem, Severity
 from momantu_bt.tree.catalogue import BUILT_IN, OWN_NODES, XML_CONDITIONS, ScriptText
 from momantu_bt.tree.files.xml.format import read
 from momantu_bt.tree.files.yaml.format import read as read_yaml
@@ -14,12 +16,10 @@ from momantu_bt.tree.model import (
     Literal,
     Node,
     NodeModel,
-    Place,
     Reference,
     Scope,
     Template,
 )
-from momantu_bt.tree.problems import Problem, Severity
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.script import parse
 

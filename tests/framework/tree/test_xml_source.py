@@ -6,10 +6,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from momantu_bt.formats.places import lines_of
+from momantu_bt.formats.problems import Problem
 from momantu_bt.tree.files.xml.elements import OURS, Element
 from momantu_bt.tree.files.xml.source import MAX_BYTES, MAX_DEPTH, MAX_NODES, XmlSyntaxError, parse
 from momantu_bt.tree.model import Beside
-from momantu_bt.tree.problems import Problem, lines_of
 
 
 def refused(text: str) -> Problem:

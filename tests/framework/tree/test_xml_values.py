@@ -6,10 +6,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from momantu_bt.formats.places import Place
 from momantu_bt.geometry import Pose2D
 from momantu_bt.tree.files.xml.values import WireError, attribute_value, flow_value, takes_text
 from momantu_bt.tree.model import Literal as Written
-from momantu_bt.tree.model import Place, Reference, Scope, Template
+from momantu_bt.tree.model import Reference, Scope, Template
 from momantu_bt.tree.problems import Problems
 
 PLACE = Place("t.xml", 3, 10, 0)

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from momantu_bt.formats.problems import show
 from momantu_bt.tree.files.yaml.format import read
 from momantu_bt.tree.files.yaml.raw import plain_value
 from momantu_bt.tree.files.yaml.source import (
@@ -16,7 +17,7 @@ from momantu_bt.tree.files.yaml.source import (
     YamlSyntaxError,
     compose,
 )
-from momantu_bt.tree.problems import TreeError, show
+from momantu_bt.tree.problems import TreeError
 
 
 def values(text: str) -> Any:

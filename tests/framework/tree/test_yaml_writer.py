@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from momantu_bt.formats.places import Place
 from momantu_bt.tree.convert import meaning
 from momantu_bt.tree.files.lookup import bundled
 from momantu_bt.tree.files.yaml.format import read
@@ -13,7 +14,7 @@ from momantu_bt.tree.files.yaml.raw import plain_value
 from momantu_bt.tree.files.yaml.scalars import CannotWrite, literal, script_spelling
 from momantu_bt.tree.files.yaml.source import YamlSyntaxError, compose
 from momantu_bt.tree.files.yaml.writer import write
-from momantu_bt.tree.model import Document, Literal, Node, Place
+from momantu_bt.tree.model import Document, Literal, Node
 from momantu_bt.tree.script import canonical
 
 BUNDLED = sorted(bundled().values())

@@ -59,13 +59,13 @@ def test_a_torso_that_is_not_cut_swallows_the_arm() -> None:
     whole = robot.simulation.model_copy(update={"convex_cells": {}})
     finding = only(check_robot(robot.model_copy(update={"simulation": whole})), "hull-swallows")
     assert "wrist_flex_link lies in the convex hull of torso_lift_link" in finding.message
-    assert "torso_lift_link: {x: [" in finding.cure
+    assert "torso_lift_link: {x: [" in finding.hint
 
 
 def test_a_joint_without_force_is_told(rolling_proposal: Proposal, tmp_path: Path) -> None:
     (tmp_path / "robot.yaml").write_text(robot_file(rolling_proposal, tmp_path))
     finding = only(check_robot(read_robot(tmp_path)), "no-force")
-    assert finding.severity == "warning"
+    assert finding.severity.label == "warning"
     assert finding.message.endswith("roll")
 
 
@@ -79,9 +79,9 @@ def test_a_pose_that_collides_is_told_at_its_line(
     assert findings
     lines = (tmp_path / "robot.yaml").read_text().splitlines()
     for finding in findings:
-        assert finding.severity == "error"
+        assert finding.severity.label == "error"
         assert "the pose home" in finding.message
-        assert lines[finding.line - 1].strip() == "home:"
+        assert lines[finding.place.line - 1].strip() == "home:"
 
 
 def test_a_footprint_that_the_wheels_leave(wrong: Wrong, rolling_proposal: Proposal) -> None:
@@ -92,13 +92,13 @@ def test_a_footprint_that_the_wheels_leave(wrong: Wrong, rolling_proposal: Propo
     finding = only(wrong((corners, small)), "footprint-too-small")
     assert "0.020 m" in finding.message
     large = small.replace("0.2]", "0.3]")
-    assert only(wrong((corners, large)), "footprint-too-large").severity == "warning"
+    assert only(wrong((corners, large)), "footprint-too-large").severity.label == "warning"
 
 
 def test_a_robot_that_is_taller_than_it_says(wrong: Wrong, rolling_proposal: Proposal) -> None:
     height = f"height: {rolling_proposal.height:g}"
     finding = only(wrong((height, "height: 0.7")), "taller-than-height")
-    assert finding.severity == "error"
+    assert finding.severity.label == "error"
     assert "0.7 m" in finding.message
 
 
@@ -109,7 +109,7 @@ def test_limits_beyond_the_urdf(wrong: Wrong) -> None:
         "  elbow: {lower: -2, upper: 2, velocity: 1",
         "  elbow: {lower: -2, upper: 2, velocity: 9",
     )
-    assert only(wrong(text), "faster-than-urdf").severity == "warning"
+    assert only(wrong(text), "faster-than-urdf").severity.label == "warning"
 
 
 def test_a_camera_in_its_own_mast(wrong: Wrong) -> None:
@@ -161,7 +161,7 @@ def test_an_opening_beyond_the_range_of_its_joint(wrong: Wrong) -> None:
 def test_fingers_that_stand_still(wrong: Wrong) -> None:
     found = wrong(("[0.08, 0.04]", "[0.08, 0.00004]"))
     still = next(finding for finding in found if finding.code == "fingers-do-not-move")
-    assert still.severity == "error"
+    assert still.severity.label == "error"
 
 
 def test_a_grasp_frame_beside_the_pads(wrong: Wrong, rolling_proposal: Proposal) -> None:
@@ -184,7 +184,7 @@ def test_a_hand_that_meets_itself_when_closed(wrong: Wrong) -> None:
     pair = "[left_finger, right_finger]"
     line = f"ignored_collisions:\n  - {pair}    # default, met in 0%"
     finding = only(wrong((line, "ignored_collisions: []")), "closed-hand-collides")
-    assert f"write {pair}" in finding.cure
+    assert f"write {pair}" in finding.hint
 
 
 def test_links_that_nobody_sees(rolling_proposal: Proposal, tmp_path: Path) -> None:
@@ -207,9 +207,9 @@ def test_working_distances_out_of_reach(wrong: Wrong, rolling_proposal: Proposal
     near, best, far = rolling_proposal.reach.reach
     found = wrong((f"reach: [{near:g}, {best:g}, {far:g}]", "reach: [1.3, 1.4, 1.5]"))
     assert {f.code for f in found} == {"out-of-reach"}
-    assert [f.severity for f in found] == ["error", "warning", "warning"]
+    assert [f.severity.label for f in found] == ["error", "warning", "warning"]
     found = wrong(("stand_off: 0.38", "stand_off: 0.2"))
-    assert only(found, "stands-in-table").severity == "error"
+    assert only(found, "stands-in-table").severity.label == "error"
 
 
 def run(*arguments: object) -> tuple[int, str]:

@@ -12,13 +12,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from momantu_worlds.checking.access import places, start, surfaces
 from momantu_worlds.checking.overlaps import TOUCHING, overlaps
-from momantu_worlds.checking.remarks import Remark
 from momantu_worlds.checking.run import CHECKS
 from momantu_worlds.checking.scenario import Scenario
 from momantu_worlds.checking.upright import TIPPING, upright
 from momantu_worlds.scenes.geometry.bodies import Body, Box, Cylinder, Gap, Part
 from momantu_worlds.scenes.geometry.solids import FLUSH
 
+from momantu_bt.findings import FindingAtKeys
 from momantu_bt.geometry import Pose2D, Transform
 from tests.worlds.checking.test_checks import (
     BODIES,
@@ -39,7 +39,7 @@ HAIR = 1e-4
 """m; how near to a threshold nothing is claimed."""
 
 
-def remarks(scenario: Scenario, code: str) -> list[Remark]:
+def remarks(scenario: Scenario, code: str) -> list[FindingAtKeys]:
     return [r for check in SPEAKS.get(code, CHECKS) for r in check(scenario) if r.code == code]
 
 
@@ -85,7 +85,7 @@ def test_an_overlap_is_as_deep_as_one_body_was_pushed_into_the_other(
     assert bool(found) == (depth > TOUCHING)
     for remark in found:
         assert remark.amount == pytest.approx(depth, abs=HAIR)
-        assert remark.severity == ("warning" if fixed and other_fixed else "error")
+        assert remark.severity.label == ("warning" if fixed and other_fixed else "error")
         # what is loose is to blame
         blamed = remark.about[0]
         assert {"one": fixed, "two": other_fixed}[blamed] == (fixed and other_fixed)
@@ -108,7 +108,7 @@ def test_what_is_loose_hangs_in_the_air_by_as_much_as_it_was_lifted(
         )
     fixed = changed(block("box", pose, size, static=True))
     assert remarks(fixed, "in-the-air") == []
-    assert {r.severity for r in remarks(fixed, "in-floor")} <= {"warning"}
+    assert {r.severity.label for r in remarks(fixed, "in-floor")} <= {"warning"}
 
 
 @given(st.floats(-0.07, 0.07), st.sampled_from([0.0, math.pi / 2, math.pi, -math.pi / 2]))
@@ -199,7 +199,7 @@ def test_a_door_is_wide_enough_from_the_robots_width_on_and_the_cure_says_so() -
     assert narrow == [True, True, True, True, False, False, False]
     (remark,) = remarks(with_door(0.3), "door-narrow")
     assert remark.amount == pytest.approx(2 * ROBOT.half_width - 0.3, abs=0.03)
-    (centimetres,) = re.findall(r"at least (\d+) cm", remark.cure)
+    (centimetres,) = re.findall(r"at least (\d+) cm", remark.hint)
     assert all_codes(with_door(int(centimetres) / 100)) == []
 
 
@@ -232,7 +232,7 @@ def test_a_start_is_as_deep_in_a_wall_as_the_base_reaches_into_it(room: float, y
 def test_a_table_as_high_as_the_cure_says_is_worked_at(height: float) -> None:
     scenario = changed(table("b", 2.0, 2.0, height), tag(Transform((2.0, 1.85, height + 0.0005))))
     (remark,) = remarks(scenario, "surface-height")
-    low, high = (float(h) for h in re.findall(r"\d+\.\d+", remark.cure))
+    low, high = (float(h) for h in re.findall(r"\d+\.\d+", remark.hint))
     for good in (low, (low + high) / 2, high):
         told = changed(table("b", 2.0, 2.0, good), tag(Transform((2.0, 1.85, good + 0.0005))))
         assert remarks(told, "surface-height") == []

@@ -24,9 +24,10 @@ def test_a_crate_that_reaches_into_a_wall_is_told_once_for_all_seeds(tmp_path: P
     pushed.write_text(text.replace(f"{crate}1.35,", f"{crate}1.40,"), encoding="utf-8")
     findings = check_world(pushed, lambda seed: draw_episode(pushed, seed), fetch(), range(3))
     (finding,) = findings
-    assert (finding.severity, finding.code, finding.file) == ("warning", "overlap", pushed)
+    assert (finding.severity.label, finding.code) == ("warning", "overlap")
+    assert finding.place.file == str(pushed)
     assert "crate_corridor overlaps wall_corridor_north_west by 3.8 cm" in finding.message
-    assert LINES[finding.line - 1].startswith("  crate_corridor:")
+    assert LINES[finding.place.line - 1].startswith("  crate_corridor:")
     assert finding.seeds == (1, 2)
 
 
@@ -48,7 +49,7 @@ def test_the_worst_episode_words_a_finding_and_one_that_cannot_be_is_told() -> N
     found = {finding.code: finding for finding in check_world(PATH, draw, fetch(), range(3))}
     start = found["start-in-collision"]
     assert start.seeds == (0, 1)
-    assert LINES[start.line - 1].startswith("  at: [-4.70")
+    assert LINES[start.place.line - 1].startswith("  at: [-4.70")
     depth = 0.075 + 0.29 - 0.1
     assert f"{100 * depth:.0f} cm inside wall_outer_west" in start.message
     assert found["no-episode"].seeds == (2,)
@@ -68,7 +69,7 @@ def test_the_worst_episode_words_a_finding_and_one_that_cannot_be_is_told() -> N
     ],
 )
 def test_where_a_body_comes_from(name: str, line: str) -> None:
-    from momantu_worlds.checking.remarks import Where
+    from momantu_worlds.checking.where import Where
 
     where = Where(PATH)
     number, _ = where.at(where.body(name))

@@ -34,7 +34,7 @@ def test_the_bundled_world_is_read_with_units_in_si():
 
 CASES = [
     ("  shift: 20 cm", "  shfit: 20 cm", "shfit", ["unknown key 'shfit'", "did you mean 'shift'?"]),
-    ("  thickness: 15 cm", "  thickness: 15 kg", "15 kg", ["'kg' is not a unit", "m, cm, mm"]),
+    ("  thickness: 15 cm", "  thickness: 15 kg", "15 kg", ["expected a length", "mm, cm, m"]),
     ("  thickness: 15 cm", "  thickness: thick", "thick\n", ["'thick' is not a length"]),
     ("  thickness: 15 cm", "  thickness: -1", "-1\n", ["greater than 0"]),
     ("  thickness: 15 cm", "  thickness: .inf", ".inf", ["not a number that can be read"]),
@@ -49,8 +49,8 @@ CASES = [
         "flag\n",
         ["there is no tag or body 'flag'", "tag, table_a"],
     ),
-    ("  item: can\n", "  item: mug\n", "mug\n", ["there is no object 'mug'", "there are: can"]),
-    ("  edge: 150 mm ", "  edge: 010x ", "010x", ["'x' is not a unit of a length"]),
+    ("  item: can\n", "  item: mug\n", "mug\n", ["there is no object 'mug'", "objects: can"]),
+    ("  edge: 150 mm ", "  edge: 010x ", "010x", ["unknown unit 'x'. Units: mm, cm, m"]),
     ("  chair_a: {", "  table_a: {", "{kind: chair, at: [-1.20", ["'table_a' is a table already"]),
 ]
 
@@ -60,10 +60,10 @@ def test_a_mistake_is_named_at_its_line(before, after, place, words):
     text = changed(before, after)
     error = refusal(text)
     assert len(error.problems) == 1, error
-    assert error.problems[0].line == line_of(text, place)
+    assert error.problems[0].place.line == line_of(text, place)
     for word in words:
         assert word in str(error)
-    assert f"rooms.yaml:{error.problems[0].line}:{error.problems[0].column}: " in str(error)
+    assert f"{error.problems[0].place}: " in str(error)
 
 
 def test_every_mistake_is_listed_at_once():
@@ -154,7 +154,7 @@ SECTIONS = [
     ("kind: shelf,", "kind: sofa,", "only a shelf or a rack has boards"),
     ("kind: shelf,", "mesh: none.glb, kind: shelf,", "write a kind of the catalogue or a mesh"),
     ("board: 2", "board: 3", "'rack' has 2 boards, counted from 1"),
-    ("board_of: rack", "board_of: rak", "did you mean 'rack'?"),
+    ("board_of: rack", "board_of: rak", "did you mean rack?"),
     ("board: 2, ", "", "needs the key 'board'"),
     ("board: 2, ", "board: 2, lift: 1 cm, ", "write only sides, color"),
     ("sides: [0]}", "sides: []}", "tables.desk.sides: expected at least 1 value, found 0"),
@@ -166,7 +166,7 @@ SECTIONS = [
     ("on: low, at: [0, 0]", "hung: [0, 0]", "expected [x, y, z], [x, y, z, yaw] or"),
     ("{mark:", "{cup: {id: 2, edge: 1, hung: [0, 0, 1]}, mark:", "'cup' is an object already"),
     ("{post:", "{wall_hall_2: {parts: [{sphere: 1}]}, post:", "is a wall already"),
-    ("beside: mark", "beside: mrk", "there is no tag or body 'mrk'; did you mean 'mark'?"),
+    ("beside: mark", "beside: mrk", "there is no tag or body 'mrk'; did you mean mark?"),
     ("beside: mark", "beside: cup", "'cup' cannot stand beside itself"),
     ("[{sphere: 10 cm}]", "[{sphere: 10 cm, box: [1, 1, 1]}]", "exactly one of box, cylinder"),
     ("[{sphere: 10 cm}]", "[]", "bodies.post.parts: expected at least 1 value, found 0"),
@@ -187,8 +187,13 @@ def test_a_mistake_in_a_section_is_told_once_at_its_line(before, after, words):
     error = refusal(text)
     assert words in str(error)
     assert len(error.problems) == 1, error
+    at = error.problems[0].place
     changed_line = STUDIO[: STUDIO.index(before)].count("\n") + 1
-    assert error.problems[0].line - changed_line in (0, after.count("\n") - before.count("\n"), 0)
+    assert at.line - changed_line in (
+        0,
+        after.count("\n") - before.count("\n"),
+        0,
+    )
 
 
 def test_what_moves_as_the_unknown_says_carries_no_surface():
@@ -208,7 +213,7 @@ def test_wrong_values_and_wrong_names_are_told_together():
     messages = [problem.message for problem in refusal(text).problems]
     assert len(messages) == 3
     assert "tables.low.board: expected a whole number; found 'two'" in messages
-    assert any("no table 'dsk'; did you mean 'desk'?" in m for m in messages)
+    assert any("no table 'dsk'; did you mean desk?" in m for m in messages)
     assert any("no tag or body 'mrk'" in m for m in messages)
     # what is on `low`, which is wrong in itself, is not held against it
 

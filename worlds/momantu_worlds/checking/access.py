@@ -7,9 +7,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from momantu_bt.findings import FindingAtKeys
+from momantu_bt.formats.problems import Severity
 from momantu_bt.geometry import Array
 from momantu_worlds.checking.overlaps import TOUCHING
-from momantu_worlds.checking.remarks import Remark
 from momantu_worlds.checking.scenario import UNKNOWN, Scenario
 
 DOOR = 0.1
@@ -17,7 +18,7 @@ DOOR = 0.1
 thick, or the room behind would count."""
 
 
-def start(scenario: Scenario) -> Iterator[Remark]:
+def start(scenario: Scenario) -> Iterator[FindingAtKeys]:
     """The base as it stands at first overlaps nothing."""
     pose = scenario.episode.start
     base = scenario.robot.outline(pose)
@@ -26,18 +27,18 @@ def start(scenario: Scenario) -> Iterator[Remark]:
         worst[each.body] = max(worst.get(each.body, 0.0), each.depth(base))
     for body, depth in worst.items():
         if depth > TOUCHING:
-            yield Remark(
-                severity="error",
-                code="start-in-collision",
-                place=("start", "at"),
+            yield FindingAtKeys(
+                Severity.ERROR,
+                "start-in-collision",
+                f"the robot starts {100 * depth:.0f} cm inside {body}",
+                "give it a start in free floor, or a smaller `start.shift`",
+                ("start", "at"),
                 about=(body,),
-                message=f"the robot starts {100 * depth:.0f} cm inside {body}",
-                cure="give it a start in free floor, or a smaller `start.shift`",
                 amount=depth,
             )
 
 
-def places(scenario: Scenario) -> Iterator[Remark]:
+def places(scenario: Scenario) -> Iterator[FindingAtKeys]:
     """The middle of the base can be at every place; what an episode adds is not looked at."""
     ground, robot = scenario.known_ground, scenario.robot
     begin = scenario.episode.start
@@ -48,30 +49,28 @@ def places(scenario: Scenario) -> Iterator[Remark]:
         if room < robot.half_width - ground.cell:
             near = ground.blocking(at, lambda body: body.startswith(UNKNOWN))
             beside = f"{100 * room:.0f} cm beside {near}" if room > 0 else f"in {near or 'nothing'}"
-            yield Remark(
-                severity="error",
-                code="place-blocked",
-                place=("site", "places", name),
+            yield FindingAtKeys(
+                Severity.ERROR,
+                "place-blocked",
+                f"the place {name} is {beside}; {robot.name} needs "
+                f"{100 * robot.half_width:.0f} cm around its middle",
+                "move the place, or what stands there",
+                ("site", "places", name),
                 about=(name,),
-                message=(
-                    f"the place {name} is {beside}; {robot.name} needs "
-                    f"{100 * robot.half_width:.0f} cm around its middle"
-                ),
-                cure="move the place, or what stands there",
                 amount=-room,
             )
         elif not ground.at(reached, at):
-            yield Remark(
-                severity="error",
-                code="place-unreachable",
-                place=("site", "places", name),
+            yield FindingAtKeys(
+                Severity.ERROR,
+                "place-unreachable",
+                f"{robot.name} cannot get from its start to the place {name}",
+                _way(scenario),
+                ("site", "places", name),
                 about=(name,),
-                message=f"{robot.name} cannot get from its start to the place {name}",
-                cure=_way(scenario),
             )
 
 
-def doorways(scenario: Scenario) -> Iterator[Remark]:
+def doorways(scenario: Scenario) -> Iterator[FindingAtKeys]:
     """Walls leave room for the robot in every doorway, and nothing stands in it."""
     width = 2 * scenario.robot.half_width
     for name, gap in scenario.episode.doorways.items():
@@ -79,44 +78,42 @@ def doorways(scenario: Scenario) -> Iterator[Remark]:
         between = 2 * walls.room_at(gap.at, DOOR)
         left = 2 * free.room_at(gap.at, DOOR)
         if between < width - free.cell:
-            yield Remark(
-                severity="error",
-                code="door-narrow",
-                place=scenario.place(name),
+            yield FindingAtKeys(
+                Severity.ERROR,
+                "door-narrow",
+                f"the door {name} leaves {100 * between:.0f} cm; {scenario.robot.name} is "
+                f"{100 * width:.0f} cm wide",
+                f"make it at least {100 * width + 10:.0f} cm wide",
+                scenario.place(name),
                 about=(name,),
-                message=(
-                    f"the door {name} leaves {100 * between:.0f} cm; {scenario.robot.name} is "
-                    f"{100 * width:.0f} cm wide"
-                ),
-                cure=f"make it at least {100 * width + 10:.0f} cm wide",
                 amount=width - between,
             )
         elif left < width - free.cell:
             near = free.blocking(gap.at, scenario.is_wall)
-            yield Remark(
-                severity="error",
-                code="door-blocked",
-                place=scenario.place(name),
+            yield FindingAtKeys(
+                Severity.ERROR,
+                "door-blocked",
+                f"{near} leaves {100 * left:.0f} cm of the door {name}",
+                f"move {near} away from the door",
+                scenario.place(name),
                 about=(name, near),
-                message=f"{near} leaves {100 * left:.0f} cm of the door {name}",
-                cure=f"move {near} away from the door",
                 amount=width - left,
             )
 
 
-def surfaces(scenario: Scenario) -> Iterator[Remark]:
+def surfaces(scenario: Scenario) -> Iterator[FindingAtKeys]:
     """The robot gets before each surface, and its hand to what stands on it."""
     robot = scenario.robot
     for name, (map_from_top, size) in scenario.surfaces.items():
         place, height = scenario.place(name), float(map_from_top.position[2])
         if not robot.works_at(height):
-            yield Remark(
-                severity="error",
-                code="surface-height",
-                place=place,
+            yield FindingAtKeys(
+                Severity.ERROR,
+                "surface-height",
+                f"{name} is {height:.2f} m high; {robot.name}'s hand does not get there",
+                f"make it {_heights(scenario)} high, or choose another robot",
+                place,
                 about=(name,),
-                message=f"{name} is {height:.2f} m high; {robot.name}'s hand does not get there",
-                cure=f"make it {_heights(scenario)} high, or choose another robot",
                 amount=abs(height),
             )
         stands = scenario.stands_near(map_from_top.position, math.hypot(*size) / 2 + robot.reach[2])
@@ -126,13 +123,13 @@ def surfaces(scenario: Scenario) -> Iterator[Remark]:
         sides = scenario.episode.site.surfaces[name].sides
         good = [side for side in sides if _before(own, size, side, robot.reach[2])]
         if not good:
-            yield Remark(
-                severity="error",
-                code="surface-unreachable",
-                place=place,
+            yield FindingAtKeys(
+                Severity.ERROR,
+                "surface-unreachable",
+                f"{robot.name} cannot get from its start to any side of {name}",
+                _way(scenario),
+                place,
                 about=(name,),
-                message=f"{robot.name} cannot get from its start to any side of {name}",
-                cure=_way(scenario),
             )
 
 

@@ -8,9 +8,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from momantu_bt.findings import FindingAtKeys
+from momantu_bt.formats.problems import Severity
 from momantu_bt.geometry import Array, Transform
 from momantu_worlds.checking.convex import Convex, solids_of
-from momantu_worlds.checking.remarks import Remark
 from momantu_worlds.checking.scenario import Scenario
 from momantu_worlds.scenes.geometry.bodies import Body, Goal
 from momantu_worlds.scenes.geometry.solids import FLUSH
@@ -26,7 +27,7 @@ FAR = 2.0
 """m; from where something is, along x and along y: farther off no arm reaches it."""
 
 
-def goals(scenario: Scenario) -> Iterator[Remark]:
+def goals(scenario: Scenario) -> Iterator[FindingAtKeys]:
     """The goal is not met at first, and the item can be reached, held and set down."""
     goal = scenario.episode.goal
     if goal is None:
@@ -34,34 +35,34 @@ def goals(scenario: Scenario) -> Iterator[Remark]:
     item = scenario.episode.body(goal.item)
     yield from _item(scenario, item)
     if _met(scenario, goal, item):
-        yield Remark(
-            "error",
+        yield FindingAtKeys(
+            Severity.ERROR,
             "goal-met",
-            ("goal",),
-            (),
             f"{goal.item} stands {_where(goal)} before anything is done",
             "begin with the item elsewhere, or demand less `goal.distance`",
+            ("goal",),
+            about=(),
         )
     spots = _spots(scenario, goal, item)
     if len(spots) == 0:
-        yield Remark(
-            "error",
+        yield FindingAtKeys(
+            Severity.ERROR,
             "goal-no-room",
-            ("goal",),
-            (),
             f"there is no free spot for {goal.item} {_where(goal)}",
             "move the tag further in, or make room beside it",
+            ("goal",),
+            about=(),
         )
     elif (far := _farness(scenario, spots)) > scenario.robot.reach[2]:
-        yield Remark(
-            "error",
+        yield FindingAtKeys(
+            Severity.ERROR,
             "goal-out-of-reach",
-            ("goal",),
-            (),
             f"every free spot for {goal.item} {_where(goal)} is {_meters(far)} from where "
             f"{scenario.robot.name} gets; its arm reaches {scenario.robot.reach[2]:g} m",
             "move the tag nearer to the edge",
-            far,
+            ("goal",),
+            about=(),
+            amount=far,
         )
 
 
@@ -71,32 +72,32 @@ def _where(goal: Goal) -> str:
     return f"on {goal.support}{beside}"
 
 
-def _item(scenario: Scenario, item: Body) -> Iterator[Remark]:
+def _item(scenario: Scenario, item: Body) -> Iterator[FindingAtKeys]:
     points = np.concatenate([solid.vertices for solid in scenario.solids[item.name]])
     place, robot = scenario.place(item.name), scenario.robot
     width = _width(points[:, :2])
     if width > robot.max_width:
-        yield Remark(
-            "error",
+        yield FindingAtKeys(
+            Severity.ERROR,
             "item-too-wide",
-            place,
-            (item.name,),
             f"{item.name} is {100 * width:.1f} cm wide; {robot.name}'s hand opens "
             f"{100 * robot.max_width:.1f} cm",
             "make it narrower, or choose another robot",
-            width,
+            place,
+            about=(item.name,),
+            amount=width,
         )
     middle = (points.min(axis=0) + points.max(axis=0))[None, :2] / 2
     if (far := _farness(scenario, middle)) > robot.reach[2]:
-        yield Remark(
-            "error",
+        yield FindingAtKeys(
+            Severity.ERROR,
             "item-out-of-reach",
-            place,
-            (item.name,),
             f"{item.name} is {_meters(far)} from where {robot.name} gets; its arm reaches "
             f"{robot.reach[2]:g} m",
             "move it nearer to an edge",
-            far,
+            place,
+            about=(item.name,),
+            amount=far,
         )
 
 

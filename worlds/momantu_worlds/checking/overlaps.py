@@ -6,7 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from momantu_worlds.checking.remarks import Remark
+from momantu_bt.findings import FindingAtKeys
+from momantu_bt.formats.problems import Severity
 from momantu_worlds.checking.scenario import WALL, Scenario
 from momantu_worlds.scenes.geometry.bodies import Body
 
@@ -14,7 +15,7 @@ TOUCHING = 0.005
 """m; bodies that overlap less deep only touch."""
 
 
-def overlaps(scenario: Scenario) -> Iterator[Remark]:
+def overlaps(scenario: Scenario) -> Iterator[FindingAtKeys]:
     """Every two bodies that overlap, unless both are walls, and every body in the floor."""
     bodies = [body for body in scenario.bodies if scenario.solids[body.name]]
     for body in bodies:
@@ -52,36 +53,34 @@ def _depth(scenario: Scenario, first: str, second: str) -> float:
     )
 
 
-def _overlap(scenario: Scenario, first: Body, second: Body, depth: float) -> Remark:
+def _overlap(scenario: Scenario, first: Body, second: Body, depth: float) -> FindingAtKeys:
     """The blame is on what is loose, else on what is no wall, else on the later one."""
     blamed, other = (first, second) if second.category == WALL else (second, first)
     if blamed.static and not other.static:
         blamed, other = other, blamed
     loose = not (first.static and second.static)
-    return Remark(
-        severity="error" if loose else "warning",
-        code="overlap",
-        place=scenario.place(blamed.name),
+    return FindingAtKeys(
+        Severity.ERROR if loose else Severity.WARNING,
+        "overlap",
+        f"{blamed.name} overlaps {other.name} by {100 * depth:.1f} cm",
+        "physics would push them apart with force; move one of them"
+        if loose
+        else "move one of them, or make it smaller",
+        scenario.place(blamed.name),
         about=(blamed.name, other.name),
-        message=f"{blamed.name} overlaps {other.name} by {100 * depth:.1f} cm",
-        cure=(
-            "physics would push them apart with force; move one of them"
-            if loose
-            else "move one of them, or make it smaller"
-        ),
         amount=depth,
     )
 
 
-def _in_floor(scenario: Scenario, body: Body) -> Iterator[Remark]:
+def _in_floor(scenario: Scenario, body: Body) -> Iterator[FindingAtKeys]:
     depth = -min(float(solid.box[0][2]) for solid in scenario.solids[body.name])
     if depth > TOUCHING and body.category != WALL:
-        yield Remark(
-            severity="warning" if body.static else "error",
-            code="in-floor",
-            place=scenario.place(body.name),
+        yield FindingAtKeys(
+            Severity.WARNING if body.static else Severity.ERROR,
+            "in-floor",
+            f"{body.name} reaches {100 * depth:.1f} cm into the floor",
+            "the floor is at height 0; lift it",
+            scenario.place(body.name),
             about=(body.name,),
-            message=f"{body.name} reaches {100 * depth:.1f} cm into the floor",
-            cure="the floor is at height 0; lift it",
             amount=depth,
         )

@@ -5,20 +5,22 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 
-from momantu_bt.findings import Finding, in_order
+from momantu_bt.findings import Finding, FindingAtKeys, worst_first
+from momantu_bt.formats.places import KeyPath
+from momantu_bt.formats.problems import Severity
 from momantu_bt.robot import RobotDescription
 from momantu_bt.world import WorldError
 from momantu_worlds.checking.access import doorways, places, start, surfaces
 from momantu_worlds.checking.goals import goals
 from momantu_worlds.checking.measures import Measures, measured
 from momantu_worlds.checking.overlaps import overlaps
-from momantu_worlds.checking.remarks import Place, Remark, Where
 from momantu_worlds.checking.scenario import Scenario
 from momantu_worlds.checking.tags import tags
 from momantu_worlds.checking.upright import upright
+from momantu_worlds.checking.where import Where
 from momantu_worlds.scenes.geometry.bodies import Episode
 
-CHECKS: tuple[Callable[[Scenario], Iterable[Remark]], ...] = (
+CHECKS: tuple[Callable[[Scenario], Iterable[FindingAtKeys]], ...] = (
     overlaps,
     start,
     places,
@@ -47,38 +49,35 @@ def check_world(
     remarks = [
         (seed, remark) for seed in seeds for remark in _of_seed(draw, seed, robot, where.body)
     ]
-    return in_order(_together(remarks, where))
+    return worst_first(_together(remarks, where))
 
 
 def _of_seed(
-    draw: Callable[[int], Episode], seed: int, robot: Measures, place: Callable[[str], Place]
-) -> Iterator[Remark]:
+    draw: Callable[[int], Episode], seed: int, robot: Measures, place: Callable[[str], KeyPath]
+) -> Iterator[FindingAtKeys]:
     try:
         episode = draw(seed)
     except WorldError as error:
         cure = "make room in the world, or let less of it vary"
-        yield Remark("error", "no-episode", (), (), str(error), cure)
+        yield FindingAtKeys(
+            Severity.ERROR,
+            "no-episode",
+            str(error),
+            cure,
+            (),
+            about=(),
+        )
         return
     scenario = Scenario(episode, robot, place)
     for check in CHECKS:
         yield from check(scenario)
 
 
-def _together(remarks: Iterable[tuple[int, Remark]], where: Where) -> Iterator[Finding]:
+def _together(remarks: Iterable[tuple[int, FindingAtKeys]], where: Where) -> Iterator[Finding]:
     """One finding for what is alike in several episodes, in the words of the worst."""
-    alike: dict[tuple[str, Place, tuple[str, ...]], list[tuple[int, Remark]]] = {}
+    alike: dict[tuple[str, KeyPath, tuple[str, ...]], list[tuple[int, FindingAtKeys]]] = {}
     for seed, remark in remarks:
-        alike.setdefault((remark.code, remark.place, remark.about), []).append((seed, remark))
+        alike.setdefault((remark.code, remark.keys, remark.about), []).append((seed, remark))
     for each in alike.values():
         worst = max((remark for _, remark in each), key=lambda remark: remark.amount)
-        line, column = where.at(worst.place)
-        yield Finding(
-            severity=worst.severity,
-            code=worst.code,
-            message=worst.message,
-            cure=worst.cure,
-            file=where.path,
-            line=line,
-            column=column,
-            seeds=tuple(seed for seed, _ in each),
-        )
+        yield worst.at(where.at(worst.keys), (seed for seed, _ in each))

@@ -8,11 +8,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from momantu_bt.formats.places import KeyPath
 from momantu_bt.geometry import Array, Transform
 from momantu_worlds.checking.convex import Convex, solids_of
 from momantu_worlds.checking.ground import Ground, Obstacle, obstacle
 from momantu_worlds.checking.measures import Measures
-from momantu_worlds.checking.remarks import Place
 from momantu_worlds.scenes.geometry.bodies import Body, Episode
 from momantu_worlds.scenes.geometry.standing import Top
 
@@ -27,7 +27,7 @@ UNKNOWN = "extra_"
 class Scenario:
     """An episode and a robot in it; everything is worked out when it is first asked for."""
 
-    def __init__(self, episode: Episode, robot: Measures, place: Callable[[str], Place]) -> None:
+    def __init__(self, episode: Episode, robot: Measures, place: Callable[[str], KeyPath]) -> None:
         """place: where in the world file a body or a doorway comes from, by its name."""
         self.episode, self.robot, self.place = episode, robot, place
 

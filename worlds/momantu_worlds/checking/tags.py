@@ -8,8 +8,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from momantu_bt.findings import FindingAtKeys
+from momantu_bt.formats.problems import Severity
 from momantu_bt.geometry import Array
-from momantu_worlds.checking.remarks import Remark
 from momantu_worlds.checking.scenario import Scenario
 from momantu_worlds.scenes.geometry.bodies import Body, Picture
 
@@ -29,20 +30,20 @@ GRID = np.array([(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)]) / 2
 """Of those points, for a paper with edges of 1."""
 
 
-def tags(scenario: Scenario) -> Iterator[Remark]:
+def tags(scenario: Scenario) -> Iterator[FindingAtKeys]:
     """Every tag is seen whole from one of the spots that the robot gets to."""
     for body in scenario.bodies:
         if body.category == "tag" and scenario.robot.eyes:
             hidden = _hidden(scenario, body)
             if hidden is not None:
                 why, cure = hidden
-                yield Remark(
-                    severity="error",
-                    code="tag-unseen",
-                    place=scenario.place(body.name),
+                yield FindingAtKeys(
+                    Severity.ERROR,
+                    "tag-unseen",
+                    f"nobody can see {body.name}: {why}",
+                    cure,
+                    scenario.place(body.name),
                     about=(body.name,),
-                    message=f"nobody can see {body.name}: {why}",
-                    cure=cure,
                 )
 
 

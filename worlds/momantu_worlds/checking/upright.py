@@ -8,8 +8,9 @@ from collections.abc import Iterator
 import cv2
 import numpy as np
 
+from momantu_bt.findings import FindingAtKeys
+from momantu_bt.formats.problems import Severity
 from momantu_bt.geometry import Array
-from momantu_worlds.checking.remarks import Remark
 from momantu_worlds.checking.scenario import Scenario
 from momantu_worlds.scenes.geometry.bodies import Body
 from momantu_worlds.scenes.geometry.solids import FLUSH
@@ -28,7 +29,7 @@ WITHIN, COARSE = (0.0, 0.25, 0.5, 0.75), 8
 on a narrow foot."""
 
 
-def upright(scenario: Scenario) -> Iterator[Remark]:
+def upright(scenario: Scenario) -> Iterator[FindingAtKeys]:
     """Every loose body is carried from below, under its middle."""
     for body in scenario.bodies:
         if body.static or not scenario.solids[body.name]:
@@ -109,5 +110,13 @@ def _beyond(carried: Array, middle: Array) -> float:
 
 def _remark(
     scenario: Scenario, body: Body, code: str, message: str, cure: str, amount: float
-) -> Remark:
-    return Remark("error", code, scenario.place(body.name), (body.name,), message, cure, amount)
+) -> FindingAtKeys:
+    return FindingAtKeys(
+        Severity.ERROR,
+        code,
+        message,
+        cure,
+        scenario.place(body.name),
+        about=(body.name,),
+        amount=amount,
+    )

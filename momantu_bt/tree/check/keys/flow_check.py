@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import get_args
 
+from momantu_bt.formats.names import valid_names
+from momantu_bt.formats.places import Place, within
 from momantu_bt.tree.catalogue import BUILT_IN, PRE_CONDITIONS, SUBTREE, ScriptText
 from momantu_bt.tree.check.keys.changes import KeyChanges
 from momantu_bt.tree.check.keys.flow import FLOWS, After, Walk
@@ -16,8 +18,7 @@ from momantu_bt.tree.check.keys.known import NEVER, Key, Known, both, literal_ty
 from momantu_bt.tree.check.keys.reads import Demand, KeyReads, Written, references
 from momantu_bt.tree.check.keys.shared import Call, call_of, shared_keys
 from momantu_bt.tree.check.signatures import Context, Signature
-from momantu_bt.tree.model import Literal, Node, Place, Reference, Scope, Tree
-from momantu_bt.tree.problems import valid_names, within
+from momantu_bt.tree.model import Literal, Node, Reference, Scope, Tree
 from momantu_bt.tree.script import Script, ScriptSyntaxError, parse
 from momantu_bt.tree.script.nodes import Variable
 from momantu_bt.tree.script.types import Mismatch, check_types

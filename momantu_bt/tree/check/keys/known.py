@@ -8,7 +8,8 @@ from dataclasses import dataclass, fields, is_dataclass
 from functools import cache
 from typing import Any, cast
 
-from momantu_bt.tree.model import Literal, Place
+from momantu_bt.formats.places import Place
+from momantu_bt.tree.model import Literal
 from momantu_bt.tree.types import ValueType, assignable, without_none
 from momantu_bt.tree.values.conversion import natural
 

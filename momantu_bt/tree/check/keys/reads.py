@@ -6,27 +6,18 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
+from momantu_bt.formats.names import valid_names
+from momantu_bt.formats.places import Place
+from momantu_bt.formats.units import UnitError, in_unit
 from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue import AUTOREMAP, SUBTREE, ScriptText
 from momantu_bt.tree.check.keys.known import Key, Known, part_type
 from momantu_bt.tree.check.keys.shared import Call, TreeKeys
 from momantu_bt.tree.check.nodes import autoremaps, check_name
 from momantu_bt.tree.check.signatures import Context, Signature
-from momantu_bt.tree.model import (
-    BROKEN,
-    Literal,
-    Node,
-    Place,
-    PortValue,
-    Reference,
-    Scope,
-    Template,
-    Tree,
-)
-from momantu_bt.tree.problems import valid_names
+from momantu_bt.tree.model import BROKEN, Literal, Node, PortValue, Reference, Scope, Template, Tree
 from momantu_bt.tree.types import ValueType, label
 from momantu_bt.tree.values.conversion import convert
-from momantu_bt.tree.values.units import UnitError, in_unit
 from momantu_bt.tree.values.words import ConversionError
 
 Demand: TypeAlias = tuple[str, str]

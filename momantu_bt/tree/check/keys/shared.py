@@ -6,20 +6,11 @@ import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
+from momantu_bt.formats.places import Place
 from momantu_bt.tree.catalogue import AUTOREMAP, SUBTREE, ScriptText
 from momantu_bt.tree.check.nodes import autoremaps
 from momantu_bt.tree.check.signatures import Context
-from momantu_bt.tree.model import (
-    BROKEN,
-    Literal,
-    Node,
-    Place,
-    PortValue,
-    Reference,
-    Scope,
-    Template,
-    Tree,
-)
+from momantu_bt.tree.model import BROKEN, Literal, Node, PortValue, Reference, Scope, Template, Tree
 from momantu_bt.tree.script import Script, ScriptSyntaxError, parse
 
 MAX_KEYS = 1000

@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass, field
 from typing import Any
 
+from momantu_bt.formats.units import UnitError, in_unit
 from momantu_bt.plugins import PluginError
 from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue import (
@@ -30,7 +31,6 @@ from momantu_bt.tree.model import (
 )
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.types import ValueType, parse_type
-from momantu_bt.tree.values.units import UnitError, in_unit
 
 _NAME = re.compile(r"[A-Za-z_][\w.-]*", re.ASCII)
 """What can be the name of a tag or an attribute, as all parsers agree."""

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from momantu_bt.formats.places import Place
 from momantu_bt.tree.files.xml.elements import OURS, Element
 from momantu_bt.tree.files.xml.values import flow_value
 from momantu_bt.tree.files.yaml.values import KEY
-from momantu_bt.tree.model import Document, Literal, Place
+from momantu_bt.tree.model import Document, Literal
 from momantu_bt.tree.problems import Problems
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from momantu_bt.tree.model import Place
+from momantu_bt.formats.places import Place
 
 OURS = "urn:momantu-bt:1"
 """Namespace of what only this language has."""

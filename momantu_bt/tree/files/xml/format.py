@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from momantu_bt.formats.problems import errors
 from momantu_bt.tree.files.resolve import resolve
 from momantu_bt.tree.files.xml.board import read_values
 from momantu_bt.tree.files.xml.elements import OURS, Attribute, Element, Parsed
@@ -18,7 +19,7 @@ from momantu_bt.tree.files.xml.models import read_models
 from momantu_bt.tree.files.xml.source import XmlSyntaxError, parse
 from momantu_bt.tree.files.xml.trees import TreesReader
 from momantu_bt.tree.model import Document, Include, Tree
-from momantu_bt.tree.problems import Problems, TooManyProblems, TreeError, errors
+from momantu_bt.tree.problems import Problems, TooManyProblems, TreeError
 from momantu_bt.tree.registry import Registry
 
 

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from momantu_bt.formats.names import valid_names
 from momantu_bt.tree.files.xml.elements import OURS, Attribute, Element
 from momantu_bt.tree.language import VERSION
 from momantu_bt.tree.model import Tree
-from momantu_bt.tree.problems import Problems, valid_names
+from momantu_bt.tree.problems import Problems
 
 FORMAT = "4"
 """What `BTCPP_format` says; version 3 of BehaviorTree.CPP means other things by the same words."""

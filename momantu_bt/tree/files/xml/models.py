@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field
 
+from momantu_bt.formats.names import nearest, valid_names
 from momantu_bt.tree.catalogue import SUBTREE
 from momantu_bt.tree.files.xml.elements import OURS, Attribute, Element
 from momantu_bt.tree.files.xml.ports import EXPLICIT
@@ -18,7 +19,7 @@ from momantu_bt.tree.model import (
     Reference,
     Template,
 )
-from momantu_bt.tree.problems import Problems, nearest, valid_names
+from momantu_bt.tree.problems import Problems
 from momantu_bt.tree.types import parse_type
 
 PORTS = {"input_port": "in", "output_port": "out", "inout_port": "inout"}

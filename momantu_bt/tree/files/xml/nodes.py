@@ -9,6 +9,7 @@ from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from momantu_bt.formats.names import nearest, valid_names
 from momantu_bt.plugins import PluginError
 from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue import (
@@ -22,7 +23,7 @@ from momantu_bt.tree.files.xml.elements import OURS, Element
 from momantu_bt.tree.files.xml.ports import CATCH, EXPLICIT, PREFIX, PortReader
 from momantu_bt.tree.language import ANY, handler_codes
 from momantu_bt.tree.model import BROKEN, Handler, Node, PortDeclaration
-from momantu_bt.tree.problems import Problems, nearest, valid_names
+from momantu_bt.tree.problems import Problems
 from momantu_bt.tree.registry import Registry
 
 PORT = "Port"

@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
+from momantu_bt.formats.names import nearest, valid_names
+from momantu_bt.formats.places import Place
+from momantu_bt.formats.units import UnitError, in_unit
 from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue import (
     AUTOREMAP,
@@ -22,16 +25,14 @@ from momantu_bt.tree.model import (
     FIRST_INPUT,
     Literal,
     Node,
-    Place,
     PortDeclaration,
     PortValue,
     Reference,
     Scope,
 )
-from momantu_bt.tree.problems import Problems, nearest, valid_names
+from momantu_bt.tree.problems import Problems
 from momantu_bt.tree.script import ScriptSyntaxError, parse
 from momantu_bt.tree.types import ValueType, parse_type
-from momantu_bt.tree.values.units import UnitError, in_unit
 
 EXPLICIT = ("Action", "Condition", "Control", "Decorator")
 """Tags whose ID is the node's type."""

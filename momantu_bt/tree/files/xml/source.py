@@ -13,12 +13,13 @@ from dataclasses import dataclass, field
 
 from lxml import etree
 
+from momantu_bt.formats.places import Place
+from momantu_bt.formats.problems import Problem
 from momantu_bt.tree.files.xml.comments import show_dashes
 from momantu_bt.tree.files.xml.elements import Attribute, Element, Parsed
 from momantu_bt.tree.files.xml.syntax import first_error, in_our_words
 from momantu_bt.tree.files.yaml.source import MAX_BYTES
-from momantu_bt.tree.model import Beside, Place
-from momantu_bt.tree.problems import Problem
+from momantu_bt.tree.model import Beside
 
 MAX_DEPTH = 200
 MAX_NODES = 10_000

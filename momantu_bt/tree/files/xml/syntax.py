@@ -8,8 +8,9 @@ from dataclasses import dataclass
 
 from lxml import etree
 
-from momantu_bt.tree.model import Place
-from momantu_bt.tree.problems import Problem, lines_of, nearest
+from momantu_bt.formats.names import nearest
+from momantu_bt.formats.places import Place, lines_of
+from momantu_bt.formats.problems import Problem
 
 
 @dataclass(frozen=True, slots=True)

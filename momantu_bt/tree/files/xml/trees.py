@@ -5,14 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from momantu_bt.formats.names import nearest, valid_names
+from momantu_bt.formats.places import Place
 from momantu_bt.tree.files.queue import into_tree
 from momantu_bt.tree.files.xml.elements import OURS, Element
 from momantu_bt.tree.files.xml.header import report_unknown_attribute
 from momantu_bt.tree.files.xml.models import Models
 from momantu_bt.tree.files.xml.nodes import NodeReader
 from momantu_bt.tree.language import TREE_NAME, TREE_NAME_HINT
-from momantu_bt.tree.model import Node, Place, PortDeclaration, Tree
-from momantu_bt.tree.problems import Problems, nearest, valid_names
+from momantu_bt.tree.model import Node, PortDeclaration, Tree
+from momantu_bt.tree.problems import Problems
 from momantu_bt.tree.registry import Registry
 
 _EDITORS = ("_fullpath", "_uid", "_description")

@@ -10,11 +10,12 @@ import re
 import typing
 from enum import Enum
 
+from momantu_bt.formats.places import Place
 from momantu_bt.tree.files.yaml.core import resolve
 from momantu_bt.tree.files.yaml.raw import Entries, Items, Raw
 from momantu_bt.tree.files.yaml.source import YamlSyntaxError, compose
 from momantu_bt.tree.files.yaml.values import KEY, port_value
-from momantu_bt.tree.model import Literal, Place, PortValue, Reference, Scope
+from momantu_bt.tree.model import Literal, PortValue, Reference, Scope
 from momantu_bt.tree.problems import Problems
 from momantu_bt.tree.types import ValueType, origin, without_none
 

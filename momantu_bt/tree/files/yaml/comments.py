@@ -10,10 +10,10 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
+from momantu_bt.formats.places import Place, lines_of
 from momantu_bt.tree.files.yaml.raw import Entries, Raw
 from momantu_bt.tree.files.yaml.remarks import Remark
-from momantu_bt.tree.model import Beside, Document, Node, Place, PortDeclaration, Tree
-from momantu_bt.tree.problems import lines_of
+from momantu_bt.tree.model import Beside, Document, Node, PortDeclaration, Tree
 
 _FIRST_KEYS = ("momantu_bt", "world", "main", "include")
 _PORT_KEYS = ("inputs:", "outputs:", "inouts:", "doc:", "open:")

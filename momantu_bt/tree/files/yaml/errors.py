@@ -7,9 +7,9 @@ from collections.abc import Sequence
 
 from ruamel.yaml.error import MarkedYAMLError, StringMark
 
+from momantu_bt.formats.places import Place, lines_of
+from momantu_bt.formats.problems import Problem
 from momantu_bt.tree.catalogue import XML_CONDITIONS
-from momantu_bt.tree.model import Place
-from momantu_bt.tree.problems import Problem, lines_of
 
 _FLOW_MAPPING = "a flow mapping"
 _SCRIPTS = ("script", "condition", "if", *XML_CONDITIONS)

@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from momantu_bt.formats.names import valid_names
+from momantu_bt.formats.places import Place
+from momantu_bt.formats.problems import errors
 from momantu_bt.tree.files.yaml.comments import attach
 from momantu_bt.tree.files.yaml.models import read_models
 from momantu_bt.tree.files.yaml.raw import Entries, Items, Raw, Scalar
@@ -13,8 +16,8 @@ from momantu_bt.tree.files.yaml.source import YamlSyntaxError, compose_with_rema
 from momantu_bt.tree.files.yaml.trees import read_trees
 from momantu_bt.tree.files.yaml.values import drop_duplicates, is_key, mapping, port_value
 from momantu_bt.tree.language import VERSION
-from momantu_bt.tree.model import Document, Include, Literal, Place, Tree
-from momantu_bt.tree.problems import Problems, TooManyProblems, TreeError, errors, valid_names
+from momantu_bt.tree.model import Document, Include, Literal, Tree
+from momantu_bt.tree.problems import Problems, TooManyProblems, TreeError
 
 _TOP = ("momantu_bt", "include", "world", "main", "values", "trees", "models")
 

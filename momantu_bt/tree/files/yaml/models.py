@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from momantu_bt.formats.names import valid_names
 from momantu_bt.tree.files.yaml.lines import above
 from momantu_bt.tree.files.yaml.raw import Entries, Items, Raw, Scalar, plain_value
 from momantu_bt.tree.files.yaml.scalars import scalar
 from momantu_bt.tree.model import Literal, NodeModel, PortDeclaration
-from momantu_bt.tree.problems import Problems, valid_names
+from momantu_bt.tree.problems import Problems
 
 KINDS = ("Action", "Condition", "Control", "Decorator")
 """Kinds of nodes that a palette has; the key that names a model's node."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from momantu_bt.formats.names import nearest
 from momantu_bt.tree.catalogue import BUILT_IN, FORCED, MODIFIERS, SPELLED, NodeSpec
 from momantu_bt.tree.files.yaml.ports import is_empty, read_port, read_ports
 from momantu_bt.tree.files.yaml.raw import Entries, Raw, Scalar
@@ -9,7 +10,7 @@ from momantu_bt.tree.files.yaml.reading import Reading, said
 from momantu_bt.tree.files.yaml.scripts import read_script
 from momantu_bt.tree.files.yaml.values import words
 from momantu_bt.tree.model import BROKEN, Node
-from momantu_bt.tree.problems import Problems, nearest
+from momantu_bt.tree.problems import Problems
 
 
 def near_modifier(name: str) -> str | None:

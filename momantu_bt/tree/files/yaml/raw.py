@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
-from momantu_bt.tree.model import Place
+from momantu_bt.formats.places import Place
 
 
 @dataclass(slots=True)

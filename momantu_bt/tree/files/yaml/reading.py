@@ -6,10 +6,11 @@ from collections import deque
 from collections.abc import Collection
 from dataclasses import dataclass, field
 
+from momantu_bt.formats.places import Place
 from momantu_bt.tree.catalogue import BUILT_IN, SPELLED
 from momantu_bt.tree.files.queue import Put
 from momantu_bt.tree.files.yaml.raw import Items, Raw
-from momantu_bt.tree.model import BROKEN, Node, Place
+from momantu_bt.tree.model import BROKEN, Node
 from momantu_bt.tree.problems import Problems
 
 

@@ -7,10 +7,11 @@ from collections.abc import Mapping
 from typing import Any
 
 from momantu_bt.errors import MomantuError
+from momantu_bt.formats.places import Place
 from momantu_bt.tree.files.yaml.core import resolve
 from momantu_bt.tree.files.yaml.values import KEY
 from momantu_bt.tree.files.yaml.words import BTCPP
-from momantu_bt.tree.model import Literal, Place, PortValue, Reference, Scope, Template
+from momantu_bt.tree.model import Literal, PortValue, Reference, Scope, Template
 from momantu_bt.tree.script import ScriptSyntaxError, canonical, yaml_spelling
 
 _NEVER_FIRST = "-?:,[]{}#&*!|>'\"%@`"

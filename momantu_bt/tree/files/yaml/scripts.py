@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from momantu_bt.formats.places import Place
 from momantu_bt.tree.files.yaml.raw import Entries, Raw, Scalar
 from momantu_bt.tree.files.yaml.words import BTCPP
-from momantu_bt.tree.model import Place
 from momantu_bt.tree.problems import Problems
 from momantu_bt.tree.script import ScriptSyntaxError, canonical, parse
 

@@ -15,12 +15,12 @@ from ruamel.yaml import events as yaml_events
 from ruamel.yaml.error import MarkedYAMLError
 from ruamel.yaml.reader import ReaderError
 
+from momantu_bt.formats.places import Place, lines_of
+from momantu_bt.formats.problems import Problem
 from momantu_bt.tree.files.yaml.core import resolve
 from momantu_bt.tree.files.yaml.errors import in_our_words
 from momantu_bt.tree.files.yaml.raw import Entries, Items, Raw, Scalar
 from momantu_bt.tree.files.yaml.remarks import Remark, remarks, span
-from momantu_bt.tree.model import Place
-from momantu_bt.tree.problems import Problem, lines_of
 
 MAX_BYTES = 500_000
 MAX_DEPTH = 100

@@ -5,8 +5,9 @@ from __future__ import annotations
 import re
 from typing import Any
 
+from momantu_bt.formats.places import Place
 from momantu_bt.tree.files.yaml.raw import Entries, Items, Raw, Scalar
-from momantu_bt.tree.model import Literal, Place, PortValue, Reference, Scope, Template
+from momantu_bt.tree.model import Literal, PortValue, Reference, Scope, Template
 from momantu_bt.tree.problems import NOT_TEXT, Problems
 
 _NAME = r"[^\W\d]\w*"

@@ -7,10 +7,11 @@ from collections.abc import Iterator
 import numpy as np
 from lxml import etree
 
+from momantu_bt.findings import FindingAtKeys
+from momantu_bt.formats.problems import Severity
 from momantu_bt.robot import REQUIRED_POSES, ActuatorKind, RobotDescription
 from momantu_skills.manipulation.model.arm_model import ArmModel
 from momantu_skills.manipulation.model.collision import CollisionWorld, body_pairs
-from momantu_skills.robot_setup.check.remarks import Remark
 from momantu_skills.robot_setup.find.base import ABOVE, Stand
 from momantu_skills.robot_setup.urdf.body import Body
 from momantu_skills.robot_setup.urdf.cells import cuts_of, swallowed
@@ -25,7 +26,7 @@ SLACK = 1e-3
 """rad or m, and per second, by which a limit may pass the URDF's: rounding."""
 
 
-def check_poses(description: RobotDescription, model: ArmModel) -> Iterator[Remark]:
+def check_poses(description: RobotDescription, model: ArmModel) -> Iterator[FindingAtKeys]:
     """Named poses that collide, or leave joints of the arm open."""
     arm = description.groups["arm"].joints
     met: dict[tuple[str, str], list[str]] = {}
@@ -34,8 +35,8 @@ def check_poses(description: RobotDescription, model: ArmModel) -> Iterator[Rema
         required = name in REQUIRED_POSES
         missing = [joint for joint in arm if joint not in pose]
         if missing and required:
-            yield Remark(
-                "error",
+            yield FindingAtKeys(
+                Severity.ERROR,
                 "pose-incomplete",
                 f"the pose {name} leaves {', '.join(missing)} open",
                 "give every joint of the group `arm` a position",
@@ -51,10 +52,10 @@ def check_poses(description: RobotDescription, model: ArmModel) -> Iterator[Rema
         yield _closed_hand(pair) if set(pair) <= hand else _collision(pair, poses)
 
 
-def _collision(pair: tuple[str, str], poses: list[str]) -> Remark:
+def _collision(pair: tuple[str, str], poses: list[str]) -> FindingAtKeys:
     required = any(name in REQUIRED_POSES for name in poses)
-    return Remark(
-        "error" if required else "warning",
+    return FindingAtKeys(
+        Severity.ERROR if required else Severity.WARNING,
         "pose-collides",
         f"{pair[0]} meets {pair[1]} in {in_poses(poses)}",
         "move the arm away from there, or name the pair in `ignored_collisions` if only the hulls "
@@ -63,9 +64,9 @@ def _collision(pair: tuple[str, str], poses: list[str]) -> Remark:
     )
 
 
-def _closed_hand(pair: tuple[str, str]) -> Remark:
-    return Remark(
-        "warning",
+def _closed_hand(pair: tuple[str, str]) -> FindingAtKeys:
+    return FindingAtKeys(
+        Severity.WARNING,
         "closed-hand-collides",
         f"{pair[0]} meets {pair[1]} when the hand is closed: no motion is planned from there",
         f"write [{pair[0]}, {pair[1]}] under `ignored_collisions`",
@@ -85,7 +86,9 @@ def _links(one: str, other: str) -> tuple[str, str]:
     return one.split(":")[0], other.split(":")[0]
 
 
-def check_footprint(description: RobotDescription, body: Body, stand: Stand) -> Iterator[Remark]:
+def check_footprint(
+    description: RobotDescription, body: Body, stand: Stand
+) -> Iterator[FindingAtKeys]:
     """A footprint that does not enclose the base, or is far too large; a wrong height."""
     if stand.footprint is not None:
         outline = np.array(description.footprint)
@@ -94,8 +97,8 @@ def check_footprint(description: RobotDescription, body: Body, stand: Stand) -> 
         worst = int(np.argmax(beyond))
         if beyond[worst] > OUTSIDE:
             x, y = stand.low[worst]
-            yield Remark(
-                "error",
+            yield FindingAtKeys(
+                Severity.ERROR,
                 "footprint-too-small",
                 f"the base reaches {beyond[worst]:.3f} m out of its footprint, at "
                 f"({x:.3f}, {y:.3f})",
@@ -105,8 +108,8 @@ def check_footprint(description: RobotDescription, body: Body, stand: Stand) -> 
         around = _half_planes(stand.footprint)
         room = (outline @ around[:, :2].T - around[:, 2]).max(axis=1).max()
         if room > ROOMY:
-            yield Remark(
-                "warning",
+            yield FindingAtKeys(
+                Severity.WARNING,
                 "footprint-too-large",
                 f"the footprint reaches {room:.3f} m beyond the base: doors get narrower by it",
                 "draw it along the base",
@@ -115,7 +118,7 @@ def check_footprint(description: RobotDescription, body: Body, stand: Stand) -> 
     yield from _height(description, body)
 
 
-def _height(description: RobotDescription, body: Body) -> Iterator[Remark]:
+def _height(description: RobotDescription, body: Body) -> Iterator[FindingAtKeys]:
     tops = {
         name: float(body.corners(body.hulls, pose)[:, 2].max())
         for name, pose in description.named_poses.items()
@@ -123,8 +126,8 @@ def _height(description: RobotDescription, body: Body) -> Iterator[Remark]:
     }
     tallest = max(tops, key=lambda name: tops[name], default=None)
     if tallest is not None and tops[tallest] > description.height + TALL:
-        yield Remark(
-            "error",
+        yield FindingAtKeys(
+            Severity.ERROR,
             "taller-than-height",
             f"in the pose {tallest} the robot is {tops[tallest]:.2f} m tall, and its height is "
             f"{description.height:g} m",
@@ -141,7 +144,7 @@ def _half_planes(corners: np.ndarray) -> np.ndarray:
     return np.column_stack([normals, (normals * corners).sum(axis=1)])
 
 
-def check_limits(description: RobotDescription, body: Body) -> Iterator[Remark]:
+def check_limits(description: RobotDescription, body: Body) -> Iterator[FindingAtKeys]:
     """Limits beyond the URDF's, and joints whose drive has no force."""
     for name, limit in description.joint_limits.items():
         joint = body.skeleton.joints[name]
@@ -152,16 +155,16 @@ def check_limits(description: RobotDescription, body: Body) -> Iterator[Remark]:
             sign = -1.0 if key == "lower" else 1.0
             wide = value is not None and bound is not None and not joint.endless
             if wide and sign * (value - bound) > SLACK:
-                yield Remark(
-                    "error",
+                yield FindingAtKeys(
+                    Severity.ERROR,
                     "limit-beyond-urdf",
                     f"{key} of {name} is {value:g}, and the URDF's is {bound:g}",
                     "take the URDF's, or mend the URDF",
                     (*place, key),
                 )
         if joint.velocity and limit.velocity > joint.velocity + SLACK:
-            yield Remark(
-                "warning",
+            yield FindingAtKeys(
+                Severity.WARNING,
                 "faster-than-urdf",
                 f"{name} may go {limit.velocity:g} per second, by the URDF {joint.velocity:g}",
                 "take the URDF's speed, unless you know better",
@@ -170,7 +173,7 @@ def check_limits(description: RobotDescription, body: Body) -> Iterator[Remark]:
     yield from _forces(description, body)
 
 
-def _forces(description: RobotDescription, body: Body) -> Iterator[Remark]:
+def _forces(description: RobotDescription, body: Body) -> Iterator[FindingAtKeys]:
     if description.simulation is None:
         return
     drives = description.simulation.drives
@@ -181,8 +184,8 @@ def _forces(description: RobotDescription, body: Body) -> Iterator[Remark]:
         strong |= {joint for joint in actuator.joints if body.skeleton.joints[joint].effort}
         weak = [joint for joint in actuator.joints if joint not in strong]
         if weak:
-            yield Remark(
-                "warning",
+            yield FindingAtKeys(
+                Severity.WARNING,
                 "no-force",
                 f"neither the URDF nor `drives` says how strong these are, and nothing limits "
                 f"them: {', '.join(weak)}",
@@ -191,7 +194,7 @@ def _forces(description: RobotDescription, body: Body) -> Iterator[Remark]:
             )
 
 
-def check_hulls(description: RobotDescription, body: Body) -> Iterator[Remark]:
+def check_hulls(description: RobotDescription, body: Body) -> Iterator[FindingAtKeys]:
     """Links that lie in the hull of a long mesh: a simulator pushes them out."""
     if description.simulation is None:
         return
@@ -204,8 +207,8 @@ def check_hulls(description: RobotDescription, body: Body) -> Iterator[Remark]:
             met[link, long].append(pose)
     for (link, long), poses in met.items():
         cuts = ", ".join(f"{name}: {list(at)}" for name, at in cuts_of(body, long).items())
-        yield Remark(
-            "error",
+        yield FindingAtKeys(
+            Severity.ERROR,
             "hull-swallows",
             f"{link} lies in the convex hull of {long}, for which a simulator takes it, in "
             f"{in_poses(poses)}",
@@ -214,7 +217,7 @@ def check_hulls(description: RobotDescription, body: Body) -> Iterator[Remark]:
         )
 
 
-def check_looks(description: RobotDescription) -> Iterator[Remark]:
+def check_looks(description: RobotDescription) -> Iterator[FindingAtKeys]:
     """Links that touch things and that no camera sees."""
     root = read_urdf(description)
     bare = [
@@ -223,8 +226,8 @@ def check_looks(description: RobotDescription) -> Iterator[Remark]:
         if link.find("collision") is not None and link.find("visual") is None
     ]
     if bare:
-        yield Remark(
-            "warning",
+        yield FindingAtKeys(
+            Severity.WARNING,
             "invisible",
             f"{len(bare)} links have a collision shape and nothing to look at: simulated cameras "
             f"and pictures do not show {', '.join(bare[:4])}{', …' if len(bare) > 4 else ''}",

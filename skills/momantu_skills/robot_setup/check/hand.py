@@ -6,9 +6,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from momantu_bt.findings import FindingAtKeys
+from momantu_bt.formats.problems import Severity
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.robot import RobotDescription
-from momantu_skills.robot_setup.check.remarks import Remark
 from momantu_skills.robot_setup.find.base import Stand
 from momantu_skills.robot_setup.find.reach import reached
 from momantu_skills.robot_setup.urdf.arm_ik import LimbSolver
@@ -27,13 +28,13 @@ HEIGHT_SHARE = 0.2
 """Share of the tables' heights at which the farthest things must be within reach."""
 
 
-def check_hand(description: RobotDescription, body: Body) -> Iterator[Remark]:
+def check_hand(description: RobotDescription, body: Body) -> Iterator[FindingAtKeys]:
     """The end effector against the URDF's fingers."""
     effector = description.end_effector
     fingers = _fingers(description, body)
     if not fingers:
-        yield Remark(
-            "error",
+        yield FindingAtKeys(
+            Severity.ERROR,
             "no-fingers",
             f"no link of `touch_links` moves with the joints of {effector.actuator}",
             "name the links of the fingers and the palm in `touch_links`",
@@ -62,13 +63,13 @@ def _fingers(description: RobotDescription, body: Body) -> tuple[str, ...]:
     )
 
 
-def _beyond(description: RobotDescription, body: Body) -> Iterator[Remark]:
+def _beyond(description: RobotDescription, body: Body) -> Iterator[FindingAtKeys]:
     for joint, rows in description.end_effector.opening.items():
         lower, upper = body.skeleton.joints[joint].range
         outside = [p for w, p in rows if w > 0 and not lower - 1e-3 <= p <= upper + 1e-3]
         if outside and body.skeleton.joints[joint].mimic is None:
-            yield Remark(
-                "warning",
+            yield FindingAtKeys(
+                Severity.WARNING,
                 "opening-beyond-limits",
                 f"the opening of {joint} asks for {outside[0]:g}, and its range is {lower:g} to "
                 f"{upper:g}",
@@ -100,15 +101,15 @@ def _in_grasp(
 
 def _outwards(
     description: RobotDescription, body: Body, palm: list[str], fingers: list[Array]
-) -> Iterator[Remark]:
+) -> Iterator[FindingAtKeys]:
     if not palm:
         return
     own = np.vstack(_in_grasp(description, body, tuple(palm), 0.0))
     way = np.vstack(fingers).mean(axis=0) - own.mean(axis=0)
     along = way[0] / max(float(np.linalg.norm(way)), 1e-9)
     if along < ALONG:
-        yield Remark(
-            "error",
+        yield FindingAtKeys(
+            Severity.ERROR,
             "grasp-frame-x",
             "x of the grasp frame does not point out along the fingers: from the palm to them it "
             f"is ({way[0]:.3f}, {way[1]:.3f}, {way[2]:.3f}) m in that frame",
@@ -118,21 +119,21 @@ def _outwards(
         )
 
 
-def _closing(moves: Array) -> Iterator[Remark]:
+def _closing(moves: Array) -> Iterator[FindingAtKeys]:
     """moves: (n, 3), of each finger from open to closed in the grasp frame."""
     lengths = np.linalg.norm(moves, axis=1)
     largest = moves[int(np.argmax(lengths))]
     if lengths.max() < 1e-4:
-        yield Remark(
-            "error",
+        yield FindingAtKeys(
+            Severity.ERROR,
             "fingers-do-not-move",
             "between open and closed the fingers stand still",
             "look at the positions in `opening`",
             ("end_effector", "opening"),
         )
     elif abs(largest[1]) < SIDEWAYS * lengths.max():
-        yield Remark(
-            "error",
+        yield FindingAtKeys(
+            Severity.ERROR,
             "grasp-frame-y",
             "y of the grasp frame is not the closing direction: a finger moves by "
             f"({largest[0]:.3f}, {largest[1]:.3f}, {largest[2]:.3f}) m in that frame",
@@ -143,15 +144,15 @@ def _closing(moves: Array) -> Iterator[Remark]:
 
 def _widths(
     description: RobotDescription, body: Body, fingers: tuple[str, ...]
-) -> Iterator[Remark]:
+) -> Iterator[FindingAtKeys]:
     effector = description.end_effector
     for share in SAMPLES:
         width = share * effector.max_width
         corners = _in_grasp(description, body, fingers, width)
         gap = opening_between(corners, effector.pad_length, effector.pad_height)
         if gap is None:
-            yield Remark(
-                "warning",
+            yield FindingAtKeys(
+                Severity.WARNING,
                 "no-pads-at-grasp",
                 f"{width:.3f} m open, there is no finger to both sides of the grasp frame",
                 "put the frame's origin between the pads",
@@ -159,8 +160,8 @@ def _widths(
             )
             return
         if abs(gap - width) > max(MISFIT[0], MISFIT[1] * width):
-            yield Remark(
-                "warning",
+            yield FindingAtKeys(
+                Severity.WARNING,
                 "opening-does-not-fit",
                 f"where `opening` says {width:.3f} m, the fingers' hulls are {gap:.3f} m apart",
                 "measure the table again: `momantu-bt robots setup` does",
@@ -169,13 +170,13 @@ def _widths(
             return
 
 
-def check_reach(description: RobotDescription, body: Body, stand: Stand) -> Iterator[Remark]:
+def check_reach(description: RobotDescription, body: Body, stand: Stand) -> Iterator[FindingAtKeys]:
     """Working distances that the arm does not reach, or at which the base is in the table."""
     working, effector = description.working, description.end_effector
     front = max(x for x, _ in description.footprint)
     if working.stand_off < front:
-        yield Remark(
-            "error",
+        yield FindingAtKeys(
+            Severity.ERROR,
             "stands-in-table",
             f"at a stand-off of {working.stand_off:g} m the footprint, {front:g} m long ahead, "
             "reaches over the table's edge",
@@ -195,8 +196,8 @@ def check_reach(description: RobotDescription, body: Body, stand: Stand) -> Iter
         ("nearest", "best", "farthest"), working.reach, heights, strict=True
     ):
         if share < (0.5 if which == "best" else HEIGHT_SHARE):
-            yield Remark(
-                "error" if which == "best" else "warning",
+            yield FindingAtKeys(
+                Severity.ERROR if which == "best" else Severity.WARNING,
                 "out-of-reach",
                 f"the {which} distance, {distance:g} m, is reached on {share:.0%} of the tables "
                 "0.4 to 0.8 m high",

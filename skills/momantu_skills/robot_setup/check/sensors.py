@@ -7,6 +7,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from momantu_bt.findings import FindingAtKeys
+from momantu_bt.formats.problems import Severity
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.robot import (
     REQUIRED_POSES,
@@ -16,7 +18,6 @@ from momantu_bt.robot import (
     RobotDescription,
 )
 from momantu_skills.robot_setup.check.body import in_poses
-from momantu_skills.robot_setup.check.remarks import Remark
 from momantu_skills.robot_setup.urdf.body import Body, placed
 from momantu_skills.robot_setup.urdf.rays import blocked, planes_of
 
@@ -36,7 +37,7 @@ LOOKING = "look_around"
 """The pose in which a camera is meant to see."""
 
 
-def check_sensors(description: RobotDescription, body: Body) -> Iterator[Remark]:
+def check_sensors(description: RobotDescription, body: Body) -> Iterator[FindingAtKeys]:
     """All sensors, in every required pose."""
     for name, sensor in description.sensors.items():
         if isinstance(sensor, CameraSensor):
@@ -48,7 +49,7 @@ def check_sensors(description: RobotDescription, body: Body) -> Iterator[Remark]
 
 def _camera(
     description: RobotDescription, body: Body, name: str, sensor: CameraSensor
-) -> Iterator[Remark]:
+) -> Iterator[FindingAtKeys]:
     rays = _pixels(sensor)
     shares = {
         pose: float((_hits(description, body, pose, sensor.frame, rays) < sensor.max_depth).mean())
@@ -57,8 +58,8 @@ def _camera(
     covered = [pose for pose, share in shares.items() if share > COVERED]
     if covered:
         most = max(shares[pose] for pose in covered)
-        yield Remark(
-            "error" if shares[LOOKING] > BLIND else "warning",
+        yield FindingAtKeys(
+            Severity.ERROR if shares[LOOKING] > BLIND else Severity.WARNING,
             "camera-sees-itself",
             f"the robot covers up to {most:.0%} of the picture of {name} in {in_poses(covered)}",
             "turn the camera or move the arm out of the picture in that pose",
@@ -66,8 +67,8 @@ def _camera(
         )
     optical = _frame(description, LOOKING, sensor.frame)
     if optical.rotation[:, 1] @ (0.0, 0.0, -1.0) < TILTED:
-        yield Remark(
-            "warning",
+        yield FindingAtKeys(
+            Severity.WARNING,
             "camera-tilted",
             f"in the pose {LOOKING} the picture of {name} does not stand upright",
             "name an optical frame: z out of the camera, x to the right, y down",
@@ -75,11 +76,11 @@ def _camera(
         )
 
 
-def _level(description: RobotDescription, name: str, frame: str) -> Iterator[Remark]:
+def _level(description: RobotDescription, name: str, frame: str) -> Iterator[FindingAtKeys]:
     upright = abs(float(_frame(description, "home", frame).rotation[2, 2]))
     if upright < math.cos(LEVEL):
-        yield Remark(
-            "error",
+        yield FindingAtKeys(
+            Severity.ERROR,
             "laser-tilted",
             f"the plane of {name} is tilted by {math.degrees(math.acos(min(1.0, upright))):.0f} "
             "degrees: the floor plan is seen nowhere",
@@ -90,7 +91,7 @@ def _level(description: RobotDescription, name: str, frame: str) -> Iterator[Rem
 
 def _laser(
     description: RobotDescription, body: Body, name: str, sensor: LaserSensor
-) -> Iterator[Remark]:
+) -> Iterator[FindingAtKeys]:
     """Beams that the robot stops; of a scan made from a lidar, sectors with no free ring."""
     source = description.sensors.get(sensor.source or "")
     rings = source.elevations if isinstance(source, LidarSensor) else (0.0,)
@@ -108,8 +109,8 @@ def _laser(
     stopped = [pose for pose, share in shares.items() if share > SHADOW]
     if stopped:
         most = max(shares.values())
-        yield Remark(
-            "error" if most > DARK else "warning",
+        yield FindingAtKeys(
+            Severity.ERROR if most > DARK else Severity.WARNING,
             "laser-sees-itself",
             f"the robot stops up to {most:.0%} of the beams of {name} in {in_poses(stopped)}",
             "move it, narrow its angles, or fold the arm elsewhere",

@@ -9,7 +9,7 @@ from typing import ClassVar
 from pydantic import ValidationError
 
 from momantu_bt.descriptions.findings import checked
-from momantu_bt.descriptions.reading import DescriptionError, Problem, Reading, read_text
+from momantu_bt.descriptions.reading import DescriptionError, KeyProblem, Reading, read_text
 from momantu_worlds.scenes.file.references import dangling
 from momantu_worlds.scenes.file.world import WorldFile
 
@@ -49,12 +49,12 @@ def parse_world(text: str, path: Path) -> WorldFile:
     return world
 
 
-def _beside(reading: Reading, error: WorldFileError) -> Iterator[Problem]:
+def _beside(reading: Reading, error: WorldFileError) -> Iterator[KeyProblem]:
     """What is wrong with the names of a file whose values are wrong, too.
 
     Parts that are wrong are left out; where whole sections would be, nothing is said.
     """
-    places = {problem.place[:2] for problem in error.problems}
+    places = {problem.keys[:2] for problem in error.problems}
     if any(len(place) < 2 or place[0] not in SECTIONS for place in places):
         return
     named = {section: dict(reading.plain[section]) for section, _ in places}
@@ -66,4 +66,4 @@ def _beside(reading: Reading, error: WorldFileError) -> Iterator[Problem]:
         return
     for place, message in dangling(world, also={str(name) for _, name in places}):
         if place[0] != "doors" or "rooms" not in named:  # its wall may be one of these
-            yield Problem(*reading.at(place), message, place)
+            yield reading.problem(place, message)

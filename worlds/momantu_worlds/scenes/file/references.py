@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
-from typing import TypeAlias
 
-from momantu_bt.descriptions.names import nearest
+from momantu_bt.descriptions.reading import KeyMessage
+from momantu_bt.formats.names import valid_names
+from momantu_bt.formats.places import KeyPath
 from momantu_worlds.scenes.file.furniture import MeshUse
 from momantu_worlds.scenes.file.world import WorldFile
 
-Place: TypeAlias = tuple[str | int, ...]
-Finding: TypeAlias = tuple[Place, str]
 FLOOR = "floor"
 """The name of the body that everything stands on."""
 NO_WORLD = "none"
 """What trees and the command line call running without a world."""
 
 
-def dangling(world: WorldFile, also: Collection[str] = ()) -> Iterator[Finding]:
+def dangling(world: WorldFile, also: Collection[str] = ()) -> Iterator[KeyMessage]:
     """Everything that one part of a file says of another and that is not so.
 
     also: names of parts that are wrong in themselves and were left out.
@@ -31,11 +30,11 @@ def dangling(world: WorldFile, also: Collection[str] = ()) -> Iterator[Finding]:
         yield ("doors", name), f"the door {name!r}: {problem}"
 
 
-def _twice(world: WorldFile) -> Iterator[Finding]:
+def _twice(world: WorldFile) -> Iterator[KeyMessage]:
     """Bodies of one name: all that a file names, and the walls that follow from it."""
     seen: dict[str, str] = {FLOOR: "the floor"} | {run.name: "a wall" for run in world.wall_runs}
     named = {("item", "name"): world.item, ("tag", "name"): world.tag}
-    found: list[tuple[Place, str, str]] = [
+    found: list[tuple[KeyPath, str, str]] = [
         (place, each.name, place[0]) for place, each in named.items() if each is not None
     ]
     sections: dict[str, tuple[str, Iterable[str]]] = {
@@ -69,20 +68,20 @@ class _Names:
         self._world, self._also = world, also
         self._surfaces = surface_names(world)
 
-    def findings(self) -> Iterator[Finding]:
+    def findings(self) -> Iterator[KeyMessage]:
         yield from self._boards()
         for place, top in self._tops():
             yield from self._missing(place, top, self._surfaces, "table")
         yield from self._goal()
 
     def _missing(
-        self, place: Place, name: str, having: Iterable[str], what: str
-    ) -> Iterator[Finding]:
+        self, place: KeyPath, name: str, having: Iterable[str], what: str
+    ) -> Iterator[KeyMessage]:
         names = list(having)
         if name not in names and name not in self._also:
-            yield place, f"there is no {what} {name!r}{nearest(name, names)}"
+            yield place, f"there is no {what} {name!r}; {valid_names(name, names, f'{what}s')}"
 
-    def _boards(self) -> Iterator[Finding]:
+    def _boards(self) -> Iterator[KeyMessage]:
         """Boards that are surfaces: their shelf, their number, and whether somebody took it."""
         world = self._world
         taken: dict[tuple[str, int], str] = {}
@@ -108,7 +107,7 @@ class _Names:
             if other != name:
                 yield (*place, "board"), f"this board is {other!r} already"
 
-    def _tops(self) -> Iterator[tuple[Place, str]]:
+    def _tops(self) -> Iterator[tuple[KeyPath, str]]:
         """What stands on which surface."""
         world = self._world
         if world.item is not None:
@@ -124,7 +123,7 @@ class _Names:
             for number, top in enumerate(world.distractors.on or ()):
                 yield ("distractors", "on", number), top
 
-    def _goal(self) -> Iterator[Finding]:
+    def _goal(self) -> Iterator[KeyMessage]:
         world, goal = self._world, self._world.goal
         if goal is None:
             return
@@ -145,7 +144,7 @@ def surface_names(world: WorldFile) -> tuple[str, ...]:
     return (*world.tables, *bodies)
 
 
-def _files(world: WorldFile) -> Iterator[Finding]:
+def _files(world: WorldFile) -> Iterator[KeyMessage]:
     for place, use in _meshes(world):
         if not world.beside(use.file).is_file():
             yield (*place, "file"), f"there is no file {use.file!r} beside the world file"
@@ -153,7 +152,7 @@ def _files(world: WorldFile) -> Iterator[Finding]:
         yield ("site", "map"), f"there is no file {world.site.map!r} beside the world file"
 
 
-def _meshes(world: WorldFile) -> Iterator[tuple[Place, MeshUse]]:
+def _meshes(world: WorldFile) -> Iterator[tuple[KeyPath, MeshUse]]:
     for section, pieces in (("tables", world.tables), ("furniture", world.furniture)):
         for name, piece in pieces.items():
             if piece.mesh is not None:

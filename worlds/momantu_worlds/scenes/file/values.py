@@ -6,7 +6,7 @@ from typing import Annotated, TypeAlias
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
 
-from momantu_bt.descriptions.quantities import ANGLE, LENGTH, Angle, Length, Quantity, Size
+from momantu_bt.descriptions.quantities import ANGLE, LENGTH, Angle, Length, Size
 from momantu_bt.geometry import Pose2D, Transform
 
 Channel: TypeAlias = Annotated[float, Field(ge=0, le=1)]
@@ -37,17 +37,16 @@ Turn: TypeAlias = Annotated[Angle, Field(ge=0)]
 """rad."""
 
 _POSE = "expected [x, y, z], [x, y, z, yaw] or [x, y, z, roll, pitch, yaw]"
-_length, _angle = Quantity("a length", LENGTH).read, Quantity("an angle", ANGLE).read
 
 
 def _six(value: object) -> object:
     """A pose with all its six numbers."""
     if not isinstance(value, list | tuple) or len(value) not in (3, 4, 6):
         raise ValueError(f"{_POSE}, found {value!r}")
-    turns: list[object] = [_angle(v) for v in value[3:]]
+    turns: list[object] = [ANGLE.read(v) for v in value[3:]]
     if len(turns) < 3:
         turns = [0.0, 0.0, *(turns or [0.0])]
-    return (*(_length(v) for v in value[:3]), *turns)
+    return (*(LENGTH.read(v) for v in value[:3]), *turns)
 
 
 _Finite: TypeAlias = Annotated[float, Field(allow_inf_nan=False)]

@@ -1,39 +1,19 @@
-"""What a check finds in one episode, and where in the world file it comes from."""
+"""Where in a world file something of an episode comes from."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any
 
 from momantu_bt.descriptions.reading import DescriptionError, Reading, read_text
-from momantu_bt.findings import Severity
+from momantu_bt.formats.places import KeyPath, Place
 
-Place: TypeAlias = tuple[str | int, ...]
-"""Keys and indices from the top of a world file down to what is meant."""
 SECTIONS = ("tables", "furniture", "objects", "tags", "bodies", "doors", "doorways", "rooms")
 """Parts of a world file whose keys are names of what they describe."""
 NAMED = ("item", "tag")
 """Parts of a world file that say their name themselves."""
 WALL = "wall_"
 """How the names of walls' bodies begin."""
-
-
-@dataclass(frozen=True, slots=True)
-class Remark:
-    """One thing that is wrong in one episode.
-
-    code, place and about tell remarks apart: the same in several episodes is one finding, which
-    keeps the words of the episode with the greatest `amount`.
-    """
-
-    severity: Severity
-    code: str
-    place: Place
-    about: tuple[str, ...]
-    message: str
-    cure: str
-    amount: float = 0.0
 
 
 class Where:
@@ -44,11 +24,11 @@ class Where:
         self.path = path
         self._reading = Reading(path, read_text(path, DescriptionError), DescriptionError)
 
-    def at(self, place: Place) -> tuple[int, int]:
-        """Line and column, from 1, of a place or of the nearest thing around it."""
-        return self._reading.at(place, key=True)
+    def at(self, keys: KeyPath) -> Place:
+        """The place of what some keys lead to, or of the nearest thing around it."""
+        return self._reading.at(keys, key=True)
 
-    def body(self, name: str) -> Place:
+    def body(self, name: str) -> KeyPath:
         """What describes a body or a doorway; what an episode adds follows from its rules."""
         world = self._reading.plain
         for section in SECTIONS:
@@ -64,7 +44,7 @@ class Where:
         return ("distractors",) if "distractors" in world else ()
 
 
-def _wall(world: dict[str, Any], name: str) -> Place:
+def _wall(world: dict[str, Any], name: str) -> KeyPath:
     """A wall piece by its name, or the room that a wall's name begins with."""
     pieces = _mapping(world, "walls").get("pieces") or []
     for number, piece in enumerate(pieces):

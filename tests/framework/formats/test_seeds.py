@@ -4,7 +4,7 @@ import random
 
 import pytest
 
-from momantu_bt.bench.seeds import SeedsError, parse_seeds, seeds_text
+from momantu_bt.formats.seeds import SeedsError, parse_seeds, seeds_text
 
 
 @pytest.mark.parametrize(

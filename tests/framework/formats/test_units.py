@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from momantu_bt.tree.values.units import Quantity, UnitError, in_unit, quantity, units_of
+from momantu_bt.formats.units import Quantity, UnitError, in_one_of, in_unit, quantity, units_of
 
 _IN_SI = {
     "ms": 1e-3,
@@ -69,3 +69,29 @@ def test_another_kind_is_refused_with_the_valid_units() -> None:
         in_unit("5 m", "rad")
     assert units_of("m") == ("mm", "cm", "m")
     assert in_unit("180 deg", "rad") == math.pi
+
+
+@pytest.mark.parametrize(("unit", "power"), [("mm", 3), ("cm", 2), ("ms", 3), ("g", 3)])
+def test_decimals_are_converted_exactly(unit: str, power: int) -> None:
+    """Every one of them is the number that the same digits in SI are."""
+    for n in range(1, 2000):
+        found = quantity(f"{n} {unit}")
+        assert found is not None
+        assert found.value == float(f"{n}e-{power}")
+        tenth = quantity(f"{n / 10} {unit}")
+        assert tenth is not None
+        assert tenth.value == float(f"{n}e-{power + 1}")
+
+
+@given(st.floats(-1e4, 1e4))
+def test_degrees_are_converted_as_the_math_module_does(number: float) -> None:
+    assert in_unit(f"{number!r} deg", "rad") == math.radians(number)
+
+
+def test_one_of_several_kinds() -> None:
+    assert in_one_of("5 cm", ("rad", "m")) == Quantity(0.05, "m")
+    assert in_one_of("5", ("rad", "m")) is None
+    with pytest.raises(UnitError, match="'5 kg' is a mass; expected an angle or a length, in: deg"):
+        in_one_of("5 kg", ("rad", "m"))
+    with pytest.raises(UnitError, match="unknown unit 'xyz'. Units: deg, rad, mm, cm, m$"):
+        in_one_of("5 xyz", ("rad", "m"))

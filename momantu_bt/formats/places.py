@@ -1,0 +1,106 @@
+"""A place in a file, and how a person is shown it: its line, with a caret under it."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TypeAlias
+
+KeyPath: TypeAlias = tuple[str | int, ...]
+"""Keys and indices from the top of a YAML file down to a value."""
+
+_WIDEST = 120
+"""Characters of a line that are shown."""
+_LONGEST_STRETCH = 5000
+"""Characters in which a word is looked for; more than a script or a list of codes has."""
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Place:
+    """A stretch of one line in a file; line and column count from 1, in characters."""
+
+    file: str
+    line: int = 1
+    column: int = 1
+    length: int = 1
+
+    def __str__(self) -> str:
+        """`file:line:column`, as editors understand it."""
+        return f"{self.file}:{self.line}:{self.column}"
+
+    def seen_from(self, here: Place) -> str:
+        """In words, for a person who looks at another place: "line 3", or with another file."""
+        return f"line {self.line}" + (f" of {self.file}" if self.file != here.file else "")
+
+
+NOWHERE = Place("", 0, 0, 0)
+"""The place of what has none."""
+
+
+@lru_cache(maxsize=16)
+def lines_of(text: str) -> tuple[str, ...]:
+    """A text's lines as YAML counts them; some characters that end lines elsewhere do not here."""
+    return tuple(re.split(r"\r\n|\r|\n", text))
+
+
+def within(place: Place, word: str, source: Mapping[str, str]) -> Place:
+    """The stretch of a place's line that holds a word; the place itself where it does not."""
+    lines = lines_of(source.get(place.file, ""))
+    line = lines[place.line - 1] if 0 < place.line <= len(lines) else ""
+    begin = place.column - 1
+    stretch = line[begin : begin + max(place.length, _LONGEST_STRETCH)]
+    at = stretch.find(word)
+    while at >= 0 and re.match(r"\w", stretch[at + len(word) : at + len(word) + 1]):
+        at = stretch.find(word, at + 1)
+    return place if at < 0 else Place(place.file, place.line, begin + at + 1, len(word))
+
+
+def excerpt(place: Place, text: str, note: str = "") -> str:
+    """The place's line with its number, and below it a caret under the place, then a note.
+
+      3 |     - pik: $can
+        |       ^^^ did you mean pick?
+
+    text: of the whole file. Where the file has no such line, only the note stands there. Tabs, wide
+    characters and lines of any length are shown so that the caret stands where it should.
+    """
+    lines = lines_of(text)
+    if not 0 < place.line <= len(lines):
+        return f"  {note}" if note else ""
+    shown, carets = underlined(lines[place.line - 1], place.column - 1, place.length)
+    number = str(place.line)
+    below = f"  {' ' * len(number)} | {carets}{' ' + note if note else ''}"
+    return f"  {number} | {shown}\n{below}"
+
+
+def underlined(line: str, start: int, length: int) -> tuple[str, str]:
+    """A line as a terminal shows it, and the carets to print below it.
+
+    start: index of the first character to mark; length: how many are marked, one at least.
+    """
+    line, start = _window(line, start)
+    marked = line[start : start + max(1, length)]
+    gap = "".join("\t" if c == "\t" else " " * cells(c) for c in line[:start])
+    carets = "^" * max(1, sum(map(cells, marked)))
+    shown = "".join(
+        c if c == "\t" or c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in line
+    )
+    return shown, gap + carets
+
+
+def cells(character: str) -> int:
+    """How many cells of a terminal a character takes."""
+    if unicodedata.category(character) in ("Mn", "Me"):
+        return 0
+    return 2 if unicodedata.east_asian_width(character) in "WF" else 1
+
+
+def _window(text: str, column: int) -> tuple[str, int]:
+    """A stretch of a long line around a column, and the column in it."""
+    if len(text) <= _WIDEST:
+        return text, column
+    start = max(0, column - _WIDEST // 2)
+    return text[start : start + _WIDEST], column - start

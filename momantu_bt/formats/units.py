@@ -1,0 +1,186 @@
+"""Quantities as people write them: `66 mm`, `2 min`, `90 deg`, `1 min 30 s`; everything to SI.
+
+What is decimal is converted exactly and rounded once: `66 mm` is the double 0.066, as `0.066 m` is
+(66 * 0.001 is another one). Degrees are converted as by `math.radians`.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from decimal import MAX_EMAX, MIN_EMIN, Context, Decimal
+
+from momantu_bt.formats.names import nearest
+
+_DEGREE = math.pi / 180.0
+
+_SCALE: dict[str, tuple[str, Decimal | float]] = {
+    "ms": ("s", Decimal("0.001")),
+    "s": ("s", Decimal(1)),
+    "min": ("s", Decimal(60)),
+    "h": ("s", Decimal(3600)),
+    "mm": ("m", Decimal("0.001")),
+    "cm": ("m", Decimal("0.01")),
+    "m": ("m", Decimal(1)),
+    "deg": ("rad", _DEGREE),
+    "rad": ("rad", Decimal(1)),
+    "Hz": ("Hz", Decimal(1)),
+    "N": ("N", Decimal(1)),
+    "g": ("kg", Decimal("0.001")),
+    "kg": ("kg", Decimal(1)),
+    "m/s": ("m/s", Decimal(1)),
+    "cm/s": ("m/s", Decimal("0.01")),
+    "rad/s": ("rad/s", Decimal(1)),
+    "deg/s": ("rad/s", _DEGREE),
+    "m/s2": ("m/s2", Decimal(1)),
+    "cm/s2": ("m/s2", Decimal("0.01")),
+    "rad/s2": ("rad/s2", Decimal(1)),
+    "deg/s2": ("rad/s2", _DEGREE),
+}
+"""unit -> its SI unit, and how many of those it is; a float where that is irrational."""
+
+_WHAT = {
+    "s": "a time",
+    "m": "a length",
+    "rad": "an angle",
+    "Hz": "a rate",
+    "N": "a force",
+    "kg": "a mass",
+    "m/s": "a speed",
+    "rad/s": "a turning speed",
+    "m/s2": "an acceleration",
+    "rad/s2": "a turning acceleration",
+}
+
+NUMBER = r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
+"""Regular expression of a number before a unit; ECMA's as well, for JSON Schemas."""
+_PART = re.compile(rf"\s*({NUMBER})\s*([A-Za-z°%µ/]+[0-9]?)\s*")
+_EXACT = Context(prec=60, Emax=MAX_EMAX, Emin=MIN_EMIN, traps=[])
+"""More digits than anybody writes; too large numbers become infinite instead of an exception."""
+
+
+class UnitError(ValueError):
+    """A text is a number with a unit, but not a right one; the message says what would be."""
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """A number in an SI unit."""
+
+    value: float
+    unit: str
+
+
+def units_of(unit: str) -> tuple[str, ...]:
+    """What may be written where this SI unit is expected, such as ("mm", "cm", "m") for "m"."""
+    return tuple(name for name, (si, _) in _SCALE.items() if si == unit)
+
+
+def quantity(text: str) -> Quantity | None:
+    """A text that is wholly a quantity, in SI; None when it does not look like one.
+
+    Several parts are added when they are of one kind: `1 min 30 s`.
+
+    Raises:
+        UnitError: it looks like one, but a unit is unknown, the kinds differ or it is too large.
+    """
+    return _sum(text, _SCALE)
+
+
+def _sum(text: str, valid: Iterable[str]) -> Quantity | None:
+    """As `quantity`; where a unit is unknown, the message names the valid ones."""
+    parts = _parts(text)
+    if not parts:
+        return None
+    total, kind = Decimal(0), ""
+    turned = 0.0
+    for number, name in parts:
+        if name not in _SCALE:
+            raise UnitError(_unknown(name, valid))
+        si, scale = _SCALE[name]
+        if kind and si != kind:
+            raise UnitError(f"{text!r} adds {_WHAT[kind]} and {_WHAT[si]}")
+        kind = si
+        if isinstance(scale, Decimal):
+            total = _EXACT.fma(_EXACT.create_decimal(number), scale, total)
+        else:
+            turned += float(number) * scale
+    value = turned if not total else float(total) + turned
+    if not math.isfinite(value):
+        raise UnitError(f"{text!r} is too large for a number")
+    return Quantity(value, kind)
+
+
+def in_unit(text: str, unit: str) -> float | None:
+    """A text as a number in the SI unit `unit`; None when it does not look like a quantity.
+
+    Raises:
+        UnitError: the unit is unknown, or of another kind than `unit`.
+    """
+    found = in_one_of(text, (unit,))
+    return None if found is None else found.value
+
+
+def in_one_of(text: str, units: Iterable[str]) -> Quantity | None:
+    """A text as a number in one of some SI units; None when it does not look like a quantity.
+
+    Raises:
+        UnitError: the unit is unknown, or of another kind.
+    """
+    wanted = tuple(units)
+    found = _sum(text, [name for unit in wanted for name in units_of(unit)])
+    if found is None:
+        return None
+    if found.unit not in wanted:
+        what = " or ".join(_WHAT.get(unit, unit) for unit in wanted)
+        valid = ", ".join(name for unit in wanted for name in units_of(unit) or (unit,))
+        raise UnitError(f"{text!r} is {_WHAT[found.unit]}; expected {what}, in: {valid}")
+    return found
+
+
+def _parts(text: str) -> list[tuple[str, str]]:
+    parts: list[tuple[str, str]] = []
+    position = 0
+    while position < len(text):
+        match = _PART.match(text, position)
+        if match is None:
+            return []
+        parts.append((match[1], match[2]))
+        position = match.end()
+    return parts
+
+
+def _unknown(name: str, valid: Iterable[str]) -> str:
+    folded = {known.lower(): known for known in _SCALE}
+    near = folded.get(name.lower()) or _SPELLED_OUT.get(name.lower().rstrip("s"))
+    near = near or nearest(name, _SCALE)
+    if near:
+        return f"unknown unit {name!r}, did you mean {near!r}?"
+    return f"unknown unit {name!r}. Units: {', '.join(valid)}"
+
+
+_SPELLED_OUT = {
+    "sec": "s",
+    "second": "s",
+    "m": "ms",
+    "msec": "ms",
+    "millisecond": "ms",
+    "minute": "min",
+    "hour": "h",
+    "hr": "h",
+    "meter": "m",
+    "metre": "m",
+    "millimeter": "mm",
+    "millimetre": "mm",
+    "centimeter": "cm",
+    "centimetre": "cm",
+    "degree": "deg",
+    "°": "deg",
+    "radian": "rad",
+    "newton": "N",
+    "hertz": "Hz",
+    "gram": "g",
+    "kilogram": "kg",
+}
