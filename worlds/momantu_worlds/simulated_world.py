@@ -8,6 +8,7 @@ from pathlib import Path
 from momantu_bt.claim import Sentence
 from momantu_bt.fault import Effect, Fault
 from momantu_bt.geometry import Transform
+from momantu_bt.lazy import lazily
 from momantu_bt.robot import RobotDescription
 from momantu_bt.world import Site, Verdict, Video, View
 from momantu_worlds.sapien.faults.rows import possible, prepare
@@ -18,6 +19,9 @@ from momantu_worlds.scenes.geometry.bodies import Episode
 from momantu_worlds.scenes.referee.hand import hand_of
 from momantu_worlds.scenes.referee.judge import ClaimJudge
 from momantu_worlds.scenes.referee.referee import Referee
+
+with lazily():
+    from momantu_worlds.display import video, view
 
 
 class SapienWorld:
@@ -86,15 +90,11 @@ class SapienWorld:
 
     def open_video(self, path: Path, title: str) -> Video:
         """Start a film at `path`."""
-        from momantu_worlds.display.video import open_video
-
-        return open_video(self.simulator, self._episode, path, title)
+        return video.open_video(self.simulator, self._episode, path, title)
 
     def open_view(self, port: int) -> View:
         """Serve the scene to a browser on this machine."""
-        from momantu_worlds.display.view import open_view
-
-        return open_view(self.simulator, self._episode, port)
+        return view.open_view(self.simulator, self._episode, port)
 
     def texts(self) -> Mapping[str, str]:
         """The world file, by its name."""

@@ -1,4 +1,4 @@
-"""Worlds that are described by world files; cheap to import, the simulator comes with `open`."""
+"""Worlds described by world files: cheap to import; `open` loads the simulator."""
 
 from __future__ import annotations
 
@@ -7,7 +7,17 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from momantu_bt.lazy import lazily
+from momantu_bt.robot import laser_band
 from momantu_bt.world import Site
+
+with lazily():
+    from momantu_worlds import simulated_world
+    from momantu_worlds.checking import run
+    from momantu_worlds.preview import page
+    from momantu_worlds.scenes import loading
+    from momantu_worlds.scenes.file import summary
+    from momantu_worlds.scenes.site import maps
 
 if TYPE_CHECKING:
     from momantu_bt.findings import Finding
@@ -29,9 +39,7 @@ class WorldOfFile:
     @property
     def default_robot(self) -> str:
         """The robot that it is meant for: a name, or a path seen from here; raises as `site`."""
-        from momantu_worlds.scenes.loading import nominal
-
-        robot = nominal(self.path).robot
+        robot = loading.nominal(self.path).robot
         is_path = "/" in robot or robot.endswith((".yaml", ".yml"))
         return str(self.path.parent / robot) if is_path else robot
 
@@ -41,15 +49,11 @@ class WorldOfFile:
         Raises:
             WorldError: the world file cannot be read, or is wrong.
         """
-        from momantu_worlds.scenes.loading import nominal
-
-        return nominal(self.path).site
+        return loading.nominal(self.path).site
 
     def files(self) -> tuple[Path, ...]:
         """The world file and all files that it names; raises as `site`."""
-        from momantu_worlds.scenes.loading import load_world
-
-        return load_world(self.path).files()
+        return loading.load_world(self.path).files()
 
     def open(self, description: RobotDescription, seed: int, *, referee: bool = True) -> World:
         """Draw the episode of `seed` and build it in SAPIEN.
@@ -57,37 +61,24 @@ class WorldOfFile:
         Raises:
             WorldError: the world file is wrong, the robot cannot be simulated, or nothing renders.
         """
-        from momantu_bt.robot import laser_band
-        from momantu_worlds.scenes.loading import draw_episode, load_world
-        from momantu_worlds.scenes.site.maps import with_maps
-        from momantu_worlds.simulated_world import SapienWorld
-
-        world, episode = load_world(self.path), draw_episode(self.path, seed)
-        site = with_maps(episode.site, world, laser_band(description), description.height)
+        world, episode = loading.load_world(self.path), loading.draw_episode(self.path, seed)
+        site = maps.with_maps(episode.site, world, laser_band(description), description.height)
         episode = replace(episode, site=site)
-        return SapienWorld(self.path, description, episode, seed, referee=referee)
+        return simulated_world.SapienWorld(self.path, description, episode, seed, referee=referee)
 
     def about(self) -> Mapping[str, Mapping[str, str]]:
         """Tags, loose things, what varies and the goal, in words."""
-        from momantu_worlds.scenes.file.summary import about
-
-        return about(self.path)
+        return summary.about(self.path)
 
     def check(self, description: RobotDescription, seeds: Sequence[int]) -> Sequence[Finding]:
         """All that is wrong for this robot in the episodes of these seeds; raises WorldError."""
-        from momantu_worlds.checking.run import check_world
-        from momantu_worlds.scenes.loading import draw_episode
-
-        return check_world(
-            self.path, lambda seed: draw_episode(self.path, seed), description, seeds
+        return run.check_world(
+            self.path, lambda seed: loading.draw_episode(self.path, seed), description, seeds
         )
 
     def preview(self, description: RobotDescription, seed: int, *, view: bool = True) -> bytes:
         """A PNG of an episode; raises WorldError."""
-        from momantu_worlds.preview.page import page
-        from momantu_worlds.scenes.loading import draw_episode
-
-        return page(draw_episode(self.path, seed), description, view=view)
+        return page.page(loading.draw_episode(self.path, seed), description, view=view)
 
 
 def world_from_file(path: Path) -> WorldOfFile:

@@ -2,8 +2,8 @@
 
 import pytest
 from momantu_worlds.scenes.loading import load_world, nominal, nominal_site
-from momantu_worlds.scenes.site.nominal import kept_nominal
-from momantu_worlds.scenes.site.overhangs import LEAST, MOST
+from momantu_worlds.scenes.site.cache import cached_nominal
+from momantu_worlds.scenes.site.site import LEAST, MOST
 
 from momantu_bt.geometry import Pose2D
 
@@ -91,4 +91,4 @@ def test_what_is_kept_of_a_site_keeps_what_hangs(write):
     path = write(rooms=ROOM, furniture={"rack": rack(0.1, 0.6, 1.1)}, tables={"top": board(2)})
     first = nominal(path)
     assert len(first.site.surfaces["top"].over) == 1
-    assert kept_nominal(path.read_bytes()) == first
+    assert cached_nominal(path.read_bytes()) == first

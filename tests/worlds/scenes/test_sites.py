@@ -7,8 +7,8 @@ from momantu_worlds.robots import fetch
 from momantu_worlds.scenes import loading
 from momantu_worlds.scenes.file.reader import WorldFileError
 from momantu_worlds.scenes.loading import load_world, nominal, nominal_site, world_path
-from momantu_worlds.scenes.site.maps import MOST_KEPT, with_maps
-from momantu_worlds.scenes.site.nominal import kept_nominal
+from momantu_worlds.scenes.site.cache import cached_nominal
+from momantu_worlds.scenes.site.maps import MOST_CACHED, with_maps
 
 from momantu_bt.cache import CACHE_VARIABLE
 from momantu_bt.files import write_whole
@@ -40,7 +40,7 @@ def change(path, before, after):
 
 def test_the_site_survives_being_kept():
     first = nominal(PATH)
-    assert kept_nominal(PATH.read_bytes()) == first
+    assert cached_nominal(PATH.read_bytes()) == first
     assert first.site == nominal_site(load_world("four_rooms"))
     assert first.robot == "fetch"
 
@@ -97,11 +97,11 @@ def test_another_robot_or_a_changed_file_has_maps_of_its_own(copy):
 def test_maps_of_a_file_that_is_edited_all_day_do_not_pile_up(cache, copy):
     change(copy, "name: four_rooms", "name: rooms")
     before = "home: [-4.70"
-    for step in range(MOST_KEPT + 3):
+    for step in range(MOST_CACHED + 3):
         after = f"home: [-4.{step:02d}"
         change(copy, before, after)
         last, before = maps(copy), after
-    assert len(list((cache / "maps").iterdir())) == MOST_KEPT
+    assert len(list((cache / "maps").iterdir())) == MOST_CACHED
     assert all(file.is_file() for file in last)
 
 

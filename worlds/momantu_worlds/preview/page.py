@@ -7,11 +7,15 @@ import io
 import numpy as np
 from PIL import Image
 
+from momantu_bt.lazy import lazily
 from momantu_bt.robot import RobotDescription
 from momantu_worlds.checking.measures import measured
 from momantu_worlds.checking.scenario import Scenario
 from momantu_worlds.preview.plan import draw_plan, extent
 from momantu_worlds.scenes.geometry.bodies import Episode
+
+with lazily():
+    from momantu_worlds.preview import view as rendered
 
 WIDTH = 1500
 """px; of the plan and of the view."""
@@ -32,12 +36,12 @@ def page(episode: Episode, description: RobotDescription, *, view: bool = True) 
     scenario = Scenario(episode, measured(description), lambda name: ())
     pictures = [draw_plan(scenario, WIDTH)]
     if view:
-        from momantu_worlds.preview.view import draw_view
-
         low, high = extent(scenario)
         top = max([LEAST, *(float(s.box[1][2]) for own in scenario.solids.values() for s in own)])
         pictures.append(
-            draw_view(episode, description, np.array([*low, 0.0]), np.array([*high, top]), WIDTH)
+            rendered.draw_view(
+                episode, description, np.array([*low, 0.0]), np.array([*high, top]), WIDTH
+            )
         )
     out = io.BytesIO()
     _stacked(pictures).save(out, "PNG", optimize=True)

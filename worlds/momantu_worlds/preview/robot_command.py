@@ -9,6 +9,11 @@ import typer
 
 from momantu_bt.errors import ExitCode
 from momantu_bt.files import OutputError, write_whole
+from momantu_bt.lazy import lazily
+from momantu_bt.robots.named import robot_of
+
+with lazily():
+    from momantu_worlds.preview import robot_sheet
 
 
 def preview(
@@ -29,16 +34,12 @@ def preview(
       momantu-bt robots preview fetch
       momantu-bt robots preview robots/my_robot/robot.yaml -o my_robot.png
     """
-    from momantu_bt.robots.named import robot_of
-
     if out is not None and out.suffix.lower() != ".png":
         raise OutputError(f"{out} is no .png file; the picture is a PNG")
     if out is not None and not out.absolute().parent.is_dir():
         raise OutputError(f"there is no folder {out.absolute().parent}")
     description = robot_of(robot)
-    from momantu_worlds.preview.robot_sheet import robot_sheet
-
     path = out or Path(f"{description.name}.png")
-    write_whole(path, robot_sheet(description))
+    write_whole(path, robot_sheet.robot_sheet(description))
     typer.echo(f"{path}: {description.name}, {len(description.named_poses)} poses")
     return ExitCode.SUCCESS

@@ -1,6 +1,7 @@
-"""Worlds by their files: their sites and their episodes; needs neither a simulator nor a map.
+"""World files by path or bundled name: their nominal sites, and the episodes of their seeds.
 
-What reads and checks world files is imported when it is needed: a nominal site rarely is.
+It needs neither a simulator nor a map. A nominal site is usually cached, so the modules that read
+world files are loaded when they are first used.
 """
 
 from __future__ import annotations
@@ -10,8 +11,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from momantu_bt.geometry import Pose2D
-from momantu_bt.world import Site, WorldError
-from momantu_worlds.scenes.site.nominal import Nominal, keep, kept_nominal, site_of
+from momantu_bt.lazy import lazily
+from momantu_bt.world import Site
+from momantu_worlds.scenes.site.cache import Nominal, cached_nominal, store_nominal
+
+with lazily():
+    from momantu_worlds.scenes.arrange import episode as episodes
+    from momantu_worlds.scenes.arrange import variation
+    from momantu_worlds.scenes.file import reader
+    from momantu_worlds.scenes.site import site as sites
 
 if TYPE_CHECKING:
     from momantu_worlds.scenes.file.world import WorldFile
@@ -29,49 +37,43 @@ def load_world(world: str | Path) -> WorldFile:
     """A bundled world by its name, or a world by its file.
 
     Raises:
-        WorldError: there is no such file, or it is wrong.
+        WorldFileError: the file cannot be read, or it is wrong.
     """
-    from momantu_worlds.scenes.file.reader import world_text
-
     path = world_path(world) if isinstance(world, str) else world
-    return _parsed(path, world_text(path))
+    return _parsed(path, reader.world_text(path))
 
 
 @lru_cache(maxsize=16)
 def _parsed(path: Path, text: str) -> WorldFile:
-    from momantu_worlds.scenes.file.reader import parse_world
-
-    return parse_world(text, path)
+    return reader.parse_world(text, path)
 
 
 def nominal(path: Path) -> Nominal:
     """The site with the start where the file has it, and the robot; raises as `load_world`."""
     try:
         text = path.read_bytes()
-    except OSError as error:
-        raise WorldError(f"the world file {path} cannot be read: {error.strerror}") from error
-    having = kept_nominal(text)
+    except OSError:
+        text = b""  # nothing is cached for it, and `load_world` says why it cannot be read
+    having = cached_nominal(text)
     if having is None:
         world = load_world(path)
         having = Nominal(nominal_site(world), world.robot)
-        keep(having, text)
+        store_nominal(having, text)
     return having
 
 
 def nominal_site(world: WorldFile) -> Site:
     """The site with the start where the file has it, without maps."""
-    return site_of(world, Pose2D(*world.start.at))
+    return sites.site_of(world, Pose2D(*world.start.at))
 
 
 def draw_episode(world: str | Path, seed: int) -> Episode:
     """The episode of a seed, its site without maps; the same in every process.
 
     Raises:
-        WorldError: the world file is missing or wrong, or leaves no room for the robot.
+        WorldFileError: the file cannot be read, or it is wrong.
+        WorldError: it leaves no room for the robot.
     """
-    from momantu_worlds.scenes.arrange.episode import build
-    from momantu_worlds.scenes.arrange.variation import vary
-
     loaded = load_world(world)
-    layout = vary(loaded, seed)
-    return build(loaded, layout, site_of(loaded, layout.believed_start))
+    layout = variation.vary(loaded, seed)
+    return episodes.build(loaded, layout, sites.site_of(loaded, layout.believed_start))

@@ -9,6 +9,7 @@ import typer
 
 from momantu_bt.errors import ExitCode
 from momantu_bt.files import OutputError
+from momantu_worlds.verbs.template import two_rooms
 
 
 def new(
@@ -30,8 +31,6 @@ def new(
       momantu-bt worlds new hall.yaml --size 12x7
       momantu-bt run bring_object --world ./my_flat.yaml
     """
-    from momantu_worlds.verbs.template import two_rooms
-
     text = two_rooms(file, size, schema)
     try:
         with file.open("x", encoding="utf-8") as made:

@@ -10,6 +10,8 @@ import typer
 
 from momantu_bt.descriptions.schema import editor_schema
 from momantu_bt.errors import ExitCode
+from momantu_bt.files import write_whole
+from momantu_worlds.scenes.file.world import WorldFile
 from momantu_worlds.verbs.schema_descriptions import words_of
 
 
@@ -26,8 +28,6 @@ def schema(
     Examples:
       momantu-bt worlds schema -o world.schema.json
     """
-    from momantu_bt.files import write_whole
-
     text = json.dumps(world_schema(), indent=2) + "\n"
     if out is None:
         typer.echo(text, nl=False)
@@ -39,8 +39,6 @@ def schema(
 
 def world_schema() -> dict[str, Any]:
     """The schema, from the models that read world files."""
-    from momantu_worlds.scenes.file.world import WorldFile
-
     made = WorldFile.model_json_schema(mode="validation")
     for part, schema in {"WorldFile": made, **made["$defs"]}.items():
         for key, inner in schema.get("properties", {}).items():

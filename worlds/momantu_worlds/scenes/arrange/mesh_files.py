@@ -11,9 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array, Transform
+from momantu_bt.lazy import lazily
 from momantu_bt.world import WorldError
 from momantu_worlds.scenes.file.furniture import MeshUse
 from momantu_worlds.scenes.geometry.bodies import GREY, Box, Color, Hull, Mesh, Part
+
+with lazily():
+    import trimesh
 
 MOST_BYTES = 100_000_000
 MOST_TRIANGLES = 1_000_000
@@ -148,8 +152,6 @@ def _state(file: Path) -> _State:
 @lru_cache(maxsize=KEPT)
 def _read(state: _State) -> tuple[MeshPiece, ...]:
     """The pieces of a mesh file, in its own frame and units."""
-    import trimesh
-
     file = state.file
     try:
         scene = trimesh.load_scene(file, process=False)

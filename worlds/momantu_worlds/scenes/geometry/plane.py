@@ -11,6 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array, Pose2D
+from momantu_bt.lazy import lazily
+
+with lazily():
+    import cv2
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,8 +139,6 @@ class Passages:
 
     def reachable(self, start: tuple[float, float]) -> NDArray[np.bool_]:
         """Cells that the disc gets to from a point, by steps to four neighbours."""
-        import cv2  # here, since reading a world file needs none of it
-
         _, region = cv2.connectedComponents(self.free.astype(np.uint8), connectivity=4)
         here = region[self.index(start)]
         reached: NDArray[np.bool_] = (region == here) & (here != 0)

@@ -15,7 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array, Transform
+from momantu_bt.lazy import lazily
 from momantu_worlds.scenes.geometry.bodies import Body, BodyTop, Box, Cylinder, Hull, Part, Sphere
+
+with lazily():
+    import trimesh
 
 CORNERS = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) / 2
 """Of a box with edges of 1."""
@@ -193,8 +197,6 @@ def _solids(body: Body, map_from_body: Transform) -> Iterable[Solid]:
 @lru_cache(maxsize=256)
 def _planes(hull: Hull) -> tuple[Array, Array]:
     """Outward normals (k, 3) of a hull's faces, and how far out along them these are (k,), m."""
-    import trimesh
-
     mesh = trimesh.convex.convex_hull(np.asarray(hull.vertices))
     normals = np.asarray(mesh.face_normals)
     return normals, np.asarray((normals * mesh.triangles[:, 0]).sum(axis=1))

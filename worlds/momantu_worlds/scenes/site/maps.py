@@ -12,10 +12,10 @@ from shutil import rmtree
 from momantu_bt.files import kept_folder
 from momantu_bt.world import Site, WorldError
 from momantu_worlds.scenes.file.world import WorldFile
-from momantu_worlds.scenes.site.cache_key import cache_key
+from momantu_worlds.scenes.site.cache import cache_key
 from momantu_worlds.scenes.site.floor_plan import draw_plans, save_plan
 
-MOST_KEPT = 16
+MOST_CACHED = 16
 """Maps of one world: for several robots, and for the file as it was in the last edits."""
 
 
@@ -44,16 +44,16 @@ def _drawn(world: WorldFile, band: tuple[float, float], robot_height: float) -> 
         folder.mkdir(exist_ok=True)
         for plan, file in zip(draw_plans(world, band, robot_height), files, strict=True):
             save_plan(plan, file)
-        _forget(folder)
+        _evict(folder)
     return files
 
 
-def _forget(newest: Path) -> None:
+def _evict(newest: Path) -> None:
     """Remove the oldest maps of a world whose file was changed again and again."""
     name = newest.name.rpartition("-")[0]
     others = [f for f in newest.parent.glob(f"{name}-*") if f.name.rpartition("-")[0] == name]
     with suppress(OSError):  # another process forgets, too
-        for old in sorted(others, key=lambda f: f.stat().st_mtime)[:-MOST_KEPT]:
+        for old in sorted(others, key=lambda f: f.stat().st_mtime)[:-MOST_CACHED]:
             rmtree(old, ignore_errors=True)
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
+import cv2
 import numpy as np
 
 from momantu_bt.geometry import Array, Pose2D
@@ -67,8 +68,6 @@ def _face_of(hull: Array) -> _Face | None:
 
 def _top_of(faces: Sequence[_Face]) -> Top | None:
     """The rectangle around faces of one height, if they fill it and it is large enough."""
-    import cv2
-
     height = max(face[0] for face in faces)
     middle = np.concatenate([face[1] for face in faces]).mean(axis=0)
     outlines = [cv2.convexHull((face[1] - middle).astype(np.float32)) for face in faces]

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import trimesh
+from PIL import Image
 
 from momantu_bt.files import write_whole
 from momantu_bt.geometry import Array
@@ -88,8 +89,6 @@ def small_picture(picture: Any) -> Any:
 
 def open_picture(file: Path) -> Any:
     """A picture of a file, None when it cannot be read as one."""
-    from PIL import Image
-
     try:
         with Image.open(file) as picture:
             return small_picture(picture)

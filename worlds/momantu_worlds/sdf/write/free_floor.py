@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -59,8 +60,6 @@ class FreeFloor:
 
 def free_floor(hulls: Iterable[Array]) -> FreeFloor:
     """The free floor between convex things, each given by points (n, 3) in the map."""
-    import cv2
-
     footprints = [
         hull[:, :2] for hull in hulls if hull[:, 2].max() > LOWEST and hull[:, 2].min() < HIGHEST
     ]

@@ -1,22 +1,51 @@
-"""What is known to hang over surfaces: a shelf's next board, a cupboard over a counter."""
+"""The site that follows from a world file: surfaces and what hangs over them, places, objects."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from types import MappingProxyType
 
-from momantu_bt.world import Overhang
+from momantu_bt.geometry import Pose2D
+from momantu_bt.messages import ObjectClass
+from momantu_bt.world import Overhang, Site, Surface
 from momantu_worlds.scenes.arrange.layout import PlacedTable
+from momantu_worlds.scenes.arrange.surfaces import nominal_surfaces
 from momantu_worlds.scenes.file.world import WorldFile
 from momantu_worlds.scenes.geometry.plane import Rectangle, gap
 from momantu_worlds.scenes.site.coverage import Standing
 from momantu_worlds.scenes.site.floor_plan import known_parts
 
+SIGMAS = 2.0
+"""The farthest a rough start may be off counts as this many standard deviations."""
 LEAST = 0.10
 """m above a surface from which on a solid hangs over it; what is lower stands on it."""
 MOST = 1.5
 """m above a surface up to which an arm that works on it may reach."""
 SAME = 0.01
 """m between the tops of two that are one."""
+
+
+def site_of(world: WorldFile, start: Pose2D) -> Site:
+    """The site: nominal surfaces, places and object classes, and a rough start pose."""
+    tops = nominal_surfaces(world)
+    over = overhangs(world, tops)
+    surfaces = {
+        name: Surface(top.pose, top.size, top.height, top.sides, over[name])
+        for name, top in tops.items()
+    }
+    notes = world.site
+    begin = world.start
+    return Site(
+        name=world.name,
+        start=start,
+        start_sigma=(begin.belief_shift / SIGMAS, begin.belief_turn / SIGMAS),
+        places=MappingProxyType({name: Pose2D(*pose) for name, pose in notes.places.items()}),
+        surfaces=MappingProxyType(surfaces),
+        objects=MappingProxyType(
+            {name: ObjectClass(**sizes.model_dump()) for name, sizes in notes.objects.items()}
+        ),
+        services=MappingProxyType(notes.services),
+    )
 
 
 def overhangs(world: WorldFile, tops: Mapping[str, PlacedTable]) -> dict[str, tuple[Overhang, ...]]:
