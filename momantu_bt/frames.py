@@ -1,4 +1,4 @@
-"""Where every frame was at each recent instant, from joints, odometry and localization."""
+"""Where every frame was at each recent moment, from joints, odometry and localization."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class KinematicTree:
 
         Raises:
             FileNotFoundError: there is no such file.
-            ValueError: it is no URDF, or has no link `base_frame`.
+            ValueError: it is not a URDF, or has no link `base_frame`.
         """
         try:
             root = etree.fromstring(path.read_bytes(), _parser())

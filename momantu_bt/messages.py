@@ -48,7 +48,7 @@ class RobotState:
     gripper_effort: float
 
     def position(self, joint: str) -> float:
-        """Position of one joint; KeyError with the known names when there is none."""
+        """Position of one joint; KeyError with the known names when there is no such joint."""
         try:
             return float(self.positions[self.names.index(joint)])
         except ValueError:

@@ -153,7 +153,7 @@ class RobotDescription(Part):
         """Name and description of a camera: the named one, or the first.
 
         Raises:
-            KeyError: there is none, with the cameras there are.
+            KeyError: there is no such camera; the message lists those that exist.
         """
         cameras = {k: s for k, s in self.sensors.items() if isinstance(s, CameraSensor)}
         return _pick("camera", cameras, name)
@@ -205,7 +205,7 @@ def laser_band(description: RobotDescription) -> tuple[float, float]:
     the floor and its own height: all that it could drive into.
 
     Raises:
-        Failure: FRAME_UNKNOWN, the laser's frame is none of the robot's.
+        Failure: FRAME_UNKNOWN, the robot has no such frame as the laser's.
     """
     if not any(isinstance(sensor, LaserSensor) for sensor in description.sensors.values()):
         return 0.0, description.height

@@ -109,7 +109,7 @@ class Port:
 
     @property
     def bounds(self) -> str:
-        """The bounds in words: "at least 1, or -1 for no end"; empty where there are none."""
+        """The bounds in words: "at least 1, or -1 for no end"; empty without bounds."""
         words = [] if self.least is None else [f"at least {self.least:g}"]
         words += [] if self.most is None else [f"at most {self.most:g}"]
         return " and ".join(words) + (", or -1 for no end" if self.endless else "")

@@ -174,7 +174,7 @@ class World(Protocol):
         ...
 
     def verdict(self) -> Verdict | None:
-        """The referee's word on this instant; None where there is no referee."""
+        """The referee's verdict on this moment; None without a referee."""
         ...
 
     def open_video(self, path: Path, title: str) -> Video:

@@ -107,7 +107,7 @@ def run(spec: EpisodeSpec) -> tuple[Report, int]:
 
 
 def _check(spec: EpisodeSpec, checked: Checked, registry: Registry) -> None:
-    """Files that were edited since, and another machine's other versions, are no mixed results."""
+    """Files edited since, or other versions on another machine, do not mix into the results."""
     from momantu_bt.bench.made_of import difference, made_of
 
     made = made_of(

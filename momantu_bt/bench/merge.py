@@ -53,7 +53,7 @@ def merge(folders: Sequence[Path]) -> Merged:
     """Read folders of results of one bench.
 
     Raises:
-        StoreError: one is no folder of results, or is of another bench than the first.
+        StoreError: one is not a folder of results, or belongs to another bench than the first.
     """
     plans = [_plan(folder) for folder in folders]
     for folder, plan in zip(folders, plans, strict=True):

@@ -22,7 +22,7 @@ class Outcome(StrEnum):
     SAFE = "safe"
     """it ended without danger, and named a true reason"""
     UNSAFE = "unsafe"
-    """danger after the fault could be noticed, success that is none, or a hang"""
+    """danger after the fault could be noticed, a false success, or a hang"""
     WRONG_REASON = "wrong reason"
     """it ended without danger, but with none of the true reasons"""
     NOT_MET = "not met"

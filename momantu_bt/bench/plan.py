@@ -80,7 +80,7 @@ class Wanted:
 
     @classmethod
     def read(cls, folder: Path) -> Wanted | None:
-        """What `write` kept; None where there is none."""
+        """What `write` wrote; None if it has not been called."""
         try:
             plain = json.loads((folder / PLAN).read_text(encoding="utf-8"))
         except (OSError, ValueError):

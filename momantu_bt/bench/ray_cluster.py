@@ -101,7 +101,7 @@ def _check(address: str) -> None:
         return
     host, _, port = address.rpartition(":")
     if not host or not port.isdecimal():
-        raise EngineError(f"--ray-address {address} is no address; write auto or HOST:PORT")
+        raise EngineError(f"--ray-address {address} is not an address; write auto or HOST:PORT")
     try:
         socket.create_connection((host.strip("[]"), int(port)), _REACHABLE).close()
     except (OSError, OverflowError) as error:

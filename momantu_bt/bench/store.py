@@ -29,7 +29,7 @@ class Store:
 
     Raises:
         OutputError: the folder cannot be made or written.
-        StoreError: another process has it open, or a line in it is no row.
+        StoreError: another process has it open, or a line in it is not a row.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -102,10 +102,10 @@ class Store:
 
 
 def read_rows(folder: Path) -> list[Row]:
-    """All whole rows of a folder of results, oldest first; none where there is no file yet.
+    """All whole rows of a folder of results, oldest first; empty before there is a file.
 
     Raises:
-        StoreError: the file cannot be read, or a whole line in it is no row.
+        StoreError: the file cannot be read, or a whole line in it is not a row.
     """
     path = folder / RESULTS
     try:
@@ -121,7 +121,7 @@ def read_rows(folder: Path) -> list[Row]:
             _ = row["key"], row["seed"]
         except (ValueError, KeyError, TypeError):
             raise StoreError(
-                f"{path}:{number} is no row of a bench; remove that line to go on"
+                f"{path}:{number} is not a row of a bench; remove that line to go on"
             ) from None
         rows.append(row)
     return rows

@@ -81,7 +81,7 @@ def demands_of(faults: Sequence[str], patterns: str | None) -> tuple[Demand, ...
     """The faults that `--fault` and `--faults` mean, each once and always written the same way.
 
     Raises:
-        FaultError: a text is no fault, or a pattern fits none.
+        FaultError: a text is not a fault, or a pattern matches no fault.
     """
     from momantu_bt.faults.matrix import row_of, rows_like
     from momantu_bt.faults.spec import parse_fault

@@ -28,7 +28,7 @@ def diff(
     """Say where two recorded runs part, and how they differ as a whole.
 
     Wall times, folders and tracebacks do not count. Exit code 0: they are equal; 1: they are
-    not; 2: one of them is no record.
+    not; 2: one of them is not a record.
 
     Examples:
       momantu-bt diff runs/3 runs/4

@@ -17,7 +17,7 @@ def given_values(settings: Sequence[str], file: Path | None) -> Given:
 
     Raises:
         InputError: a setting is not written as key=value.
-        TreeNotFound, TreeError: the file cannot be read, or is no mapping.
+        TreeNotFound, TreeError: the file cannot be read, or is not a mapping.
     """
     from momantu_bt.tree.files.settings import Given
     from momantu_bt.tree.load import read_values

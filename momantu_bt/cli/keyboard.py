@@ -33,7 +33,7 @@ _SEQUENCES = {
     "\x08": "backspace",
     "\x04": "q",
 }
-"""What terminals send for keys that are no characters; the end of the input (Ctrl-D) leaves."""
+"""What terminals send for keys that are not characters; the end of the input (Ctrl-D) leaves."""
 _KEY = re.compile(r"\x1b\[[0-9;]*[A-Za-z~]|\x1bO[A-Z]|.", re.DOTALL)
 _MOST = 1024
 

@@ -8,12 +8,12 @@ from momantu_bt.world import WorldEntry
 
 
 def world_of(name: str) -> WorldEntry:
-    """The world of a name; PluginError with the nearest ones when there is none."""
+    """The world of a name; PluginError with the nearest names when there is no such world."""
     entry: WorldEntry = load(WORLDS, name)
     return entry
 
 
 def robot_of(name: str) -> RobotDescription:
-    """The robot of a name; PluginError with the nearest ones when there is none."""
+    """The robot of a name; PluginError with the nearest names when there is no such robot."""
     description: RobotDescription = load(ROBOTS, name)()
     return description

@@ -15,7 +15,7 @@ def open_record(folder: Path) -> Recording:
     """The record in a folder; says so when it was cut off.
 
     Raises:
-        RecordError: there is none that can be read, or it ends before the first tick.
+        RecordError: no record can be read, or it ends before the first tick.
     """
     from momantu_bt.record.reader import RecordError, read_record
 

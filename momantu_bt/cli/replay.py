@@ -76,7 +76,7 @@ def _chosen(timeline: Timeline, at: float | None, node: str | None, failure: int
     """The index of the instant that is asked for; the last one where none is.
 
     Raises:
-        SeekError: there is none.
+        SeekError: the record has no such moment.
     """
     from momantu_bt.replay.seek import SeekError, changes_of, failures, following, matching
 

@@ -47,7 +47,7 @@ def _skills(registry: Registry) -> dict[str, type[Skill]]:
 
 
 def _names(world: str | None, robot: str | None) -> Names:
-    """What a world and a robot can name; PluginError when there is none of that name."""
+    """What a world and a robot can name; PluginError when none has that name."""
     names: dict[str, tuple[str, ...]] = {}
     if world is not None:
         site = load(WORLDS, world).site()

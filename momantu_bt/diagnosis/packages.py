@@ -64,7 +64,7 @@ def judge(
     having: dict[str, str | None],
     tested: dict[str, str],
 ) -> Diagnosis:
-    """Compare what is wanted with what is there; an extra of which nothing is there is no fault."""
+    """Compare the required versions with the installed ones; a wholly missing extra is fine."""
     missing = [one.name for one in wanted if having[one.name] is None]
     wrong = [
         f"{one.name} {found} (wanted {one.bounds})"

@@ -27,7 +27,7 @@ VALUES = "values"
 class End:
     """One end of a wire. said: a node in the file's words, or who else it is.
 
-    node: None where it is no node. tree: the tree that it stands in.
+    node: None if it is not a node. tree: the tree that it stands in.
     """
 
     said: str
@@ -49,7 +49,7 @@ class Wire:
     readers: list[End] = field(default_factory=list)
 
     def touches(self, tree: str) -> bool:
-        """Whether a tree writes or reads it; a value that nothing reads is no wire."""
+        """Whether a tree writes or reads it; a value that nothing reads is not a wire."""
         ends = (*self.writers, *self.readers)
         return any(end.tree == tree for end in ends) and any(end.node for end in ends)
 

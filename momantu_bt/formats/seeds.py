@@ -16,21 +16,21 @@ _VALID = "write 0:500 (500 itself is not among them), 3,5,7 or 0:10,20:30"
 
 
 class SeedsError(MomantuError, ValueError):
-    """These are no seeds; the message says what would be."""
+    """A text does not name seeds; the message says what would."""
 
 
 def parse_seeds(text: str) -> tuple[int, ...]:
     """The seeds that a text means, in its order, each once.
 
     Raises:
-        SeedsError: it is none of the forms, a range is empty, or there are too many.
+        SeedsError: the text has none of the forms, a range is empty, or there are too many.
     """
     found: dict[int, None] = {}
     for part in text.split(","):
         match = _PART.fullmatch(part.strip())
         if match is None:
             raise SeedsError(
-                f"{part.strip()!r} in --seeds {text} is no seed and no range; {_VALID}"
+                f"{part.strip()!r} in --seeds {text} is neither a seed nor a range; {_VALID}"
             )
         first = int(match[1])
         end = first + 1 if match[2] is None else int(match[2])

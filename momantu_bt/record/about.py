@@ -22,7 +22,7 @@ FORMAT = 1
 """Counts up when records change so that older readers would be wrong."""
 SITE = "site.json"
 _NOT_OPTIONS = frozenset(("seed", "remark", "person", "substitution", "record", "keep_world"))
-"""Fields of `Options` that are no choice of the user's, or are told elsewhere."""
+"""Fields of `Options` that the user does not choose, or that are recorded elsewhere."""
 
 
 def run_data(document: Document, options: Options, run: Executor) -> dict[str, Any]:

@@ -31,7 +31,7 @@ def chain_text(failure: FailureValue) -> str:
 
 
 def tries_text(failure: FailureValue) -> str:
-    """`3 of 3 tries`, or `3 tries` where there is no limit."""
+    """`3 of 3 tries`, or `3 tries` without a limit."""
     if failure.most_tries < 0:
         return f"{failure.tries} tries"
     return f"{failure.tries} of {failure.most_tries} tries"

@@ -78,7 +78,7 @@ def from_json(data: Any) -> Any:
     try:
         return _from_json(data, 3 * MAX_DEPTH)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
-        raise CodecError(f"{_short(data)} is no value of a record: {error}") from None
+        raise CodecError(f"{_short(data)} is not a value of a record: {error}") from None
 
 
 def _to_json(value: Any, depth: int) -> Any:

@@ -49,7 +49,7 @@ class McapFile:
         self._last = 0
 
     def channel(self, topic: str, name: str, schema: Mapping[str, Any]) -> int:
-        """The number of a topic's channel; made, with its schema, when there is none."""
+        """The number of a topic's channel, which is made, with its schema, at the first use."""
         known = self._channels.get(topic)
         if known is None:
             number, form = len(self._channels) + 1, self._schema(name, schema)

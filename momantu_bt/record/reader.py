@@ -93,7 +93,9 @@ def _messages(path: Path) -> tuple[dict[str, list[tuple[float, bytes]]], bool]:
                 raw.setdefault(topic, []).append((time, text))
         except (McapError, struct.error, UnicodeDecodeError, KeyError):
             if not raw:
-                raise RecordError(f"{path} is no record, or was cut off at once") from None
+                raise RecordError(
+                    f"{path} is not a record, or was cut off at its beginning"
+                ) from None
             return raw, False
     return raw, True
 

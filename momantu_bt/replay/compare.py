@@ -24,7 +24,7 @@ _ABOUT = ("world", "robot", "seed")
 class Parting:
     """Where the told lines of two runs part; times do not count.
 
-    before: the last line of both, empty where there is none. left, right: the next one of each.
+    before: the last line of both, empty at the beginning. left, right: the next one of each.
     """
 
     before: str

@@ -14,7 +14,7 @@ from momantu_bt.record.recording import NodeInfo, Recording
 
 
 class SeekError(MomantuError, ValueError):
-    """There is no such instant; the message says what there is."""
+    """The record has no such moment; the message says which moments it has."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +50,7 @@ def matching(recording: Recording, wanted: str) -> list[NodeInfo]:
     """Nodes by their name, type or skill, or by their line in the tree's main file.
 
     Raises:
-        SeekError: there is none, with the nearest that there is.
+        SeekError: there is no such moment; the message names the nearest one.
     """
     if wanted.isdigit():
         return _in_line(recording, int(wanted))

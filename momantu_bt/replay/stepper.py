@@ -185,4 +185,4 @@ class Stepper:
         try:
             self._go(self.timeline.at(float(typed.removesuffix("s"))))
         except ValueError:
-            self.said = f"{typed!r} is no time; write seconds, such as 42.5"
+            self.said = f"{typed!r} is not a time; write seconds, such as 42.5"

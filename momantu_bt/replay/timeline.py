@@ -46,7 +46,7 @@ class Timeline:
             SeekError: the time is not a number.
         """
         if math.isnan(time):
-            raise SeekError("nan is no time; write seconds, such as 42.5")
+            raise SeekError("nan is not a time; write seconds, such as 42.5")
         return max(0, bisect_right(self.times, time + _SLACK) - 1)
 
     def _build(self, index: int) -> Moment:

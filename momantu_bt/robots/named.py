@@ -9,7 +9,7 @@ def robot_of(name: str) -> RobotDescription:
     """The robot of a name, or of a path.
 
     Raises:
-        PluginError: there is none, with the nearest ones.
+        PluginError: there is no such robot; the message names the nearest ones.
         WorldError: its file is wrong.
     """
     from momantu_bt.plugins import ROBOTS, load

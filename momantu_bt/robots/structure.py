@@ -142,7 +142,7 @@ def root_link(part: LoadedPart) -> str:
     roots = [name for name in links if name not in carried]
     if len(roots) != 1:
         had = f"the roots {', '.join(roots)}" if roots else "joints in a ring, and no root"
-        said = f"{part.path.name} is no tree of links: it has {had}"
+        said = f"{part.path.name} is not a tree of links: it has {had}"
         raise PartError(("parts", part.name), said)
     reached, waiting = set(roots), list(roots)
     while waiting:
@@ -150,6 +150,6 @@ def root_link(part: LoadedPart) -> str:
             reached.add(child)
             waiting.append(child)
     if ring := [name for name in links if name not in reached]:
-        said = f"{part.path.name} is no tree of links: joints in a ring carry {', '.join(ring)}"
+        said = f"{part.path.name} is not a tree of links: joints in a ring carry {', '.join(ring)}"
         raise PartError(("parts", part.name), said)
     return roots[0]

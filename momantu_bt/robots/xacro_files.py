@@ -1,7 +1,7 @@
 """Expanding xacro files, without ROS.
 
 A xacro file is a program: it evaluates Python expressions, reads files and the environment. The
-`xacro` package keeps expressions from Python's built-in functions, which is no wall against a
+`xacro` package keeps expressions from Python's built-in functions, which does not stop a
 file that was written to break through. Only files that one trusts may be expanded.
 """
 

@@ -34,7 +34,7 @@ def new_skill(name: str, into: Path) -> Path:
     """Make the package of a skill called `name`; returns its folder, `into/name`.
 
     Raises:
-        CannotCreate: the name is none for a skill or is taken, or the folder cannot be made.
+        CannotCreate: the name is not allowed for a skill or is taken, or the folder cannot be made.
     """
     words = {"name": name, "package": f"{name}_skill", "title": _title(name)}
     words["distribution"] = words["package"].replace("_", "-")

@@ -73,7 +73,7 @@ def _imports(tree: ast.Module) -> dict[str, str]:
 
 
 def _called(node: ast.Call, names: dict[str, str]) -> str | None:
-    """`numpy.random.rand` of `np.random.rand(…)`; None where the name is no import's."""
+    """`numpy.random.rand` of `np.random.rand(…)`; None if the name was not imported."""
     parts: list[str] = []
     part: ast.expr = node.func
     while isinstance(part, ast.Attribute):

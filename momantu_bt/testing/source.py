@@ -89,7 +89,7 @@ def _has_file(name: str) -> bool:
 
 
 def _imported(module: Module) -> Iterator[str]:
-    """Dotted names of what a module imports; names that are no modules are among them."""
+    """Dotted names of what a module imports, including names that are not modules."""
     for node in ast.walk(module.tree):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)

@@ -1,4 +1,4 @@
-"""What a skill's source tells: ports that are none, codes that nobody declared, missing docs."""
+"""What a skill's source shows: undeclared ports, undeclared codes, missing docs."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def documented(skill: type[Skill]) -> Iterator[Finding]:
         yield Finding("docs", wrong)
     for code, sentence in skill.failures.items():
         if " " not in sentence.strip():
-            yield Finding("docs", f"{code}: {sentence!r} is no sentence that explains it")
+            yield Finding("docs", f"{code}: {sentence!r} does not explain it; write a sentence")
 
 
 def ports(skill: type[Skill]) -> Iterator[Finding]:
@@ -36,12 +36,12 @@ def ports(skill: type[Skill]) -> Iterator[Finding]:
         port = skill.ports.get(name)
         if isinstance(node.ctx, ast.Load):
             if name not in known and name not in written:
-                yield Finding("undeclared-port", f"reads self.{name}, which is no port", place)
+                yield Finding("undeclared-port", f"reads self.{name}, which is not a port", place)
         elif port is not None and port.direction == "in":
             yield Finding("input-written", f"writes its input {name!r}", place)
         elif port is None and name not in known and not name.startswith("_"):
             message = (
-                f"writes self.{name}, which is no port: declare it with Out(doc=…), or call it "
+                f"writes self.{name}, which is not a port: declare it with Out(doc=…), or call it "
                 f"self._{name}"
             )
             yield Finding("undeclared-port", message, place)

@@ -36,7 +36,7 @@ def scripted_site(
 class ScriptedWorld:
     """Implements `World`. on_step: called after each step, to script what happens in it.
 
-    verdict_of: what the referee says; without one there is no referee. pictures: how many frames
+    verdict_of: what the referee says; None: no referee. pictures: how many frames
     an open video got.
     """
 

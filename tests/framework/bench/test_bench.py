@@ -200,7 +200,7 @@ def test_shards_share_the_episodes_and_every_one_is_run_once(small: str, tmp_pat
     ("words", "said"),
     [
         (["--seeds", "5:5"], "empty; write 0:500"),
-        (["--seeds", "all"], "is no seed and no range"),
+        (["--seeds", "all"], "is neither a seed nor a range"),
         (["--world", "moon"], "no world is called 'moon'"),
         (["--shard", "3/2"], "expected I/N"),
         (["--engine", "steam"], "valid values: local"),

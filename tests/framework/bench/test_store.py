@@ -43,7 +43,7 @@ def test_a_file_cut_anywhere_keeps_every_whole_row_and_takes_new_ones(tmp_path: 
 def test_a_line_in_the_middle_that_is_no_row_is_named(tmp_path: Path) -> None:
     for bad in ("{", "[]", '{"seed": 3}', "null"):
         (tmp_path / RESULTS).write_text(f"{json.dumps(row(1))}\n{bad}\n{json.dumps(row(2))}\n")
-        with pytest.raises(StoreError, match=rf"{RESULTS}:2 is no row"):
+        with pytest.raises(StoreError, match=rf"{RESULTS}:2 is not a row"):
             Store(tmp_path)
 
 

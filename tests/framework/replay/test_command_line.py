@@ -100,7 +100,7 @@ def test_instants_are_printed_by_time_node_and_failure(folder, call):
         (["--node", "script", "--at", "1.4"], "script never changes from 1.4 s on"),
         (["--failure", "9"], "there is no failure 9; the record has 2; 1 is the first, -1 the"),
         (["--failure", "0"], "there is no failure 0"),
-        (["--at", "nan"], "nan is no time; write seconds"),
+        (["--at", "nan"], "nan is not a time; write seconds"),
     ],
 )
 def test_what_is_not_in_the_record_is_an_error_with_what_is(folder, call, words, said):

@@ -85,5 +85,5 @@ def test_failures_blackboard_keys_and_questions_are_told(timeline):
     assert any("next, previous tick" in line for line in drawn(pressed(timeline, "?"), 100, 30))
     assert drawn(pressed(timeline, "n", "d", "e"), 100, 30)[-1] == "node: de▏"
     said = drawn(pressed(timeline, "t", "x", "enter"), 100, 30)[-1]
-    assert said == "'x' is no time; write seconds, such as 42.5"
+    assert said == "'x' is not a time; write seconds, such as 42.5"
     assert drawn(pressed(timeline), 100, 30)[-1] == "? for the keys, q to leave"

@@ -118,7 +118,7 @@ def test_times_and_nodes_are_typed(timeline, stepper):
     assert press(stepper, "enter").moment.tick.now == pytest.approx(1.0)
     assert stepper.prompt is None
     for text in ("soon", "nan", ""):
-        assert write(press(stepper, "t"), text).said.startswith(f"{text!r} is no time")
+        assert write(press(stepper, "t"), text).said.startswith(f"{text!r} is not a time")
     write(press(stepper, "g", "n"), "wait")
     assert "wait" in {stepper.moment.nodes[c.node].name for c in stepper.moment.tick.changes}
     at = stepper.index

@@ -207,7 +207,7 @@ UNFIT: list[tuple[dict[str, tuple[str, str]], str]] = [
         "'mast' is not the root of 'cart', which is 'base_link'",
     ),
     ({"robot": ("cart.urdf}", "crat.urdf}")}, "5:16: .* no file .*crat.urdf; .*: .*cart.urdf"),
-    ({"cart": (MAST, FLAG)}, "cart.urdf is no tree of links: it has the roots base_link, flag"),
+    ({"cart": (MAST, FLAG)}, "cart.urdf is not a tree of links: it has the roots base_link, flag"),
 ]
 
 
