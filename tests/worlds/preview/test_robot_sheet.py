@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from momantu_worlds.preview import robot_sheet as sheet_module
-from momantu_worlds.preview.robot_command import preview
 from momantu_worlds.preview.robot_scene import robot_episode
 from momantu_worlds.preview.robot_sheet import GAP, HEIGHT, LINE, WIDTH, robot_sheet
 from momantu_worlds.robots import fetch
+from momantu_worlds.verbs.robots_preview import preview
 from PIL import Image
 from typer import Typer
 from typer.testing import CliRunner
@@ -116,7 +116,7 @@ def test_a_robot_that_cannot_be_simulated(
     bare = robot.model_copy(update={"simulation": None})
     with pytest.raises(WorldError):
         robot_sheet(bare)
-    monkeypatch.setattr("momantu_worlds.preview.robot_command.robot_of", lambda name: bare)
+    monkeypatch.setattr("momantu_worlds.verbs.robots_preview.robot_of", lambda name: bare)
     code, said = run("fetch", "-o", tmp_path / "a.png")
     assert code == 3
     assert "simulat" in said

@@ -9,9 +9,9 @@ import jsonschema
 import pytest
 from momantu_worlds.scenes.file.reader import WorldFileError, parse_world
 from momantu_worlds.scenes.loading import world_path
-from momantu_worlds.verbs.schema import world_schema
 from momantu_worlds.verbs.schema_descriptions import WORDS, words_of
 from momantu_worlds.verbs.template import two_rooms
+from momantu_worlds.verbs.worlds_schema import world_schema
 from ruamel.yaml import YAML
 
 from momantu_bt.cli import main
