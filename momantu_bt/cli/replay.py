@@ -20,16 +20,16 @@ if TYPE_CHECKING:
 def replay(
     run: Annotated[Path, typer.Argument(help="The folder of a record.")],
     at: Annotated[
-        float | None, typer.Option(help="Print the instant at this time, in s, and end.")
+        float | None, typer.Option(help="Print the moment at this time, in s, and end.")
     ] = None,
     node: Annotated[
         str | None,
-        typer.Option(help="Print the first instant at which a node changes: its name or line."),
+        typer.Option(help="Print the first moment at which a node changes: its name or line."),
     ] = None,
     failure: Annotated[
-        int | None, typer.Option(help="Print the instant of a failure: 1 the first, -1 the last.")
+        int | None, typer.Option(help="Print the moment of a failure: 1 the first, -1 the last.")
     ] = None,
-    json_: Annotated[bool, typer.Option("--json", help="The instant as JSON.")] = False,
+    json_: Annotated[bool, typer.Option("--json", help="The moment as JSON.")] = False,
     html: Annotated[
         Path | None, typer.Option(help="Write the run as one HTML page, for any browser.")
     ] = None,
@@ -43,7 +43,7 @@ def replay(
     that time on.
 
     Exit code 0: it was shown, and with --check the tree did the same; 1: it did not; 2: there is
-    no such record, or no such instant in it.
+    no such record, or no such moment in it.
 
     Examples:
       momantu-bt replay runs/3
@@ -64,7 +64,7 @@ def replay(
     chosen = (at, node, failure) != (None, None, None)
     index = _chosen(timeline, at, node, failure)
     if chosen or json_:
-        _print_instant(timeline, index, as_json=json_)
+        _print_moment(timeline, index, as_json=json_)
     elif is_interactive():
         _step(timeline)
     else:
@@ -73,7 +73,7 @@ def replay(
 
 
 def _chosen(timeline: Timeline, at: float | None, node: str | None, failure: int | None) -> int:
-    """The index of the instant that is asked for; the last one where none is.
+    """The index of the moment that is asked for; the last one where none is.
 
     Raises:
         SeekError: the record has no such moment.
@@ -105,14 +105,14 @@ def _write_page(recording: Recording, path: Path) -> ExitCode:
     return ExitCode.SUCCESS
 
 
-def _print_instant(timeline: Timeline, index: int, *, as_json: bool) -> None:
-    from momantu_bt.replay.instant import instant_data, instant_lines
+def _print_moment(timeline: Timeline, index: int, *, as_json: bool) -> None:
+    from momantu_bt.replay.moment_text import moment_data, moment_lines
 
     moment = timeline.moment(index)
     if as_json:
-        typer.echo(json.dumps(instant_data(moment), indent=2, default=str))
+        typer.echo(json.dumps(moment_data(moment), indent=2, default=str))
         return
-    for line in instant_lines(moment):
+    for line in moment_lines(moment):
         typer.echo(line)
 
 

@@ -12,9 +12,9 @@ from rich.text import Text
 from momantu_bt.cli.keyboard import Keyboard
 from momantu_bt.cli.live import line_text
 from momantu_bt.engine.status import RUNNING
-from momantu_bt.record.chain import chain_text
+from momantu_bt.record.failure_text import failure_line
 from momantu_bt.record.lines import tree_lines
-from momantu_bt.replay.instant import board_lines, failures_of
+from momantu_bt.replay.moment_text import board_lines, failures_of
 from momantu_bt.replay.stepper import KEYS, Stepper
 
 PICTURE_EVERY = 0.05
@@ -92,12 +92,12 @@ def _failures(stepper: Stepper, width: int) -> list[Text]:
     """What failed in this tick, with its causes, in a few lines."""
     lines: list[str] = []
     for failure in failures_of(stepper.moment):
-        lines += wrap(f"✗ {chain_text(failure)}", width, subsequent_indent="  ")
+        lines += wrap(f"✗ {failure_line(failure)}", width, subsequent_indent="  ")
     return [_thin(line, "red") for line in lines[:FAILED]]
 
 
 def _said(stepper: Stepper, told: list[tuple[int, str]]) -> list[Text]:
-    """The last lines up to this instant; those of this tick stand out."""
+    """The last lines up to this moment; those of this tick stand out."""
     until = [(index, line) for index, line in told if index <= stepper.index][-SAID:]
     return [_thin(line, "" if index == stepper.index else "dim") for index, line in until]
 

@@ -10,10 +10,10 @@ import typer
 
 from momantu_bt.cli.help import help_of
 from momantu_bt.cli.listing import listing
-from momantu_bt.cli.naming import robot_of
 from momantu_bt.cli.robots_schema import schema
 from momantu_bt.plugins import ROBOTS
 from momantu_bt.robot import RobotDescription
+from momantu_bt.robots.named import load_robot
 
 robots = typer.Typer(rich_markup_mode=None, invoke_without_command=True)
 
@@ -47,7 +47,7 @@ def show_one(
     from momantu_bt.cli.robot_text import robot_lines
     from momantu_bt.robots.summary import summary
 
-    about = summary(robot_of(name))
+    about = summary(load_robot(name))
     if as_json:
         typer.echo(json.dumps(about, indent=2))
         return

@@ -9,7 +9,7 @@ import typer
 
 from momantu_bt.cli.help import help_of
 from momantu_bt.cli.listing import listing
-from momantu_bt.cli.naming import world_of
+from momantu_bt.cli.naming import load_world
 from momantu_bt.cli.worlds_check import check
 from momantu_bt.cli.worlds_preview import preview
 from momantu_bt.messages import plain
@@ -43,7 +43,7 @@ def show_one(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,
 ) -> None:
     """Show one world."""
-    entry = world_of(name)
+    entry = load_world(name)
     site = entry.site()
     more = entry.about() if isinstance(entry, AboutWorld) else {}
     if as_json:

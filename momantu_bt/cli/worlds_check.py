@@ -7,10 +7,11 @@ from typing import Annotated
 
 import typer
 
-from momantu_bt.cli.naming import robot_of, world_of
+from momantu_bt.cli.naming import load_world
 from momantu_bt.errors import ExitCode, InputError
 from momantu_bt.findings import findings_json, findings_text
 from momantu_bt.formats.seeds import SeedsError, parse_seeds
+from momantu_bt.robots.named import load_robot
 from momantu_bt.world import CheckableWorld, WorldError
 
 MOST_SEEDS = 1000
@@ -42,11 +43,11 @@ def check(
     episodes = parse_seeds(seeds)
     if len(episodes) > MOST_SEEDS:
         raise SeedsError(f"--seeds {seeds} are more than {MOST_SEEDS} seeds")
-    entry = world_of(world)
+    entry = load_world(world)
     if not isinstance(entry, CheckableWorld):
         raise InputError(f"the world {world!r} cannot check itself")
     try:
-        findings = entry.check(robot_of(robot or entry.default_robot), episodes)
+        findings = entry.check(load_robot(robot or entry.default_robot), episodes)
     except WorldError as error:
         raise InputError(str(error)) from None
     if as_json:

@@ -7,9 +7,10 @@ from typing import Annotated
 
 import typer
 
-from momantu_bt.cli.naming import robot_of, world_of
+from momantu_bt.cli.naming import load_world
 from momantu_bt.errors import ExitCode, InputError
 from momantu_bt.files import OutputError, check_writable, write_whole
+from momantu_bt.robots.named import load_robot
 from momantu_bt.world import PreviewableWorld, WorldError
 
 
@@ -39,12 +40,12 @@ def preview(
     check_writable(out)
     if out.suffix.lower() != ".png":
         raise OutputError(f"{out} is no .png file; the picture is a PNG")
-    entry = world_of(world)
+    entry = load_world(world)
     if not isinstance(entry, PreviewableWorld):
         raise InputError(f"the world {world!r} cannot draw itself")
     try:
         entry.site()  # a file that is wrong is told before anything starts
-        description = robot_of(robot or entry.default_robot)
+        description = load_robot(robot or entry.default_robot)
     except WorldError as error:
         raise InputError(str(error)) from None
     write_whole(out, entry.preview(description, seed, view=not plan))

@@ -8,8 +8,8 @@ from typing import Any
 
 from momantu_bt.page.failures import final_failure
 from momantu_bt.page.tables import value_text
-from momantu_bt.record.chain import chain_text
 from momantu_bt.record.codec import from_json
+from momantu_bt.record.failure_text import failure_line
 from momantu_bt.record.recording import Recording
 from momantu_bt.record.report import ERROR, FAILURE, INTERRUPTED, SUCCESS
 
@@ -58,7 +58,7 @@ def _outcome(recording: Recording, report: Mapping[str, Any]) -> dict[str, str]:
     sentence = ""
     if status == FAILURE:
         failure = final_failure(recording)
-        sentence = "" if failure is None else chain_text(failure)
+        sentence = "" if failure is None else failure_line(failure)
     elif status == ERROR:
         sentence = (report["error"] or "").strip().rpartition("\n")[2]
     elif status == SUCCESS and success is False:

@@ -9,7 +9,7 @@ from typing import Any
 from momantu_bt.failure import FailureValue
 from momantu_bt.page.codes import FAILURE
 from momantu_bt.page.tables import value_text
-from momantu_bt.record.chain import tries_text
+from momantu_bt.record.failure_text import tries_text
 from momantu_bt.record.recording import NodeInfo, Recording, TickRecord
 from momantu_bt.replay.telling import report_of
 

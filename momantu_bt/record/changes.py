@@ -10,7 +10,7 @@ from momantu_bt.engine.executor import Executor
 from momantu_bt.engine.role import Role
 from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, Status
 from momantu_bt.failure import FailureValue
-from momantu_bt.record.chain import chain_text
+from momantu_bt.record.failure_text import failure_line
 
 _WORDS = {"RUNNING": "starts", "SUCCESS": "done", "IDLE": "halted", "SKIPPED": "skipped"}
 
@@ -114,4 +114,4 @@ def _reason(node: Told, failure: FailureValue | None) -> str:
         return "FAILED"
     if node.role is Role.TREE:
         return failure.code
-    return chain_text(failure).partition(" <- ")[0]
+    return failure_line(failure).partition(" <- ")[0]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import PurePath
 
-from momantu_bt.record.chain import chain_text
+from momantu_bt.record.failure_text import failure_line
 from momantu_bt.record.report import ERROR, FAILURE, INTERRUPTED, Report
 
 
@@ -18,7 +18,7 @@ def ending_text(report: Report) -> str:
     if report.status == INTERRUPTED:
         return f"{name} was interrupted {times}; everything stands still"
     if report.status == FAILURE:
-        chain = "" if report.failure is None else chain_text(report.failure)
+        chain = "" if report.failure is None else failure_line(report.failure)
         return f"{name} failed: {chain}; {times}{_referee(report)}"
     return f"{name} succeeded {times}{_referee(report)}"
 

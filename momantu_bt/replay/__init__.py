@@ -1,1 +1,1 @@
-"""A recorded run again: its instants, its tree without a world, and what two runs differ in."""
+"""A recorded run again: its moments, its tree without a world, and what two runs differ in."""

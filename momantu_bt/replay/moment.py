@@ -1,4 +1,4 @@
-"""One instant of a recorded run: every node as a display shows it, and the blackboard."""
+"""A moment of a recorded run: every node as a display shows it, and the blackboard."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from momantu_bt.record.recording import NodeInfo, TickRecord
 
 @dataclass(slots=True, eq=False)
 class ShownNode:
-    """A node of a record at one instant; it is drawn and told of like a node of a run."""
+    """A node of a record at one moment; displays and texts treat it like a node of a run."""
 
     info: NodeInfo
     label: str
@@ -30,7 +30,7 @@ class ShownNode:
 
     @property
     def name(self) -> str:
-        """What it is called."""
+        """Its name."""
         return self.info.name
 
     @property
@@ -40,7 +40,7 @@ class ShownNode:
 
     @property
     def role(self) -> Role:
-        """What it is to a person."""
+        """Its role for a reader."""
         return self.info.role
 
 
@@ -55,7 +55,7 @@ class Moment:
 
     @property
     def root(self) -> ShownNode:
-        """The node that no other is around."""
+        """The root."""
         return self.nodes[0]
 
     @property

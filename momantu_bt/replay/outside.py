@@ -1,4 +1,4 @@
-"""The outside of a tree as a record has it: skills and services say what they said in the run."""
+"""What reached the tree from outside, replayed from a record."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from momantu_bt.record.recording import StepRecord, TickRecord
 T = TypeVar("T")
 
 
-class Untold(Exception):
-    """The tree wants to know what nobody told it in the run; what: in words, node: its index."""
+class NotRecorded(Exception):
+    """The tree asks for what the record does not have; what: in words, node: its index."""
 
     def __init__(self, what: str, node: int | None = None) -> None:
         super().__init__(what)
@@ -65,7 +65,7 @@ class RecordedOutside(Outside):
         if not answers:
             if key == PERSON and self._is_last:
                 raise Interrupted
-            raise Untold(f"a question for {key}")
+            raise NotRecorded(f"a question for {key}")
         answer = answers.popleft()
         if isinstance(answer, Refused):
             raise _raised(answer.failure)
@@ -75,7 +75,7 @@ class RecordedOutside(Outside):
         """The next step of a leaf in this tick."""
         steps = self._steps.get(node)
         if not steps:
-            raise Untold("a step of its skill", node)
+            raise NotRecorded("a step of its skill", node)
         return steps.popleft()
 
 

@@ -18,7 +18,7 @@ from momantu_bt.engine.outside import PERSON, POSITION, SPEED
 from momantu_bt.engine.status import RUNNING, Status
 from momantu_bt.record.recording import ChangeRecord, Recording, TickRecord
 from momantu_bt.replay.difference import NOTHING, Difference, first_difference, node_words
-from momantu_bt.replay.outside import RecordedOutside, Untold
+from momantu_bt.replay.outside import NotRecorded, RecordedOutside
 from momantu_bt.replay.rebuild import Rebuilt, rebuild
 from momantu_bt.tree.check.checker import ROBOT_KEY
 from momantu_bt.tree.registry import Registry
@@ -121,8 +121,8 @@ class _Replica:
         context.begin_tick()
         try:
             status = self._built.root.execute()
-        except Untold as untold:
-            return self._unlike(tick, "outside", untold.node, NOTHING, untold.what)
+        except NotRecorded as missing:
+            return self._unlike(tick, "outside", missing.node, NOTHING, missing.what)
         except Exception as error:  # the run had none here
             return self._unlike(tick, "error", 0, NOTHING, f"{type(error).__name__}: {error}")
         return self._compared(tick) or self._unheard(tick) or self._ended(tick, status, last)

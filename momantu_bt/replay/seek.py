@@ -1,4 +1,4 @@
-"""Finding an instant of a record: by what changes, by a node, by a failure."""
+"""Finding a moment of a record: by what changes, by a node, by a failure."""
 
 from __future__ import annotations
 

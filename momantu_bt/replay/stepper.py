@@ -79,7 +79,7 @@ class Stepper:
 
     @property
     def moment(self) -> Moment:
-        """The instant one is at."""
+        """The moment one is at."""
         return self.timeline.moment(self.index)
 
     @property

@@ -1,4 +1,4 @@
-"""A record as a row of instants, any of which is quickly found."""
+"""A record as a row of moments, any of which is quickly found."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from momantu_bt.replay.statuses import Statuses
 from momantu_bt.skill import MISSING
 
 EVERY = 64
-"""Ticks between two kept states: an instant is at most so many ticks' work away."""
+"""Ticks between two kept states: a moment is at most so many ticks' work away."""
 _SLACK = 1e-9
 
 
 class Timeline:
-    """The instants of a record: `len`, and `moment` of an index."""
+    """The moments of a record: `len`, and `moment` of an index."""
 
     def __init__(self, recording: Recording) -> None:
         self.recording = recording
@@ -32,11 +32,11 @@ class Timeline:
         self._built = lru_cache(maxsize=8)(self._build)
 
     def __len__(self) -> int:
-        """How many instants there are."""
+        """How many moments there are."""
         return len(self.recording.ticks)
 
     def moment(self, index: int) -> Moment:
-        """The instant after a tick, by its position in the record."""
+        """The moment after a tick, by its position in the record."""
         return self._built(range(len(self))[index])
 
     def at(self, time: float) -> int:

@@ -1,11 +1,11 @@
-"""Robots as a command line names them: an installed one's name, or a file."""
+"""Robots as a command line names them: the name of an installed one, or a file."""
 
 from __future__ import annotations
 
 from momantu_bt.robot import RobotDescription
 
 
-def robot_of(name: str) -> RobotDescription:
+def load_robot(name: str) -> RobotDescription:
     """The robot of a name, or of a path.
 
     Raises:

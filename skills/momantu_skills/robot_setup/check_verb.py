@@ -33,10 +33,10 @@ def check(
       momantu-bt robots check robots/my_robot/robot.yaml
       momantu-bt robots check my_robot/ --json
     """
-    from momantu_bt.robots.named import robot_of
+    from momantu_bt.robots.named import load_robot
     from momantu_skills.robot_setup.urdf.skeleton import SetupError
 
-    description = robot_of(robot)
+    description = load_robot(robot)
     try:
         findings = check_robot(description)
     except SetupError as error:

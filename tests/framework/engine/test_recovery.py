@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from momantu_bt.record.chain import chain_text
+from momantu_bt.record.failure_text import failure_line
 from momantu_bt.skill import Failure, In, Out, Run, Skill
 
 SEEN: list[str] = []
@@ -76,7 +76,7 @@ def test_recover_keeps_the_code_and_adds_the_tries(run_yaml):
     failure = run_yaml(RECOVER % "[SLIPPED, SLIPPED, SLIPPED]", Act).failure
     assert (failure.code, failure.message, failure.node) == ("SLIPPED", "a 3", "act")
     assert (failure.tries, failure.most_tries) == (3, 3)
-    assert chain_text(failure) == "SLIPPED, a 3 <- act (tree.yaml:9), 3 of 3 tries"
+    assert failure_line(failure) == "SLIPPED, a 3 <- act (tree.yaml:9), 3 of 3 tries"
 
 
 def test_a_failing_handler_ends_it_with_its_cause_kept(run_yaml):
@@ -199,7 +199,7 @@ trees:
     retry: 1
 """
     failure = run_yaml(text, Act).failure
-    assert chain_text(failure) == ("LOST, a 1 <- Put (tree.yaml:6) <- act (:9), 1 of 1 tries")
+    assert failure_line(failure) == ("LOST, a 1 <- Put (tree.yaml:6) <- act (:9), 1 of 1 tries")
 
 
 def test_for_each_runs_for_every_item_and_stops_at_a_failure(run_yaml):

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from momantu_bt.failure import FailureValue
 from momantu_bt.files import OutputError, check_writable, write_whole
 from momantu_bt.geometry import Pose2D
-from momantu_bt.record.chain import chain_text
+from momantu_bt.record.failure_text import failure_line
 from momantu_bt.record.folder import prepare_folder
 from momantu_bt.record.report import Lie, NodeReport, Report, SkillClaims
 
@@ -125,7 +125,7 @@ def test_every_report_is_strict_json_of_one_form(folder, report):
 
 @given(failure=FAILURES)
 def test_a_chain_in_one_line_names_every_node_and_every_code(failure):
-    line = chain_text(failure)
+    line = failure_line(failure)
     assert line.startswith(str(failure))
     for link in failure.chain():
         assert link.node in line
@@ -138,7 +138,7 @@ def test_a_place_in_another_file_is_written_with_its_name():
     inner = FailureValue("LOST", "", {}, "pick", "/lib/take.yaml:9")
     middle = FailureValue("LOST", "", {}, "Take", "/home/main.yaml:5", inner)
     outer = FailureValue("LOST", "", {}, "Main", "/home/main.yaml:2", middle)
-    assert chain_text(outer) == "LOST <- Main (main.yaml:2) <- Take (:5) <- pick (take.yaml:9)"
+    assert failure_line(outer) == "LOST <- Main (main.yaml:2) <- Take (:5) <- pick (take.yaml:9)"
 
 
 def test_a_write_that_fails_leaves_what_was_there(tmp_path, monkeypatch):

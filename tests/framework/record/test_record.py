@@ -16,9 +16,9 @@ from momantu_bt.failure import FailureValue
 from momantu_bt.files import OutputError, check_writable, write_whole
 from momantu_bt.geometry import Pose2D
 from momantu_bt.messages import BaseVelocity
-from momantu_bt.record.chain import chain_text
 from momantu_bt.record.encode import encode
 from momantu_bt.record.ending import ending_text
+from momantu_bt.record.failure_text import failure_line
 from momantu_bt.record.fingerprint import Fingerprint
 from momantu_bt.record.folder import prepare_folder
 from momantu_bt.record.report import Report
@@ -170,7 +170,7 @@ def test_the_ending_is_one_line_with_both_opinions():
 def test_a_cause_of_another_code_says_its_own():
     cause = FailureValue("HALTED", "was running", {}, "navigate", "t.yaml:9")
     outer = FailureValue("TIMEOUT", "took longer", {}, "timeout", "t.yaml:8", cause)
-    assert chain_text(outer) == (
+    assert failure_line(outer) == (
         "TIMEOUT, took longer <- timeout (t.yaml:8) <- navigate (:9): HALTED, was running"
     )
 

@@ -16,8 +16,8 @@ from fcntl import ioctl
 import pytest
 
 from momantu_bt.cli import main
-from momantu_bt.record.chain import chain_text
 from momantu_bt.record.ending import ending_text
+from momantu_bt.record.failure_text import failure_line
 from momantu_bt.replay.telling import report_of
 
 TREE = """
@@ -164,7 +164,7 @@ def test_diff_says_equal_or_what_differs(folder, call, tmp_path):
 def test_a_report_from_a_record_ends_in_the_same_words(folder):
     data = json.loads((folder / "run" / "report.json").read_text())
     assert ending_text(report_of(data)).startswith("tree failed: TIMEOUT, ")
-    assert "wait" in chain_text(report_of(data).failure)
+    assert "wait" in failure_line(report_of(data).failure)
 
 
 class Screen:

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from momantu_bt.cli.keyboard import keys_in
 from momantu_bt.record.lines import tree_lines
-from momantu_bt.replay.instant import board_lines, failures_of, instant_data
+from momantu_bt.replay.moment_text import board_lines, failures_of, moment_data
 from momantu_bt.replay.seek import SeekError, changes, failures, matching
 from momantu_bt.replay.stepper import KEYS, SPEEDS, Stepper
 from momantu_bt.replay.timeline import EVERY, Timeline
@@ -53,9 +53,9 @@ def write(stepper, text):
 
 def test_each_instant_is_the_same_however_one_comes_there(timeline):
     assert len(timeline) > EVERY
-    forwards = [instant_data(timeline.moment(index)) for index in range(len(timeline))]
+    forwards = [moment_data(timeline.moment(index)) for index in range(len(timeline))]
     fresh = Timeline(timeline.recording)
-    assert [instant_data(fresh.moment(i)) for i in reversed(range(len(fresh)))] == forwards[::-1]
+    assert [moment_data(fresh.moment(i)) for i in reversed(range(len(fresh)))] == forwards[::-1]
 
 
 def test_the_tree_is_drawn_with_notes_values_and_reasons(timeline):

@@ -116,7 +116,7 @@ def test_a_robot_that_cannot_be_simulated(
     bare = robot.model_copy(update={"simulation": None})
     with pytest.raises(WorldError):
         robot_sheet(bare)
-    monkeypatch.setattr("momantu_worlds.verbs.robots_preview.robot_of", lambda name: bare)
+    monkeypatch.setattr("momantu_worlds.verbs.robots_preview.load_robot", lambda name: bare)
     code, said = run("fetch", "-o", tmp_path / "a.png")
     assert code == 3
     assert "simulat" in said

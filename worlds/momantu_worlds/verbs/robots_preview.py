@@ -10,7 +10,7 @@ import typer
 from momantu_bt.errors import ExitCode
 from momantu_bt.files import OutputError, write_whole
 from momantu_bt.lazy import lazily
-from momantu_bt.robots.named import robot_of
+from momantu_bt.robots.named import load_robot
 
 with lazily():
     from momantu_worlds.preview import robot_sheet
@@ -38,7 +38,7 @@ def preview(
         raise OutputError(f"{out} is no .png file; the picture is a PNG")
     if out is not None and not out.absolute().parent.is_dir():
         raise OutputError(f"there is no folder {out.absolute().parent}")
-    description = robot_of(robot)
+    description = load_robot(robot)
     path = out or Path(f"{description.name}.png")
     write_whole(path, robot_sheet.robot_sheet(description))
     typer.echo(f"{path}: {description.name}, {len(description.named_poses)} poses")

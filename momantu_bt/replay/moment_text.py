@@ -1,4 +1,4 @@
-"""One instant of a record for people and for scripts: the tree, what happened, the blackboard."""
+"""A moment of a record as text and as JSON: the tree, what failed, the blackboard."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ from typing import Any
 from momantu_bt.engine.status import FAILURE, IDLE
 from momantu_bt.failure import FailureValue
 from momantu_bt.messages import plain
-from momantu_bt.record.chain import chain_text
+from momantu_bt.record.failure_text import failure_line
 from momantu_bt.record.lines import tree_lines
 from momantu_bt.record.report import finite
 from momantu_bt.replay.difference import value_words
 from momantu_bt.replay.moment import Moment, ShownNode
 
 
-def instant_lines(moment: Moment) -> Iterator[str]:
+def moment_lines(moment: Moment) -> Iterator[str]:
     """Time, tree, what failed in this tick and blackboard, as plain text."""
     yield f"-- {moment.tick.now:.2f} s, tick {moment.tick.number}"
     for line in tree_lines(moment.root):
         yield f"{'  ' * line.depth}{line.text}  {line.status}"
     for failure in failures_of(moment):
-        yield f"failed: {chain_text(failure)}"
+        yield f"failed: {failure_line(failure)}"
     yield from (f"{mark} {words}" for mark, words in board_lines(moment))
 
 
@@ -52,8 +52,8 @@ def board_lines(moment: Moment) -> Iterator[tuple[str, str]]:
         yield mark, f"{name} = {value_words(moment.board[cell])}"
 
 
-def instant_data(moment: Moment) -> dict[str, Any]:
-    """The instant as JSON data; nodes that are IDLE are left out."""
+def moment_data(moment: Moment) -> dict[str, Any]:
+    """The moment as JSON data; nodes that are IDLE are left out."""
     tick = moment.tick
     return {
         "tick": tick.number,

@@ -11,7 +11,7 @@ from pathlib import PurePath
 from momantu_bt.failure import FailureValue
 
 
-def chain_text(failure: FailureValue) -> str:
+def failure_line(failure: FailureValue) -> str:
     """Code and sentence, then each node it came through; a cause of another code says its own."""
     words: list[str] = [str(failure)]
     code, file = failure.code, ""
