@@ -12,6 +12,7 @@ from momantu_bt.geometry import Pose2D
 from momantu_bt.robot import Robot
 from momantu_bt.service import Localization, PlanningScene
 from momantu_bt.skill import In, Needs, Run, Skill
+from momantu_skills.navigation.localize.confidence import estimate, is_localized, sigmas
 
 NEAR = 1.5
 """m from a place, or from the edge of a surface, that counts as near."""
@@ -64,8 +65,6 @@ class Check(Skill):
         if self.what in ("holding", "not_holding"):
             return Holding(self.what == "holding")
         if self.what == "localized":
-            from momantu_skills.navigation.localize.confidence import estimate
-
             return estimate(self.localization)
         if self.what == "near":
             nearest = self._nearest(self.localization.map_from_base)
@@ -83,8 +82,6 @@ class Check(Skill):
             raise Failure("HOLDING", f"the hand holds a {held.object.category}")
 
     def _localized(self) -> None:
-        from momantu_skills.navigation.localize.confidence import is_localized, sigmas
-
         if is_localized(self.localization):
             return
         sigma, sigma_yaw = sigmas(self.localization.covariance)

@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING
 
 from momantu_bt.claim import Claim, ObjectAt, ObjectOn
 from momantu_bt.failure import FailureValue
 from momantu_bt.geometry import Array
+from momantu_bt.lazy import lazily
 from momantu_bt.messages import DetectedObject, ObjectClass
 from momantu_bt.robot import CAMERA_CARRIER, Robot
 from momantu_bt.service import Localization, PlanningScene
 from momantu_bt.skill import Failure, In, Needs, Out, Run, Skill, compute
 
-if TYPE_CHECKING:
-    from momantu_skills.perception.camera.views import Snapshot, View
-    from momantu_skills.perception.geometry.regions import SurfaceRegion
-    from momantu_skills.perception.objects.detector import Detections, ObjectDetector
+with lazily():
+    from momantu_skills.gaze import surveys
+    from momantu_skills.perception.camera import pictures
+    from momantu_skills.perception.geometry import regions
+    from momantu_skills.perception.objects import detector
+
 
 LOOKS = 3
 """Fewest looks over a surface before a thing is said not to be there."""
@@ -48,25 +50,20 @@ class DetectObject(Skill):
 
     def __init__(self) -> None:
         """Start with nothing seen."""
-        from momantu_skills.perception.objects.detector import GeometricDetector
-
         super().__init__()
-        self._detector: ObjectDetector = GeometricDetector()
-        self._views: list[View] = []
+        self._detector: detector.ObjectDetector = detector.GeometricDetector()
+        self._views: list[pictures.View] = []
 
     def run(self, robot: Robot) -> Run:
         """Look and measure until the thing was seen in enough looks, or none is left."""
-        from momantu_skills.gaze.surveys import beside, glance, looks_over
-        from momantu_skills.perception.geometry.regions import surface_region
-
         corners = self._corners()
-        region = surface_region(corners)
-        pending = looks_over(self, robot, corners, LOOKS)
-        snapshots: list[Snapshot] = []
-        result: Detections | None = None
+        region = regions.surface_region(corners)
+        pending = surveys.looks_over(self, robot, corners, LOOKS)
+        snapshots: list[pictures.Snapshot] = []
+        result: detector.Detections | None = None
         best: DetectedObject | None = None
         while pending:
-            snapshot = yield from glance(self, robot, self.planning_scene, pending.pop(0))
+            snapshot = yield from surveys.glance(self, robot, self.planning_scene, pending.pop(0))
             if snapshot is None:
                 continue
             snapshots.append(snapshot)
@@ -77,7 +74,7 @@ class DetectObject(Skill):
             if len(snapshots) >= self.views:
                 break
             camera = snapshot.odom_from_camera.position
-            pending.insert(0, beside(best.pose.position, camera, len(snapshots)))
+            pending.insert(0, surveys.beside(best.pose.position, camera, len(snapshots)))
         if result is None:
             raise self._unseen(len(snapshots))
         if best is None:
@@ -90,27 +87,25 @@ class DetectObject(Skill):
             return ObjectAt(self.object, self.found.pose.transform, EXACT)
         return ObjectOn(self.object, self.on) if failure.code == "OBJECT_NOT_FOUND" else None
 
-    def _measure(self, snapshots: list[Snapshot], region: SurfaceRegion) -> Detections | None:
-        from momantu_skills.perception.camera.views import see
-
+    def _measure(
+        self, snapshots: list[pictures.Snapshot], region: regions.SurfaceRegion
+    ) -> detector.Detections | None:
         for snapshot in snapshots[len(self._views) :]:
-            self._views.append(see(snapshot, region, self.planning_scene))
+            self._views.append(pictures.see(snapshot, region, self.planning_scene))
         low, high = region.support_heights
         return self._detector.detect(self._views, low, high, self.object)
 
-    def _asked_of(self, result: Detections) -> DetectedObject | None:
+    def _asked_of(self, result: detector.Detections) -> DetectedObject | None:
         return next((t for t in result.things if t.score >= self._detector.accepted), None)
 
     def _corners(self) -> Array:
-        from momantu_skills.perception.geometry.regions import surface_corners
-
         surface = self.site.surfaces.get(self.on)
         if surface is None:
             known = ", ".join(self.site.surfaces) or "none"
             raise Failure(
                 "SURFACE_NOT_SEEN", f"the site has no surface {self.on!r}; surfaces: {known}"
             )
-        return surface_corners(surface, self.frames)
+        return regions.surface_corners(surface, self.frames)
 
     def _unseen(self, looks: int) -> Failure:
         return Failure(

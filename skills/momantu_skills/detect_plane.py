@@ -4,21 +4,23 @@ from __future__ import annotations
 
 import math
 from functools import partial
-from typing import TYPE_CHECKING
 
 from momantu_bt.claim import Claim, PlaneAt, RoomAt
 from momantu_bt.failure import FailureValue
 from momantu_bt.frames import ODOM
 from momantu_bt.geometry import Array, Pose, Transform
+from momantu_bt.lazy import lazily
 from momantu_bt.messages import SupportPlane
 from momantu_bt.robot import CAMERA_CARRIER, Robot
 from momantu_bt.service import PlanningScene
 from momantu_bt.skill import Failure, In, Needs, Out, Run, Skill, compute
 
-if TYPE_CHECKING:
-    from momantu_skills.perception.camera.views import Snapshot
-    from momantu_skills.perception.geometry.regions import SurfaceRegion
-    from momantu_skills.perception.surface.surfaces import Surroundings
+with lazily():
+    from momantu_skills.gaze import surveys
+    from momantu_skills.perception.camera import pictures
+    from momantu_skills.perception.geometry import regions
+    from momantu_skills.perception.surface import spots, surfaces
+
 
 BUDGET = 0.2
 """s granted to making sense of both looks and to finding spots."""
@@ -57,14 +59,11 @@ class DetectPlane(Skill):
 
     def run(self, robot: Robot) -> Run:
         """Look, measure, choose."""
-        from momantu_skills.gaze.surveys import glance, looks_over
-        from momantu_skills.perception.geometry.regions import place_region
-
         near = self.frames.lookup(ODOM, self.near.frame).apply(self.near.position)
-        corners, region = place_region(near)
-        snapshots: list[Snapshot] = []
-        for point in looks_over(self, robot, corners, LOOKS):
-            snapshot = yield from glance(self, robot, self.planning_scene, point)
+        corners, region = regions.place_region(near)
+        snapshots: list[pictures.Snapshot] = []
+        for point in surveys.looks_over(self, robot, corners, LOOKS):
+            snapshot = yield from surveys.glance(self, robot, self.planning_scene, point)
             if snapshot is not None:
                 snapshots.append(snapshot)
         radius = self._needed = self._radius()
@@ -92,24 +91,23 @@ class DetectPlane(Skill):
         near = self.frames.lookup(ODOM, self.near.frame).apply(self.near.position)
         if failure.code == "PLANE_NOT_FOUND":
             return PlaneAt(Transform(near), LEVEL)
-        from momantu_skills.perception.geometry.regions import PLACE_ERROR
-        from momantu_skills.perception.surface.spots import SpotConfig
 
-        config = SpotConfig()
+        config = spots.SpotConfig()
         room = self._needed + config.fingers
-        return RoomAt(_point(near), room, LEVEL + PLACE_ERROR, config.reach)
+        return RoomAt(_point(near), room, LEVEL + regions.PLACE_ERROR, config.reach)
 
     def _measure(
-        self, snapshots: list[Snapshot], region: SurfaceRegion, near: Array, radius: float
-    ) -> Surroundings | None:
-        from momantu_skills.perception.camera.views import see
-        from momantu_skills.perception.surface.surfaces import surroundings
-
-        views = [see(snapshot, region, self.planning_scene) for snapshot in snapshots]
-        if not views:
+        self,
+        snapshots: list[pictures.Snapshot],
+        region: regions.SurfaceRegion,
+        near: Array,
+        radius: float,
+    ) -> surfaces.Surroundings | None:
+        seen = [pictures.see(snapshot, region, self.planning_scene) for snapshot in snapshots]
+        if not seen:
             return None
         base = snapshots[-1].odom_from_base
-        return surroundings(views, region, near, base, radius)
+        return surfaces.surroundings(seen, region, near, base, radius)
 
     def _radius(self) -> float:
         """Of the circle that what needs room fits in, whichever way it is turned, m."""
@@ -124,7 +122,7 @@ class DetectPlane(Skill):
             return HAND / 2
         return math.hypot(*across) / 2
 
-    def _full(self, found: Surroundings, radius: float, near: Array) -> Failure:
+    def _full(self, found: surfaces.Surroundings, radius: float, near: Array) -> Failure:
         return Failure(
             "NO_FREE_SPOT",
             f"nothing of the surface around ({near[0]:.2f}, {near[1]:.2f}) m has room for a base "

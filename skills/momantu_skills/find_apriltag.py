@@ -4,19 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Generator
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from momantu_bt.claim import Claim, TagAt, TagOn
 from momantu_bt.failure import FailureValue
 from momantu_bt.frames import ODOM
 from momantu_bt.geometry import Array, Pose
+from momantu_bt.lazy import lazily
 from momantu_bt.robot import CAMERA_CARRIER, Robot
 from momantu_bt.service import Localization, PlanningScene
 from momantu_bt.skill import Compute, Failure, In, Needs, Out, Run, Skill, compute
 
-if TYPE_CHECKING:
-    from momantu_skills.perception.camera.views import Snapshot
-    from momantu_skills.perception.tags import TagSighting
+with lazily():
+    from momantu_skills.gaze import surveys
+    from momantu_skills.perception import tags
+    from momantu_skills.perception.camera import pictures
+    from momantu_skills.perception.geometry import regions
+
 
 BUDGET = 0.05
 """s granted to searching one picture."""
@@ -44,19 +48,16 @@ class FindAprilTag(Skill):
 
     def run(self, robot: Robot) -> Run:
         """Sweep, look at it, average."""
-        from momantu_skills.gaze.surveys import glance
-        from momantu_skills.perception.tags import average
-
         others: set[int] = set()
         for point in self._points(robot):
-            snapshot = yield from glance(self, robot, self.planning_scene, point)
+            snapshot = yield from surveys.glance(self, robot, self.planning_scene, point)
             first = None
             if snapshot is not None:
                 first = yield from self._search(snapshot, others)
             if first is None:
                 continue
             sightings = [first, *(yield from self._watch(robot, first, others))]
-            result = average(sightings)
+            result = tags.average(sightings)
             self.tag_pose = Pose(result.odom_from_tag, ODOM, result.stamp)
             self.tag_sigma = result.sigma
             return
@@ -70,44 +71,38 @@ class FindAprilTag(Skill):
         return TagOn(self.tag_id, self.on) if unseen else None
 
     def _watch(
-        self, robot: Robot, first: TagSighting, others: set[int]
-    ) -> Generator[str | Compute, Any, list[TagSighting]]:
+        self, robot: Robot, first: tags.TagSighting, others: set[int]
+    ) -> Generator[str | Compute, Any, list[tags.TagSighting]]:
         """More pictures, with the tag in the middle of the view where that is possible."""
-        from momantu_skills.gaze.surveys import glance
-        from momantu_skills.perception.camera.views import take
-
-        seen: list[TagSighting] = []
-        snapshot = yield from glance(self, robot, self.planning_scene, first.odom_from_tag.position)
+        seen: list[tags.TagSighting] = []
+        snapshot = yield from surveys.glance(
+            self, robot, self.planning_scene, first.odom_from_tag.position
+        )
         for _ in range(PICTURES):
-            sighting = yield from self._search(snapshot or take(self, robot), others)
+            sighting = yield from self._search(snapshot or pictures.take(self, robot), others)
             snapshot = None
             if sighting is not None:
                 seen.append(sighting)
         return seen
 
     def _search(
-        self, snapshot: Snapshot, others: set[int]
-    ) -> Generator[str | Compute, Any, TagSighting | None]:
-        from momantu_skills.perception.tags import search
-
+        self, snapshot: pictures.Snapshot, others: set[int]
+    ) -> Generator[str | Compute, Any, tags.TagSighting | None]:
         ids, sighting = yield from compute(
-            partial(search, snapshot, self.tag_id, self.edge), budget=BUDGET
+            partial(tags.search, snapshot, self.tag_id, self.edge), budget=BUDGET
         )
         others.update(ids - {self.tag_id})
         return sighting
 
     def _points(self, robot: Robot) -> list[Array]:
-        from momantu_skills.gaze.surveys import around, looks_over
-        from momantu_skills.perception.geometry.regions import surface_corners
-
         if self.on is None:
-            return around(self, robot)
+            return surveys.around(self, robot)
         surface = self.site.surfaces.get(self.on)
         if surface is None:
             known = ", ".join(self.site.surfaces) or "none"
             raise Failure("TAG_NOT_SEEN", f"the site has no surface {self.on!r}; surfaces: {known}")
-        corners = surface_corners(surface, self.frames)
-        return [corners.mean(axis=0), *looks_over(self, robot, corners, LOOKS)]
+        corners = regions.surface_corners(surface, self.frames)
+        return [corners.mean(axis=0), *surveys.looks_over(self, robot, corners, LOOKS)]
 
     def _not_seen(self, others: set[int]) -> Failure:
         where = f"on {self.on}" if self.on is not None else "around"

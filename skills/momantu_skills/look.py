@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 from momantu_bt.claim import CameraOn, Claim
 from momantu_bt.failure import FailureValue
@@ -11,9 +11,8 @@ from momantu_bt.frames import ODOM
 from momantu_bt.geometry import Array, Pose
 from momantu_bt.robot import CAMERA_CARRIER, Robot
 from momantu_bt.skill import Failure, In, Needs, Run, Skill
-
-if TYPE_CHECKING:
-    from momantu_skills.manipulation.scene.service import PlanningSceneService
+from momantu_skills.gaze.look_at import WITHIN, look_at
+from momantu_skills.manipulation.scene.service import PlanningSceneService
 
 AHEAD = 3.0
 """m before the base, at the camera's own height."""
@@ -51,16 +50,12 @@ class Look(Skill):
 
     def run(self, robot: Robot) -> Run:
         """Work out the point, then look."""
-        from momantu_skills.gaze.look_at import look_at
-
         x, y, z = (float(v) for v in self._point(robot))
         self._target = x, y, z
         yield from look_at(self, robot, self._target)
 
     def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
         """The camera looks there, whether it is said or denied."""
-        from momantu_skills.gaze.look_at import WITHIN
-
         if self._target is None or (failure is not None and failure.code != "OUT_OF_VIEW"):
             return None
         return CameraOn(robot.description.camera()[1].frame, self._target, WITHIN + SLACK)

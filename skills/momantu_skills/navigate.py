@@ -4,22 +4,27 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 from momantu_bt.claim import BaseAt, BaseNear, Claim
 from momantu_bt.failure import FailureValue
 from momantu_bt.frames import MAP, ODOM
 from momantu_bt.geometry import Pose, Pose2D
+from momantu_bt.lazy import lazily
 from momantu_bt.robot import CAMERA_CARRIER, Robot, Working
 from momantu_bt.service import Localization
 from momantu_bt.skill import Failure, In, Needs, Run, Skill
+from momantu_bt.world import Surface
+from momantu_skills.manipulation.scene.service import PlanningSceneService
+from momantu_skills.navigation.config import NavigationConfig, configured
+from momantu_skills.navigation.drive.vehicle import Vehicle
+from momantu_skills.navigation.localize.confidence import estimate
+from momantu_skills.navigation.plan.goals import Stand, before_surface, surface_at, within_reach
 
-if TYPE_CHECKING:
-    from momantu_bt.world import Surface
-    from momantu_skills.manipulation.scene.service import PlanningSceneService
-    from momantu_skills.navigation.config import NavigationConfig
-    from momantu_skills.navigation.drive.trip import Destination
-    from momantu_skills.navigation.drive.vehicle import Vehicle
+with lazily():
+    from momantu_skills.manipulation import tucking
+    from momantu_skills.navigation.control import mppi
+    from momantu_skills.navigation.drive import trip
 
 
 SURVEY = (0.05, 0.03)
@@ -64,31 +69,23 @@ class Navigate(Skill):
     def __init__(self) -> None:
         """Start without a destination."""
         super().__init__()
-        self._going: Destination | None = None
+        self._going: trip.Destination | None = None
 
     def run(self, robot: Robot) -> Run:
         """Check the goal, then travel."""
-        from momantu_skills.navigation.control.mppi import Mppi
-        from momantu_skills.navigation.drive.trip import travel
-        from momantu_skills.navigation.drive.vehicle import Vehicle
-
         self._check()
         config = self._config()
         if robot.description.eye_in_hand:
-            from momantu_skills.manipulation.tucking import take_in
-
-            yield from take_in(self, robot, self.planning_scene)
+            yield from tucking.take_in(self, robot, self.planning_scene)
         surface = self._surface()
         top = 0.0 if surface is None else surface.height
         vehicle = Vehicle(self, robot, self.localization, self.planning_scene, config, top)
         destination = self._going = self._destination(vehicle, robot.description.working)
-        mppi = Mppi(robot.description.base, config, self.random)
-        yield from travel(vehicle, mppi, destination, recovery=self.recovery)
+        controller = mppi.Mppi(robot.description.base, config, self.random)
+        yield from trip.travel(vehicle, controller, destination, recovery=self.recovery)
 
     def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
         """The base is on its stand, or where the hand reaches; or is where it doubts to be."""
-        from momantu_skills.navigation.localize.confidence import estimate
-
         if failure is not None and failure.code == "NOT_LOCALIZED":
             return estimate(self.localization)
         if self._going is None or self._going.chosen is None:
@@ -106,8 +103,6 @@ class Navigate(Skill):
         return None
 
     def _config(self) -> NavigationConfig:
-        from momantu_skills.navigation.config import NavigationConfig, configured
-
         return configured(NavigationConfig, self.site.services.get("navigate", {}), "navigate")
 
     def _check(self) -> None:
@@ -134,8 +129,6 @@ class Navigate(Skill):
 
     def _surface(self) -> Surface | None:
         """The surface that is driven up to."""
-        from momantu_skills.navigation.plan.goals import surface_at
-
         if self.within_reach_of is not None:
             return surface_at(self._point(self.within_reach_of), self.site.surfaces.values())
         return self.site.surfaces.get(self.in_front_of or "")
@@ -147,15 +140,12 @@ class Navigate(Skill):
             there = self.frames.lookup(MAP, pose.frame).apply(there)
         return float(there[0]), float(there[1])
 
-    def _destination(self, vehicle: Vehicle, working: Working) -> Destination:
-        from momantu_skills.navigation.drive.trip import Destination
-        from momantu_skills.navigation.plan.goals import Stand, before_surface, within_reach
-
+    def _destination(self, vehicle: Vehicle, working: Working) -> trip.Destination:
         tolerance = (self.tolerance, self.angle_tolerance)
         surfaces = self.site.surfaces
         if self.in_front_of is not None and self.in_front_of in surfaces:
             stands = before_surface(surfaces[self.in_front_of], working, vehicle.pose())
-            return Destination(lambda: stands, tolerance, side=self.side)
+            return trip.Destination(lambda: stands, tolerance, side=self.side)
         target = self.within_reach_of
         if target is not None:
             point = self._point
@@ -163,7 +153,7 @@ class Navigate(Skill):
             def reachable() -> list[Stand]:
                 return within_reach(point(target), surfaces.values(), vehicle.pose(), working)
 
-            return Destination(reachable, tolerance, side=self.side, in_odom=True)
+            return trip.Destination(reachable, tolerance, side=self.side, in_odom=True)
         pose = self.goal if self.goal is not None else self.site.places[str(self.in_front_of)]
         if not all(map(math.isfinite, (pose.x, pose.y, pose.yaw))) or not (
             vehicle.costmap.grid.contains(pose.x, pose.y)
@@ -175,4 +165,4 @@ class Navigate(Skill):
                 f"({pose.x}, {pose.y}) is not on the map, which spans x {x:.1f} to {x + width:.1f} "
                 f"and y {y:.1f} to {y + height:.1f} m",
             )
-        return Destination(lambda: [Stand(pose, 0, 0.0)], tolerance)
+        return trip.Destination(lambda: [Stand(pose, 0, 0.0)], tolerance)

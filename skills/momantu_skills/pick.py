@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Generator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from momantu_bt.claim import Claim, Holding, ObjectAt
 from momantu_bt.failure import Failure, FailureValue
 from momantu_bt.geometry import Array, Transform
-from momantu_bt.messages import DetectedObject, ObjectClass
+from momantu_bt.lazy import lazily
+from momantu_bt.messages import DetectedObject, GripperCommand, ObjectClass
 from momantu_bt.robot import ARM, CAMERA_CARRIER, Robot
 from momantu_bt.skill import Compute, In, Needs, Run, Skill
+from momantu_skills.gaze.look_at import look_at
+from momantu_skills.manipulation.arm import Arm
+from momantu_skills.manipulation.hand.freshness import check_fresh
+from momantu_skills.manipulation.hand.gripper import bump, move_gripper, open_hand, rested_force
+from momantu_skills.manipulation.scene.service import PlanningSceneService
 
-if TYPE_CHECKING:
-    from momantu_skills.manipulation.arm import Arm
-    from momantu_skills.manipulation.hand.reaching import PickPlan
-    from momantu_skills.manipulation.scene.service import PlanningSceneService
+with lazily():
+    from momantu_skills.gaze import unseen_ways
+    from momantu_skills.manipulation.hand import reaching, verification
+
 
 THINKING = 0.4
 """s that choosing a grasp and planning are given: twice the median."""
@@ -54,14 +60,11 @@ class Pick(Skill):
 
     def run(self, robot: Robot) -> Run:
         """The whole skill; each step is a method below."""
-        from momantu_skills.gaze.unseen_ways import planned_in_sight
-        from momantu_skills.manipulation.arm import Arm
-
         arm = Arm(self, robot, self.planning_scene)
         self._check_start(arm)
         yield from arm.settle()
         yield from self._look(arm)
-        plan = yield from planned_in_sight(
+        plan = yield from unseen_ways.planned_in_sight(
             arm, lambda: self._plan(arm), lambda plan: plan.transit, THINKING
         )
         yield from self._reach(arm, plan)
@@ -84,8 +87,6 @@ class Pick(Skill):
         return None
 
     def _check_start(self, arm: Arm) -> None:
-        from momantu_skills.manipulation.hand.freshness import check_fresh
-
         held = self.planning_scene.held
         if held is not None:
             raise Failure("HAND_FULL", f"the hand already holds a {held.object.category}")
@@ -94,14 +95,12 @@ class Pick(Skill):
 
     def _look(self, arm: Arm) -> Run:
         """See the surroundings, and that something stands where the object should be."""
-        from momantu_skills.manipulation.hand.verification import stands_there
-
         yield from self._turn_camera(arm)
         self.planning_scene.observe(arm.robot)
         arm.scene.support_below(self.object)
         thing = self.object
         pose, support = thing.pose.transform, thing.support_height
-        if not stands_there(arm.scene.points, pose, thing, support):
+        if not verification.stands_there(arm.scene.points, pose, thing, support):
             x, y, z = pose.position
             raise Failure(
                 "NOTHING_THERE",
@@ -111,29 +110,22 @@ class Pick(Skill):
 
     def _turn_camera(self, arm: Arm) -> Run:
         """Point the camera at the object as well as the robot can."""
-        from momantu_skills.gaze.look_at import look_at
-
         try:
             yield from look_at(self, arm.robot, self.object.pose.position)
         except Failure as failure:
             if failure.code != "OUT_OF_VIEW":
                 raise
 
-    def _plan(self, arm: Arm) -> PickPlan:
-        from momantu_skills.manipulation.hand.reaching import plan_pick
-
+    def _plan(self, arm: Arm) -> reaching.PickPlan:
         try:
-            return plan_pick(arm, self.object, self.lift)
+            return reaching.plan_pick(arm, self.object, self.lift)
         except Failure as failure:
             if failure.code != "START_IN_COLLISION":
                 raise
             raise Failure("NO_PLAN", failure.value.message, **failure.value.data) from None
 
-    def _reach(self, arm: Arm, plan: PickPlan) -> Run:
+    def _reach(self, arm: Arm, plan: reaching.PickPlan) -> Run:
         """Open on the way to the pre-grasp, then go straight in."""
-        from momantu_bt.messages import GripperCommand
-        from momantu_skills.manipulation.hand.gripper import bump, open_hand, rested_force
-
         effector = arm.robot.description.end_effector
         opened = GripperCommand(effector.max_width, arm.force)
         for trajectory in plan.transit:
@@ -151,10 +143,10 @@ class Pick(Skill):
             yield from arm.back_off(arm.hand.approach)
             raise Failure("GRASP_MISSED", "the hand met something before it was around the object")
 
-    def _close(self, arm: Arm, plan: PickPlan) -> Generator[str | Compute, Any, Array | None]:
+    def _close(
+        self, arm: Arm, plan: reaching.PickPlan
+    ) -> Generator[str | Compute, Any, Array | None]:
         """Close with a force limit and judge the opening; the wrist's force before that."""
-        from momantu_skills.manipulation.hand.gripper import move_gripper, rested_force
-
         hand = arm.hand
         rest = yield from rested_force(arm.robot, self.frames, "feeling")
         squeezed = max(0.0, plan.grasp.width - SQUEEZE)
@@ -177,7 +169,7 @@ class Pick(Skill):
         self.planning_scene.grasped(self.object, self._grasp_from_object(arm, plan))
         return rest
 
-    def _grasp_from_object(self, arm: Arm, plan: PickPlan) -> Transform:
+    def _grasp_from_object(self, arm: Arm, plan: reaching.PickPlan) -> Transform:
         """Where the object is in the hand: as detected, but centred between the fingers."""
         state = arm.state
         base_from_grasp = arm.group.tip_pose(arm.joints) @ arm.scene.model.tip_from_grasp
@@ -186,10 +178,8 @@ class Pick(Skill):
         planned = plan.grasp.object_from_grasp.inverse()
         return Transform((seen.position[0], planned.position[1], seen.position[2]), seen.quaternion)
 
-    def _lift(self, arm: Arm, plan: PickPlan, rest: Array | None) -> Run:
+    def _lift(self, arm: Arm, plan: reaching.PickPlan, rest: Array | None) -> Run:
         """Lift; it must still be there, and weigh something."""
-        from momantu_skills.manipulation.hand.gripper import rested_force
-
         yield from arm.follow(plan.lift, "lifting")
         loaded = yield from rested_force(arm.robot, self.frames, "weighing")
         weight = None if rest is None or loaded is None else float(rest[2] - loaded[2])
@@ -201,10 +191,8 @@ class Pick(Skill):
             yield from self._let_go(arm)
             raise Failure("SLIPPED", f"after lifting, {text}", weight=weight)
 
-    def _set_back(self, arm: Arm, plan: PickPlan, rest: Array | None) -> Run:
+    def _set_back(self, arm: Arm, plan: reaching.PickPlan, rest: Array | None) -> Run:
         """Lower again before the hand opens, while there still seems to be something in it."""
-        from momantu_skills.manipulation.hand.gripper import bump
-
         gap = abs(arm.state.gripper_width - plan.grasp.width)
         if gap <= arm.hand.width_tolerance:
             watch = bump(self.frames, rest, BUMP)
@@ -213,24 +201,20 @@ class Pick(Skill):
 
     def _look_again(self, arm: Arm) -> Run:
         """The place where it stood must be empty, unless the hand hides it."""
-        from momantu_skills.manipulation.hand.verification import stands_there
-
         yield "looking"
         self.planning_scene.observe(arm.robot)
         thing = self.object
         pose, support = thing.pose.transform, thing.support_height
-        if stands_there(arm.scene.points, pose, thing, support):
+        if verification.stands_there(arm.scene.points, pose, thing, support):
             yield from self._let_go(arm)
             raise Failure("SLIPPED", f"the {thing.category} still stands where it stood")
 
-    def _give_up(self, arm: Arm, plan: PickPlan) -> Run:
+    def _give_up(self, arm: Arm, plan: reaching.PickPlan) -> Run:
         """Open and draw back along the approach."""
         yield from self._let_go(arm)
         yield from arm.follow(plan.retreat, "drawing back")
 
     def _let_go(self, arm: Arm) -> Run:
-        from momantu_skills.manipulation.hand.gripper import open_hand
-
         effector, hand = arm.robot.description.end_effector, arm.hand
         yield from self._gripper_or_stuck(
             open_hand(arm.robot, self.clock, effector.max_width, arm.force, hand.close_time)

@@ -3,22 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from momantu_bt.claim import Claim, Holding, SetDown
 from momantu_bt.failure import Failure, FailureValue
 from momantu_bt.geometry import Array, Pose, Transform
+from momantu_bt.lazy import lazily
 from momantu_bt.messages import SupportPlane
 from momantu_bt.robot import ARM, CAMERA_CARRIER, Robot
 from momantu_bt.service import HeldObject
 from momantu_bt.skill import In, Needs, Run, Skill
+from momantu_skills.gaze.look_at import look_at
+from momantu_skills.manipulation.arm import Arm
+from momantu_skills.manipulation.hand.freshness import check_fresh
+from momantu_skills.manipulation.hand.gripper import bump, open_hand, rested_force
+from momantu_skills.manipulation.hand.placing import PlacePlan, plan_place
+from momantu_skills.manipulation.scene.service import PlanningSceneService
 
-if TYPE_CHECKING:
-    from momantu_skills.manipulation.arm import Arm
-    from momantu_skills.manipulation.hand.placing import PlacePlan
-    from momantu_skills.manipulation.scene.service import PlanningSceneService
+with lazily():
+    from momantu_skills.gaze import unseen_ways
+    from momantu_skills.manipulation.hand import verification
+    from momantu_skills.manipulation.model import hulls
+
 
 THINKING = 0.4
 """s that choosing a spot and planning are given: twice the median."""
@@ -51,15 +58,12 @@ class Place(Skill):
 
     def run(self, robot: Robot) -> Run:
         """The whole skill; each step is a method below."""
-        from momantu_skills.gaze.unseen_ways import planned_in_sight
-        from momantu_skills.manipulation.arm import Arm
-
         arm = Arm(self, robot, self.planning_scene)
         held = self._check_start(arm)
         yield from arm.settle()
         self.planning_scene.support(self.plane)
         yield from self._look(arm, self.spots[0].position)
-        plan = yield from planned_in_sight(
+        plan = yield from unseen_ways.planned_in_sight(
             arm, lambda: self._plan(arm, held), lambda plan: plan.transit, THINKING
         )
         self._spot = plan.odom_from_object
@@ -82,8 +86,6 @@ class Place(Skill):
         return SetDown(self._spot, BESIDE)
 
     def _check_start(self, arm: Arm) -> HeldObject:
-        from momantu_skills.manipulation.hand.freshness import check_fresh
-
         held: HeldObject | None = self.planning_scene.held
         if held is None:
             raise Failure("NOTHING_HELD", "there is nothing in the hand to set down")
@@ -99,8 +101,6 @@ class Place(Skill):
 
         around: corners (n, 3) in odom of solids that an arm that carries the camera avoids.
         """
-        from momantu_skills.gaze.look_at import look_at
-
         try:
             yield from look_at(self, arm.robot, point, around=around)
         except Failure as failure:
@@ -109,8 +109,6 @@ class Place(Skill):
         self.planning_scene.observe(arm.robot)
 
     def _plan(self, arm: Arm, held: HeldObject) -> PlacePlan:
-        from momantu_skills.manipulation.hand.placing import plan_place
-
         try:
             return plan_place(arm, held, self.spots)
         except Failure as failure:
@@ -124,8 +122,6 @@ class Place(Skill):
 
     def _lower(self, arm: Arm, plan: PlacePlan, held: HeldObject) -> Run:
         """Straight down until the surface carries part of the weight, where that can be felt."""
-        from momantu_skills.manipulation.hand.gripper import bump, rested_force
-
         rest = yield from rested_force(arm.robot, self.frames, "feeling")
         watch = bump(self.frames, rest, arm.hand.contact_force, vertical=True)
         if watch is None:
@@ -144,8 +140,6 @@ class Place(Skill):
 
     def _let_go(self, arm: Arm, held: HeldObject) -> Run:
         """Open no wider than needed: other things may stand near."""
-        from momantu_skills.manipulation.hand.gripper import open_hand
-
         hand = arm.hand
         width = min(arm.open_width, arm.state.gripper_width + hand.margin)
         self.planning_scene.touched()
@@ -167,14 +161,13 @@ class Place(Skill):
 
         before: cells (n, 3) in odom that were occupied before; they are not what was set down.
         """
-        from momantu_skills.manipulation.hand.verification import beside, standing, unseen_before
-        from momantu_skills.manipulation.model.hulls import object_corners
-
         pose = plan.odom_from_object
-        yield from self._look(arm, pose.position, [pose.apply(object_corners(held.object))])
+        yield from self._look(arm, pose.position, [pose.apply(hulls.object_corners(held.object))])
         bottom = float(pose.position[2] - held.object.size[2] / 2)
-        seen = standing(arm.scene.points, pose, held.object, bottom)
-        found = beside(unseen_before(arm.scene.points, before), pose, held.object, bottom)
+        seen = verification.standing(arm.scene.points, pose, held.object, bottom)
+        found = verification.beside(
+            verification.unseen_before(arm.scene.points, before), pose, held.object, bottom
+        )
         if found is not None and float(np.linalg.norm(found.position - pose.position)) > BESIDE:
             self._spot, seen = found, "upright"
         what, where = held.object.category, np.round(pose.position, 3).tolist()

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from momantu_bt.claim import Claim, GripperOpen, Holding
 from momantu_bt.failure import FailureValue
 from momantu_bt.robot import ARM, Robot
 from momantu_bt.skill import In, Needs, Run, Skill
-
-if TYPE_CHECKING:
-    from momantu_skills.manipulation.scene.service import PlanningSceneService
+from momantu_skills.manipulation.arm import Arm
+from momantu_skills.manipulation.config import HandConfig
+from momantu_skills.manipulation.hand.gripper import open_hand
+from momantu_skills.manipulation.scene.service import PlanningSceneService
 
 OPEN = 0.01
 """m short of its widest at which the gripper still counts as open: gauge and control."""
@@ -35,10 +34,6 @@ class Release(Skill):
 
     def run(self, robot: Robot) -> Run:
         """Open, wait until it is, draw back."""
-        from momantu_skills.manipulation.arm import Arm
-        from momantu_skills.manipulation.config import HandConfig
-        from momantu_skills.manipulation.hand.gripper import open_hand
-
         config = HandConfig()
         holding = self.planning_scene.held is not None
         effector = robot.description.end_effector

@@ -4,19 +4,27 @@ from __future__ import annotations
 
 import math
 from collections.abc import Generator
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
+
+import numpy as np
 
 from momantu_bt.claim import Claim
 from momantu_bt.failure import FailureValue
+from momantu_bt.geometry import Array
+from momantu_bt.lazy import lazily
 from momantu_bt.messages import BaseVelocity
-from momantu_bt.robot import CAMERA_CARRIER, Robot
+from momantu_bt.robot import CAMERA_CARRIER, Robot, read_laser
 from momantu_bt.service import Localization
 from momantu_bt.skill import Failure, In, Needs, Run, Skill
+from momantu_skills.manipulation.scene.service import PlanningSceneService
+from momantu_skills.navigation.control.footprint import discs
+from momantu_skills.navigation.localize.confidence import QUALITY, estimate, is_localized, sigmas
+from momantu_skills.navigation.map.sensing import Rays
 
-if TYPE_CHECKING:
-    import numpy as np
+with lazily():
+    from momantu_skills.manipulation import tucking
+    from momantu_skills.navigation.control import guard
 
-    from momantu_skills.manipulation.scene.service import PlanningSceneService
 
 WIDEN = (0.35, 0.35)
 """m and rad by which the estimate is doubted at first: the most that a robot usually drifts."""
@@ -57,12 +65,8 @@ class Relocalize(Skill):
 
     def run(self, robot: Robot) -> Run:
         """Local first, then global; each is judged at rest."""
-        from momantu_skills.navigation.localize.confidence import QUALITY, is_localized, sigmas
-
         if robot.description.eye_in_hand:
-            from momantu_skills.manipulation.tucking import take_in
-
-            yield from take_in(self, robot, self.planning_scene)
+            yield from tucking.take_in(self, robot, self.planning_scene)
         for stage in (1,) if self.everywhere else (0, 1):
             if stage == 0:
                 self.localization.reset(self.localization.map_from_base, *WIDEN)
@@ -88,8 +92,6 @@ class Relocalize(Skill):
 
     def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
         """The base is where it is now believed to be, or was no longer believed to be."""
-        from momantu_skills.navigation.localize.confidence import estimate
-
         if failure is not None and failure.code != "NOT_LOCALIZED":
             return None
         return estimate(self.localization)
@@ -112,7 +114,7 @@ class Relocalize(Skill):
                 return
 
     def _turn_to(
-        self, robot: Robot, angle: float, way: float, discs: np.ndarray, end: float
+        self, robot: Robot, angle: float, way: float, discs: Array, end: float
     ) -> Generator[str, None, bool]:
         """Whether the turn towards one side was ended by its angle or its time, not by a hit."""
         before, turned = robot.state().odom_from_base.yaw, 0.0
@@ -130,22 +132,14 @@ class Relocalize(Skill):
             before = yaw
         return True
 
-    def _discs(self, robot: Robot) -> np.ndarray:
+    def _discs(self, robot: Robot) -> Array:
         """Of base, arm and load (m, 3): the walls that a scan shows are as high as they are."""
-        import numpy as np
-
-        from momantu_skills.navigation.control.footprint import discs
-
         return discs(np.asarray(self.planning_scene.footprint(robot.state())))
 
-    def _share(self, robot: Robot, rate: float, discs: np.ndarray) -> float:
-        from momantu_bt.robot import read_laser
-        from momantu_skills.navigation.control.guard import safe_share
-        from momantu_skills.navigation.map.sensing import Rays
-
+    def _share(self, robot: Robot, rate: float, discs: Array) -> float:
         scan = read_laser(robot)
         base = robot.description.base_frame
         rays = Rays.from_scan(scan, self.frames.lookup(base, scan.frame, scan.stamp))
         state = robot.state()
         speed = (state.linear, state.angular)
-        return safe_share((0.0, rate), speed, robot.description.base, discs, rays.points())
+        return guard.safe_share((0.0, rate), speed, robot.description.base, discs, rays.points())

@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from momantu_bt.claim import Claim, JointsAt
 from momantu_bt.failure import Failure, FailureValue
 from momantu_bt.formats.names import nearest
 from momantu_bt.geometry import Array
+from momantu_bt.lazy import lazily
 from momantu_bt.messages import JointPositions, JointTrajectory
 from momantu_bt.robot import ARM, CAMERA_CARRIER, Robot
 from momantu_bt.skill import Compute, In, Needs, Run, Skill, compute
+from momantu_skills.manipulation.arm import Arm
+from momantu_skills.manipulation.scene.service import PlanningSceneService
 
-if TYPE_CHECKING:
-    from momantu_skills.manipulation.arm import Arm
-    from momantu_skills.manipulation.scene.service import PlanningSceneService
+with lazily():
+    from momantu_skills.gaze import unseen_ways
+
 
 THINKING = 0.2
 """s that planning is given: several times its median."""
@@ -44,8 +47,6 @@ class ResetPose(Skill):
 
     def run(self, robot: Robot) -> Run:
         """Look, plan, move; the camera turns at the same time."""
-        from momantu_skills.manipulation.arm import Arm
-
         wanted = self._wanted(robot)
         arm = Arm(self, robot, self.planning_scene)
         yield from arm.settle()
@@ -62,13 +63,11 @@ class ResetPose(Skill):
         self, arm: Arm, goal: Array
     ) -> Generator[str | Compute, Any, Sequence[JointTrajectory]]:
         """The way to the pose; with something in the hand, where the camera has looked."""
-        from momantu_skills.gaze.unseen_ways import planned_in_sight
-
         held = self.planning_scene.held
         if held is None:
             return (yield from compute(lambda: arm.route([goal], held), THINKING))
         return (
-            yield from planned_in_sight(
+            yield from unseen_ways.planned_in_sight(
                 arm, lambda: arm.route([goal], held), lambda way: way, THINKING
             )
         )

@@ -11,10 +11,15 @@ from numpy.typing import ArrayLike
 from momantu_bt.failure import Failure
 from momantu_bt.frames import ODOM
 from momantu_bt.geometry import Array
+from momantu_bt.lazy import lazily
 from momantu_bt.messages import JointPositions, RobotState
 from momantu_bt.robot import CAMERA_CARRIER, Robot, RobotDescription
 from momantu_bt.skill import Run, Skill
 from momantu_skills.perception.camera.aiming import aim, view_error
+
+with lazily():
+    from momantu_skills.gaze import arm_camera
+
 
 WITHIN = 0.10
 """rad off the optical axis that still counts as looking at a point: a tenth of most views."""
@@ -60,9 +65,9 @@ def _reach_out(
     skill: Skill, robot: Robot, point: Array, within: float, around: Sequence[Array]
 ) -> Run:
     """Move the arm; the planner is loaded here, for robots with a head need none to look."""
-    from momantu_skills.gaze.arm_camera import gaze
-
-    yield from gaze(skill, robot, skill.services["planning_scene"], point, within, around)
+    yield from arm_camera.gaze(
+        skill, robot, skill.services["planning_scene"], point, within, around
+    )
 
 
 def _turn(skill: Skill, robot: Robot, carrier: str, point: Array, within: float) -> Run:

@@ -15,7 +15,7 @@ from momantu_bt.robot import CameraSensor, Robot
 from momantu_bt.service import PlanningScene
 from momantu_bt.skill import Compute, Skill
 from momantu_skills.gaze.look_at import look_at
-from momantu_skills.perception.camera.views import Snapshot, take
+from momantu_skills.perception.camera.pictures import Snapshot, take
 
 OFF_AXIS = math.radians(12.0)
 """How far from the middle of the picture a looked-at point may lie: it is still well inside."""

@@ -15,6 +15,7 @@ from momantu_bt.failure import Failure
 from momantu_bt.geometry import Array
 from momantu_bt.messages import JointTrajectory
 from momantu_bt.skill import Compute, compute
+from momantu_skills.gaze.look_at import look_at
 from momantu_skills.manipulation.arm import Arm
 from momantu_skills.manipulation.scene.surroundings import within
 
@@ -50,8 +51,6 @@ def planned_in_sight(
     way: of a plan, one trajectory after the other. thinking: s that one planning is given. A
     camera that the hand carries is brought to where it sees the way, and the plan begins there.
     """
-    from momantu_skills.gaze.look_at import look_at
-
     made: P = yield from compute(plan, thinking)
     for _ in range(FURTHER):
         doubtful = blind_spot(arm, way(made))

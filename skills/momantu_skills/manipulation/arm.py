@@ -9,17 +9,19 @@ import numpy as np
 
 from momantu_bt.failure import Failure
 from momantu_bt.geometry import Array, Transform
+from momantu_bt.lazy import lazily
 from momantu_bt.messages import JointTrajectory, RobotState
 from momantu_bt.robot import ARM, Robot
 from momantu_bt.service import HeldObject
 from momantu_bt.skill import Skill
 from momantu_skills.manipulation.config import HandConfig, PlanningConfig
-from momantu_skills.manipulation.model.collision import CollisionWorld, Obstacle
 from momantu_skills.manipulation.motion.following import STILL, Watch, follow
-from momantu_skills.manipulation.motion.planner import Planner, Valid, escape
-from momantu_skills.manipulation.motion.timing import timed
-from momantu_skills.manipulation.scene.scene import Cut, Scene
 from momantu_skills.manipulation.scene.service import PlanningSceneService
+
+with lazily():
+    from momantu_skills.manipulation.model import collision
+    from momantu_skills.manipulation.motion import planner, timing
+    from momantu_skills.manipulation.scene import scene
 
 SLOW = 2.0
 """Scaled rad per rad or m above which a joint is slow (see Group.scale)."""
@@ -38,10 +40,10 @@ class Arm:
 
     def __init__(self, skill: Skill, robot: Robot, service: PlanningSceneService) -> None:
         self.skill, self.robot, self.service = skill, robot, service
-        self.scene: Scene = service.scene
+        self.scene: scene.Scene = service.scene
         self.planning, self.hand = PlanningConfig(), HandConfig()
         self.group = self.scene.model.group
-        self.planner = Planner(self.group, skill.random, self.planning)
+        self.planner = planner.Planner(self.group, skill.random, self.planning)
 
     @property
     def state(self) -> RobotState:
@@ -109,8 +111,8 @@ class Arm:
         held: HeldObject | None,
         *,
         width: float | None = None,
-        cut: Cut | None = None,
-        extra: tuple[Obstacle, ...] = (),
+        cut: scene.Cut | None = None,
+        extra: tuple[collision.Obstacle, ...] = (),
     ) -> list[JointTrajectory]:
         """Trajectories, one after the other, from here to the first reachable of `goals`.
 
@@ -122,7 +124,7 @@ class Arm:
             Failure: NO_PLAN or START_IN_COLLISION.
         """
 
-        def world(clearance: float) -> CollisionWorld:
+        def world(clearance: float) -> collision.CollisionWorld:
             return self.scene.world(state, held, clearance, width=width, cut=cut, extra=extra)
 
         state, start = self.state, self.joints
@@ -139,7 +141,11 @@ class Arm:
         raise self._no_plan(transit, goals)
 
     def _path(
-        self, world: CollisionWorld, held: HeldObject | None, start: Array, goals: Sequence[Array]
+        self,
+        world: collision.CollisionWorld,
+        held: HeldObject | None,
+        start: Array,
+        goals: Sequence[Array],
     ) -> Array | None:
         """A path on which what is held stays upright, or any path where there is no such one."""
         if not world.free(start):
@@ -151,7 +157,7 @@ class Arm:
 
     def trajectory(self, path: Array, tip_speed: float | None = None) -> JointTrajectory:
         """The fastest trajectory along a path; see `timed`."""
-        return timed(self.group, path, self.planning, tip_speed)
+        return timing.timed(self.group, path, self.planning, tip_speed)
 
     def follow(
         self, trajectory: JointTrajectory, phase: str, until: Watch | None = None
@@ -212,8 +218,12 @@ class Arm:
         return _lean(self.group.tip_matrix(q)[:3, :3], tip_from_object)
 
     def _upright(
-        self, world: CollisionWorld, held: HeldObject | None, start: Array, goals: Sequence[Array]
-    ) -> Valid:
+        self,
+        world: collision.CollisionWorld,
+        held: HeldObject | None,
+        start: Array,
+        goals: Sequence[Array],
+    ) -> planner.Valid:
         """Free, and what is held leans no more than configured, or than start and goals ask."""
         if held is None:
             return world.free
@@ -228,10 +238,14 @@ class Arm:
         return valid
 
     def _escape(
-        self, state: RobotState, start: Array, held: HeldObject | None, world: CollisionWorld
+        self,
+        state: RobotState,
+        start: Array,
+        held: HeldObject | None,
+        world: collision.CollisionWorld,
     ) -> Array:
         bare = self.scene.world(state, held, 0.0, held_on_support=True)
-        path = escape(self.group, start, world, bare, self.skill.random)
+        path = planner.escape(self.group, start, world, bare, self.skill.random)
         if path is None:
             pairs = ", ".join(f"{a} with {b}" for a, b in bare.touching(start)[:3])
             raise Failure(
@@ -242,17 +256,17 @@ class Arm:
             )
         return path
 
-    def _checked(self, path: Array, world: CollisionWorld) -> list[JointTrajectory]:
+    def _checked(self, path: Array, world: collision.CollisionWorld) -> list[JointTrajectory]:
         """One trajectory that rounds corners where it may, or one per straight piece."""
         if len(path) == 2:
             return [self.trajectory(path)]
         for radius in self.planning.rounding:
-            whole = timed(self.group, path, self.planning, rounding=radius)
+            whole = timing.timed(self.group, path, self.planning, rounding=radius)
             if world.path_free(whole.positions):
                 return [whole]
         return [self.trajectory(path[i : i + 2]) for i in range(len(path) - 1)]
 
-    def _no_plan(self, world: CollisionWorld, goals: Sequence[Array]) -> Failure:
+    def _no_plan(self, world: collision.CollisionWorld, goals: Sequence[Array]) -> Failure:
         touching = [world.touching(goal) for goal in goals]
         if all(touching):
             a, b = touching[0][0]

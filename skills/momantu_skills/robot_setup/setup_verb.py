@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from momantu_bt.errors import ExitCode
 from momantu_bt.files import OutputError, write_whole
+from momantu_bt.lazy import lazily
+from momantu_bt.robots import RobotFileError, read_robot
 
-if TYPE_CHECKING:
-    from momantu_skills.robot_setup.find.proposal import Proposal
+with lazily():
+    from momantu_skills.robot_setup.find import proposal
+    from momantu_skills.robot_setup.write import summary, writer
+
 
 FILE = "robot.yaml"
 
@@ -41,21 +45,19 @@ def setup(
       momantu-bt robots setup my_robot.urdf.xacro -o robots/my_robot
       momantu-bt robots setup my_robot.urdf --samples 50000 --force
     """
-    from momantu_skills.robot_setup.find.proposal import propose
-
     if output is not None:
         _check_free(output / FILE, force)
-    proposal = propose(urdf, samples=samples, seed=seed)
-    folder = output or Path(proposal.name)
+    found = proposal.propose(urdf, samples=samples, seed=seed)
+    folder = output or Path(found.name)
     path = folder / FILE
     _check_free(path, force)
-    text, fill_in = _text(proposal, folder)
+    text, fill_in = _text(found, folder)
     write_whole(path, text, folders=True)
     wrong = _read_again(path)
     if as_json:
-        typer.echo(json.dumps(_plain(proposal, path, fill_in, wrong), indent=2))
+        typer.echo(json.dumps(_plain(found, path, fill_in, wrong), indent=2))
     else:
-        _say(proposal, path, fill_in, wrong)
+        _say(found, path, fill_in, wrong)
     return ExitCode.FAILURE if fill_in or wrong else ExitCode.SUCCESS
 
 
@@ -65,16 +67,12 @@ def _check_free(path: Path, force: bool) -> None:
         raise OutputError(f"{path} is there already; --force writes over it, -o FOLDER elsewhere")
 
 
-def _text(proposal: Proposal, folder: Path) -> tuple[str, tuple[str, ...]]:
-    from momantu_skills.robot_setup.write.writer import missing, robot_file
-
-    return robot_file(proposal, folder), missing(proposal)
+def _text(found: proposal.Proposal, folder: Path) -> tuple[str, tuple[str, ...]]:
+    return writer.robot_file(found, folder), writer.missing(found)
 
 
 def _read_again(path: Path) -> str:
     """What the reader says to the file; empty when it takes it."""
-    from momantu_bt.robots import RobotFileError, read_robot
-
     try:
         read_robot(path)
     except RobotFileError as error:
@@ -82,18 +80,16 @@ def _read_again(path: Path) -> str:
     return ""
 
 
-def _plain(proposal: Proposal, path: Path, fill_in: tuple[str, ...], wrong: str) -> dict[str, Any]:
-    from momantu_skills.robot_setup.write.summary import plain
+def _plain(
+    found: proposal.Proposal, path: Path, fill_in: tuple[str, ...], wrong: str
+) -> dict[str, Any]:
+    return {"file": str(path), **summary.plain(found), "fill_in": list(fill_in), "reader": wrong}
 
-    return {"file": str(path), **plain(proposal), "fill_in": list(fill_in), "reader": wrong}
 
-
-def _say(proposal: Proposal, path: Path, fill_in: tuple[str, ...], wrong: str) -> None:
-    from momantu_skills.robot_setup.write.summary import lines
-
-    for line in lines(proposal):
+def _say(found: proposal.Proposal, path: Path, fill_in: tuple[str, ...], wrong: str) -> None:
+    for line in summary.lines(found):
         typer.echo(line)
-    for note in proposal.notes:
+    for note in found.notes:
         typer.echo(f"note         {note}")
     for what in fill_in:
         typer.echo(f"FILL IN      {what}")

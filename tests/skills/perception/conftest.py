@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import pytest
-from momantu_skills.perception.camera.views import Snapshot, View, see
+from momantu_skills.perception.camera.pictures import Snapshot, View, see
 from momantu_skills.perception.geometry.regions import Region, disc
 
 from momantu_bt.geometry import Transform

@@ -7,7 +7,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from momantu_skills.robot_setup.check_verb import check, check_robot
+from momantu_skills.robot_setup.check.robot import check_robot
+from momantu_skills.robot_setup.check_verb import check
 from momantu_skills.robot_setup.find.proposal import Proposal
 from momantu_skills.robot_setup.write.writer import robot_file
 from momantu_worlds.robots import fetch

@@ -5,19 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 from momantu_bt.failure import FRAME_UNKNOWN, Failure
 from momantu_bt.frames import MAP, ODOM, FrameBuffer
 from momantu_bt.geometry import Array, Transform
+from momantu_bt.lazy import lazily
 from momantu_bt.messages import DetectedObject, RobotState, SupportPlane
 from momantu_bt.robot import Robot
 from momantu_bt.service import HeldObject, Service, ServiceContext
 from momantu_skills.manipulation.config import SceneConfig
 
-if TYPE_CHECKING:
-    from momantu_skills.manipulation.scene.scene import Scene
-    from momantu_skills.manipulation.scene.site_obstacles import FloorPlan
+with lazily():
+    from momantu_skills.manipulation.scene import scene, site_obstacles, surroundings
 
 
 class PlanningSceneService(Service):
@@ -35,14 +35,12 @@ class PlanningSceneService(Service):
         self.frames: FrameBuffer = context.frames
         self.site = context.site
         self.holding = Holding(self.config)
-        self.scene: Scene = _scene(context, self.config)
+        self.scene: scene.Scene = _scene(context, self.config)
 
     @cached_property
-    def floor_plan(self) -> FloorPlan:
+    def floor_plan(self) -> site_obstacles.FloorPlan:
         """What the site's maps know of."""
-        from momantu_skills.manipulation.scene.site_obstacles import FloorPlan
-
-        return FloorPlan(self.site, self.frames)
+        return site_obstacles.FloorPlan(self.site, self.frames)
 
     def update(self, robot: Robot, now: float) -> None:
         """Judge anew what is held."""
@@ -92,9 +90,6 @@ class PlanningSceneService(Service):
 
     def _take_over_site(self) -> None:
         """The site's surfaces, and what hangs over them; none while nobody knows where it is."""
-        from momantu_skills.manipulation.scene.site_obstacles import overhead_of
-        from momantu_skills.manipulation.scene.surroundings import known_support
-
         self.scene.known = self.scene.overhead = ()
         try:
             odom_from_map = self.frames.lookup(ODOM, MAP)
@@ -103,8 +98,10 @@ class PlanningSceneService(Service):
                 raise
             return
         surfaces = self.site.surfaces.values()
-        self.scene.known = tuple(known_support(s, odom_from_map) for s in surfaces)
-        self.scene.overhead = tuple(o for s in surfaces for o in overhead_of(s, odom_from_map))
+        self.scene.known = tuple(surroundings.known_support(s, odom_from_map) for s in surfaces)
+        self.scene.overhead = tuple(
+            o for s in surfaces for o in site_obstacles.overhead_of(s, odom_from_map)
+        )
 
     def footprint(self, state: RobotState, below: float = math.inf) -> Array:
         """Convex outline (k, 2) of base, arm and held object on the floor, base frame, m.
@@ -118,10 +115,8 @@ class PlanningSceneService(Service):
         return self.scene.is_robot(points, state, self.held)
 
 
-def _scene(context: ServiceContext, config: SceneConfig) -> Scene:
-    from momantu_skills.manipulation.scene.scene import Scene
-
-    return Scene(context.description, config)
+def _scene(context: ServiceContext, config: SceneConfig) -> scene.Scene:
+    return scene.Scene(context.description, config)
 
 
 class Holding:

@@ -8,16 +8,20 @@ import numpy as np
 
 from momantu_bt.frames import MAP, ODOM
 from momantu_bt.geometry import Array, Pose2D, Transform
+from momantu_bt.lazy import lazily
 from momantu_bt.messages import BaseVelocity, JointPositions
 from momantu_bt.robot import CAMERA_CARRIER, CameraSensor, Robot, read_camera, read_laser
 from momantu_bt.service import Localization, PlanningScene
 from momantu_bt.skill import Run, Skill
 from momantu_skills.navigation.config import NavigationConfig
 from momantu_skills.navigation.control.footprint import discs, half_width
-from momantu_skills.navigation.control.guard import safe_share
-from momantu_skills.navigation.map.costmap import Costmap
 from momantu_skills.navigation.map.maps import read_map
 from momantu_skills.navigation.map.sensing import Rays, obstacles_and_floor
+from momantu_skills.perception.camera.aiming import aim
+
+with lazily():
+    from momantu_skills.navigation.control import guard
+    from momantu_skills.navigation.map import costmap
 
 GAZE = (2.0, 0.0, 0.1)
 """Where the camera looks while driving, base frame, m: two metres ahead, at the floor."""
@@ -57,7 +61,7 @@ class Vehicle:
             raise ValueError(f"site {site.name!r} has no map_file to drive in")
         overhang = None if site.overhang_file is None else read_map(site.overhang_file)
         self.config, self.limits = config, description.base
-        self.costmap = Costmap(read_map(site.map_file), overhang, config)
+        self.costmap = costmap.Costmap(read_map(site.map_file), overhang, config)
         self.localization = localization
         self._skill, self._robot, self._scene = skill, robot, scene
         self._frames, self._clock = skill.frames, skill.clock
@@ -151,8 +155,6 @@ class Vehicle:
         if self._head is None:
             return None
         joints = description.actuators[self._head].joints
-        from momantu_skills.perception.camera.aiming import aim
-
         aimed = aim(
             self._frames.kinematics,
             description.camera()[1].frame,
@@ -165,7 +167,7 @@ class Vehicle:
 
     def drive(self, linear: float, angular: float, phase: str) -> Run:
         """Command the base for one control period, as far as the newest scan allows."""
-        share = safe_share(
+        share = guard.safe_share(
             (linear, angular), self.speed(), self.limits, self.base_discs, self._hits
         )
         period = self.config.period

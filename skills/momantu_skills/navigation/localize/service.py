@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 from momantu_bt.failure import SENSOR_DEAD, Failure
 from momantu_bt.geometry import Array, Pose2D, Transform
+from momantu_bt.lazy import lazily
 from momantu_bt.robot import Robot, read_laser
 from momantu_bt.service import Service, ServiceContext
 from momantu_skills.navigation.config import LocalizationConfig, configured
+from momantu_skills.navigation.localize.confidence import sigmas
+from momantu_skills.navigation.map.maps import read_map
+from momantu_skills.navigation.map.sensing import Rays
 
-if TYPE_CHECKING:
-    from momantu_skills.navigation.localize.localizer import Localizer
-    from momantu_skills.navigation.map.sensing import Rays
+with lazily():
+    from momantu_skills.navigation.localize import localizer
+
 
 MOVING = 1e-4
 """Odometry per update below which the base rests, m and rad."""
@@ -38,16 +42,13 @@ class LocalizationService(Service):
 
     def start(self, context: ServiceContext) -> None:
         """Read the map and begin around the site's start pose."""
-        from momantu_skills.navigation.localize.localizer import Localizer
-        from momantu_skills.navigation.map.maps import read_map
-
         if context.site.map_file is None:
             raise ValueError(f"site {context.site.name!r} has no map_file to be localized in")
         self._config = configured(LocalizationConfig, context.parameters, "localization")
         self._frames = context.frames
         self._laser = context.description.laser()[0]
         self._base = context.description.base_frame
-        self._localizer: Localizer = Localizer(
+        self._localizer: localizer.Localizer = localizer.Localizer(
             read_map(context.site.map_file), self._config, context.random
         )
         self._odom_from_base: Pose2D | None = None
@@ -96,8 +97,6 @@ class LocalizationService(Service):
         self._localizer.observe(rays)
 
     def _rays(self, robot: Robot) -> Rays:
-        from momantu_skills.navigation.map.sensing import Rays
-
         scan = read_laser(robot, self._laser)
         if self._base_from_laser is None:
             self._base_from_laser = self._frames.lookup(self._base, scan.frame, scan.stamp)
@@ -130,8 +129,6 @@ class LocalizationService(Service):
 
     def published(self) -> Mapping[str, Any]:
         """quality, sigma_position in m, sigma_yaw in rad, pose in the map."""
-        from momantu_skills.navigation.localize.confidence import sigmas
-
         position, yaw = sigmas(self.covariance)
         return {
             "quality": self.quality,

@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from ruamel.yaml import YAML
+from ruamel.yaml.error import YAMLError
 
 from momantu_bt.geometry import Array
 from momantu_bt.messages import frozen
@@ -87,9 +89,6 @@ def _read_map(path: Path) -> GridMap:
 
 
 def _read_yaml(path: Path) -> dict[str, Any]:
-    from ruamel.yaml import YAML
-    from ruamel.yaml.error import YAMLError
-
     try:
         entry = YAML(typ="safe", pure=True).load(path.read_text(encoding="utf-8"))
     except OSError as error:

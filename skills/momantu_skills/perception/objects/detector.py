@@ -12,7 +12,7 @@ import numpy as np
 from momantu_bt.frames import ODOM
 from momantu_bt.geometry import Array, Pose, Transform, quaternion_from_axis_angle
 from momantu_bt.messages import DetectedObject, ObjectClass
-from momantu_skills.perception.camera.views import View
+from momantu_skills.perception.camera.pictures import View
 from momantu_skills.perception.objects.matching import MatchConfig, score
 from momantu_skills.perception.objects.shapes import Shape, describe
 from momantu_skills.perception.objects.splitting import split

@@ -1,0 +1,57 @@
+"""Everything that can be found wrong with a robot, in order."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from momantu_bt.descriptions.reading import Reading, read_text
+from momantu_bt.findings import Finding, FindingAtKeys, worst_first
+from momantu_bt.formats.places import NOWHERE
+from momantu_bt.robot import RobotDescription
+from momantu_bt.robots import RobotFileError
+from momantu_skills.manipulation.model.arm_model import ArmModel
+from momantu_skills.robot_setup.check.body import (
+    check_footprint,
+    check_hulls,
+    check_limits,
+    check_looks,
+    check_poses,
+    read_urdf,
+)
+from momantu_skills.robot_setup.check.hand import check_hand, check_reach
+from momantu_skills.robot_setup.check.sensors import check_sensors
+from momantu_skills.robot_setup.find.base import find_stand
+from momantu_skills.robot_setup.urdf.body import Body
+from momantu_skills.robot_setup.urdf.skeleton import read_skeleton
+
+
+def check_robot(description: RobotDescription) -> list[Finding]:
+    """All findings about a robot, each at its line of the robot file.
+
+    Raises:
+        SetupError: the URDF is no mechanism, or has a collision shape without volume.
+    """
+    body = Body(read_skeleton(read_urdf(description)), description)
+    stand = find_stand(body)
+    return _located(
+        description,
+        [
+            *check_poses(description, ArmModel(description)),
+            *check_footprint(description, body, stand),
+            *check_limits(description, body),
+            *check_hulls(description, body),
+            *check_looks(description),
+            *check_sensors(description, body),
+            *check_hand(description, body),
+            *check_reach(description, body, stand),
+        ],
+    )
+
+
+def _located(description: RobotDescription, findings: Iterable[FindingAtKeys]) -> list[Finding]:
+    """The findings, each at its line of the robot file, the worst first."""
+    source = description.source
+    if source is None:
+        return worst_first(finding.at(NOWHERE) for finding in findings)
+    reading = Reading(source, read_text(source, RobotFileError), RobotFileError)
+    return worst_first(finding.at(reading.at(finding.keys, key=True)) for finding in findings)
