@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from momantu_bt.plugins import ROBOTS, load
 from momantu_bt.robot import RobotDescription
 
 
@@ -12,7 +13,5 @@ def load_robot(name: str) -> RobotDescription:
         PluginError: there is no such robot; the message names the nearest ones.
         WorldError: its file is wrong.
     """
-    from momantu_bt.plugins import ROBOTS, load
-
     description: RobotDescription = load(ROBOTS, name)()
     return description

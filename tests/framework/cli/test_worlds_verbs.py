@@ -71,6 +71,7 @@ def having(monkeypatch: pytest.MonkeyPatch):
             return world
 
         monkeypatch.setattr("momantu_bt.cli.naming.load", load)
+        monkeypatch.setattr("momantu_bt.robots.named.load", load)
         return world
 
     return put
