@@ -72,5 +72,5 @@ def test_where_a_body_comes_from(name: str, line: str) -> None:
     from momantu_worlds.checking.where import Where
 
     where = Where(PATH)
-    number, _ = where.at(where.body(name))
+    number = where.at(where.body(name)).line
     assert LINES[number - 1].startswith(line)
