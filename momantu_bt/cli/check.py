@@ -61,7 +61,7 @@ def check(
 
 
 @dataclass(frozen=True, slots=True)
-class _Finding:
+class _FileChecked:
     """What is known of one file. unread: why it could not be opened."""
 
     tree: str
@@ -71,11 +71,14 @@ class _Finding:
 
     def as_dict(self) -> dict[str, Any]:
         message = {} if self.unread is None else {"message": self.unread}
-        problems = [problem.as_dict() for problem in self.problems]
+        problems = [
+            {**problem.as_dict(), "help": f"momantu-bt check --explain {problem.code}"}
+            for problem in self.problems
+        ]
         return {"tree": self.tree, "ok": self.ok, **message, "problems": problems}
 
 
-def _checked(tree: str, world: str | None, robot: str | None, *, quiet: bool) -> _Finding:
+def _checked(tree: str, world: str | None, robot: str | None, *, quiet: bool) -> _FileChecked:
     """Check one file, and unless quiet say what is found."""
     try:
         checked = load(tree, world=world, robot=robot)
@@ -83,13 +86,13 @@ def _checked(tree: str, world: str | None, robot: str | None, *, quiet: bool) ->
         if not quiet:
             typer.echo(error.printed(), err=True)
         if isinstance(error, TreeError):
-            return _Finding(tree, False, error.problems)
-        return _Finding(tree, False, unread=str(error))
+            return _FileChecked(tree, False, error.problems)
+        return _FileChecked(tree, False, unread=str(error))
     if not quiet:
         if checked.notes:
             typer.echo(report(checked.notes, checked.document.source), err=True)
         typer.echo(_fine(tree, checked))
-    return _Finding(tree, True, checked.notes)
+    return _FileChecked(tree, True, checked.notes)
 
 
 def _print_json(value: Any) -> None:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict
 from typing import Annotated
 
 import typer
 
 from momantu_bt import plugins
 from momantu_bt.errors import ExitCode
+from momantu_bt.formats.problems import Problem, Severity
 
 
 def promises(
@@ -31,24 +31,24 @@ def promises(
       momantu-bt skills test
       momantu-bt skills test pick place
     """
-    from momantu_bt.testing import Finding, check_skill
+    from momantu_bt.testing import check_skill
 
-    passed, told = True, dict[str, list[Finding]]()
+    passed, told = True, dict[str, list[Problem]]()
     for name in names or plugins.installed(plugins.SKILLS):
         try:
             found = check_skill(plugins.load(plugins.SKILLS, name), seed=seed, halts=halts)
         except plugins.PluginError as error:
             if names and name not in plugins.installed(plugins.SKILLS):
                 raise
-            found = [Finding("broken", str(error))]
+            found = [Problem("broken", str(error))]
         told[name] = found
-        wrong = any(not finding.note for finding in found)
+        wrong = any(finding.severity is not Severity.HINT for finding in found)
         passed = passed and not wrong
         if not as_json:
             typer.echo(f"{'WRONG' if wrong else 'ok   '} {name}")
             for finding in found:
                 typer.echo(f"      {finding}")
     if as_json:
-        shown = {name: [asdict(finding) for finding in found] for name, found in told.items()}
+        shown = {name: [finding.as_dict() for finding in found] for name, found in told.items()}
         typer.echo(json.dumps({"ok": passed, "skills": shown}, indent=2))
     return ExitCode.SUCCESS if passed else ExitCode.FAILURE

@@ -12,7 +12,7 @@ from momantu_bt.faults.catalogue import KINDS
 from momantu_bt.faults.kind import FOR, FaultKind
 from momantu_bt.faults.phase import parse_phase
 from momantu_bt.formats.names import valid_names
-from momantu_bt.formats.places import cells
+from momantu_bt.formats.places import underlined
 from momantu_bt.skill import Port
 from momantu_bt.tree.types import label
 from momantu_bt.tree.values.conversion import convert
@@ -126,6 +126,5 @@ def _wrong(text: str, begin: int, end: int, message: str) -> FaultError:
     """The text, a caret under what is wrong, and why."""
     stretch = text[begin:end]
     begin += len(stretch) - len(stretch.lstrip())
-    marks = "^" * max(1, sum(map(cells, stretch.strip())))
-    gap = " " * sum(map(cells, text[:begin]))
-    return FaultError(f"a fault is not right\n  {text}\n  {gap}{marks} {message}")
+    shown, carets = underlined(text, begin, len(stretch.strip()))
+    return FaultError(f"a fault is not right\n  {shown}\n  {carets} {message}")

@@ -70,7 +70,12 @@ def excerpt(place: Place, text: str, note: str = "") -> str:
     lines = lines_of(text)
     if not 0 < place.line <= len(lines):
         return f"  {note}" if note else ""
-    shown, carets = underlined(lines[place.line - 1], place.column - 1, place.length)
+    return marked(place, lines[place.line - 1], note)
+
+
+def marked(place: Place, line: str, note: str = "") -> str:
+    """As `excerpt`, from the place's line alone."""
+    shown, carets = underlined(line, place.column - 1, place.length)
     number = str(place.line)
     below = f"  {' ' * len(number)} | {carets}{' ' + note if note else ''}"
     return f"  {number} | {shown}\n{below}"

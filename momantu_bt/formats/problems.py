@@ -37,6 +37,12 @@ class Problem:
     hint: str = ""
     severity: Severity = Severity.ERROR
 
+    def __str__(self) -> str:
+        """On one line, without the hint: `t.yaml:3:7: error: no node is called 'pik' [code]`."""
+        place = f"{self.place}: " if self.place != NOWHERE else ""
+        code = f" [{self.code}]" if self.code else ""
+        return f"{place}{self.severity.label}: {self.message}{code}"
+
     def as_dict(self) -> dict[str, Any]:
         """Plain data for JSON."""
         return {
@@ -71,8 +77,5 @@ def show(problem: Problem, source: Mapping[str, str]) -> str:
       3 |     - pik: $can
         |       ^^^ did you mean pick?
     """
-    place = f"{problem.place}: " if problem.place != NOWHERE else ""
-    code = f" [{problem.code}]" if problem.code else ""
-    head = f"{place}{problem.severity.label}: {problem.message}{code}"
     below = excerpt(problem.place, source.get(problem.place.file, ""), problem.hint)
-    return f"{head}\n{below}" if below else head
+    return f"{problem}\n{below}" if below else str(problem)

@@ -9,10 +9,11 @@ from pathlib import Path
 from lxml import etree
 
 from momantu_bt.formats.places import KeyPath
+from momantu_bt.formats.problems import errors
 from momantu_bt.robot_simulation import BaseJoints
 from momantu_bt.robots.cache import keep_urdf
 from momantu_bt.robots.errors import PartError
-from momantu_bt.robots.inertia import inertia_remarks
+from momantu_bt.robots.inertia import inertia_problems
 from momantu_bt.robots.joining import KEPT, VIRTUAL_JOINTS, Joining
 from momantu_bt.robots.limits import complete_limits
 from momantu_bt.robots.meshes import locate_meshes, replace_meshes, users_folder, write_paths
@@ -100,10 +101,9 @@ def _unfit(part: LoadedPart) -> Iterator[PartError]:
         root_link(part)
     except PartError as error:
         yield error
-    for remark in inertia_remarks(part.root):
-        if remark.error:
-            message = f"{part.where(remark.line)}: {remark.message}; {remark.cure}"
-            yield PartError(("parts", part.name), message)
+    for problem in errors(inertia_problems(part.root)):
+        message = f"{part.where(problem.place.line)}: {problem.message}; {problem.hint}"
+        yield PartError(("parts", part.name), message)
 
 
 def _meshes(parts: list[LoadedPart], folder: Path) -> list[Mapping[str, Path]]:

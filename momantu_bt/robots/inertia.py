@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 from lxml import etree
 
+from momantu_bt.formats.places import Place
+from momantu_bt.formats.problems import Problem, Severity
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.robots.parts import line_of
 from momantu_bt.robots.structure import linked
@@ -19,32 +20,21 @@ DENSITY = 500.0
 """kg per m3 of the box around a part: housings of light metal with motors, and much air."""
 
 
-@dataclass(frozen=True, slots=True)
-class Remark:
-    """What is wrong with a link's mass or inertia.
+def inertia_problems(root: etree._Element, file: str = "") -> list[Problem]:
+    """What is wrong with the mass or inertia of a URDF's links, in their order, at their lines.
 
-    error: physics would have to invent something; else it is only unlikely. code: what kind.
-    line: of the link in its file. cure: what to write.
+    An error: physics would have to invent something. A warning: it is only unlikely.
+    file: the URDF's name in the places.
     """
-
-    error: bool
-    code: str
-    link: str
-    line: int
-    message: str
-    cure: str
-
-
-def inertia_remarks(root: etree._Element) -> list[Remark]:
-    """Remarks about every link of a URDF's `robot` element, in its order."""
     moving = {
         linked(joint, "child") for joint in root.findall("joint") if joint.get("type") != "fixed"
     }
     found = []
     for link in root.findall("link"):
-        name, line = str(link.get("name")), line_of(link)
-        for error, code, message, cure in _of_link(link, name in moving):
-            found.append(Remark(error, code, name, line, message, cure))
+        name, place = str(link.get("name")), Place(file, line_of(link))
+        for error, code, message, hint in _of_link(link, name in moving):
+            severity = Severity.ERROR if error else Severity.WARNING
+            found.append(Problem(code, message, place, hint, severity))
     return found
 
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, TypeAlias
 
+from momantu_bt.formats.places import NOWHERE
+from momantu_bt.formats.problems import Problem, Severity
 from momantu_bt.skill import Skill
 from momantu_bt.testing.clock_rules import ClockWatch, clocks_in_source
-from momantu_bt.testing.finding import Finding
 from momantu_bt.testing.rehearsal import CannotRehearse, Rehearsals, Take
 from momantu_bt.testing.source_rules import codes, documented, ports
 
@@ -22,7 +23,7 @@ def check_skill(
     seed: int = 0,
     max_time: float = 30.0,
     halts: int = 20,
-) -> list[Finding]:
+) -> list[Problem]:
     """Everything that is wrong with a skill, from its source and from running it.
 
     example: keyword arguments of `run_skill` for a seed (inputs, world or robot, site,
@@ -39,7 +40,7 @@ def check_skill(
     try:
         found += _run(rehearsals, halts)
     except CannotRehearse as error:
-        found.append(Finding("not-rehearsed", str(error)))
+        found.append(Problem("not-rehearsed", str(error)))
     finally:
         rehearsals.close()
     return _distinct(found)
@@ -47,21 +48,26 @@ def check_skill(
 
 def assert_skill(skill: type[Skill], example: Example | None = None, **options: Any) -> None:
     """As `check_skill`; AssertionError that lists what is wrong, if anything is."""
-    wrong = [finding for finding in check_skill(skill, example, **options) if not finding.note]
+    wrong = [
+        finding
+        for finding in check_skill(skill, example, **options)
+        if finding.severity is not Severity.HINT
+    ]
     if wrong:
         lines = "\n".join(f"  {finding}" for finding in wrong)
         raise AssertionError(f"{skill.__name__}:\n{lines}")
 
 
-def _distinct(found: list[Finding]) -> list[Finding]:
+def _distinct(found: list[Problem]) -> list[Problem]:
     """Each line told once by each rule: what the source tells, running it would tell again."""
-    first: dict[tuple[str, str], Finding] = {}
+    first: dict[tuple[str, object], Problem] = {}
     for finding in found:
-        first.setdefault((finding.rule, finding.place or finding.message), finding)
+        nowhere = finding.place == NOWHERE
+        first.setdefault((finding.code, finding.message if nowhere else finding.place), finding)
     return list(first.values())
 
 
-def _run(rehearsals: Rehearsals, halts: int) -> Iterator[Finding]:
+def _run(rehearsals: Rehearsals, halts: int) -> Iterator[Problem]:
     with ClockWatch(rehearsals.skill) as watch:
         whole = rehearsals.whole()
     yield from watch.findings()
@@ -71,18 +77,18 @@ def _run(rehearsals: Rehearsals, halts: int) -> Iterator[Finding]:
     yield from _deterministic(whole, rehearsals.whole())
     if whole.ticks == 1 and whole.code is not None:
         sentence = f"it ended with {whole.code} in its first tick: nothing more was tried"
-        yield Finding("not-rehearsed", sentence, note=True)
+        yield Problem("not-rehearsed", sentence, severity=Severity.HINT)
     ticks = _chosen(whole, halts)
     for tick in ticks:
         yield from rehearsals.halted(tick, restart=tick in (ticks[0], ticks[-1]), whole=whole)
     yield from rehearsals.blind().findings("when no sensor answers")
 
 
-def _deterministic(first: Take, second: Take) -> Iterator[Finding]:
+def _deterministic(first: Take, second: Take) -> Iterator[Problem]:
     """Two runs of one seed in two worlds that are alike."""
     difference = first.difference(second)
     if difference:
-        yield Finding("not-deterministic", f"two runs with one seed differ in {difference}")
+        yield Problem("not-deterministic", f"two runs with one seed differ in {difference}")
 
 
 def _chosen(whole: Take, most: int) -> list[int]:

@@ -14,8 +14,9 @@ from typing import Any
 
 import numpy as np
 
+from momantu_bt.formats.places import NOWHERE, Place
+from momantu_bt.formats.problems import Problem
 from momantu_bt.skill import Skill
-from momantu_bt.testing.finding import Finding
 from momantu_bt.testing.source import reached
 
 _TIMES = ("time", "monotonic", "perf_counter", "process_time", "thread_time")
@@ -41,7 +42,7 @@ _SEEDED = frozenset(
 _TYPES = frozenset({"numpy.random.Generator", "numpy.random.BitGenerator"})
 
 
-def clocks_in_source(skill: type[Skill]) -> Iterator[Finding]:
+def clocks_in_source(skill: type[Skill]) -> Iterator[Problem]:
     """Calls in the skill's modules that read another clock or draw unseeded random numbers."""
     for module in reached(skill):
         names = _imports(module.tree)
@@ -53,9 +54,9 @@ def clocks_in_source(skill: type[Skill]) -> Iterator[Finding]:
                     yield _finding(rule, found, module.place(node))
 
 
-def _finding(rule: str, called: str, place: str) -> Finding:
+def _finding(rule: str, called: str, place: Place) -> Problem:
     cure = "ask self.clock" if rule == "wall-clock" else "draw from self.random"
-    return Finding(rule, f"calls {called}: runs would differ; {cure}", place)
+    return Problem(rule, f"calls {called}: runs would differ; {cure}", place)
 
 
 def _imports(tree: ast.Module) -> dict[str, str]:
@@ -104,7 +105,7 @@ class ClockWatch:
 
     def __init__(self, skill: type[Skill]) -> None:
         self._top = skill.__module__.partition(".")[0]
-        self._found: dict[tuple[str, str], str] = {}
+        self._found: dict[tuple[str, str], Place] = {}
         self._before: tuple[Any, Any] = (None, None)
         self._profile: Any = None
 
@@ -117,9 +118,9 @@ class ClockWatch:
     def __exit__(self, *exception: object) -> None:
         sys.setprofile(self._profile)
         if _shared_generators() != self._before:
-            self._found["unseeded-random", "a generator that all share"] = ""
+            self._found["unseeded-random", "a generator that all share"] = NOWHERE
 
-    def findings(self) -> list[Finding]:
+    def findings(self) -> list[Problem]:
         """What was noted."""
         return [_finding(rule, name, place) for (rule, name), place in self._found.items()]
 
@@ -128,7 +129,7 @@ class ClockWatch:
             return
         rule, name = _of_builtin(argument)
         if rule:
-            place = f"{frame.f_code.co_filename}:{frame.f_lineno}"
+            place = Place(frame.f_code.co_filename, frame.f_lineno)
             self._found.setdefault((rule, name), place)
 
 

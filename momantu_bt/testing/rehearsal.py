@@ -10,6 +10,8 @@ from momantu_bt.engine.services import ServiceCycleError, in_order
 from momantu_bt.engine.session import Session
 from momantu_bt.engine.status import RUNNING
 from momantu_bt.failure import SKILL_ERROR, WRONG_TYPE, FailureValue
+from momantu_bt.formats.places import NOWHERE, Place
+from momantu_bt.formats.problems import Problem
 from momantu_bt.messages import plain
 from momantu_bt.plugins import PluginError
 from momantu_bt.record.encode import encode
@@ -17,7 +19,6 @@ from momantu_bt.robot import Robot
 from momantu_bt.skill import Skill
 from momantu_bt.testing.example_inputs import NoExample, example_inputs
 from momantu_bt.testing.example_world import ExampleWorld
-from momantu_bt.testing.finding import Finding
 from momantu_bt.testing.robot import ScriptedRobot
 from momantu_bt.testing.skill_run import SkillResult, run_skill
 from momantu_bt.testing.world import ScriptedWorld
@@ -80,36 +81,36 @@ class Take:
             return "their outputs"
         return ""
 
-    def findings(self, when: str = "") -> Iterator[Finding]:
+    def findings(self, when: str = "") -> Iterator[Problem]:
         """What this run shows to be wrong."""
         said = f" {when}" if when else ""
         if self.escaped:
-            yield Finding("escapes", f"raises {self.escaped}{said}: nothing but Failure may leave")
+            yield Problem("escapes", f"raises {self.escaped}{said}: nothing but Failure may leave")
         elif self.broken and self.result is not None and self.result.failure is not None:
             yield _error(self.result.failure, said)
 
 
-def _error(failure: FailureValue, said: str) -> Finding:
+def _error(failure: FailureValue, said: str) -> Problem:
     """Which rule a SKILL_ERROR or WRONG_TYPE breaks."""
     message = f"{failure.message}{said}"
     if failure.code == WRONG_TYPE:
-        return Finding("wrong-type", message)
+        return Problem("wrong-type", message)
     if "which it does not declare" in failure.message:
-        return Finding("undeclared-code", message)
+        return Problem("undeclared-code", message)
     if "ended without giving output" in failure.message:
-        return Finding("output-never-given", message)
+        return Problem("output-never-given", message)
     if failure.data.get("exception") == "PermissionError":
-        return Finding("undeclared-actuator", message)
-    return Finding("exception", message, _last_line(str(failure.data.get("traceback", ""))))
+        return Problem("undeclared-actuator", message)
+    return Problem("exception", message, _last_line(str(failure.data.get("traceback", ""))))
 
 
-def _last_line(traceback: str) -> str:
-    """`file:line` of where it was raised."""
+def _last_line(traceback: str) -> Place:
+    """Where it was raised."""
     lines = [line.strip() for line in traceback.splitlines() if line.strip().startswith("File ")]
     if not lines:
-        return ""
+        return NOWHERE
     file, line, *_ = lines[-1].removeprefix("File ").split(", ")
-    return f"{file.strip(chr(34))}:{line.removeprefix('line ')}"
+    return Place(file.strip(chr(34)), int(line.removeprefix("line ")))
 
 
 @dataclass
@@ -144,11 +145,11 @@ class Rehearsals:
         robot.dead = set(robot.description.sensors)
         return self._take(arguments)
 
-    def halted(self, tick: int, *, restart: bool, whole: Take) -> Iterator[Finding]:
+    def halted(self, tick: int, *, restart: bool, whole: Take) -> Iterator[Problem]:
         """Halt it at a tick, twice; then let time pass, and perhaps start it anew."""
         arguments = self._arguments()
         robot = _scripted(arguments["world"].robot)
-        found: list[Finding] = []
+        found: list[Problem] = []
         began = len(robot.commands)
 
         def at_tick(count: int, session: Session) -> None:
@@ -163,7 +164,7 @@ class Rehearsals:
             again = self._take({**self._arguments(), "world": arguments["world"]})
             yield from again.findings(f"when it is started again after a halt at tick {tick}")
             if tick == 1 and (again.status, again.code) != (whole.status, whole.code):
-                yield Finding(
+                yield Problem(
                     "restart",
                     f"halted in its first tick and started again it ends with "
                     f"{again.code or again.status}, else with {whole.code or whole.status}",
@@ -237,18 +238,18 @@ def _scripted(robot: Robot) -> ScriptedRobot:
     return robot
 
 
-def _halt(session: Session, robot: ScriptedRobot, began: int, tick: int) -> Iterator[Finding]:
+def _halt(session: Session, robot: ScriptedRobot, began: int, tick: int) -> Iterator[Problem]:
     """Halt twice. What the first halt leaves, the second may not change."""
     session.halt()
     if session.failure is not None:
-        yield Finding("halt", f"halting it at tick {tick}: {session.failure.message}")
+        yield Problem("halt", f"halting it at tick {tick}: {session.failure.message}")
     moving = _moving(robot, began)
     if moving:
-        yield Finding("halt", f"halted at tick {tick} it leaves {moving} with a command")
+        yield Problem("halt", f"halted at tick {tick} it leaves {moving} with a command")
     told = len(robot.commands)
     session.halt()
     if len(robot.commands) != told:
-        yield Finding("halt", f"halting it a second time at tick {tick} commands something")
+        yield Problem("halt", f"halting it a second time at tick {tick} commands something")
 
 
 def _moving(robot: ScriptedRobot, began: int) -> str:
@@ -257,9 +258,9 @@ def _moving(robot: ScriptedRobot, began: int) -> str:
     return ", ".join(name for name, goal in newest.items() if goal is not None)
 
 
-def _stays_still(world: ScriptedWorld, robot: ScriptedRobot, tick: int) -> Iterator[Finding]:
+def _stays_still(world: ScriptedWorld, robot: ScriptedRobot, tick: int) -> Iterator[Problem]:
     told = len(robot.commands)
     for _ in range(round(STILL / TICK)):
         world.step()
     if len(robot.commands) != told:
-        yield Finding("halt", f"it commands something after it was halted at tick {tick}")
+        yield Problem("halt", f"it commands something after it was halted at tick {tick}")

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+from momantu_bt.formats.places import Place
 from momantu_bt.skill import Skill
 
 MOST_MODULES = 500
@@ -25,9 +26,9 @@ class Module:
     tree: ast.Module
     is_package: bool = False
 
-    def place(self, node: ast.AST) -> str:
-        """`file:line` of a part of it."""
-        return f"{self.path}:{getattr(node, 'lineno', 1)}"
+    def place(self, node: ast.AST) -> Place:
+        """The line of a part of it."""
+        return Place(str(self.path), getattr(node, "lineno", 1))
 
 
 def classes(skill: type[Skill]) -> list[tuple[Module, ast.ClassDef]]:

@@ -6,27 +6,27 @@ import ast
 from collections.abc import Iterator
 
 from momantu_bt.failure import ENGINE_CODES
+from momantu_bt.formats.problems import Problem
 from momantu_bt.plugin_checks import objection
 from momantu_bt.plugins import SKILLS
 from momantu_bt.skill import Skill
-from momantu_bt.testing.finding import Finding
 from momantu_bt.testing.source import Module, classes, reached
 
 _GIVEN = {"port_values", "services", "clock", "random", "frames", "site"}
 """Attributes that the engine sets."""
 
 
-def documented(skill: type[Skill]) -> Iterator[Finding]:
+def documented(skill: type[Skill]) -> Iterator[Problem]:
     """What a plug-in needs to be loaded at all, and sentences that a person can read."""
     wrong = objection(SKILLS, "a_skill", skill)
     if wrong is not None:
-        yield Finding("docs", wrong)
+        yield Problem("docs", wrong)
     for code, sentence in skill.failures.items():
         if " " not in sentence.strip():
-            yield Finding("docs", f"{code}: {sentence!r} does not explain it; write a sentence")
+            yield Problem("docs", f"{code}: {sentence!r} does not explain it; write a sentence")
 
 
-def ports(skill: type[Skill]) -> Iterator[Finding]:
+def ports(skill: type[Skill]) -> Iterator[Problem]:
     """Attributes used as if they were ports, inputs written, outputs that are never given."""
     known = {*dir(skill), *_GIVEN}
     uses = list(_attributes(skill))
@@ -36,26 +36,26 @@ def ports(skill: type[Skill]) -> Iterator[Finding]:
         port = skill.ports.get(name)
         if isinstance(node.ctx, ast.Load):
             if name not in known and name not in written:
-                yield Finding("undeclared-port", f"reads self.{name}, which is not a port", place)
+                yield Problem("undeclared-port", f"reads self.{name}, which is not a port", place)
         elif port is not None and port.direction == "in":
-            yield Finding("input-written", f"writes its input {name!r}", place)
+            yield Problem("input-written", f"writes its input {name!r}", place)
         elif port is None and name not in known and not name.startswith("_"):
             message = (
                 f"writes self.{name}, which is not a port: declare it with Out(doc=…), or call it "
                 f"self._{name}"
             )
-            yield Finding("undeclared-port", message, place)
+            yield Problem("undeclared-port", message, place)
     yield from _unused(skill)
 
 
-def codes(skill: type[Skill]) -> Iterator[Finding]:
+def codes(skill: type[Skill]) -> Iterator[Problem]:
     """Failures that its class raises by a code which neither it nor the engine declares."""
     for module, owner in classes(skill):
         for node in ast.walk(owner):
             code = _raised_code(node)
             if code is not None and code not in skill.failures and code not in ENGINE_CODES:
                 message = f"raises {code}, which `failures` does not declare"
-                yield Finding("undeclared-code", message, module.place(node))
+                yield Problem("undeclared-code", message, module.place(node))
 
 
 def _raised_code(node: ast.AST) -> str | None:
@@ -91,7 +91,7 @@ def _is_static(method: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
     return bool(names & {"staticmethod", "classmethod"})
 
 
-def _unused(skill: type[Skill]) -> Iterator[Finding]:
+def _unused(skill: type[Skill]) -> Iterator[Problem]:
     """Outputs that no line gives, inputs that no line reads, in all that the skill reaches."""
     given, read = set[str](), set[str]()
     for module in reached(skill):
@@ -106,6 +106,6 @@ def _unused(skill: type[Skill]) -> Iterator[Finding]:
         return
     for port in skill.ports.values():
         if port.direction == "out" and port.name not in given:
-            yield Finding("output-never-given", f"no line gives the output {port.name!r}")
+            yield Problem("output-never-given", f"no line gives the output {port.name!r}")
         elif port.direction == "in" and port.name not in read:
-            yield Finding("input-never-read", f"no line reads the input {port.name!r}")
+            yield Problem("input-never-read", f"no line reads the input {port.name!r}")

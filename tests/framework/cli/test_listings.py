@@ -243,6 +243,7 @@ def test_a_skill_that_breaks_a_promise_does_not_pass(
     assert main(["skills", "test"]) == 1
     said = capsys.readouterr().out
     assert said.startswith("WRONG odd\n")
-    assert "broken: the skill 'odd'" in said
+    assert "error: the skill 'odd'" in said
+    assert said.endswith("[broken]\n")
     assert main(["skills", "test", "od"]) == 2
     assert "did you mean 'odd'?" in capsys.readouterr().err

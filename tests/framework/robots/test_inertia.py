@@ -8,8 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from lxml import etree
 
+from momantu_bt.formats.problems import Severity
 from momantu_bt.geometry import Array, matrix_from_quaternion, quaternion_from_rpy
-from momantu_bt.robots.inertia import DENSITY, inertia_remarks
+from momantu_bt.robots.inertia import DENSITY, inertia_problems
 
 EDGE = st.floats(0.02, 1.0)
 SHAPE = '<collision><geometry><box size="0.2 0.1 0.3"/></geometry></collision>'
@@ -36,13 +37,13 @@ def test_every_solid_box_in_every_orientation_passes(
 ) -> None:
     principal = mass / 12 * np.diag([y * y + z * z, x * x + z * z, x * x + y * y])
     turned = matrix_from_quaternion(quaternion_from_rpy(*rpy))
-    assert inertia_remarks(robot(inertial(mass, turned @ principal @ turned.T) + SHAPE)) == []
+    assert inertia_problems(robot(inertial(mass, turned @ principal @ turned.T) + SHAPE)) == []
 
 
 @given(st.floats(0.01, 1), st.floats(0.01, 1), st.floats(1.02, 5))
 def test_one_moment_larger_than_both_others_is_unlikely(a: float, b: float, more: float) -> None:
-    (remark,) = inertia_remarks(robot(inertial(1.0, np.diag([a, b, (a + b) * more]))))
-    assert (remark.error, remark.code) == (False, "unlikely-inertia")
+    (problem,) = inertia_problems(robot(inertial(1.0, np.diag([a, b, (a + b) * more]))))
+    assert (problem.severity, problem.code) == (Severity.WARNING, "unlikely-inertia")
 
 
 @pytest.mark.parametrize(
@@ -57,15 +58,16 @@ def test_one_moment_larger_than_both_others_is_unlikely(a: float, b: float, more
     ],
 )
 def test_what_physics_would_invent_is_an_error_of_what_moves(inside: str, code: str) -> None:
-    (moving,) = inertia_remarks(robot(inside))
-    (fixed,) = inertia_remarks(robot(inside, kind="fixed"))
-    assert (moving.error, moving.code, moving.link) == (True, code, "part")
-    assert (fixed.error, fixed.code) == (code == "negative-mass", code)
+    (moving,) = inertia_problems(robot(inside))
+    (fixed,) = inertia_problems(robot(inside, kind="fixed"))
+    assert (moving.severity, moving.code) == (Severity.ERROR, code)
+    assert "'part'" in moving.message
+    assert (fixed.severity is Severity.ERROR, fixed.code) == (code == "negative-mass", code)
 
 
 def test_massless_links_without_shape_are_frames() -> None:
-    assert inertia_remarks(robot("")) == []
-    assert inertia_remarks(robot(MASSLESS)) == []
+    assert inertia_problems(robot("")) == []
+    assert inertia_problems(robot(MASSLESS)) == []
 
 
 @given(EDGE, EDGE, EDGE, st.tuples(*[st.floats(-1, 1)] * 3))
@@ -74,9 +76,9 @@ def test_what_is_proposed_passes_and_weighs_its_box(
 ) -> None:
     origin = f'<origin xyz="{" ".join(str(v) for v in at)}"/>'
     shape = f'<collision>{origin}<geometry><box size="{x} {y} {z}"/></geometry></collision>'
-    (remark,) = inertia_remarks(robot(shape))
-    proposed = remark.cure[remark.cure.index("<") : remark.cure.rindex(">") + 1]
-    assert inertia_remarks(robot(proposed + shape)) == []
+    (problem,) = inertia_problems(robot(shape))
+    proposed = problem.hint[problem.hint.index("<") : problem.hint.rindex(">") + 1]
+    assert inertia_problems(robot(proposed + shape)) == []
     (mass,) = etree.fromstring(proposed).iter("mass")
     (center,) = etree.fromstring(proposed).iter("origin")
     assert float(mass.get("value", "")) == pytest.approx(DENSITY * x * y * z, rel=1e-3)
@@ -89,12 +91,12 @@ def test_the_box_surrounds_cylinders_and_spheres_as_they_lie() -> None:
     cylinder = '<geometry><cylinder radius="0.1" length="2"/></geometry>'
     sphere = '<geometry><sphere radius="0.5"/></geometry>'
     shapes = f"<collision>{lying}{cylinder}</collision><collision>{sphere}</collision>"
-    (remark,) = inertia_remarks(robot(shapes))
-    assert f'mass value="{DENSITY * 2 * 1 * 1.6:.4g}"' in remark.cure
-    assert 'origin xyz="0 0 0.3"' in remark.cure
+    (problem,) = inertia_problems(robot(shapes))
+    assert f'mass value="{DENSITY * 2 * 1 * 1.6:.4g}"' in problem.hint
+    assert 'origin xyz="0 0 0.3"' in problem.hint
 
 
 def test_of_a_mesh_the_formula_is_given() -> None:
     mesh = '<collision><geometry><mesh filename="x.stl"/></geometry></collision>'
-    (remark,) = inertia_remarks(robot(mesh))
-    assert "ixx = m/12 (y*y + z*z)" in remark.cure
+    (problem,) = inertia_problems(robot(mesh))
+    assert "ixx = m/12 (y*y + z*z)" in problem.hint

@@ -9,8 +9,10 @@ from pathlib import Path
 
 import pytest
 
+from momantu_bt.formats.places import Place
+from momantu_bt.formats.problems import Problem, Severity
 from momantu_bt.skill import Skill
-from momantu_bt.testing import Finding, assert_skill, check_skill
+from momantu_bt.testing import assert_skill, check_skill
 
 RIGHT = '''
 """A right skill, and the lines that the tests replace."""
@@ -200,8 +202,8 @@ def skill(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[
         sys.modules.pop(name, None)
 
 
-def rules(findings: list[Finding]) -> set[str]:
-    return {finding.rule for finding in findings if not finding.note}
+def rules(findings: list[Problem]) -> set[str]:
+    return {finding.code for finding in findings if finding.severity is not Severity.HINT}
 
 
 def test_a_right_skill_has_no_findings(skill: Callable[..., type[Skill]]) -> None:
@@ -224,10 +226,8 @@ def test_each_rule_finds_what_breaks_it_and_nothing_else(
 def test_a_finding_names_its_line(skill: Callable[..., type[Skill]]) -> None:
     broken = skill({"# begin": "time.time()"})
     (finding,) = check_skill(broken, halts=1)
-    file, _, line = finding.place.rpartition(":")
-    assert (
-        Path(file).read_text(encoding="utf-8").splitlines()[int(line) - 1].strip() == "time.time()"
-    )
+    lines = Path(finding.place.file).read_text(encoding="utf-8").splitlines()
+    assert lines[finding.place.line - 1].strip() == "time.time()"
 
 
 def test_an_example_gives_what_cannot_be_made(skill: Callable[..., type[Skill]]) -> None:
@@ -243,7 +243,7 @@ def test_an_example_gives_what_cannot_be_made(skill: Callable[..., type[Skill]])
 def test_a_failure_at_once_is_noted_and_is_no_fault(skill: Callable[..., type[Skill]]) -> None:
     kind = skill({"nearest < self.clearance": "nearest > self.clearance"})
     (note,) = check_skill(kind)
-    assert note.note
+    assert note.severity is Severity.HINT
     assert "BLOCKED" in str(note)
     assert_skill(kind)
 
@@ -271,5 +271,5 @@ def test_modules_that_it_imports_are_looked_at(
     monkeypatch.syspath_prepend(tmp_path)
     kind = importlib.import_module("checked_package.skill").Advance
     (finding,) = check_skill(kind, halts=1)
-    assert finding.rule == "wall-clock"
-    assert finding.place == f"{package / 'deep.py'}:5"
+    assert finding.code == "wall-clock"
+    assert finding.place == Place(str(package / "deep.py"), 5)

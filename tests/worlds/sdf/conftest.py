@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from momantu_worlds.sdf.findings import Findings
+from momantu_worlds.sdf.deviations import Deviations
 from momantu_worlds.sdf.importing import Import, import_world
 from momantu_worlds.sdf.read.model import SdfWorld
 from momantu_worlds.sdf.read.uris import search_folders
@@ -49,12 +49,12 @@ def model(tmp_path: Path) -> Callable[..., Path]:
 
 
 @pytest.fixture
-def read(sdf: Callable[..., Path]) -> Callable[..., tuple[SdfWorld, Findings]]:
+def read(sdf: Callable[..., Path]) -> Callable[..., tuple[SdfWorld, Deviations]]:
     """Read what stands in a <world>."""
 
-    def run(inside: str, version: str = "1.9") -> tuple[SdfWorld, Findings]:
-        file, findings = sdf(inside, version), Findings()
-        return read_world(file, search_folders(file, (), {}), findings), findings
+    def run(inside: str, version: str = "1.9") -> tuple[SdfWorld, Deviations]:
+        file, deviations = sdf(inside, version), Deviations()
+        return read_world(file, search_folders(file, (), {}), deviations), deviations
 
     return run
 

@@ -53,8 +53,8 @@ def test_json_is_for_programs(run, box):
     said = json.loads(out)
     assert code == 0
     assert said["bodies"] == ["a"]
-    (finding,) = said["findings"]
-    assert (finding["line"], finding["fate"], finding["subject"]) == (3, "dropped", "world")
+    (deviation,) = said["findings"]
+    assert (deviation["line"], deviation["fate"], deviation["subject"]) == (3, "dropped", "world")
 
 
 def test_nothing_is_overwritten_unasked(run, box, tmp_path):

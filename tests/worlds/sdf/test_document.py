@@ -3,10 +3,12 @@
 from pathlib import Path
 
 import pytest
-from momantu_worlds.sdf.findings import Place, SdfError
+from momantu_worlds.sdf.errors import SdfError
 from momantu_worlds.sdf.read import document
 from momantu_worlds.sdf.read.document import parse_document, read_document
 from momantu_worlds.sdf.read.uris import version_of
+
+from momantu_bt.formats.places import Place
 
 FILE = Path("room.sdf")
 
@@ -20,8 +22,8 @@ def refusal(data: bytes) -> SdfError:
 def test_elements_know_their_places():
     root = parse_document(b"<sdf>\n  <a x='1'> hello <b/></a>\n</sdf>", FILE)
     (a,) = root.children
-    assert (a.place, a.text, a.attributes) == (Place(FILE, 2, 3), "hello", {"x": "1"})
-    assert a.children[0].place == Place(FILE, 2, 19)
+    assert (a.place, a.text, a.attributes) == (Place(str(FILE), 2, 3), "hello", {"x": "1"})
+    assert a.children[0].place == Place(str(FILE), 2, 19)
 
 
 def bomb(levels: int = 20) -> bytes:
@@ -78,8 +80,8 @@ def test_the_message_shows_the_line(tmp_path):
         read_document(file)
     first, shown, caret = str(caught.value).split("\n")
     assert first.startswith(f"{file}:2:")
-    assert shown.strip() == "<world></word>"
-    assert caret.index("^") - 4 == caught.value.place.column - 1
+    assert shown == "  2 |   <world></word>"
+    assert caret.index("^") - len("  2 | ") == caught.value.place.column - 1
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from momantu_worlds.sdf.body.placing import placed_models
-from momantu_worlds.sdf.findings import Findings, SdfError
+from momantu_worlds.sdf.deviations import Deviations
+from momantu_worlds.sdf.errors import SdfError
 
 from momantu_bt.geometry import Transform
 
@@ -30,7 +31,7 @@ def matrix(pose):
 
 def links(world):
     """Pose in the world of every link, by its path."""
-    models = placed_models(world, Findings())
+    models = placed_models(world, Deviations())
     inner = (one for model in models for one in model.everything())
     return {placed.subject: placed.world_from_link for one in inner for placed in one.links}
 
@@ -157,10 +158,10 @@ STATE = """<model name='m'><pose>9 9 9 0 0 0</pose>
 
 def test_a_saved_state_says_where_models_and_links_are(read):
     world, _ = read(STATE)
-    findings = Findings()
-    models = placed_models(world, findings)
+    deviations = Deviations()
+    models = placed_models(world, deviations)
     inner = [one for model in models for one in model.everything()]
     found = {p.subject: p.world_from_link.position.tolist() for one in inner for p in one.links}
     assert found == {"m/a": [1, 0, 1], "m/b": [7, 7, 7], "m/n/c": [0, 5, 1]}
     assert world.light_states["lamp"] == Transform((0, 0, 3))
-    assert [finding.subject for finding in findings] == ["gone"]
+    assert [deviation.subject for deviation in deviations] == ["gone"]

@@ -5,7 +5,7 @@ import re
 from pathlib import Path
 
 import pytest
-from momantu_worlds.sdf.findings import SdfError
+from momantu_worlds.sdf.errors import SdfError
 from momantu_worlds.sdf.importing import import_world
 
 WORLD = """<sdf version='1.9'>

@@ -8,7 +8,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from momantu_worlds.scenes.file.reader import parse_world
 from momantu_worlds.sdf.body.parts import MeshPart
-from momantu_worlds.sdf.findings import Fate, SdfError
+from momantu_worlds.sdf.deviations import Outcome
+from momantu_worlds.sdf.errors import SdfError
 from momantu_worlds.sdf.importing import import_world
 from momantu_worlds.sdf.read.model import Box, Cylinder
 
@@ -23,7 +24,7 @@ def by_name(found):
 
 
 def whats(found):
-    return [finding.what for finding in found.findings]
+    return [deviation.what for deviation in found.deviations]
 
 
 def read_back(found, tmp_path):
@@ -42,7 +43,7 @@ def test_a_visual_and_a_collision_that_fit_are_one_part(imported, box):
     assert body.still
     assert body.at.position == pytest.approx([4, 5, 1.5])
     assert body.at.yaw == pytest.approx(0.5)
-    assert len(found.findings) == 0
+    assert len(found.deviations) == 0
 
 
 POSE = st.tuples(*[st.floats(-5, 5)] * 3, *[st.floats(-3, 3)] * 3)
@@ -70,7 +71,7 @@ def test_shapes_stand_where_they_stood_and_none_is_lost(sdf, tmp_path, shapes, d
         expected.append(corners(poses, size))
     file = sdf("".join(models))
     found = import_world(file, tmp_path / "room.yaml")
-    gone = sum(finding.fate is Fate.DROPPED for finding in found.findings)
+    gone = sum(deviation.outcome is Outcome.DROPPED for deviation in found.deviations)
     world = read_back(found, tmp_path)
     written = [
         corners((note.at, part.at), part.box)
@@ -170,7 +171,7 @@ def test_friction_is_kept_within_what_is_possible(imported, box, mu, kept):
     surface = f"<surface><friction><ode><mu>{mu}</mu><mu2>{mu}</mu2></ode></friction></surface>"
     found = imported(GROUND + box("b", "1 1 1", "0 0 0.5 0 0 0", extra=surface))
     assert found.world.bodies[0].friction == kept
-    assert bool(len(found.findings)) == (mu != "0.5")
+    assert bool(len(found.deviations)) == (mu != "0.5")
 
 
 def test_the_floor_becomes_z_0(imported, box):
@@ -182,7 +183,7 @@ def test_the_floor_becomes_z_0(imported, box):
     (body,) = found.world.bodies
     assert body.at.position == pytest.approx([0, 0, 0.5])
     assert found.world.ground.color == (0.1, 0.2, 0.3)
-    assert "becomes z = 0" in next(iter(found.findings)).instead
+    assert "becomes z = 0" in next(iter(found.deviations)).instead
 
 
 def test_a_wide_slab_is_the_floor_and_a_narrow_one_stands_on_it(imported, box):

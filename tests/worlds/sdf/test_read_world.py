@@ -1,7 +1,7 @@
 """What a world says is read whole; what is not carried over is listed with its place."""
 
 import pytest
-from momantu_worlds.sdf.findings import SdfError
+from momantu_worlds.sdf.errors import SdfError
 from momantu_worlds.sdf.read import reading
 from momantu_worlds.sdf.read.model import (
     Box,
@@ -39,9 +39,9 @@ def shape_of(world):
 
 @pytest.mark.parametrize(("inside", "geometry"), GEOMETRIES, ids=lambda g: str(g)[:16])
 def test_geometries(read, inside, geometry):
-    world, findings = read(visual(inside))
+    world, deviations = read(visual(inside))
     assert shape_of(world).geometry == geometry
-    assert not len(findings)
+    assert not len(deviations)
 
 
 @pytest.mark.parametrize(
@@ -97,8 +97,8 @@ def test_what_is_not_carried_over_is_listed(read):
           <visual name='v'><geometry><sphere><radius>1</radius></sphere></geometry>
             <transparency>0.5</transparency></visual>
         </link></model>"""
-    _, findings = read(inside)
-    listed = {(finding.subject, finding.what) for finding in findings}
+    _, deviations = read(inside)
+    listed = {(deviation.subject, deviation.what) for deviation in deviations}
     assert listed == {
         ("world", "<physics>"),
         ("world", "<gravity>"),
@@ -114,8 +114,8 @@ def test_what_is_not_carried_over_is_listed(read):
         ("m/l/c", "a heightmap"),
         ("m/l/v", "50% transparent"),
     }
-    assert all(finding.instead for finding in findings)
-    physics = next(finding for finding in findings if finding.what == "<physics>")
+    assert all(deviation.instead for deviation in deviations)
+    physics = next(deviation for deviation in deviations if deviation.what == "<physics>")
     assert (physics.place.line, physics.place.column) == (3, 1)
 
 
@@ -129,8 +129,8 @@ def test_what_says_nothing_is_not_listed(read):
         <visual name='v'><cast_shadows>1</cast_shadows><material><specular>0 0 0 1</specular>
           <emissive>0 0 0 1</emissive></material>
           <geometry><sphere><radius>1</radius></sphere></geometry></visual></link></model>"""
-    _, findings = read(inside)
-    assert list(findings) == []
+    _, deviations = read(inside)
+    assert list(deviations) == []
 
 
 def test_includes_are_found_and_overridden(read, model):
@@ -148,21 +148,21 @@ def test_includes_are_found_and_overridden(read, model):
 
 
 def test_a_missing_model_is_listed_and_the_rest_is_read(read, box):
-    world, findings = read(
+    world, deviations = read(
         "<include><uri>model://none</uri><name>n</name></include>" + box("b", "1 1 1")
     )
-    (finding,) = findings
-    assert (finding.subject, finding.instead) == ("n", "this model is left out")
+    (deviation,) = deviations
+    assert (deviation.subject, deviation.instead) == ("n", "this model is left out")
     assert [m.name for m in world.models] == ["b"]
 
 
 def test_the_sun_and_the_ground_need_no_files(read):
     inside = """<include><uri>model://sun</uri></include>
       <include><uri>https://fuel.gazebosim.org/1.0/o/models/Ground Plane</uri></include>"""
-    world, findings = read(inside)
+    world, deviations = read(inside)
     assert [light.kind for light in world.lights] == [LightKind.SUN]
     assert isinstance(world.models[0].links[0].collisions[0].geometry, Plane)
-    assert list(findings) == []
+    assert list(deviations) == []
 
 
 def test_includes_that_never_end_are_refused(read, model):
@@ -207,9 +207,9 @@ def test_colours_come_from_the_best_source(read, model, tmp_path):
         (f"<script>{own}<name>Own/Hidden</name></script>", None),
         ("<script><name>Gazebo/GREY</name></script><ambient>1 1 1 1</ambient>", (0.62,) * 3 + (1,)),
     ):
-        world, findings = read(visual(sphere, f"<material>{material}</material>"))
+        world, deviations = read(visual(sphere, f"<material>{material}</material>"))
         assert shape_of(world).material.color == color, material
-        assert len(findings) == (color is None)
+        assert len(deviations) == (color is None)
 
 
 def test_friction_is_the_least_of_two_directions(read):
@@ -217,9 +217,9 @@ def test_friction_is_the_least_of_two_directions(read):
       <geometry><sphere><radius>1</radius></sphere></geometry>
       <surface><friction><ode><mu>0.9</mu><mu2>0.5</mu2></ode></friction></surface>
       </collision></link></model>"""
-    world, findings = read(inside)
+    world, deviations = read(inside)
     assert world.models[0].links[0].collisions[0].friction == 0.5
-    assert "0.9 along, 0.5 across" in next(iter(findings)).what
+    assert "0.9 along, 0.5 across" in next(iter(deviations)).what
 
 
 def test_a_state_brings_models_and_takes_some_away(read, box):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from itertools import product
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -21,12 +20,13 @@ from momantu_worlds.sdf.body.level_tops import (
 )
 from momantu_worlds.sdf.body.parts import Part
 from momantu_worlds.sdf.body.settling import FLAT, settled
-from momantu_worlds.sdf.findings import Findings, Place
+from momantu_worlds.sdf.deviations import Deviations
 from momantu_worlds.sdf.mesh.files import Piece
 from momantu_worlds.sdf.mesh.reducing import clustered, count, reduced
 from momantu_worlds.sdf.read.model import Box
 from momantu_worlds.sdf.write.free_floor import HALF_WIDTH, free_floor
 
+from momantu_bt.formats.places import Place
 from momantu_bt.geometry import Array, Transform
 
 CORNERS = np.array(list(product((-0.5, 0.5), repeat=3)))
@@ -43,7 +43,7 @@ def block(
     """A box of which the middle lies at a point, m."""
     part = Part(Box(size), Transform(), visual=visual, hulls=(CORNERS * size,))
     place = Transform.from_rpy(at, (0.0, 0.0, yaw))
-    return ImportedBody("b", "b", Place(Path("w.sdf")), place, (part,), still)
+    return ImportedBody("b", "b", Place("w.sdf"), place, (part,), still)
 
 
 def hulls(*bodies: ImportedBody) -> list[Array]:
@@ -133,8 +133,8 @@ def test_what_lies_flat_is_not_touched_and_all_is_lowered_to_the_floor(
 ) -> None:
     slab = block((1.0, 1.0, thick), (4.0, 1.0, floor + thick / 2), 0.3, visual=visual)
     loose = block((1.0, 1.0, thick), (4.0, 1.0, floor + thick / 2), still=False)
-    findings = Findings()
-    found = list(settled([slab, loose], floor, findings))
+    deviations = Deviations()
+    found = list(settled([slab, loose], floor, deviations))
     flat = thick <= FLAT
     if abs(thick - FLAT) < 1e-6:
         return
@@ -144,7 +144,7 @@ def test_what_lies_flat_is_not_touched_and_all_is_lowered_to_the_floor(
         assert body.at.position[:2] == pytest.approx((4.0, 1.0))
         (part,) = body.parts
         assert part.collision == (not (flat and body.still))
-    assert [finding.fate.value for finding in findings] == (
+    assert [deviation.outcome.value for deviation in deviations] == (
         [] if not flat else ["changed" if visual else "dropped"]
     )
 

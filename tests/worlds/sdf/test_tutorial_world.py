@@ -115,7 +115,7 @@ def test_everything_is_there(room: Path):
 
 
 def test_the_list_says_what_is_different(room: Path):
-    listed = {(f.subject, f.what) for f in imported(room.parent).findings}
+    listed = {(f.subject, f.what) for f in imported(room.parent).deviations}
     assert listed == {
         ("can/link", "friction 100"),
         ("desk_a/l/c", "the triangles of desk.dae"),

@@ -3,8 +3,10 @@
 from pathlib import Path
 
 import pytest
-from momantu_worlds.sdf.findings import Place, SdfError
+from momantu_worlds.sdf.errors import SdfError
 from momantu_worlds.sdf.read.uris import Library, MissingFile, model_file, search_folders
+
+from momantu_bt.formats.places import Place
 
 
 @pytest.fixture
@@ -23,7 +25,7 @@ def folders(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def place(folders: Path) -> Place:
-    return Place(folders / "worlds" / "room.sdf", 7, 3)
+    return Place(str(folders / "worlds" / "room.sdf"), 7, 3)
 
 
 @pytest.fixture

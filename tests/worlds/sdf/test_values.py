@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from momantu_worlds.sdf.findings import SdfError
+from momantu_worlds.sdf.errors import SdfError
 from momantu_worlds.sdf.read.document import parse_document
 from momantu_worlds.sdf.read.values import color_of, flag, lengths, number, pose_of, vector
 from momantu_worlds.sdf.write.writing import rpy

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from momantu_bt.files import write_whole
+from momantu_bt.formats.places import Place
 from momantu_bt.geometry import Pose2D, Transform
 from momantu_worlds.scenes.file.reader import parse_world
 from momantu_worlds.sdf.body.bodies import BodyMaker, ImportedBody, plain_name
@@ -18,7 +19,8 @@ from momantu_worlds.sdf.body.placing import placed_lights, placed_models
 from momantu_worlds.sdf.body.rigid_groups import is_robot, rigid_groups
 from momantu_worlds.sdf.body.settling import settled
 from momantu_worlds.sdf.body.shaping import Shaping
-from momantu_worlds.sdf.findings import Fate, Findings, Place, SdfError
+from momantu_worlds.sdf.deviations import Deviations, Outcome
+from momantu_worlds.sdf.errors import SdfError
 from momantu_worlds.sdf.mesh.assets import Assets
 from momantu_worlds.sdf.read.uris import search_folders
 from momantu_worlds.sdf.read.world import read_world
@@ -40,7 +42,7 @@ class Import:
     world: Imported
     text: str
     assets: Assets
-    findings: Findings
+    deviations: Deviations
 
     def write(self, output: Path) -> int:
         """Write the assets, then the world file; returns how many assets there are.
@@ -68,41 +70,43 @@ def import_world(
     Raises:
         SdfError: the file, or one that it includes, is broken.
     """
-    findings = Findings()
+    deviations = Deviations()
     for folder in (folder for folder in models if not folder.is_dir()):
-        raise SdfError(Place(file), f"--models {folder}: there is no such folder")
-    source = read_world(file, search_folders(file, models, os.environ), findings)
-    placed = placed_models(source, findings)
+        raise SdfError(Place(str(file)), f"--models {folder}: there is no such folder")
+    source = read_world(file, search_folders(file, models, os.environ), deviations)
+    placed = placed_models(source, deviations)
     robot = next((model for model in placed if is_robot(model)), None)
     things = [model for model in placed if model is not robot]
-    ground = find_ground(things, findings)
+    ground = find_ground(things, deviations)
     assets = Assets(f"{plain_name(output.stem)}_assets")
-    maker = BodyMaker(Shaping(assets, findings, heed_up), ground, findings)
+    maker = BodyMaker(Shaping(assets, deviations, heed_up), ground, deviations)
     made = [
         body
         for model in things
-        for group in rigid_groups(model, findings)
+        for group in rigid_groups(model, deviations)
         for body in maker.body(model, group)
     ]
-    bodies = _enough(list(settled(made, ground.height, findings)), findings)
+    bodies = _enough(list(settled(made, ground.height, deviations)), deviations)
     if not bodies and not ground.shapes:
-        raise SdfError(Place(file), _nothing_left(findings))
-    light = lighting(placed_lights(source, placed), source.ambient, ground.height, findings)
+        raise SdfError(Place(str(file)), _nothing_left(deviations))
+    light = lighting(placed_lights(source, placed), source.ambient, ground.height, deviations)
     name, model = plain_name(output.stem), robot.model.name if robot else None
-    site = propose(bodies, _start_of(robot, findings))
+    site = propose(bodies, _start_of(robot, deviations))
     if site.clear < TIGHT:
         near = f"{site.clear:.2f} m around the start"
-        findings.changed(Place(file), "world", near, "no robot turns there; write another start")
+        deviations.changed(
+            Place(str(file)), "world", near, "no robot turns there; write another start"
+        )
     world = Imported(name, file.name, model, bodies, ground, light, site)
-    return Import(world, world_text(world, findings), assets, findings)
+    return Import(world, world_text(world, deviations), assets, deviations)
 
 
-def _start_of(robot: PlacedModel | None, findings: Findings) -> Pose2D | None:
+def _start_of(robot: PlacedModel | None, deviations: Deviations) -> Pose2D | None:
     """Where a robot of the SDF world stood."""
     if robot is None:
         return None
     pose = _base(robot)
-    findings.changed(
+    deviations.changed(
         robot.model.place,
         robot.model.name,
         "a robot: its joints move, and it has sensors or plugins",
@@ -120,15 +124,15 @@ def _base(robot: PlacedModel) -> Transform:
     return first.world_from_link @ back
 
 
-def _nothing_left(findings: Findings) -> str:
+def _nothing_left(deviations: Deviations) -> str:
     """Why there is nothing to write."""
-    gone = [finding for finding in findings if finding.fate is Fate.DROPPED]
+    gone = [deviation for deviation in deviations if deviation.outcome is Outcome.DROPPED]
     why = "".join(f"\n  {f.place}: {f.subject}: {f.what}" for f in gone[:MOST_SAID])
     return f"nothing is left of this world{': what it has is left out' + why if why else ''}"
 
 
-def _enough(bodies: list[ImportedBody], findings: Findings) -> list[ImportedBody]:
+def _enough(bodies: list[ImportedBody], deviations: Deviations) -> list[ImportedBody]:
     for body in bodies[MOST_BODIES:]:
         what = f"a body beyond the first {MOST_BODIES}"
-        findings.dropped(body.place, body.title, what, "left out")
+        deviations.dropped(body.place, body.title, what, "left out")
     return bodies[:MOST_BODIES]

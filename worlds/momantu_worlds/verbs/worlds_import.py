@@ -12,7 +12,7 @@ import typer
 from momantu_bt.errors import ExitCode, InputError
 from momantu_bt.files import OutputError
 from momantu_bt.world import WorldError
-from momantu_worlds.sdf.findings import Fate, Finding
+from momantu_worlds.sdf.deviations import Deviation, Outcome
 from momantu_worlds.sdf.importing import Import, import_world
 
 
@@ -59,7 +59,7 @@ def import_sdf(
         typer.echo(json.dumps(_plain(found, output), indent=2))
     else:
         _print(found, output, count)
-    listed = strict and len(found.findings) > 0
+    listed = strict and len(found.deviations) > 0
     return ExitCode.FAILURE if listed else ExitCode.SUCCESS
 
 
@@ -70,22 +70,22 @@ def _print(found: Import, output: Path, assets: int) -> None:
         f"wrote {output}: {len(world.bodies)} bodies ({loose} loose), {assets} meshes, "
         f"{len(world.site.surfaces)} surfaces, {len(world.light.suns + world.light.bulbs)} lights"
     )
-    for fate, title in ((Fate.DROPPED, "Left out"), (Fate.CHANGED, "Different")):
-        listed = [finding for finding in found.findings if finding.fate is fate]
+    for outcome, title in ((Outcome.DROPPED, "Left out"), (Outcome.CHANGED, "Different")):
+        listed = [deviation for deviation in found.deviations if deviation.outcome is outcome]
         if listed:
             typer.echo(f"\n{title}")
         for line in _lines(listed):
             typer.echo(f"  {line}")
 
 
-def _lines(findings: list[Finding]) -> list[str]:
+def _lines(deviations: list[Deviation]) -> list[str]:
     """One line for each thing that a file says; where it is said often, how often."""
 
-    def alike(finding: Finding) -> tuple[Path, str, str]:
-        return finding.place.file, finding.what, finding.instead
+    def alike(deviation: Deviation) -> tuple[str, str, str]:
+        return deviation.place.file, deviation.what, deviation.instead
 
-    lines: list[tuple[Finding, str]] = []
-    for _, group in groupby(sorted(findings, key=lambda f: (alike(f), f.place)), alike):
+    lines: list[tuple[Deviation, str]] = []
+    for _, group in groupby(sorted(deviations, key=lambda f: (alike(f), f.place)), alike):
         first, *more = group
         often = f" ({len(more) + 1} times)" if more else ""
         line = f"{first.place}: {first.subject}: {first.what}{often}: {first.instead}"
@@ -102,14 +102,14 @@ def _plain(found: Import, output: Path) -> dict[str, object]:
         "robot": found.world.robot,
         "findings": [
             {
-                "file": str(finding.place.file),
-                "line": finding.place.line,
-                "column": finding.place.column,
-                "subject": finding.subject,
-                "what": finding.what,
-                "instead": finding.instead,
-                "fate": finding.fate.value,
+                "file": deviation.place.file,
+                "line": deviation.place.line,
+                "column": deviation.place.column,
+                "subject": deviation.subject,
+                "what": deviation.what,
+                "instead": deviation.instead,
+                "fate": deviation.outcome.value,
             }
-            for finding in found.findings
+            for deviation in found.deviations
         ],
     }

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from momantu_bt.formats.places import Place
 from momantu_bt.geometry import Array, Transform
 from momantu_worlds.sdf.body.frames import PlacedLink, PlacedModel
 from momantu_worlds.sdf.body.ground import Ground
@@ -15,7 +16,7 @@ from momantu_worlds.sdf.body.parts import Part, joined
 from momantu_worlds.sdf.body.placing import placed_in_link
 from momantu_worlds.sdf.body.rigid_groups import Group
 from momantu_worlds.sdf.body.shaping import Shaping
-from momantu_worlds.sdf.findings import Findings, Place
+from momantu_worlds.sdf.deviations import Deviations
 
 MOST_PARTS = 500
 """Of one body, as the reader of world files takes them."""
@@ -54,8 +55,8 @@ class ImportedBody:
 class BodyMaker:
     """Makes bodies of one import, each with a name of its own."""
 
-    def __init__(self, shaping: Shaping, ground: Ground, findings: Findings) -> None:
-        self._shaping, self._ground, self._findings = shaping, ground, findings
+    def __init__(self, shaping: Shaping, ground: Ground, deviations: Deviations) -> None:
+        self._shaping, self._ground, self._findings = shaping, ground, deviations
         self._names: set[str] = set()
 
     def body(self, model: PlacedModel, group: Group) -> Iterator[ImportedBody]:

@@ -9,8 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 
+from momantu_bt.formats.places import Place
 from momantu_bt.geometry import Transform
-from momantu_worlds.sdf.findings import Place, SdfError
+from momantu_worlds.sdf.errors import SdfError
 from momantu_worlds.sdf.read.model import Frame, Joint, Link, Model, SdfWorld
 from momantu_worlds.sdf.read.values import Pose
 

@@ -11,7 +11,7 @@ from momantu_bt.geometry import Array, Transform
 from momantu_worlds.sdf.body.frames import PlacedLink, PlacedModel
 from momantu_worlds.sdf.body.parts import Rgb
 from momantu_worlds.sdf.body.placing import placed_in_link
-from momantu_worlds.sdf.findings import Findings
+from momantu_worlds.sdf.deviations import Deviations
 from momantu_worlds.sdf.mesh.assets import mean_color, open_picture
 from momantu_worlds.sdf.read.model import Box, Plane, Shape
 
@@ -52,7 +52,7 @@ class _Level:
     touched: bool
 
 
-def find_ground(models: Iterable[PlacedModel], findings: Findings) -> Ground:
+def find_ground(models: Iterable[PlacedModel], deviations: Deviations) -> Ground:
     """The floor of a world, listed; z = 0 when it has none."""
     owners = [one for model in models for one in model.everything()]
     levels = list(_levels(owners))
@@ -72,7 +72,7 @@ def find_ground(models: Iterable[PlacedModel], findings: Findings) -> Ground:
             moved = f"; it is at z = {height:g} m and becomes z = 0" if abs(height) > CLOSE else ""
             subject = f"{level.placed.subject}/{level.shape.name}"
             kind = type(level.shape.geometry).__name__.lower()
-            findings.changed(level.shape.place, subject, f"a {kind}", f"it is the floor{moved}")
+            deviations.changed(level.shape.place, subject, f"a {kind}", f"it is the floor{moved}")
     seen = [_color(level.shape) for level in reversed(floors) if not level.touched]
     frictions = [level.shape.friction for level in floors if level.shape.friction is not None]
     return Ground(

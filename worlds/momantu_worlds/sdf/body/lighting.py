@@ -9,7 +9,7 @@ import numpy as np
 
 from momantu_bt.geometry import Array, Transform
 from momantu_worlds.sdf.body.parts import Rgb
-from momantu_worlds.sdf.findings import Findings
+from momantu_worlds.sdf.deviations import Deviations
 from momantu_worlds.sdf.read.model import Light, LightKind, Rgba
 
 LAMP = 5.0
@@ -34,7 +34,7 @@ def lighting(
     lights: Iterable[tuple[Light, str, Transform]],
     ambient: Rgba | None,
     height: float,
-    findings: Findings,
+    deviations: Deviations,
 ) -> Lighting:
     """The lights of a world; height: of the floor where they come from, m."""
     suns: list[tuple[Rgb, Rgb]] = []
@@ -43,7 +43,7 @@ def lighting(
         kind, most = (suns, MOST_SUNS) if light.kind is LightKind.SUN else (bulbs, MOST_BULBS)
         if len(kind) == most:
             what = f"a {light.kind} light beyond the first {most}"
-            findings.dropped(light.place, subject, what, "left out")
+            deviations.dropped(light.place, subject, what, "left out")
         elif light.kind is LightKind.SUN:
             suns.append((_three(pose.rotation @ np.array(light.direction)), light.diffuse[:3]))
         else:

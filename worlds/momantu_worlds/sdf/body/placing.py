@@ -13,12 +13,12 @@ from momantu_worlds.sdf.body.frames import (
     Scope,
     scope_of_world,
 )
-from momantu_worlds.sdf.findings import Findings
+from momantu_worlds.sdf.deviations import Deviations
 from momantu_worlds.sdf.read.model import Light, Model, ModelState, SdfWorld
 from momantu_worlds.sdf.read.values import Pose
 
 
-def placed_models(world: SdfWorld, findings: Findings) -> list[PlacedModel]:
+def placed_models(world: SdfWorld, deviations: Deviations) -> list[PlacedModel]:
     """The world's models with all their links placed; raises SdfError for frames that are not.
 
     A state is as Gazebo saves it: poses of models and links in the world's frame.
@@ -28,11 +28,13 @@ def placed_models(world: SdfWorld, findings: Findings) -> list[PlacedModel]:
     for model in world.models:
         state = world.states.get(model.name)
         pose = scope.pose(model.name, model.place)
-        placed.append(_place(model, (), pose, scope.inner[model.name], state, findings))
+        placed.append(_place(model, (), pose, scope.inner[model.name], state, deviations))
     known = {model.name for model in world.models}
     for name, state in world.states.items():
         if name not in known:
-            findings.dropped(state.place, name, "a state of a model that is not there", "left out")
+            deviations.dropped(
+                state.place, name, "a state of a model that is not there", "left out"
+            )
     return placed
 
 
@@ -42,7 +44,7 @@ def _place(
     world_from_model: Transform,
     scope: Scope,
     state: ModelState | None,
-    findings: Findings,
+    deviations: Deviations,
 ) -> PlacedModel:
     path = (*around, model.name)
     scale = (1.0, 1.0, 1.0)
@@ -51,7 +53,7 @@ def _place(
         scale = state.scale
         if scale != (1.0, 1.0, 1.0):
             said = "a state with scale {:g} {:g} {:g}".format(*scale)
-            findings.changed(state.place, "/".join(path), said, "its shapes are scaled")
+            deviations.changed(state.place, "/".join(path), said, "its shapes are scaled")
     saved = {} if state is None else state.links
     links = tuple(
         PlacedLink(
@@ -69,7 +71,7 @@ def _place(
             world_from_model @ scope.pose(inner.name, inner.place),
             scope.inner[inner.name],
             None if state is None else state.models.get(inner.name),
-            findings,
+            deviations,
         )
         for inner in model.models
     )

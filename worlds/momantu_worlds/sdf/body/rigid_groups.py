@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from momantu_worlds.sdf.body.frames import WORLD, PlacedLink, PlacedModel
-from momantu_worlds.sdf.findings import Findings
+from momantu_worlds.sdf.deviations import Deviations
 from momantu_worlds.sdf.read.model import Joint
 
 _INNER = "::"
@@ -36,7 +36,7 @@ def is_robot(model: PlacedModel) -> bool:
     return moving >= JOINTS_OF_A_ROBOT and (driven or senses)
 
 
-def rigid_groups(model: PlacedModel, findings: Findings) -> list[Group]:
+def rigid_groups(model: PlacedModel, deviations: Deviations) -> list[Group]:
     """The bodies of an outermost model, in the order of their first links.
 
     What a joint moves stays where it is: such links are one still body.
@@ -49,7 +49,7 @@ def rigid_groups(model: PlacedModel, findings: Findings) -> list[Group]:
             _join_all(groups, [(*p.path, p.link.name) for p in one.links])
     for one in model.everything():
         for joint in one.joints:
-            _apply(groups, one, joint, findings)
+            _apply(groups, one, joint, deviations)
     return list({id(group): group for group in groups.values()}.values())
 
 
@@ -61,20 +61,20 @@ def _with_static(model: PlacedModel, *, static: bool) -> Iterator[tuple[PlacedMo
 
 
 def _apply(
-    groups: dict[tuple[str, ...], Group], model: PlacedModel, joint: Joint, findings: Findings
+    groups: dict[tuple[str, ...], Group], model: PlacedModel, joint: Joint, deviations: Deviations
 ) -> None:
     subject = "/".join((*model.path, joint.name))
     ends = [_end(model, end) for end in (joint.parent, joint.child)]
     if None in ends:
         what = f"a joint from {joint.parent!r} to {joint.child!r}, which are not both there"
-        findings.dropped(joint.place, subject, what, "left out")
+        deviations.dropped(joint.place, subject, what, "left out")
         return
     keys = [end for end in ends if end]
     if keys:
         _join_all(groups, keys)
         joined = groups[keys[0]]
         if joint.moves and not joined.still:
-            findings.changed(
+            deviations.changed(
                 joint.place, subject, f"a {joint.kind} joint", "what it moves stays where it is"
             )
         joined.still = joined.still or joint.moves or len(keys) < len(ends)

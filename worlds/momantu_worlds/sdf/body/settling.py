@@ -10,7 +10,7 @@ import numpy as np
 from momantu_bt.geometry import Array, Transform
 from momantu_worlds.sdf.body.bodies import ImportedBody
 from momantu_worlds.sdf.body.parts import Part
-from momantu_worlds.sdf.findings import Findings
+from momantu_worlds.sdf.deviations import Deviations
 
 FLAT = 0.03
 """m; a still part that ends below this height is driven over, as a carpet or a marking is."""
@@ -24,17 +24,17 @@ Two faces at one height flicker in pictures.
 
 
 def settled(
-    bodies: Iterable[ImportedBody], height: float, findings: Findings
+    bodies: Iterable[ImportedBody], height: float, deviations: Deviations
 ) -> Iterator[ImportedBody]:
     """Bodies with the floor at z = 0; height: of the floor where they come from, m."""
     for body in bodies:
         lowered = body.lifted(-height) if height else body
-        parts = tuple(_flattened(lowered, findings)) if body.still else body.parts
+        parts = tuple(_flattened(lowered, deviations)) if body.still else body.parts
         if parts:
             yield replace(lowered, parts=parts)
 
 
-def _flattened(body: ImportedBody, findings: Findings) -> Iterator[Part]:
+def _flattened(body: ImportedBody, deviations: Deviations) -> Iterator[Part]:
     for part in body.parts:
         if part.seen is not None:
             yield _visible(body, part, part.seen)
@@ -46,10 +46,10 @@ def _flattened(body: ImportedBody, findings: Findings) -> Iterator[Part]:
             continue
         what = f"a part that lies flat on the floor, up to {top:.3f} m"
         if part.visual:
-            findings.changed(body.place, body.title, what, "it is seen, but not touched")
+            deviations.changed(body.place, body.title, what, "it is seen, but not touched")
             yield _visible(body, replace(part, collision=False, hulls=()), around)
         else:
-            findings.dropped(body.place, body.title, what, "it is not touched")
+            deviations.dropped(body.place, body.title, what, "it is not touched")
 
 
 def _visible(body: ImportedBody, part: Part, around: Array) -> Part:

@@ -20,7 +20,7 @@ from momantu_worlds.sdf.body.parts import (
     plane_slab,
     simple,
 )
-from momantu_worlds.sdf.findings import Findings
+from momantu_worlds.sdf.deviations import Deviations
 from momantu_worlds.sdf.mesh.assets import MOST_PIECES, Assets, mean_color, open_picture
 from momantu_worlds.sdf.mesh.collada import BadMesh
 from momantu_worlds.sdf.mesh.convex import convex_pieces
@@ -51,7 +51,7 @@ class Shaping:
     """Turns the shapes of one import into parts. heed_up: COLLADA's <up_axis> counts."""
 
     assets: Assets
-    findings: Findings
+    deviations: Deviations
     heed_up: bool = False
     _meshes: dict[MeshFile, ReadMesh | BadMesh] = field(default_factory=dict)
     _hulls: dict[tuple[Geometry, bool], tuple[list[Array], bool]] = field(default_factory=dict)
@@ -71,7 +71,7 @@ class Shaping:
             if isinstance(solid, Box):
                 yield self._pictures(solid, at, picture, subject)
             else:
-                self.findings.changed(
+                self.deviations.changed(
                     shape.place, subject, "a picture on a round shape", "its mean colour is kept"
                 )
             return
@@ -79,7 +79,7 @@ class Shaping:
         if pieces:
             if picture is not None:
                 color = mean_color(picture)
-                self.findings.changed(
+                self.deviations.changed(
                     shape.place, subject, "a picture given for a mesh", "its mean colour is kept"
                 )
             path = self.assets.look(_stem(geometry), self._few(pieces, shape, subject), color)
@@ -98,7 +98,7 @@ class Shaping:
         """The parts of a collision. still: it belongs to a body that never moves."""
         geometry = shape.geometry
         if isinstance(geometry, Plane):
-            self.findings.changed(
+            self.deviations.changed(
                 shape.place,
                 subject,
                 "a plane that is not the floor",
@@ -127,7 +127,7 @@ class Shaping:
             return None
         picture = open_picture(file)
         if picture is None:
-            self.findings.dropped(
+            self.deviations.dropped(
                 shape.place, subject, f"the picture {file}", "it cannot be read; drawn in plain"
             )
         return picture
@@ -141,7 +141,7 @@ class Shaping:
     def _pieces(
         self, geometry: Geometry, scale: Vector, shape: Shape, subject: str
     ) -> tuple[Piece, ...]:
-        """Triangles of what is no simple shape; none, and a finding, when they cannot be had."""
+        """Triangles of what is no simple shape; none, and a deviation, when they cannot be had."""
         if not isinstance(geometry, MeshFile):
             return (_rounded(geometry, scale),)
         mesh = replace(geometry, scale=_product(geometry.scale, scale))
@@ -152,20 +152,20 @@ class Shaping:
                 self._meshes[mesh] = error
         found = self._meshes[mesh]
         if isinstance(found, BadMesh):
-            self.findings.dropped(
+            self.deviations.dropped(
                 shape.place, subject, f"{mesh.file}: {found}", "this shape is left out"
             )
             return ()
         if found.up:
             how = "its z is up, as in Gazebo; --heed-up-axis turns it upright"
-            self.findings.changed(
+            self.deviations.changed(
                 shape.place,
                 subject,
                 f"{mesh.file.name} says {found.up}",
                 "it is turned upright" if self.heed_up else how,
             )
         for name in found.missing:
-            self.findings.dropped(
+            self.deviations.dropped(
                 shape.place,
                 subject,
                 f"{mesh.file.name} names {name!r}, which is not there",
@@ -177,7 +177,7 @@ class Shaping:
         few = reduced(pieces)
         if count(few) < count(pieces):
             said = f"{count(pieces)} triangles"
-            self.findings.changed(shape.place, subject, said, f"{count(few)} are kept")
+            self.deviations.changed(shape.place, subject, said, f"{count(few)} are kept")
         return few
 
     def _convex(
@@ -201,7 +201,7 @@ class Shaping:
         if isinstance(geometry, MeshFile):
             what = f"the triangles of {geometry.file.name}"
             how = "one convex hull" if len(hulls) == 1 else f"{len(hulls)} convex pieces"
-            self.findings.changed(
+            self.deviations.changed(
                 shape.place, subject, what, how if plain else f"{how}, hollow as the mesh is"
             )
         return hulls

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import NoReturn
 from xml.parsers import expat
 
-from momantu_worlds.sdf.findings import Place, SdfError
+from momantu_bt.formats.places import Place
+from momantu_worlds.sdf.errors import SdfError
 
 MOST_BYTES = 32_000_000
 """Of one file: a large building saved by Gazebo has some megabytes."""
@@ -52,7 +53,7 @@ def read_document(file: Path, asked_at: Place | None = None) -> Element:
     Raises:
         SdfError: it cannot be read, is too big or too deep, is not XML, or declares entities.
     """
-    here = asked_at or Place(file)
+    here = asked_at or Place(str(file))
     try:
         if not file.is_file():
             why = "it is a folder" if file.is_dir() else "there is no such file"
@@ -93,19 +94,19 @@ class _Parser:
             self._expat.Parse(self._data, True)
         except expat.ExpatError as error:
             self._refuse(
-                Place(self._file, max(error.lineno, 1), error.offset + 1),
+                Place(str(self._file), max(error.lineno, 1), error.offset + 1),
                 f"this is not XML: {expat.ErrorString(error.code)}; expected an SDF file, "
                 "which begins with <sdf version='1.6'>",
             )
         except (ValueError, LookupError) as error:
-            self._refuse(Place(self._file), f"this is not XML: {error}")
+            self._refuse(Place(str(self._file)), f"this is not XML: {error}")
         if self._root is None:
-            self._refuse(Place(self._file), "the file is empty; expected <sdf version='1.6'>")
+            self._refuse(Place(str(self._file)), "the file is empty; expected <sdf version='1.6'>")
         return self._root
 
     def _here(self) -> Place:
         line, column = self._expat.CurrentLineNumber, self._expat.CurrentColumnNumber
-        return Place(self._file, line, column + 1)
+        return Place(str(self._file), line, column + 1)
 
     def _start(self, tag: str, attributes: dict[str, str]) -> None:
         self._count += 1

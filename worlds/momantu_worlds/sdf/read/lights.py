@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from momantu_worlds.sdf.findings import SdfError
+from momantu_worlds.sdf.errors import SdfError
 from momantu_worlds.sdf.read.document import Element
 from momantu_worlds.sdf.read.model import Light, LightKind
 from momantu_worlds.sdf.read.reading import Reading
@@ -35,15 +35,15 @@ def read_light(element: Element, around: str, reading: Reading) -> Light | None:
     name = name_of(element)
     subject = f"{around}/{name}" if around else name
     if not flag(element, "light_on", default=True):
-        reading.findings.dropped(element.place, subject, "a light that is off", "left out")
+        reading.deviations.dropped(element.place, subject, "a light that is off", "left out")
         return None
     kind = _kind(element)
-    list_leftovers(element, subject, _READ, reading.findings)
+    list_leftovers(element, subject, _READ, reading.deviations)
     x, y, z = vector(element, "direction", (0.0, 0.0, -1.0))
     if kind is LightKind.SUN and math.hypot(x, y, z) < 1e-9:
         raise element.error("<light> has a direction without length")
     if kind is LightKind.SPOT:
-        reading.findings.changed(element.place, subject, "a spot light", "it shines to all sides")
+        reading.deviations.changed(element.place, subject, "a spot light", "it shines to all sides")
     strength = min(max(number(element, "intensity", 1.0), 0.0), STRONGEST)
     red, green, blue, alpha = color_of(element, "diffuse") or WHITE
     diffuse = (red * strength, green * strength, blue * strength, alpha)

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from momantu_worlds.sdf.findings import Place
+from momantu_bt.formats.places import Place
 from momantu_worlds.sdf.read.model import Material, Rgba
 from momantu_worlds.sdf.read.uris import Library, MissingFile, is_there
 

@@ -7,8 +7,8 @@ from enum import StrEnum
 from pathlib import Path
 from typing import TypeAlias
 
+from momantu_bt.formats.places import Place
 from momantu_bt.geometry import Transform
-from momantu_worlds.sdf.findings import Place
 from momantu_worlds.sdf.read.values import Pose
 
 Rgba: TypeAlias = tuple[float, float, float, float]

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TypeVar
 
-from momantu_worlds.sdf.findings import SdfError
+from momantu_worlds.sdf.errors import SdfError
 from momantu_worlds.sdf.read.document import Element, parse_document
 from momantu_worlds.sdf.read.lights import lights_of, read_light
 from momantu_worlds.sdf.read.model import MOVING_JOINTS, Frame, Joint, Light, Link, Model
@@ -58,14 +58,14 @@ def read_model(element: Element, around: str, reading: Reading) -> Model:
 def _model(element: Element, around: str, reading: Reading) -> Model:
     name = name_of(element)
     subject = f"{around}/{name}" if around else name
-    list_leftovers(element, subject, _OF_MODEL, reading.findings)
+    list_leftovers(element, subject, _OF_MODEL, reading.deviations)
     static = flag(element, "static")
     inner = [read_model(child, subject, reading) for child in element.all("model")]
     for child in element.all("include"):
         model, lights = read_include(child, subject, reading)
         inner += [] if model is None else [model]
         for light in lights:
-            reading.findings.dropped(child.place, subject, f"light {light.name!r}", "left out")
+            reading.deviations.dropped(child.place, subject, f"light {light.name!r}", "left out")
     return Model(
         name=name,
         place=element.place,
@@ -83,7 +83,7 @@ def _model(element: Element, around: str, reading: Reading) -> Model:
 def read_include(
     element: Element, around: str, reading: Reading
 ) -> tuple[Model | None, tuple[Light, ...]]:
-    """The model or the lights of an <include>; neither, and a finding, when it is not there.
+    """The model or the lights of an <include>; neither, and a deviation, when it is not there.
 
     Raises:
         SdfError: it has no URI, includes itself, or something in it is not possible.
@@ -93,7 +93,7 @@ def read_include(
         raise element.error("<include> needs a <uri>, such as model://table")
     given = element.child("name")
     subject = "/".join(part for part in (around, given.text if given else uri.text) if part)
-    list_leftovers(element, subject, _OF_INCLUDE, reading.findings)
+    list_leftovers(element, subject, _OF_INCLUDE, reading.deviations)
     try:
         file = reading.library.resolve(uri.text, uri.place)
         if file.is_dir():
@@ -102,7 +102,7 @@ def read_include(
         standard = standard_model(uri.text)
         if standard is not None:
             return _included(standard, element, subject, around, reading)
-        reading.findings.dropped(uri.place, subject, str(error), "this model is left out")
+        reading.deviations.dropped(uri.place, subject, str(error), "this model is left out")
         return None, ()
     with reading.including(file, uri.place) as root:
         version_of(root)
@@ -121,7 +121,7 @@ def _included(
         light = read_light(found, around, reading)
         return None, () if light is None else (_moved(light, include),)
     if found.tag == "actor":
-        reading.findings.dropped(include.place, subject, "an actor", "left out")
+        reading.deviations.dropped(include.place, subject, "an actor", "left out")
         return None, ()
     return _overridden(read_model(found, around, reading), include), ()
 
@@ -158,15 +158,15 @@ def read_frame(element: Element) -> Frame:
 
 def _link(element: Element, around: str, static: bool, reading: Reading) -> Link:
     subject = f"{around}/{name_of(element)}"
-    list_leftovers(element, subject, _OF_LINK, reading.findings)
+    list_leftovers(element, subject, _OF_LINK, reading.deviations)
     mass = number(element, "inertial/mass", MASS)
     inertia = element.find("inertial/inertia")
     if inertia is not None and not static:
         instead = "inertia follows from the mass and the shape"
-        reading.findings.changed(inertia.place, subject, "<inertia>", instead)
+        reading.deviations.changed(inertia.place, subject, "<inertia>", instead)
     if not MASSES[0] <= mass <= MASSES[1] and not static:
         where = element.find("inertial/mass") or element
-        reading.findings.changed(where.place, subject, f"a mass of {mass:g} kg", f"{MASS:g} kg")
+        reading.deviations.changed(where.place, subject, f"a mass of {mass:g} kg", f"{MASS:g} kg")
         mass = MASS
     return Link(
         name=name_of(element),
@@ -194,7 +194,7 @@ def _joint(element: Element, around: str, reading: Reading) -> Joint:
         ends.append(text)
     sensors = sum(1 for _ in element.all("sensor"))
     if sensors:
-        reading.findings.dropped(element.place, f"{around}/{name}", "<sensor>", "left out")
+        reading.deviations.dropped(element.place, f"{around}/{name}", "<sensor>", "left out")
     if _is_locked(element):
         kind = "fixed"
     return Joint(name, kind, ends[0], ends[1], pose_of(element), element.place)

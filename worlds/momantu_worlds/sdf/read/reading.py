@@ -1,4 +1,4 @@
-"""What all readers of one import share: folders, files read so far, findings, and its bounds."""
+"""What all readers of one import share: folders, files read so far, deviations, and its bounds."""
 
 from __future__ import annotations
 
@@ -7,7 +7,9 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from momantu_worlds.sdf.findings import Findings, Place, SdfError
+from momantu_bt.formats.places import Place
+from momantu_worlds.sdf.deviations import Deviations
+from momantu_worlds.sdf.errors import SdfError
 from momantu_worlds.sdf.read.document import Element, read_document
 from momantu_worlds.sdf.read.material_scripts import MaterialScripts
 from momantu_worlds.sdf.read.uris import Library, MissingFile
@@ -24,7 +26,7 @@ class Reading:
     """One import as it goes on."""
 
     library: Library
-    findings: Findings
+    deviations: Deviations
     scripts: MaterialScripts = field(init=False)
     _documents: dict[Path, Element] = field(default_factory=dict)
     _open: list[Path] = field(default_factory=list)
@@ -36,7 +38,7 @@ class Reading:
         self.scripts = MaterialScripts(self.library)
 
     def file_of(self, uri: Element, subject: str, instead: str) -> Path | None:
-        """The file that a URI names; None, and a finding, when it is not there."""
+        """The file that a URI names; None, and a deviation, when it is not there."""
         try:
             found = self.library.resolve(uri.text, uri.place)
             if found.is_file():
@@ -44,7 +46,7 @@ class Reading:
             reason = f"{found} is a folder"
         except MissingFile as error:
             reason = str(error)
-        self.findings.dropped(uri.place, subject, reason, instead)
+        self.deviations.dropped(uri.place, subject, reason, instead)
         return None
 
     @contextmanager

@@ -55,7 +55,7 @@ def _shape(element: Element, subject: str, reading: Reading) -> Shape | None:
         element,
         subject,
         ("pose", "geometry", "material", "surface", "transparency"),
-        reading.findings,
+        reading.deviations,
     )
     around = element.child("geometry")
     if around is None:
@@ -77,18 +77,18 @@ def _invisible(element: Element, subject: str, reading: Reading) -> bool:
     transparency = number(element, "transparency", 0.0)
     if transparency >= INVISIBLE:
         where = element.child("transparency") or element
-        reading.findings.dropped(where.place, subject, "an invisible visual", "left out")
+        reading.deviations.dropped(where.place, subject, "an invisible visual", "left out")
         return True
     if transparency > 0.0:
         where = element.child("transparency") or element
-        reading.findings.changed(
+        reading.deviations.changed(
             where.place, subject, f"{transparency:.0%} transparent", "drawn as if it were not"
         )
     return False
 
 
 def _geometry(around: Element, subject: str, reading: Reading) -> Geometry | None:
-    """The geometry; None, and a finding, when it is of a kind that is not carried over.
+    """The geometry; None, and a deviation, when it is of a kind that is not carried over.
 
     Raises:
         SdfError: its sizes are missing or impossible.
@@ -114,7 +114,7 @@ def _geometry(around: Element, subject: str, reading: Reading) -> Geometry | Non
         if tag == "mesh":
             return _mesh(element, subject, reading)
         if tag != "empty":
-            reading.findings.dropped(element.place, subject, f"a {tag}", "left out, not its body")
+            reading.deviations.dropped(element.place, subject, f"a {tag}", "left out, not its body")
     return None
 
 
@@ -152,7 +152,7 @@ def _material(element: Element, subject: str, reading: Reading) -> Material:
     material = element.child("material")
     if material is None:
         return Material()
-    list_leftovers(material, subject, ("ambient", "diffuse", "script", "pbr"), reading.findings)
+    list_leftovers(material, subject, ("ambient", "diffuse", "script", "pbr"), reading.deviations)
     color = color_of(material, "diffuse")
     picture = _picture(material, subject, reading)
     script = material.child("script")
@@ -160,7 +160,7 @@ def _material(element: Element, subject: str, reading: Reading) -> Material:
         uris = [(uri.text, uri.place) for uri in script.all("uri") if uri.text]
         named = reading.scripts.find(name.text, uris)
         if named is None and color is None and picture is None:
-            reading.findings.changed(
+            reading.deviations.changed(
                 name.place, subject, f"material {name.text!r} is not known", "it is drawn in grey"
             )
         elif named is not None:
@@ -181,16 +181,16 @@ def _friction(element: Element, subject: str, reading: Reading) -> float | None:
     surface = element.child("surface")
     if surface is None:
         return None
-    list_leftovers(surface, subject, ("friction",), reading.findings)
+    list_leftovers(surface, subject, ("friction",), reading.deviations)
     friction = surface.child("friction")
     if friction is not None:
-        list_leftovers(friction, subject, ("ode",), reading.findings)
+        list_leftovers(friction, subject, ("ode",), reading.deviations)
     first = surface.find("friction/ode/mu")
     if first is None or not first.text:
         return None
     mu, second = number(surface, "friction/ode/mu", 1.0), number(surface, "friction/ode/mu2", -1.0)
     if second >= 0.0 and second != mu:
-        reading.findings.changed(
+        reading.deviations.changed(
             first.place,
             subject,
             f"friction {mu:g} along, {second:g} across",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterator, Mapping
 
-from momantu_worlds.sdf.findings import Findings
+from momantu_worlds.sdf.deviations import Deviations
 from momantu_worlds.sdf.read.document import Element
 
 _OFF = ("0", "false")
@@ -97,13 +97,13 @@ INSTEAD: Mapping[str, str] = {
 
 
 def list_leftovers(
-    element: Element, subject: str, read: Collection[str], findings: Findings
+    element: Element, subject: str, read: Collection[str], deviations: Deviations
 ) -> None:
     """List the children of an element that nobody reads and that say something."""
     for child in element.children:
         if child.tag not in read and not _says_nothing(child):
             instead = INSTEAD.get(child.tag, "not known here; left out")
-            findings.dropped(child.place, subject, described(child), instead)
+            deviations.dropped(child.place, subject, described(child), instead)
 
 
 def described(element: Element) -> str:

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import unquote
 
-from momantu_worlds.sdf.findings import Place, SdfError
+from momantu_bt.formats.places import Place
+from momantu_worlds.sdf.errors import SdfError
 from momantu_worlds.sdf.read.document import Element, read_document
 
 SEARCH_PATHS = ("GAZEBO_MODEL_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH")
@@ -73,10 +74,10 @@ class Library:
 
     def _relative(self, path: str, place: Place) -> Iterator[Path]:
         """Beside the file that says so, then in every folder."""
-        for base in (_lexical(place.file).parent, *self.folders):
+        for base in (_lexical(Path(place.file)).parent, *self.folders):
             candidate = _lexical(base / path)
             inside = any(candidate.is_relative_to(folder) for folder in self.folders)
-            if inside or candidate.is_relative_to(_lexical(place.file).parent):
+            if inside or candidate.is_relative_to(_lexical(Path(place.file)).parent):
                 yield candidate
             elif is_there(candidate):
                 raise SdfError(

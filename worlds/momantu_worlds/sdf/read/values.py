@@ -6,8 +6,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from momantu_bt.formats.places import Place
 from momantu_bt.geometry import Transform
-from momantu_worlds.sdf.findings import Place
 from momantu_worlds.sdf.read.document import Element
 
 FARTHEST = 1e5

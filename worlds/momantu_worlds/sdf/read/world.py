@@ -6,8 +6,9 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
+from momantu_bt.formats.places import Place
 from momantu_bt.geometry import Transform
-from momantu_worlds.sdf.findings import Findings, Place
+from momantu_worlds.sdf.deviations import Deviations
 from momantu_worlds.sdf.read.document import Element
 from momantu_worlds.sdf.read.lights import lights_of
 from momantu_worlds.sdf.read.model import Model, ModelState, SdfWorld
@@ -25,23 +26,23 @@ SCALES = (0.001, 1000)
 """Factors by which a state may scale a model."""
 
 
-def read_world(file: Path, folders: Iterable[Path], findings: Findings) -> SdfWorld:
+def read_world(file: Path, folders: Iterable[Path], deviations: Deviations) -> SdfWorld:
     """The world of an SDF file. A file with models alone is a world of them.
 
     Raises:
         SdfError: the file, or one that it includes, is broken; the message says where.
     """
-    reading = Reading(Library(tuple(folders)), findings)
-    with reading.including(file, Place(file)) as root:
+    reading = Reading(Library(tuple(folders)), deviations)
+    with reading.including(file, Place(str(file))) as root:
         version = version_of(root)
         worlds = list(root.all("world"))
         for other in worlds[1:]:
-            findings.dropped(other.place, other.attributes.get("name", ""), "<world>", "left out")
+            deviations.dropped(other.place, other.attributes.get("name", ""), "<world>", "left out")
         return _world(worlds[0] if worlds else root, file, version, reading)
 
 
 def _world(element: Element, file: Path, version: tuple[int, int], reading: Reading) -> SdfWorld:
-    _list_settings(element, reading.findings)
+    _list_settings(element, reading.deviations)
     models = [read_model(child, "", reading) for child in element.all("model")]
     lights = list(lights_of(element, "", reading))
     for child in element.all("include"):
@@ -54,7 +55,7 @@ def _world(element: Element, file: Path, version: tuple[int, int], reading: Read
         gone = _deleted(state)
         models = [model for model in models if model.name not in gone]
         lights = [light for light in lights if light.name not in gone]
-        list_leftovers(state, "state", _OF_STATE, reading.findings)
+        list_leftovers(state, "state", _OF_STATE, reading.deviations)
     if not models and element.child("include") is None:
         raise element.error(f"there is no <model> in {file}; nothing could be imported")
     scene = element.child("scene")
@@ -62,7 +63,7 @@ def _world(element: Element, file: Path, version: tuple[int, int], reading: Read
         name=element.attributes.get("name", "") or file.stem,
         file=file,
         version=version,
-        models=_apart(models, reading.findings),
+        models=_apart(models, reading.deviations),
         lights=tuple(lights),
         frames=tuple(read_frame(child) for child in element.all("frame")),
         states={} if state is None else _states(state, "model"),
@@ -71,19 +72,19 @@ def _world(element: Element, file: Path, version: tuple[int, int], reading: Read
     )
 
 
-def _list_settings(element: Element, findings: Findings) -> None:
-    list_leftovers(element, "world", _OF_WORLD, findings)
+def _list_settings(element: Element, deviations: Deviations) -> None:
+    list_leftovers(element, "world", _OF_WORLD, deviations)
     for child in element.all("physics"):
-        findings.dropped(child.place, "world", "<physics>", INSTEAD["physics"])
+        deviations.dropped(child.place, "world", "<physics>", INSTEAD["physics"])
     for child in element.all("scene"):
-        list_leftovers(child, "world/scene", ("ambient",), findings)
+        list_leftovers(child, "world/scene", ("ambient",), deviations)
     gravity = vector(element, "gravity", (0.0, 0.0, -DOWN))
     if max(abs(gravity[0]), abs(gravity[1]), abs(gravity[2] + DOWN)) > _GRAVITY_NEAR:
         where = element.child("gravity") or element
-        findings.changed(where.place, "world", "<gravity>", INSTEAD["gravity"])
+        deviations.changed(where.place, "world", "<gravity>", INSTEAD["gravity"])
 
 
-def _apart(models: Iterable[Model], findings: Findings) -> tuple[Model, ...]:
+def _apart(models: Iterable[Model], deviations: Deviations) -> tuple[Model, ...]:
     """Models with names of their own, as Gazebo numbers them: `can`, `can_0`, `can_1`."""
     names: dict[str, Model] = {}
     for model in models:
@@ -91,7 +92,9 @@ def _apart(models: Iterable[Model], findings: Findings) -> tuple[Model, ...]:
         while name in names:
             name, count = f"{model.name}_{count}", count + 1
         if name != model.name:
-            findings.changed(model.place, model.name, "a name that is here twice", f"it is {name}")
+            deviations.changed(
+                model.place, model.name, "a name that is here twice", f"it is {name}"
+            )
         names[name] = replace(model, name=name)
     return tuple(names.values())
 

@@ -11,7 +11,7 @@ from momantu_worlds.sdf.body.bodies import ImportedBody
 from momantu_worlds.sdf.body.ground import Ground
 from momantu_worlds.sdf.body.lighting import Lighting
 from momantu_worlds.sdf.body.parts import MeshPart, Part
-from momantu_worlds.sdf.findings import Finding
+from momantu_worlds.sdf.deviations import Deviation
 from momantu_worlds.sdf.read.model import Box, Cylinder, Sphere
 from momantu_worlds.sdf.write.proposal import Proposal, Surface
 
@@ -34,13 +34,13 @@ class Imported:
     site: Proposal
 
 
-def world_text(imported: Imported, findings: Iterable[Finding]) -> str:
+def world_text(imported: Imported, deviations: Iterable[Deviation]) -> str:
     """The world file."""
     lines = [
         f"# The world {imported.name}, imported from {imported.source}.",
         "# Lengths in m, angles in rad; bodies stand on the floor, which is z = 0.",
     ]
-    listed = len(list(findings))
+    listed = len(list(deviations))
     if listed:
         lines.append(f"# {listed} things did not come over as they were; the import listed them.")
     lines += ["momantu_world: 1", f"name: {imported.name}", ""]

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from momantu_worlds.sdf.body.bodies import MOST_PARTS
-from momantu_worlds.sdf.findings import SdfError
+from momantu_worlds.sdf.errors import SdfError
 from momantu_worlds.sdf.importing import Import
 
 from tests.worlds.sdf.conftest import box
@@ -88,20 +88,22 @@ SAID = {
 @pytest.mark.parametrize("case", SAID)
 def test_what_does_not_come_over_is_said_until_it_is_mended(case: str, imported: Imported) -> None:
     wrong, mended, subject, words = SAID[case]
-    found = [f for f in imported(wrong).findings if words in f.what]
+    found = [f for f in imported(wrong).deviations if words in f.what]
     assert [f.subject for f in found] == [subject]
     assert found[0].instead
     assert found[0].place.line >= 1
-    assert [f for f in imported(mended).findings if words in f.what] == []
+    assert [f for f in imported(mended).deviations if words in f.what] == []
 
 
 def test_a_body_of_which_no_shape_is_left_is_said(imported: Imported, tmp_path: Path) -> None:
     (tmp_path / "broken.stl").write_text("solid nothing")
     mesh = "<mesh><uri>broken.stl</uri></mesh>"
     lost = f"<collision name='c'><geometry>{mesh}</geometry></collision>"
-    said = [f.what for f in imported(TABLE + loose("gone", lost)).findings if f.subject == "gone/l"]
+    said = [
+        f.what for f in imported(TABLE + loose("gone", lost)).deviations if f.subject == "gone/l"
+    ]
     assert "a body of which no shape is left" in said
-    assert all("no shape" not in f.what for f in imported(TABLE + loose("bare", "")).findings)
+    assert all("no shape" not in f.what for f in imported(TABLE + loose("bare", "")).deviations)
 
 
 def test_a_still_body_of_many_parts_becomes_several(imported: Imported) -> None:
