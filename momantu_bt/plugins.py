@@ -1,39 +1,31 @@
-"""Finding what is installed: skills, services, robots, worlds, trees and verbs by entry point.
+"""Finding what is installed by entry points: skills, services, robots, worlds, verbs.
 
 A plug-in is checked when it is loaded. One that is broken, or whose name two packages give, is
-told by `load`; all the others go on working.
+told by `load`; all the others go on working. What a plug-in of a kind has to be is known where the
+kind is: each has a `Group` there.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
-from typing import Any, TypeAlias
+from pathlib import Path
+from typing import Any, Generic, TypeAlias, TypeVar
 
 from momantu_bt.errors import MomantuError
 from momantu_bt.formats.names import nearest
 
-SKILLS = "momantu_bt.skills"
-SERVICES = "momantu_bt.services"
-ROBOTS = "momantu_bt.robots"
-WORLDS = "momantu_bt.worlds"
-TREES = "momantu_bt.trees"
-COMMANDS = "momantu_bt.commands"
-WORLD_FILES = "momantu_bt.world_files"
-"""Functions that give a world from the path of its file, by the file's ending."""
+PREFIX = "momantu_bt."
+"""How the names of all groups begin."""
+ENDINGS = (".yaml", ".yml", ".urdf", ".xacro")
+"""A name that ends so, or has a slash in it, is a path, where plug-ins are read from files."""
 
-_WHAT = {
-    SKILLS: "skill",
-    SERVICES: "service",
-    ROBOTS: "robot",
-    WORLDS: "world",
-    WORLD_FILES: "reader of world files",
-    TREES: "tree",
-    COMMANDS: "verb",
-}
-
+T = TypeVar("T")
 _Found: TypeAlias = Mapping[str, tuple[EntryPoint, ...]]
+Objection: TypeAlias = Callable[[str, Any], str | None]
+"""Says of a plug-in, by its name and itself, why it cannot be used; None when it can."""
 
 
 class PluginError(MomantuError):
@@ -44,12 +36,132 @@ class PluginClash(PluginError):
     """Two packages give one name different things; the message names both."""
 
 
-def installed(group: str) -> dict[str, EntryPoint]:
-    """Entry points of a group by name, in the order of their names; nothing is imported.
+@dataclass(frozen=True, slots=True)
+class Files(Generic[T]):
+    """How plug-ins of a group are read from files, beside those that are installed.
 
-    Of a name that two packages give different things it holds the first; `load` refuses it.
+    usual: the file's name in a folder that stands for it. read: gives the plug-in that a file
+    describes, and raises PluginError for a kind of file that is not read.
     """
-    return {name: entries[0] for name, entries in _installed(entry_points, group).items()}
+
+    usual: str
+    read: Callable[[Path], T]
+
+
+class Group(Mapping[str, T]):
+    """The plug-ins of one entry point group, by name; each is imported when it is asked for.
+
+    Where the group has `files`, a path stands in the place of a name. `group[name]` raises KeyError
+    when there is none and PluginError when it is broken; `load` tells both in words.
+
+    name: of the entry point group. what: one of its plug-ins, as a person would say it.
+    objection: what a plug-in has to be.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        what: str,
+        objection: Objection = lambda name, plugin: None,
+        files: Files[T] | None = None,
+    ) -> None:
+        self.name, self.what, self.objection, self.files = name, what, objection, files
+
+    __eq__ = object.__eq__
+    __hash__ = object.__hash__
+
+    def __getitem__(self, name: str) -> T:
+        if name not in self:
+            raise KeyError(name)
+        return self.load(name)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.installed())
+
+    def __len__(self) -> int:
+        return len(self.installed())
+
+    def __contains__(self, name: object) -> bool:
+        return isinstance(name, str) and (self.is_path(name) or name in self.installed())
+
+    def installed(self) -> dict[str, EntryPoint]:
+        """Entry points by name, in the order of their names; nothing is imported.
+
+        Of a name that two packages give different things it holds the first; `load` refuses it.
+        """
+        return {name: entries[0] for name, entries in _installed(entry_points, self.name).items()}
+
+    def load(self, name: str) -> T:
+        """Import one plug-in by name and check it, or read the file at a path.
+
+        Raises:
+            PluginError: there is none of that name (with the nearest ones), it cannot be imported,
+                or it is not what a plug-in of this group has to be; or there is no such file.
+            PluginClash: two packages give this name different things.
+            DescriptionError: the file is wrong.
+        """
+        if self.is_path(name):
+            return self._from_file(Path(name))
+        entry, *others = self._entries(name)
+        if others:
+            raise PluginClash(
+                f"two plug-ins are called {name!r}: {_origin(entry)} and {_origin(others[0])}; "
+                "uninstall one of them or rename its entry point"
+            )
+        try:
+            plugin: T = entry.load()
+        except (Exception, SystemExit) as error:  # other people's code: it may raise anything
+            reason = f"cannot be loaded: {type(error).__name__}: {error}"
+        else:
+            objection = self.objection(name, plugin)
+            if objection is None:
+                return plugin
+            reason = f"is broken: {objection}"
+        raise PluginError(f"the {self.what} {name!r} ({_origin(entry)}) {reason}")
+
+    def is_path(self, name: str) -> bool:
+        """Whether a plug-in is named by its file or folder."""
+        return self.files is not None and ("/" in name or name.endswith(ENDINGS))
+
+    def absolute(self, name: str | None) -> str | None:
+        """The same plug-in, wherever the process that is told of it works."""
+        return str(Path(name).absolute()) if name is not None and self.is_path(name) else name
+
+    def near_file(self, name: str) -> str | None:
+        """What to write instead of a file's bare name; None when no such file is near."""
+        if self.files is not None:
+            for file in (f"{name}.yaml", f"{name}.yml", f"{name}/{self.files.usual}"):
+                if Path(file).is_file():
+                    return f"for the file that lies here write ./{file}"
+        return None
+
+    def _entries(self, name: str) -> tuple[EntryPoint, ...]:
+        having = _installed(entry_points, self.name)
+        if name in having:
+            return having[name]
+        near = nearest(name, having)
+        meant = self.near_file(name) or (f"did you mean {near!r}?" if near else "")
+        hint = f" ({meant})" if meant else ""
+        names = ", ".join(having) or "none"
+        raise PluginError(f"no {self.what} is called {name!r}{hint}; installed: {names}")
+
+    def _from_file(self, path: Path) -> T:
+        assert self.files is not None
+        if path.is_dir():
+            path /= self.files.usual
+        if path.exists():
+            return self.files.read(path)
+        folder = path.parent
+        beside = sorted(p.name for p in folder.glob("*.y*ml")) if folder.is_dir() else []
+        there = f"; files there: {', '.join(beside)}" if beside else ""
+        raise PluginError(f"there is no {self.what} file {path}{there}")
+
+
+def packages() -> frozenset[str]:
+    """Top-level packages that give plug-ins of any kind."""
+    groups = (group for group in entry_points().groups if group.startswith(PREFIX))
+    entries = [entry for group in groups for entry in entry_points(group=group)]
+    return frozenset(entry.module.partition(".")[0] for entry in entries)
 
 
 @cache
@@ -59,46 +171,6 @@ def _installed(find: Callable[..., Iterable[EntryPoint]], group: str) -> _Found:
     for entry in sorted(find(group=group), key=lambda e: (e.name, e.value)):
         found.setdefault(entry.name, {}).setdefault(entry.value, entry)
     return {name: tuple(entries.values()) for name, entries in found.items()}
-
-
-def load(group: str, name: str) -> Any:
-    """Import one plug-in by name and check it; of a robot or a world, read the file at a path.
-
-    Raises:
-        PluginError: there is none of that name (with the nearest ones), it cannot be imported,
-            or it is not what a plug-in of this group has to be.
-        PluginClash: two packages give this name different things.
-    """
-    from momantu_bt.plugin_files import by_path, from_file, near_file
-
-    if by_path(group, name):
-        return from_file(group, name)
-    having = _installed(entry_points, group)
-    what = _WHAT.get(group, "plug-in")
-    if name not in having:
-        near = nearest(name, having)
-        meant = near_file(group, name) or (f"did you mean {near!r}?" if near else "")
-        hint = f" ({meant})" if meant else ""
-        names = ", ".join(having) or "none"
-        raise PluginError(f"no {what} is called {name!r}{hint}; installed: {names}")
-    entry, *others = having[name]
-    if others:
-        raise PluginClash(
-            f"two plug-ins are called {name!r}: {_origin(entry)} and {_origin(others[0])}; "
-            "uninstall one of them or rename its entry point"
-        )
-    try:
-        plugin = entry.load()
-    except (Exception, SystemExit) as error:  # other people's code: it may raise anything
-        reason = f"cannot be loaded: {type(error).__name__}: {error}"
-    else:
-        from momantu_bt.plugin_checks import objection
-
-        found = objection(group, name, plugin)
-        if found is None:
-            return plugin
-        reason = f"is broken: {found}"
-    raise PluginError(f"the {what} {name!r} ({_origin(entry)}) {reason}")
 
 
 def _origin(entry: EntryPoint) -> str:

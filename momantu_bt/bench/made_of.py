@@ -20,14 +20,15 @@ from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
 
 import momantu_bt
-from momantu_bt import plugins
 from momantu_bt.engine.build import skills_in
-from momantu_bt.plugin_files import by_path
+from momantu_bt.plugins import Group
 from momantu_bt.record.versions import LIBRARIES
 from momantu_bt.robots.meshes import MESHES
+from momantu_bt.robots.plugins import ROBOTS
 from momantu_bt.tree.check.named_world import NO_WORLD, world_of
 from momantu_bt.tree.files.settings import Given
 from momantu_bt.tree.model import Document
+from momantu_bt.tree.plugins import SERVICES, SKILLS, WORLDS
 from momantu_bt.tree.registry import Registry
 
 DIGITS = 16
@@ -67,10 +68,10 @@ def made_of(
             found[f"the file {os.path.relpath(file, folder)}"] = _digest(text.encode())
     found["the world"] = world
     found["the robot"] = robot or "none"
-    if by_path(plugins.WORLDS, world):
+    if WORLDS.is_path(world):
         found |= _digests("world", _files_of_world(registry.worlds[world]))
         found["the world"] = registry.worlds[world].name
-    if robot is not None and (by_path(plugins.ROBOTS, robot) or MESHES in os.environ):
+    if robot is not None and (ROBOTS.is_path(robot) or MESHES in os.environ):
         description = registry.description(robot)
         found |= _digests("robot", description.files)
         found["the robot"] = description.name
@@ -143,15 +144,15 @@ def _libraries() -> dict[str, str]:
 
 def _packages(document: Document, world: str, robot: str | None) -> Iterator[str]:
     """Packages with code that takes part: this one, and those of the plug-ins."""
-    wanted = {
-        plugins.SKILLS: skills_in(document),
-        plugins.WORLDS: (world,),
-        plugins.ROBOTS: (robot,),
-        plugins.SERVICES: plugins.installed(plugins.SERVICES),
+    wanted: dict[Group[Any], Iterable[str | None]] = {
+        SKILLS: skills_in(document),
+        WORLDS: (world,),
+        ROBOTS: (robot,),
+        SERVICES: SERVICES,
     }
     found = {"momantu_bt"}
     for group, names in wanted.items():
-        having = plugins.installed(group)
+        having = group.installed()
         found |= {having[name].module.partition(".")[0] for name in names if name in having}
     yield from sorted(found)
 

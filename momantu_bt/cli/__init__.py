@@ -10,36 +10,19 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Sequence
-from importlib import import_module
 
 import typer
 
 import momantu_bt.cli.threads  # noqa: F401 - before numpy, which the next imports load
-from momantu_bt import __version__, plugins
+from momantu_bt import __version__
 from momantu_bt.cli.notices import notice
 from momantu_bt.cli.subverbs import add_command, with_subverbs
 from momantu_bt.cli.usage import usage_message
+from momantu_bt.cli.verbs import COMMANDS, VERBS, built_in
 from momantu_bt.errors import ExitCode, MomantuError
 
 TRACEBACK = "MOMANTU_BT_TRACEBACK"
 """Environment variable: set to anything, internal errors come with their traceback."""
-
-VERBS = {
-    "run": "Run a tree.",
-    "bench": "Run a tree many times and say how often it works, and why not.",
-    "compare": "Run two trees on the same seeds and say which works more often.",
-    "replay": "Go through a recorded run, or tick its tree again.",
-    "diff": "Say what two recorded runs differ in.",
-    "check": "Say everything that is wrong with tree files.",
-    "convert": "Write a tree in the other spelling, YAML or BehaviorTree.CPP's XML.",
-    "show": "Print a tree in plain words or as a picture, or the difference of two.",
-    "skills": "List skills, or show one with its ports and failure codes.",
-    "worlds": "List worlds, or show one with its places and surfaces.",
-    "robots": "List robots, or show one with its actuators and named poses.",
-    "faults": "List what can be broken on purpose, or show one fault.",
-    "doctor": "Say what this machine lacks, and the cure.",
-}
-"""Built-in verbs. `momantu_bt.cli.<verb>` has a function or a typer app of the verb's name."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -83,15 +66,15 @@ def _app(given: Sequence[str]) -> typer.Typer:
     app.callback(epilog="momantu-bt VERB --help shows worked examples.")(_options)
     for name, help_line in VERBS.items():
         if name == verb:
-            own = getattr(import_module(f"momantu_bt.cli.{name}"), name)
+            own = built_in(name)
             add_command(app, name, with_subverbs(own, name, rest))
         else:
             app.command(name, help=help_line)(_never)
-    for name, entry in plugins.installed(plugins.COMMANDS).items():
+    for name, entry in COMMANDS.installed().items():
         if name in VERBS or " " in name:
             continue
         if name == verb:
-            own = plugins.load(plugins.COMMANDS, name)
+            own = COMMANDS.load(name)
             add_command(app, name, with_subverbs(own, name, rest))
         else:
             package = entry.dist.name if entry.dist is not None else "a plug-in"

@@ -52,24 +52,24 @@ def plan_of(tree: str, seeds: Sequence[int], how: HowToRun) -> tuple[Plan, Docum
     from momantu_bt.bench.plan import Plan, Wanted
     from momantu_bt.engine.build import skills_in
     from momantu_bt.engine.launch import check_world
-    from momantu_bt.plugin_files import absolute, by_path
-    from momantu_bt.plugins import ROBOTS, WORLDS
+    from momantu_bt.robots.plugins import ROBOTS
     from momantu_bt.tree.check.named_world import world_of
     from momantu_bt.tree.files.lookup import find
     from momantu_bt.tree.load import load
+    from momantu_bt.tree.plugins import WORLDS
     from momantu_bt.tree.registry import Registry
 
     registry = Registry.installed()
     place = str(find(tree))
     told: dict[str, Any] = {
-        "world": absolute(WORLDS, how.world),
-        "robot": absolute(ROBOTS, how.robot),
+        "world": WORLDS.absolute(how.world),
+        "robot": ROBOTS.absolute(how.robot),
     }
     document = load(place, registry, values=how.values, **told).document
     check_world(document, how.world, skills_in(document), registry)
-    if by_path(WORLDS, document.world or ""):
+    if WORLDS.is_path(document.world or ""):
         # an episode elsewhere has the tree in another folder
-        told["world"] = told["world"] or absolute(WORLDS, world_of(document, None))
+        told["world"] = told["world"] or WORLDS.absolute(world_of(document, None))
     told |= {"max_time": how.max_time, "referee": how.referee}
     made = made_of(document, registry, values=how.values, **told)
     wanted = Wanted(tuple((seed, fault) for seed in seeds for fault in how.faults), made)

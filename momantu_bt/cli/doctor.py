@@ -9,11 +9,14 @@ from typing import Annotated
 
 import typer
 
+from momantu_bt.cli.verbs import COMMANDS
 from momantu_bt.diagnosis import Diagnosis
 from momantu_bt.diagnosis.machine import machine
 from momantu_bt.diagnosis.packages import packages
 from momantu_bt.diagnosis.plugins import plugins
 from momantu_bt.errors import ExitCode
+from momantu_bt.robots.plugins import ROBOTS
+from momantu_bt.tree.plugins import SERVICES, SKILLS, WORLDS
 
 
 def doctor(
@@ -52,7 +55,7 @@ def diagnose(output: Path) -> Iterator[Diagnosis]:
     """Everything there is to look at, the quick and the certain first."""
     yield from machine(output)
     yield from packages()
-    yield from plugins()
+    yield from plugins((SKILLS, SERVICES, ROBOTS, WORLDS, COMMANDS))
 
 
 def mended(diagnosis: Diagnosis) -> Diagnosis:

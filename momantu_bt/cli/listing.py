@@ -9,19 +9,19 @@ from typing import Any
 
 import typer
 
-from momantu_bt.plugins import installed, load
+from momantu_bt.plugins import Group
 
 
-def listing(group: str, about: Callable[[Any], str], as_json: bool) -> None:
+def listing(group: Group[Any], about: Callable[[Any], str], as_json: bool) -> None:
     """Print every plug-in of an entry point group with what `about` says of it.
 
     One that is broken is listed with the reason.
     """
     rows: list[tuple[str, str]] = []
     broken: set[str] = set()
-    for name in installed(group):
+    for name in group:
         try:
-            rows.append((name, about(load(group, name))))
+            rows.append((name, about(group.load(name))))
         except Exception as error:  # other people's code: whatever it raises is its reason
             rows.append((name, f"broken: {error}"))
             broken.add(name)

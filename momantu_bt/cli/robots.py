@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from typing import Annotated
 
 import typer
@@ -11,13 +10,9 @@ import typer
 from momantu_bt.cli.help import help_of
 from momantu_bt.cli.listing import listing
 from momantu_bt.cli.robots_schema import schema
-from momantu_bt.plugins import ROBOTS
-from momantu_bt.robot import RobotDescription
-from momantu_bt.robots.named import load_robot
+from momantu_bt.robots.plugins import ROBOTS, Describe, load_robot
 
 robots = typer.Typer(rich_markup_mode=None, invoke_without_command=True)
-
-Description = Callable[[], RobotDescription]
 
 
 @robots.callback(help="List the installed robots. `momantu-bt robots show fetch` shows one.")
@@ -59,7 +54,7 @@ def show_one(
 robots.command("schema", help=help_of(schema))(schema)
 
 
-def _about(describe: Description) -> str:
+def _about(describe: Describe) -> str:
     description = describe()
     joints = len(description.joint_limits)
     return f"{joints} joints, {', '.join(description.actuators)}; {', '.join(description.sensors)}"

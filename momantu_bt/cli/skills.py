@@ -14,8 +14,7 @@ from momantu_bt.cli.skills_pages import pages
 from momantu_bt.cli.skills_palette import print_palette
 from momantu_bt.cli.skills_schema import schema
 from momantu_bt.cli.skills_test import promises
-from momantu_bt.plugins import SKILLS, load
-from momantu_bt.skill import Skill
+from momantu_bt.tree.plugins import SKILLS
 from momantu_bt.tree.show.skill_page import as_data, as_text
 
 skills = typer.Typer(rich_markup_mode=None, invoke_without_command=True)
@@ -52,7 +51,7 @@ def show_one(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,
 ) -> None:
     """Show one skill."""
-    skill: type[Skill] = load(SKILLS, name)
+    skill = SKILLS.load(name)
     if as_json:
         typer.echo(json.dumps(as_data(name, skill), indent=2))
         return

@@ -7,10 +7,9 @@ from typing import Annotated
 
 import typer
 
-from momantu_bt import plugins
 from momantu_bt.errors import ExitCode
 from momantu_bt.files import write_whole
-from momantu_bt.skill import Skill
+from momantu_bt.tree.plugins import SKILLS
 from momantu_bt.tree.show.skill_page import pages as pages_of
 
 
@@ -25,8 +24,7 @@ def pages(
     Examples:
       momantu-bt skills pages docs/skills
     """
-    chosen = names or list(plugins.installed(plugins.SKILLS))
-    skills: dict[str, type[Skill]] = {name: plugins.load(plugins.SKILLS, name) for name in chosen}
+    skills = {name: SKILLS.load(name) for name in names or SKILLS}
     for file, text in pages_of(skills).items():
         write_whole(folder / file, text, folders=True)
     typer.echo(f"{len(skills)} pages and an index in {folder}")

@@ -9,8 +9,10 @@ import typer
 from momantu_bt.cli.notices import notice
 from momantu_bt.cli.schema_file import Out, put_schema
 from momantu_bt.errors import ExitCode
-from momantu_bt.plugins import ROBOTS, WORLDS, PluginError, load
+from momantu_bt.plugins import PluginError
+from momantu_bt.robots.plugins import load_robot
 from momantu_bt.skill import Skill
+from momantu_bt.tree.plugins import WORLDS
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.show.schema import tree_schema
 from momantu_bt.tree.show.schema_values import Names
@@ -50,8 +52,8 @@ def _names(world: str | None, robot: str | None) -> Names:
     """What a world and a robot can name; PluginError when none has that name."""
     names: dict[str, tuple[str, ...]] = {}
     if world is not None:
-        site = load(WORLDS, world).site()
+        site = WORLDS.load(world).site()
         names |= {"place": tuple(site.known_places()), "surface": tuple(site.surfaces)}
     if robot is not None:
-        names["named_pose"] = tuple(load(ROBOTS, robot)().named_poses)
+        names["named_pose"] = tuple(load_robot(robot).named_poses)
     return names

@@ -7,9 +7,10 @@ from typing import Annotated
 
 import typer
 
-from momantu_bt import plugins
 from momantu_bt.errors import ExitCode
 from momantu_bt.formats.problems import Problem, Severity
+from momantu_bt.plugins import PluginError
+from momantu_bt.tree.plugins import SKILLS
 
 
 def promises(
@@ -34,11 +35,11 @@ def promises(
     from momantu_bt.testing import check_skill
 
     passed, told = True, dict[str, list[Problem]]()
-    for name in names or plugins.installed(plugins.SKILLS):
+    for name in names or SKILLS:
         try:
-            found = check_skill(plugins.load(plugins.SKILLS, name), seed=seed, halts=halts)
-        except plugins.PluginError as error:
-            if names and name not in plugins.installed(plugins.SKILLS):
+            found = check_skill(SKILLS.load(name), seed=seed, halts=halts)
+        except PluginError as error:
+            if names and name not in SKILLS:
                 raise
             found = [Problem("broken", str(error))]
         told[name] = found

@@ -1,4 +1,4 @@
-"""Sub-verbs that other packages bring: `worlds check` is an entry point of that name.
+"""Sub-verbs that other packages bring: `worlds import` is an entry point of that name.
 
 Only the one that is asked for is imported. The others are names with a line of help, which is
 read from their source, so that neither a heavy module nor a broken one is in anybody's way.
@@ -16,8 +16,8 @@ from typing import Any
 
 import typer
 
-from momantu_bt import plugins
 from momantu_bt.cli.help import help_of
+from momantu_bt.cli.verbs import COMMANDS
 
 
 def with_subverbs(verb: Any, name: str, given: Sequence[str]) -> Any:
@@ -40,12 +40,12 @@ def with_subverbs(verb: Any, name: str, given: Sequence[str]) -> Any:
     app.registered_groups = list(verb.registered_groups)
     own = _names(verb)
     asked = next((word for word in given if not word.startswith("-")), None)
-    for full_name, entry in plugins.installed(plugins.COMMANDS).items():
+    for full_name, entry in COMMANDS.installed().items():
         first, blank, sub = full_name.partition(" ")
         if first != name or not blank or sub in own:
             continue
         if sub == asked:
-            add_command(app, sub, plugins.load(plugins.COMMANDS, full_name))
+            add_command(app, sub, COMMANDS.load(full_name))
         else:
             app.command(sub, help=summary(entry))(_never)
     return app

@@ -9,11 +9,10 @@ import typer
 
 from momantu_bt.cli.help import help_of
 from momantu_bt.cli.listing import listing
-from momantu_bt.cli.naming import load_world
 from momantu_bt.cli.worlds_check import check
 from momantu_bt.cli.worlds_preview import preview
 from momantu_bt.messages import plain
-from momantu_bt.plugins import WORLDS
+from momantu_bt.tree.plugins import WORLDS
 from momantu_bt.world import AboutWorld, WorldEntry
 
 worlds = typer.Typer(rich_markup_mode=None, invoke_without_command=True)
@@ -43,7 +42,7 @@ def show_one(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,
 ) -> None:
     """Show one world."""
-    entry = load_world(name)
+    entry = WORLDS.load(name)
     site = entry.site()
     more = entry.about() if isinstance(entry, AboutWorld) else {}
     if as_json:

@@ -7,11 +7,11 @@ from typing import Annotated
 
 import typer
 
-from momantu_bt.cli.naming import load_world
 from momantu_bt.errors import ExitCode, InputError
 from momantu_bt.findings import findings_json, findings_text
 from momantu_bt.formats.seeds import SeedsError, parse_seeds
-from momantu_bt.robots.named import load_robot
+from momantu_bt.robots.plugins import load_robot
+from momantu_bt.tree.plugins import WORLDS
 from momantu_bt.world import CheckableWorld, WorldError
 
 MOST_SEEDS = 1000
@@ -43,7 +43,7 @@ def check(
     episodes = parse_seeds(seeds)
     if len(episodes) > MOST_SEEDS:
         raise SeedsError(f"--seeds {seeds} are more than {MOST_SEEDS} seeds")
-    entry = load_world(world)
+    entry = WORLDS.load(world)
     if not isinstance(entry, CheckableWorld):
         raise InputError(f"the world {world!r} cannot check itself")
     try:

@@ -7,10 +7,10 @@ from typing import Annotated
 
 import typer
 
-from momantu_bt.cli.naming import load_world
 from momantu_bt.errors import ExitCode, InputError
 from momantu_bt.files import OutputError, check_writable, write_whole
-from momantu_bt.robots.named import load_robot
+from momantu_bt.robots.plugins import load_robot
+from momantu_bt.tree.plugins import WORLDS
 from momantu_bt.world import PreviewableWorld, WorldError
 
 
@@ -40,7 +40,7 @@ def preview(
     check_writable(out)
     if out.suffix.lower() != ".png":
         raise OutputError(f"{out} is no .png file; the picture is a PNG")
-    entry = load_world(world)
+    entry = WORLDS.load(world)
     if not isinstance(entry, PreviewableWorld):
         raise InputError(f"the world {world!r} cannot draw itself")
     try:

@@ -8,44 +8,31 @@ from importlib.metadata import EntryPoint
 from typing import Any
 
 from momantu_bt.diagnosis import Diagnosis
-from momantu_bt.plugins import (
-    COMMANDS,
-    ROBOTS,
-    SERVICES,
-    SKILLS,
-    TREES,
-    WORLDS,
-    PluginClash,
-    PluginError,
-    installed,
-    load,
-)
-
-GROUPS = (SKILLS, SERVICES, ROBOTS, WORLDS, TREES, COMMANDS)
+from momantu_bt.plugins import PREFIX, Group, PluginClash, PluginError
 
 Hook = Callable[[], Iterable[Diagnosis]]
 
 
-def plugins(groups: Iterable[str] = GROUPS) -> Iterator[Diagnosis]:
+def plugins(groups: Iterable[Group[Any]]) -> Iterator[Diagnosis]:
     """Load every plug-in, count those that load, and collect what they say of themselves."""
     hooks: dict[int, tuple[str, Hook]] = {}
     for group in groups:
         loaded: list[str] = []
-        for name, entry in installed(group).items():
+        for name, entry in group.installed().items():
             try:
-                hook = _hook(load(group, name), entry)
+                hook = _hook(group.load(name), entry)
             except PluginClash as error:
                 cure = "uninstall or rename one of them"
-                yield Diagnosis(f"{group} {name}", False, str(error), cure)
+                yield Diagnosis(f"{group.name} {name}", False, str(error), cure)
                 continue
             except PluginError as error:
-                yield Diagnosis(f"{group} {name}", False, str(error), _reinstall(entry))
+                yield Diagnosis(f"{group.name} {name}", False, str(error), _reinstall(entry))
                 continue
             loaded.append(name)
             if hook is not None:
                 hooks.setdefault(id(hook), (name, hook))
         if loaded:
-            yield Diagnosis(group.partition(".")[2], True, ", ".join(loaded))
+            yield Diagnosis(group.name.removeprefix(PREFIX), True, ", ".join(loaded))
     for name, hook in hooks.values():
         yield from asked(name, hook)
 

@@ -6,10 +6,9 @@ import sys
 from functools import cache
 from importlib import import_module
 
-from momantu_bt.plugins import COMMANDS, ROBOTS, SERVICES, SKILLS, WORLDS, installed
+from momantu_bt.plugins import packages
 
 _OWN = "momantu_bt"
-_GROUPS = (SKILLS, SERVICES, ROBOTS, WORLDS, COMMANDS)
 
 
 def type_name(kind: type) -> str:
@@ -39,7 +38,4 @@ def find_type(name: str) -> type | None:
 @cache
 def _packages() -> frozenset[str]:
     """Top-level packages of this framework and of everything that is plugged into it."""
-    entries = [entry for group in _GROUPS for entry in installed(group).values()]
-    return frozenset(
-        {_OWN, *(entry.value.partition(":")[0].partition(".")[0] for entry in entries)}
-    )
+    return frozenset({_OWN, *packages()})

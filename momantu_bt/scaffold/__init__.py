@@ -8,9 +8,9 @@ import tempfile
 from pathlib import Path
 from string import Template
 
-from momantu_bt import plugins
 from momantu_bt.errors import MomantuError
-from momantu_bt.plugin_checks import bad_skill_name
+from momantu_bt.tree.plugins import SKILLS
+from momantu_bt.tree.skill_objection import bad_skill_name
 
 FILES = {
     "pyproject.toml": "pyproject.toml",
@@ -61,7 +61,7 @@ def _check_name(name: str, package: str) -> None:
     wrong = bad_skill_name(name)
     if wrong is not None:
         raise CannotCreate(wrong.replace("; give the entry point another name", ""))
-    taken = plugins.installed(plugins.SKILLS).get(name)
+    taken = SKILLS.installed().get(name)
     if taken is not None:
         raise CannotCreate(f"a skill called {name!r} is installed already: {taken.value}")
     if importlib.util.find_spec(package) is not None:

@@ -7,10 +7,9 @@ from collections.abc import Iterator
 
 from momantu_bt.failure import ENGINE_CODES
 from momantu_bt.formats.problems import Problem
-from momantu_bt.plugin_checks import objection
-from momantu_bt.plugins import SKILLS
 from momantu_bt.skill import Skill
 from momantu_bt.testing.source import Module, classes, reached
+from momantu_bt.tree.skill_objection import skill_objection
 
 _GIVEN = {"port_values", "services", "clock", "random", "frames", "site"}
 """Attributes that the engine sets."""
@@ -18,7 +17,7 @@ _GIVEN = {"port_values", "services", "clock", "random", "frames", "site"}
 
 def documented(skill: type[Skill]) -> Iterator[Problem]:
     """What a plug-in needs to be loaded at all, and sentences that a person can read."""
-    wrong = objection(SKILLS, "a_skill", skill)
+    wrong = skill_objection("a_skill", skill)
     if wrong is not None:
         yield Problem("docs", wrong)
     for code, sentence in skill.failures.items():

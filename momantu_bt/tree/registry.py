@@ -2,42 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from momantu_bt import plugins
-from momantu_bt.plugin_files import by_path
 from momantu_bt.robot import RobotDescription
+from momantu_bt.robots.plugins import ROBOTS
 from momantu_bt.skill import Skill
+from momantu_bt.tree.plugins import SERVICES, SKILLS, WORLDS
 from momantu_bt.world import Site, WorldEntry
-
-
-class Plugins(Mapping[str, Any]):
-    """The plug-ins of one entry point group; each is imported and checked when it is asked for.
-
-    Robots and worlds are had by the paths of their files, too.
-
-    Looking one up raises PluginError when it is broken, KeyError when there is none.
-    """
-
-    def __init__(self, group: str) -> None:
-        self._group = group
-
-    def __getitem__(self, name: str) -> Any:
-        if name not in self:
-            raise KeyError(name)
-        return plugins.load(self._group, name)
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(plugins.installed(self._group))
-
-    def __len__(self) -> int:
-        return len(plugins.installed(self._group))
-
-    def __contains__(self, name: object) -> bool:
-        named_by_file = isinstance(name, str) and by_path(self._group, name)
-        return named_by_file or name in plugins.installed(self._group)
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,12 +29,7 @@ class Registry:
     @classmethod
     def installed(cls) -> Registry:
         """Everything found by entry points."""
-        return cls(
-            Plugins(plugins.SKILLS),
-            Plugins(plugins.WORLDS),
-            Plugins(plugins.ROBOTS),
-            Plugins(plugins.SERVICES),
-        )
+        return cls(SKILLS, WORLDS, ROBOTS, SERVICES)
 
     def site(self, world: str) -> Site:
         """The nominal site of a world; KeyError when there is none of that name."""

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from momantu_bt import plugins, run
+from momantu_bt import run
 from momantu_bt.failure import Failure
 from momantu_bt.geometry import Pose, Transform
 from momantu_bt.messages import DetectedObject, SupportPlane
@@ -18,6 +18,7 @@ from momantu_bt.skill import MISSING, Run, Skill
 from momantu_bt.testing import ScriptedWorld
 from momantu_bt.tree.files.lookup import bundled
 from momantu_bt.tree.load import load
+from momantu_bt.tree.plugins import WORLDS
 from momantu_bt.tree.registry import Registry
 
 INSTALLED = Registry.installed()
@@ -91,7 +92,7 @@ def go(example: str, script: Script, **options: Any) -> Report:
     """Run an example in the site that it is meant for, with scripted skills."""
     skills = {name: script.stand_in(name) for name in INSTALLED.skills}
     registry = Registry(skills, {}, {}, dict.fromkeys(INSTALLED.services))
-    world = ScriptedWorld(site=plugins.load(plugins.WORLDS, "four_rooms").site())
+    world = ScriptedWorld(site=WORLDS.load("four_rooms").site())
     return run(f"examples/{example}", world=world, registry=registry, **options)
 
 

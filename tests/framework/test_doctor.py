@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from momantu_bt.cli import doctor as verb
 from momantu_bt.diagnosis import Diagnosis, imports, machine, packages, plugins
 from momantu_bt.diagnosis.packages import Requirement, judge, release, requirements
-from momantu_bt.plugins import PluginError
+from momantu_bt.plugins import Group, PluginError
 
 
 def run(
@@ -202,15 +202,16 @@ class Loaded:
 def with_plugins(monkeypatch: pytest.MonkeyPatch, found: dict[str, Any]) -> list[Diagnosis]:
     """What is collected from plug-ins of these names; an exception is raised on loading."""
 
-    def load(group: str, name: str) -> Any:
+    def load(name: str) -> Any:
         if isinstance(found[name], Exception):
             raise found[name]
         return found[name]
 
+    group: Group[Any] = Group("momantu_bt.skills", "skill")
     entries = {name: EntryPoint(name, f"nowhere_{name}:X", "g") for name in found}
-    monkeypatch.setattr(plugins, "installed", lambda group: entries)
-    monkeypatch.setattr(plugins, "load", load)
-    return list(plugins.plugins(["momantu_bt.skills"]))
+    monkeypatch.setattr(group, "installed", lambda: entries)
+    monkeypatch.setattr(group, "load", load)
+    return list(plugins.plugins([group]))
 
 
 def test_a_hook_that_several_plugins_share_is_called_once(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,19 +10,12 @@ import pytest
 from momantu_bt import plugins
 from momantu_bt.cli import main
 from momantu_bt.diagnosis.plugins import plugins as diagnosed
-from momantu_bt.plugin_checks import bad_skill_name
-from momantu_bt.plugins import (
-    ROBOTS,
-    SERVICES,
-    SKILLS,
-    WORLDS,
-    PluginClash,
-    PluginError,
-    installed,
-    load,
-)
+from momantu_bt.plugins import Group, PluginClash, PluginError
+from momantu_bt.robots.plugins import ROBOTS
 from momantu_bt.tree.catalogue import BUILT_IN, MODIFIERS, SPELLED
+from momantu_bt.tree.plugins import SERVICES, SKILLS, WORLDS
 from momantu_bt.tree.registry import Registry
+from momantu_bt.tree.skill_objection import bad_skill_name
 
 GOOD = '''
 from momantu_bt import In, Robot, Run, Skill
@@ -48,7 +41,7 @@ def entries(monkeypatch: pytest.MonkeyPatch) -> list[EntryPoint]:
     return having
 
 
-def entry(name: str, value: str, group: str = SKILLS) -> EntryPoint:
+def entry(name: str, value: str, group: str = SKILLS.name) -> EntryPoint:
     return EntryPoint(name, value, group)
 
 
@@ -70,28 +63,28 @@ def module(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.Fixt
 
 def test_names_come_in_order(entries: list[EntryPoint]) -> None:
     entries += [entry("b", "m:B"), entry("a", "m:A")]
-    assert list(installed(SKILLS)) == ["a", "b"]
+    assert list(SKILLS) == ["a", "b"]
 
 
 def test_two_of_one_name_are_both_named_and_harm_nobody(entries: list[EntryPoint], module) -> None:
     good = module(GOOD)
     entries += [entry("a", "one:A"), entry("a", "two:A"), entry("good", f"{good}:Good")]
-    assert list(installed(SKILLS)) == ["a", "good"]
+    assert list(SKILLS) == ["a", "good"]
     with pytest.raises(PluginClash, match=r"one:A .* two:A"):
-        load(SKILLS, "a")
-    assert load(SKILLS, "good").__name__ == "Good"
+        SKILLS.load("a")
+    assert SKILLS.load("good").__name__ == "Good"
 
 
 def test_the_same_one_twice_is_one(entries: list[EntryPoint], module) -> None:
     good = module(GOOD)
     entries += [entry("good", f"{good}:Good"), entry("good", f"{good}:Good")]
-    assert load(SKILLS, "good").__name__ == "Good"
+    assert SKILLS.load("good").__name__ == "Good"
 
 
 def test_an_unknown_name_is_answered_with_the_nearest(entries: list[EntryPoint]) -> None:
     entries.append(entry("navigate", "m:N"))
     with pytest.raises(PluginError, match="did you mean 'navigate'"):
-        load(SKILLS, "navigat")
+        SKILLS.load("navigat")
 
 
 BROKEN = {
@@ -122,7 +115,7 @@ def test_a_broken_skill_is_named_with_the_reason(
     name = module(BROKEN[reason])
     entries.append(entry("good", f"{name}:Good"))
     with pytest.raises(PluginError) as raised:
-        load(SKILLS, "good")
+        SKILLS.load("good")
     assert str(raised.value).startswith(f"the skill 'good' ({name}:Good of an unknown package) ")
     assert reason in str(raised.value)
 
@@ -136,11 +129,11 @@ def test_a_broken_skill_is_named_with_the_reason(
     ],
 )
 def test_other_plugins_are_checked_too(
-    entries: list[EntryPoint], group: str, value: str, reason: str
+    entries: list[EntryPoint], group: Group[object], value: str, reason: str
 ) -> None:
-    entries.append(entry("a", value, group))
+    entries.append(entry("a", value, group.name))
     with pytest.raises(PluginError, match=reason):
-        load(group, "a")
+        group.load("a")
 
 
 @pytest.mark.parametrize(
@@ -150,10 +143,10 @@ def test_a_name_that_means_something_else_is_refused(name: str) -> None:
     assert bad_skill_name(name)
 
 
-@pytest.mark.parametrize("name", installed(SKILLS))
+@pytest.mark.parametrize("name", SKILLS)
 def test_installed_names_are_good(name: str) -> None:
     assert bad_skill_name(name) is None
-    assert load(SKILLS, name)
+    assert SKILLS.load(name)
 
 
 TREE = "momantu_bt: 1\ntrees:\n  Main:\n"
@@ -171,8 +164,8 @@ def test_one_broken_skill_and_one_clash_leave_the_rest_alone(
     assert "no_such_module" in rows["ill"]["about"]
     assert "two plug-ins" in rows["twice"]["about"]
     wrong = {one.name: one for one in diagnosed([SKILLS]) if not one.ok}
-    assert set(wrong) == {f"{SKILLS} ill", f"{SKILLS} twice"}
-    assert "rename" in wrong[f"{SKILLS} twice"].cure
+    assert set(wrong) == {f"{SKILLS.name} ill", f"{SKILLS.name} twice"}
+    assert "rename" in wrong[f"{SKILLS.name} twice"].cure
     file = tmp_path / "tree.yaml"
     for name, code in (("good", 0), ("ill", 2), ("twice", 2)):
         file.write_text(f"{TREE}    - {name}\n", encoding="utf-8")

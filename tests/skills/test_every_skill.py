@@ -5,8 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from momantu_bt.plugins import ROBOTS, WORLDS, installed
+from momantu_bt.robots.plugins import ROBOTS
 from momantu_bt.skill import Skill
+from momantu_bt.tree.plugins import WORLDS
 from momantu_bt.tree.registry import Registry
 
 INSTALLED = Registry.installed()
@@ -43,7 +44,7 @@ def test_numbers_have_units_or_count(skill: tuple[str, type[Skill]]) -> None:
     assert not bare, f"{kind.__name__}: {', '.join(bare)} has no unit"
 
 
-NAMED = {"sapien", *installed(ROBOTS), *installed(WORLDS)}
+NAMED = {"sapien", *ROBOTS, *WORLDS}
 """What no skill may know by name: the simulator, every robot, every world."""
 
 

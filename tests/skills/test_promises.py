@@ -13,10 +13,10 @@ from momantu_skills.place import Place
 
 from momantu_bt.geometry import Pose, Transform
 from momantu_bt.messages import DetectedObject, SupportPlane
-from momantu_bt.plugins import SKILLS, load
 from momantu_bt.robot import Robot
 from momantu_bt.skill import Skill
 from momantu_bt.testing import ScriptedWorld, check_skill
+from momantu_bt.tree.plugins import SKILLS
 from momantu_bt.tree.registry import Registry
 
 HAND_FROM_CAN = Transform((0.007, 0.0, 0.0))
@@ -31,7 +31,7 @@ BUNDLED = [
 
 @pytest.mark.parametrize("name", BUNDLED)
 def test_a_bundled_skill_keeps_what_every_skill_promises(name: str) -> None:
-    kind: type[Skill] = load(SKILLS, name)
+    kind: type[Skill] = SKILLS.load(name)
     found = check_skill(kind, halts=4)
     assert [str(finding) for finding in found if not finding.note] == []
     # nothing is in the hand of the robot in that room

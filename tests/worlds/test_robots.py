@@ -15,9 +15,9 @@ import trimesh
 from momantu_worlds.robots import FOLDER, fetch
 from ruamel.yaml import YAML
 
-from momantu_bt import plugins
 from momantu_bt.robot import CAMERA_CARRIER, REQUIRED_POSES, ActuatorKind, CameraSensor
 from momantu_bt.robots import RobotFileError, RobotNotInstalled, read_robot
+from momantu_bt.robots.plugins import ROBOTS
 from momantu_bt.robots.reader import read_robot_file
 
 FETCH = fetch()
@@ -137,4 +137,4 @@ def test_every_robot_of_the_package_reads_the_same_when_it_is_written_again(
     with (folder / "robot.yaml").open("w") as out:
         YAML().dump(model.as_written(), out)
     assert read_robot(folder) == robot
-    assert robot.name == file.parent.name == plugins.load(plugins.ROBOTS, robot.name)().name
+    assert robot.name == file.parent.name == ROBOTS.load(robot.name)().name

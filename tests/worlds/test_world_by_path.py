@@ -7,11 +7,11 @@ import json
 import pytest
 import trimesh
 
-from momantu_bt import plugin_files, plugins
 from momantu_bt.bench.made_of import difference, made_of
 from momantu_bt.cli import main
 from momantu_bt.tree.check.named_world import world_of
 from momantu_bt.tree.load import load
+from momantu_bt.tree.plugins import WORLDS
 from momantu_bt.tree.registry import Registry
 
 TREE = "momantu_bt: 1\n{world}trees:\n  Main:\n    - navigate: home\n"
@@ -59,7 +59,7 @@ def test_a_file_and_a_name_are_the_same_kind_of_thing(yard, monkeypatch):
     assert str(path) in registry.worlds
     monkeypatch.chdir(path.parent)
     assert registry.worlds["yard.yaml"].site() == entry.site()
-    assert plugin_files.absolute(plugins.WORLDS, "yard.yaml") == str(path)
+    assert WORLDS.absolute("yard.yaml") == str(path)
 
 
 def test_a_tree_names_a_world_beside_itself_from_wherever_it_is_run(yard, tree, monkeypatch):

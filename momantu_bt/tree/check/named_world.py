@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from momantu_bt.plugin_files import by_path
-from momantu_bt.plugins import WORLDS
 from momantu_bt.tree.model import Document
+from momantu_bt.tree.plugins import WORLDS
 
 NO_WORLD = "none"
 """As a world's name: run without one."""
@@ -23,4 +22,4 @@ def world_of(document: Document, asked: str | None) -> str | None:
     own = document.world
     if own is None or own == NO_WORLD:
         return None
-    return str(Path(document.file).parent / own) if by_path(WORLDS, own) else own
+    return str(Path(document.file).parent / own) if WORLDS.is_path(own) else own

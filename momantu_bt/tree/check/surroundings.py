@@ -5,10 +5,11 @@ from __future__ import annotations
 from momantu_bt.descriptions.reading import DescriptionError
 from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.places import Place
-from momantu_bt.plugin_files import near_file
-from momantu_bt.plugins import ROBOTS, WORLDS, PluginError
+from momantu_bt.plugins import PluginError
+from momantu_bt.robots.plugins import ROBOTS
 from momantu_bt.tree.check.named_world import world_of
 from momantu_bt.tree.check.signatures import Context
+from momantu_bt.tree.plugins import WORLDS
 from momantu_bt.world import WorldError
 
 WORLD_OPTION, ROBOT_OPTION = "--world", "--robot"
@@ -44,7 +45,7 @@ def _look_up_world(context: Context, name: str, place: Place) -> str | None:
     """Sets the context's site; returns the robot that the world is meant for."""
     worlds = context.registry.worlds
     if name not in worlds:
-        hint = near_file(WORLDS, name) or valid_names(name, worlds, "worlds")
+        hint = WORLDS.near_file(name) or valid_names(name, worlds, "worlds")
         _error("unknown-world", context, place, name, f"no world is called {name!r}", hint)
         return None
     try:
@@ -64,7 +65,7 @@ def _look_up_world(context: Context, name: str, place: Place) -> str | None:
 def _look_up_robot(context: Context, name: str, place: Place) -> None:
     robots = context.registry.robots
     if name not in robots:
-        hint = near_file(ROBOTS, name) or valid_names(name, robots, "robots")
+        hint = ROBOTS.near_file(name) or valid_names(name, robots, "robots")
         _error("unknown-robot", context, place, name, f"no robot is called {name!r}", hint)
         return
     try:

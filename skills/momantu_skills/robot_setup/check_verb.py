@@ -10,7 +10,7 @@ import typer
 from momantu_bt.errors import ExitCode, InputError
 from momantu_bt.findings import findings_json, findings_text
 from momantu_bt.lazy import lazily
-from momantu_bt.robots.named import load_robot
+from momantu_bt.robots.plugins import load_robot
 from momantu_skills.robot_setup.urdf.skeleton import SetupError
 
 with lazily():

@@ -9,6 +9,7 @@ import pytest
 
 from momantu_bt import __version__, plugins
 from momantu_bt.cli import VERBS, main
+from momantu_bt.cli.verbs import COMMANDS
 from momantu_bt.tree.problems import MOST_SHOWN
 from momantu_bt.world import WorldError
 
@@ -182,9 +183,8 @@ def test_a_verb_of_a_plug_in(
 ) -> None:
     from importlib.metadata import EntryPoint
 
-    entry = EntryPoint("paths", "os.path:basename", plugins.COMMANDS)
-    having = {plugins.COMMANDS: {"paths": entry}}
-    monkeypatch.setattr(plugins, "installed", lambda group: having.get(group, {}))
+    entry = EntryPoint("paths", "os.path:basename", COMMANDS.name)
+    monkeypatch.setattr(COMMANDS, "installed", lambda: {"paths": entry})
     assert main(["--help"]) == 0
     assert "paths" in capsys.readouterr().out
 

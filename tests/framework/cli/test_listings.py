@@ -9,12 +9,13 @@ import pytest
 
 from momantu_bt import plugins
 from momantu_bt.cli import main
-from momantu_bt.skill import Skill
+from momantu_bt.plugins import PluginError
+from momantu_bt.robots.plugins import ROBOTS
 from momantu_bt.tree.files.lookup import bundled
+from momantu_bt.tree.plugins import SKILLS, WORLDS
 from momantu_bt.tree.types import label
 
 Out = pytest.CaptureFixture[str]
-SKILLS = sorted(plugins.installed(plugins.SKILLS))
 TREE = "momantu_bt: 1\nvalues: {n: 66 mm}\ntrees:\n  Main: [{wait: 1 s, timeout: 3 s}]\n"
 
 
@@ -41,7 +42,7 @@ def tree(tmp_path: Path) -> Path:
 
 @pytest.mark.parametrize("name", SKILLS)
 def test_a_skill_is_shown_whole(capsys: Out, name: str) -> None:
-    skill: type[Skill] = plugins.load(plugins.SKILLS, name)
+    skill = SKILLS.load(name)
     about = as_json(capsys, "skills", "show", name)
     text = printed(capsys, "skills", "show", name)
     assert {port["name"] for port in about["ports"]} == set(skill.ports)
@@ -58,29 +59,29 @@ def test_a_skill_is_shown_whole(capsys: Out, name: str) -> None:
 
 def test_lists_name_everything_installed(capsys: Out) -> None:
     for kind, group in (
-        ("skills", plugins.SKILLS),
-        ("worlds", plugins.WORLDS),
-        ("robots", plugins.ROBOTS),
+        ("skills", SKILLS),
+        ("worlds", WORLDS),
+        ("robots", ROBOTS),
     ):
         rows = as_json(capsys, kind)
-        assert [row["name"] for row in rows] == list(plugins.installed(group))
+        assert [row["name"] for row in rows] == list(group)
         assert all(row["about"] for row in rows)
         lines = printed(capsys, kind).splitlines()
         assert [line.split()[0] for line in lines] == [row["name"] for row in rows]
 
 
-@pytest.mark.parametrize("name", plugins.installed(plugins.WORLDS))
+@pytest.mark.parametrize("name", WORLDS)
 def test_a_world_is_shown_whole(capsys: Out, name: str) -> None:
     about = as_json(capsys, "worlds", "show", name)
     text = printed(capsys, "worlds", "show", name)
-    site = plugins.load(plugins.WORLDS, name).site()
+    site = WORLDS.load(name).site()
     assert set(about["surfaces"]) == set(site.surfaces)
     assert set(about["places"]) == set(site.places)
-    assert about["default_robot"] in plugins.installed(plugins.ROBOTS)
+    assert about["default_robot"] in ROBOTS
     assert all(f"  {each}: " in text for each in (*site.surfaces, *site.places))
 
 
-@pytest.mark.parametrize("name", plugins.installed(plugins.ROBOTS))
+@pytest.mark.parametrize("name", ROBOTS)
 def test_a_robot_is_shown_whole(capsys: Out, name: str) -> None:
     about = as_json(capsys, "robots", "show", name)
     text = printed(capsys, "robots", "show", name)
@@ -93,19 +94,21 @@ def test_a_robot_is_shown_whole(capsys: Out, name: str) -> None:
 def test_one_broken_plug_in_does_not_hide_the_others(
     capsys: Out, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def load(group: str, name: str) -> Any:
-        if name == "pick":
-            raise plugins.PluginError("its library is missing")
-        return plugins.load(group, name)
+    whole = SKILLS.load
 
-    monkeypatch.setattr("momantu_bt.cli.listing.load", load)
+    def load(name: str) -> Any:
+        if name == "pick":
+            raise PluginError("its library is missing")
+        return whole(name)
+
+    monkeypatch.setattr(SKILLS, "load", load)
     about = {row["name"]: row["about"] for row in as_json(capsys, "skills")}
     assert about["pick"] == "broken: its library is missing"
-    assert list(about) == SKILLS
+    assert list(about) == list(SKILLS)
 
 
 def test_a_list_of_nothing_says_so(capsys: Out, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("momantu_bt.cli.listing.installed", lambda group: {})
+    monkeypatch.setattr(ROBOTS, "installed", dict)
     assert main(["robots"]) == 0
     said = capsys.readouterr()
     assert (said.out, said.err) == ("", "none is installed\n")
@@ -214,14 +217,14 @@ def test_a_schema_that_cannot_be_made(capsys: Out, asked: tuple[str, ...], messa
 def test_a_broken_plugin_is_left_out_of_the_schema(
     capsys: Out, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    whole = plugins.load
+    whole = SKILLS.load
 
-    def load(group: str, name: str) -> Any:
+    def load(name: str) -> Any:
         if name == "pick":
-            raise plugins.PluginError("the skill 'pick' cannot be loaded")
-        return whole(group, name)
+            raise PluginError("the skill 'pick' cannot be loaded")
+        return whole(name)
 
-    monkeypatch.setattr(plugins, "load", load)
+    monkeypatch.setattr(SKILLS, "load", load)
     assert main(["skills", "schema"]) == 0
     said = capsys.readouterr()
     assert "left out: the skill 'pick'" in said.err
@@ -238,7 +241,7 @@ def test_skills_are_tested_by_name(capsys: Out) -> None:
 def test_a_skill_that_breaks_a_promise_does_not_pass(
     capsys: Out, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    entry = EntryPoint("odd", "momantu_skills.check:Odd", plugins.SKILLS)
+    entry = EntryPoint("odd", "momantu_skills.check:Odd", SKILLS.name)
     monkeypatch.setattr(plugins, "entry_points", lambda group: [entry])
     assert main(["skills", "test"]) == 1
     said = capsys.readouterr().out

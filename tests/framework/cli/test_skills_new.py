@@ -15,6 +15,7 @@ import pytest
 from momantu_bt import plugins
 from momantu_bt.cli import main
 from momantu_bt.skill import Skill
+from momantu_bt.tree.plugins import SKILLS
 
 Out = pytest.CaptureFixture[str]
 
@@ -45,10 +46,10 @@ def test_what_it_makes_is_a_good_plug_in(
     project = tomllib.loads((tmp_path / name / "pyproject.toml").read_text(encoding="utf-8"))
     (value,) = project["project"]["entry-points"]["momantu_bt.skills"].values()
     monkeypatch.setattr(
-        plugins, "entry_points", lambda group: [EntryPoint(name, value, plugins.SKILLS)]
+        plugins, "entry_points", lambda group: [EntryPoint(name, value, SKILLS.name)]
     )
     try:
-        assert issubclass(plugins.load(plugins.SKILLS, name), Skill)
+        assert issubclass(SKILLS.load(name), Skill)
     finally:
         for module in [each for each in sys.modules if each.startswith(f"{name}_skill")]:
             del sys.modules[module]

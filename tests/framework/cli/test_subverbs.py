@@ -9,7 +9,8 @@ import pytest
 
 from momantu_bt import plugins
 from momantu_bt.cli import main
-from momantu_bt.plugins import COMMANDS, PluginError
+from momantu_bt.cli.verbs import COMMANDS
+from momantu_bt.plugins import PluginError
 
 Out = pytest.CaptureFixture[str]
 Bring = Callable[[str, str], None]
@@ -44,7 +45,7 @@ def bring(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Bring:
     monkeypatch.setattr(
         plugins,
         "entry_points",
-        lambda group: having if group == COMMANDS else find(group=group),
+        lambda group: having if group == COMMANDS.name else find(group=group),
     )
     monkeypatch.syspath_prepend(tmp_path)
     folder = tmp_path / "package_of_a_test" / "inner"
@@ -53,7 +54,7 @@ def bring(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Bring:
     def write(name: str, text: str, attribute: str = "greet") -> None:
         modules.append(f"package_of_a_test.inner.m{len(modules)}")
         (folder / f"m{len(modules) - 1}.py").write_text(text, encoding="utf-8")
-        having.append(EntryPoint(name, f"{modules[-1]}:{attribute}", COMMANDS))
+        having.append(EntryPoint(name, f"{modules[-1]}:{attribute}", COMMANDS.name))
 
     yield write
     for name in [name for name in sys.modules if name.startswith("package_of_a_test")]:
@@ -127,4 +128,4 @@ def test_help_imports_none_of_them_and_a_broken_one_is_told(bring: Bring, capsys
 def test_what_can_be_no_sub_verb(bring: Bring, name: str, attribute: str, words: str) -> None:
     bring(name, GREET, attribute)
     with pytest.raises(PluginError, match=words):
-        plugins.load(COMMANDS, name)
+        COMMANDS.load(name)

@@ -10,7 +10,9 @@ from momantu_bt.cli import main
 from momantu_bt.findings import Finding
 from momantu_bt.formats.places import Place
 from momantu_bt.geometry import Pose2D
-from momantu_bt.plugins import ROBOTS, PluginError
+from momantu_bt.plugins import PluginError
+from momantu_bt.robots.plugins import ROBOTS
+from momantu_bt.tree.plugins import WORLDS
 from momantu_bt.world import Site, Surface, WorldError
 
 Out = pytest.CaptureFixture[str]
@@ -63,15 +65,13 @@ def having(monkeypatch: pytest.MonkeyPatch):
     """`having(world)`: the only world there is; robots are their own names."""
 
     def put(world: Plain) -> Plain:
-        def load(group: str, name: str) -> object:
-            if group == ROBOTS:
-                return lambda: f"robot {name}"
+        def load(name: str) -> object:
             if name != world.name:
                 raise PluginError(f"no world is called {name!r}")
             return world
 
-        monkeypatch.setattr("momantu_bt.cli.naming.load", load)
-        monkeypatch.setattr("momantu_bt.robots.named.load", load)
+        monkeypatch.setattr(ROBOTS, "load", lambda name: lambda: f"robot {name}")
+        monkeypatch.setattr(WORLDS, "load", load)
         return world
 
     return put

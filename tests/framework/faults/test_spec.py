@@ -16,10 +16,9 @@ from momantu_bt.faults.matrix import ENDED, RECOVERED, row_of, rows, rows_like
 from momantu_bt.faults.phase import Phase, parse_phase
 from momantu_bt.faults.phases import check_phase, usual_phase
 from momantu_bt.faults.spec import format_fault, parse_fault
-from momantu_bt.plugins import SKILLS
-from momantu_bt.plugins import load as load_plugin
 from momantu_bt.skill import In, Out, Run, Skill
 from momantu_bt.tree.load import load
+from momantu_bt.tree.plugins import SKILLS
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.substitute.substitution import Substitution
 
@@ -102,9 +101,9 @@ def test_names_are_unique_and_every_row_can_be_judged():
     assert len(rows()) == len({row.fault for row in rows()})
     known = set(ENGINE_CODES)
     for name in ("navigate", "pick", "place", "detect_object", "detect_plane", "find_apriltag"):
-        known |= set(load_plugin(SKILLS, name).failures)
+        known |= set(SKILLS.load(name).failures)
     for name in ("check", "look", "release", "reset_pose", "relocalize"):
-        known |= set(load_plugin(SKILLS, name).failures)
+        known |= set(SKILLS.load(name).failures)
     for row in rows():
         assert row.notice > 0.0
         assert row.reasons <= known, f"{row.fault}: {row.reasons - known}"
@@ -249,9 +248,7 @@ def test_usual_phases_fall_back(document):
 
 def test_every_usual_phase_is_one_that_the_bundled_tree_has():
     document = load("bring_object", Registry.installed()).document
-    skills = {
-        name: load_plugin(SKILLS, name) for name in ("reset_pose", "navigate", "detect_object")
-    }
+    skills = {name: SKILLS.load(name) for name in ("reset_pose", "navigate", "detect_object")}
     for kind in KINDS.values():
         phase = usual_phase(kind, document, skills, NOTHING)
         assert (phase == "start") is (not kind.phases)

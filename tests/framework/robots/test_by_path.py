@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from momantu_bt import plugin_files, plugins
 from momantu_bt.bench.made_of import difference, made_of
 from momantu_bt.cli import main
 from momantu_bt.robots import read_robot
+from momantu_bt.robots.plugins import ROBOTS
 from momantu_bt.tree.load import load
 from momantu_bt.tree.registry import Registry
 
@@ -35,9 +35,9 @@ def test_file_folder_and_relative_path_give_the_same_robot(
     assert registry.description(str(file.parent)) == given
     monkeypatch.chdir(file.parent)
     assert registry.description("robot.yaml") == given
-    assert plugin_files.absolute(plugins.ROBOTS, "robot.yaml") == str(file)
-    assert plugin_files.absolute(plugins.ROBOTS, "fetch") == "fetch"
-    assert plugin_files.absolute(plugins.ROBOTS, None) is None
+    assert ROBOTS.absolute("robot.yaml") == str(file)
+    assert ROBOTS.absolute("fetch") == "fetch"
+    assert ROBOTS.absolute(None) is None
 
 
 def test_a_bare_name_with_a_file_nearby_gets_a_hint(

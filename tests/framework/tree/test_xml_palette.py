@@ -3,13 +3,13 @@
 import pytest
 
 from momantu_bt.cli import main
-from momantu_bt.plugins import SKILLS, installed
 from momantu_bt.skill import MISSING, Port
 from momantu_bt.tree.catalogue import BUILT_IN, NAV2_NODES, OWN_NODES
 from momantu_bt.tree.files.xml.format import read
 from momantu_bt.tree.files.xml.models import our_type
 from momantu_bt.tree.files.xml.palette import palette
 from momantu_bt.tree.model import Literal, NodeModel
+from momantu_bt.tree.plugins import SKILLS
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.types import label, parse_type
 from momantu_bt.tree.values.conversion import convert
@@ -87,4 +87,4 @@ def test_a_node_of_the_palette_in_a_tree() -> None:
 
 def test_the_command_prints_every_installed_skill(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["skills", "--xml-model"]) == 0
-    assert set(installed(SKILLS)) <= set(models(capsys.readouterr().out))
+    assert set(SKILLS) <= set(models(capsys.readouterr().out))

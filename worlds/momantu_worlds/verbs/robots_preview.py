@@ -10,7 +10,7 @@ import typer
 from momantu_bt.errors import ExitCode
 from momantu_bt.files import OutputError, write_whole
 from momantu_bt.lazy import lazily
-from momantu_bt.robots.named import load_robot
+from momantu_bt.robots.plugins import load_robot
 
 with lazily():
     from momantu_worlds.preview import robot_sheet

@@ -1,35 +1,24 @@
-"""What a plug-in has to be, so that trees can use it: asked once it has been imported."""
+"""What a skill has to be, so that trees can use it: asked once it has been imported."""
 
 from __future__ import annotations
 
 import keyword
 import re
-from collections.abc import Callable, Mapping
-from importlib import import_module
-from inspect import getattr_static
+from collections.abc import Mapping
 from typing import Any
 
 from momantu_bt.failure import CODE
-from momantu_bt.plugins import COMMANDS, ROBOTS, SERVICES, SKILLS, WORLDS, installed, load
-from momantu_bt.service import Service
 from momantu_bt.skill import Port, Skill
+from momantu_bt.tree.catalogue import BUILT_IN, MODIFIERS, SPELLED
+from momantu_bt.tree.types import is_union, origin
 
-_WORD = re.compile(r"[a-z][a-z0-9_-]*")
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
 WORDS_OF_TREES = ("again", "any", "child", "children", "try", "catch", "then", "else", "do")
 """Words that stand where a node's name could, and mean something else."""
 
 
-def objection(group: str, name: str, plugin: Any) -> str | None:
-    """Why trees cannot use this plug-in; None when they can."""
-    asked = _CHECKS.get(group)
-    return None if asked is None else asked(name, plugin)
-
-
 def bad_skill_name(name: str) -> str | None:
     """Why no skill can be called so; None when one can."""
-    from momantu_bt.tree.catalogue import BUILT_IN, MODIFIERS, SPELLED
-
     if not _NAME.fullmatch(name):
         return f"{name!r} is no name for a skill: lower-case letters, digits and underscores"
     if name in SPELLED or name in BUILT_IN:
@@ -41,7 +30,8 @@ def bad_skill_name(name: str) -> str | None:
     return None
 
 
-def _skill(name: str, plugin: Any) -> str | None:
+def skill_objection(name: str, plugin: Any) -> str | None:
+    """Why trees cannot use this as a skill; None when they can."""
     if not (isinstance(plugin, type) and issubclass(plugin, Skill)):
         kind = plugin.__name__ if isinstance(plugin, type) else type(plugin).__name__
         return f"{kind} is not a subclass of momantu_bt.Skill"
@@ -75,8 +65,6 @@ def _port(kind: type[Skill], port: Port) -> str | None:
 
 
 def _is_type(annotation: Any) -> bool:
-    from momantu_bt.tree.types import is_union, origin
-
     named = isinstance(annotation, type) or annotation is Any
     return named or origin(annotation) is not None or is_union(annotation)
 
@@ -95,59 +83,3 @@ def _failures(kind: type[Skill]) -> str | None:
 def _uses(kind: type[Skill]) -> str | None:
     named = isinstance(kind.uses, set | frozenset) and all(isinstance(u, str) for u in kind.uses)
     return None if named else f"{kind.__name__}.uses is no set of actuators' names"
-
-
-def _service(name: str, plugin: Any) -> str | None:
-    if isinstance(plugin, type) and issubclass(plugin, Service):
-        return None
-    return f"{plugin!r} is not a subclass of momantu_bt.Service"
-
-
-def _robot(name: str, plugin: Any) -> str | None:
-    return None if callable(plugin) else f"{plugin!r} is no function that gives a description"
-
-
-def _world(name: str, plugin: Any) -> str | None:
-    parts = ("name", "default_robot", "site", "open")
-    lacking = [part for part in parts if not _has(plugin, part)]
-    return f"{plugin!r} has no {' and no '.join(lacking)}" if lacking else None
-
-
-def _has(plugin: Any, part: str) -> bool:
-    """Whether it has an attribute, without asking for its value: that may read a file."""
-    try:
-        getattr_static(plugin, part)
-    except AttributeError:
-        return False
-    return True
-
-
-def _command(name: str, plugin: Any) -> str | None:
-    if not callable(plugin):
-        return f"{plugin!r} is no function and no typer app"
-    if not all(_WORD.fullmatch(word) for word in name.split(" ")) or name.count(" ") > 1:
-        return f"{name!r} is no verb, and no verb, one blank and a sub-verb"
-    verb, blank, _ = name.partition(" ")
-    if blank and not _is_group(verb):
-        return f"the verb {verb!r} takes no sub-verbs"
-    return None
-
-
-def _is_group(verb: str) -> bool:
-    """Whether a verb is a typer app, which takes sub-verbs."""
-    import typer
-
-    from momantu_bt.cli import VERBS
-
-    if verb in VERBS:
-        return isinstance(getattr(import_module(f"momantu_bt.cli.{verb}"), verb), typer.Typer)
-    return verb in installed(COMMANDS) and isinstance(load(COMMANDS, verb), typer.Typer)
-
-
-_CHECKS: Mapping[str, Callable[[str, Any], str | None]] = {
-    SKILLS: _skill,
-    SERVICES: _service,
-    ROBOTS: _robot,
-    WORLDS: _world,
-    COMMANDS: _command,
-}

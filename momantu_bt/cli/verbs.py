@@ -1,0 +1,58 @@
+"""Verbs of the command line: built-in ones, and those that other packages bring."""
+
+from __future__ import annotations
+
+import re
+from importlib import import_module
+from typing import Any
+
+import typer
+
+from momantu_bt.plugins import Group
+
+VERBS = {
+    "run": "Run a tree.",
+    "bench": "Run a tree many times and say how often it works, and why not.",
+    "compare": "Run two trees on the same seeds and say which works more often.",
+    "replay": "Go through a recorded run, or tick its tree again.",
+    "diff": "Say what two recorded runs differ in.",
+    "check": "Say everything that is wrong with tree files.",
+    "convert": "Write a tree in the other spelling, YAML or BehaviorTree.CPP's XML.",
+    "show": "Print a tree in plain words or as a picture, or the difference of two.",
+    "skills": "List skills, or show one with its ports and failure codes.",
+    "worlds": "List worlds, or show one with its places and surfaces.",
+    "robots": "List robots, or show one with its actuators and named poses.",
+    "faults": "List what can be broken on purpose, or show one fault.",
+    "doctor": "Say what this machine lacks, and the cure.",
+}
+"""Built-in verbs. `momantu_bt.cli.<verb>` has a function or a typer app of the verb's name."""
+
+
+_WORD = re.compile(r"[a-z][a-z0-9_-]*")
+
+
+def built_in(verb: str) -> Any:
+    """The function or typer app of a built-in verb, whose module is imported now."""
+    return getattr(import_module(f"momantu_bt.cli.{verb}"), verb)
+
+
+def _objection(name: str, plugin: Any) -> str | None:
+    if not callable(plugin):
+        return f"{plugin!r} is no function and no typer app"
+    if not all(_WORD.fullmatch(word) for word in name.split(" ")) or name.count(" ") > 1:
+        return f"{name!r} is no verb, and no verb, one blank and a sub-verb"
+    verb, blank, _ = name.partition(" ")
+    if blank and not _takes_subverbs(verb):
+        return f"the verb {verb!r} takes no sub-verbs"
+    return None
+
+
+def _takes_subverbs(verb: str) -> bool:
+    """Whether a verb is a typer app."""
+    if verb in VERBS:
+        return isinstance(built_in(verb), typer.Typer)
+    return verb in COMMANDS and isinstance(COMMANDS.load(verb), typer.Typer)
+
+
+COMMANDS: Group[Any] = Group("momantu_bt.commands", "verb", _objection)
+"""Functions or typer apps; of two words, such as `worlds import`, they are sub-verbs."""

@@ -1,0 +1,43 @@
+"""Robots by name: installed ones, and files in the place of a name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeAlias
+
+from momantu_bt.plugins import Files, Group, PluginError
+from momantu_bt.robot import RobotDescription
+from momantu_bt.robots.reader import read_robot
+
+GEOMETRY = (".urdf", ".xacro")
+"""How files end that a robot file names, and that somebody may take for one."""
+
+Describe: TypeAlias = Callable[[], RobotDescription]
+
+
+def load_robot(name: str) -> RobotDescription:
+    """The robot of a name, or of a path.
+
+    Raises:
+        PluginError: there is none, with the nearest ones.
+        RobotFileError: its file is wrong.
+    """
+    return ROBOTS.load(name)()
+
+
+def _objection(name: str, plugin: Any) -> str | None:
+    return None if callable(plugin) else f"{plugin!r} is no function that gives a description"
+
+
+def _read(path: Path) -> Describe:
+    if path.suffix in GEOMETRY:
+        setup = f"momantu-bt robots setup {path}"
+        raise PluginError(f"{path} is no robot file, but a URDF; `{setup}` makes one of it")
+    return lambda: read_robot(path)
+
+
+ROBOTS: Group[Describe] = Group(
+    "momantu_bt.robots", "robot", _objection, Files("robot.yaml", _read)
+)
+"""Functions that give a robot's description."""
