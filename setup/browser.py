@@ -15,7 +15,7 @@ from pathlib import Path
 
 from momantu_worlds.vulkan.apt import AptError, PrivateApt, this_system
 
-from momantu_bt.cache import cache_folder
+from momantu_bt.formats.cache import cache_folder
 
 VARIABLE = "MOMANTU_BROWSER"
 """Names another browser."""

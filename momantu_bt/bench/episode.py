@@ -20,7 +20,7 @@ import momantu_bt.cli.threads  # noqa: F401 - before numpy, which the next impor
 from momantu_bt.bench.spec import EpisodeSpec, Row
 from momantu_bt.errors import MomantuError
 from momantu_bt.fault import FaultError
-from momantu_bt.files import write_whole
+from momantu_bt.formats.files import write_whole
 
 if TYPE_CHECKING:
     from momantu_bt.engine.executor import Executor, Observer

@@ -16,7 +16,7 @@ from momantu_bt.bench.process import CRASHED, REFUSED
 from momantu_bt.bench.ray_cluster import cluster
 from momantu_bt.bench.ray_task import errand, order
 from momantu_bt.bench.spec import EpisodeSpec, Row
-from momantu_bt.files import OutputError
+from momantu_bt.formats.files import OutputError
 
 MOST_DEATHS = 3
 """Workers that may die under one episode; then it has crashed."""

@@ -9,7 +9,7 @@ from typing import Any
 
 from momantu_bt.bench.spec import Row
 from momantu_bt.bench.summary import Summary
-from momantu_bt.files import write_whole
+from momantu_bt.formats.files import write_whole
 
 _TOO_LONG = ("nodes", "made_of")
 """What rows hold that a report leaves to `results.jsonl`, or says once."""

@@ -15,7 +15,7 @@ from types import TracebackType
 
 from momantu_bt.bench.spec import Row
 from momantu_bt.errors import MomantuError
-from momantu_bt.files import OutputError
+from momantu_bt.formats.files import OutputError
 
 RESULTS, LOCK = "results.jsonl", ".lock"
 

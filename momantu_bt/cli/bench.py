@@ -148,7 +148,7 @@ def _bench(
     from momantu_bt.bench.carry_out import carry_out
     from momantu_bt.bench.store import Store
     from momantu_bt.cli.bench_progress import progress
-    from momantu_bt.files import check_writable
+    from momantu_bt.formats.files import check_writable
 
     part = plan.wanted.shard(*shard_of(options.shard))
     engine = engine_of(*options.engine)

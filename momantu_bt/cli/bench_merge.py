@@ -25,7 +25,7 @@ def merge_folders(words: Sequence[str], out: Path | None, report: Path | None) -
     from momantu_bt.bench.merge import merge
     from momantu_bt.bench.plan import PLAN
     from momantu_bt.bench.store import Store
-    from momantu_bt.files import check_writable
+    from momantu_bt.formats.files import check_writable
 
     if out is None:
         raise InputError("--merge needs --out, a folder for all of it")

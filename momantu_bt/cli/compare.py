@@ -74,7 +74,7 @@ def compare(
       momantu-bt compare old.yaml new.yaml --seeds 0:50 --report comparison.json
     """
     from momantu_bt.cli.given import given_values
-    from momantu_bt.files import check_writable
+    from momantu_bt.formats.files import check_writable
     from momantu_bt.formats.seeds import parse_seeds
 
     chosen = choose(record, RECORD, "--record")

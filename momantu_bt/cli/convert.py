@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from momantu_bt.errors import ExitCode, InputError
-from momantu_bt.files import OutputError, check_writable, write_whole
+from momantu_bt.formats.files import OutputError, check_writable, write_whole
 from momantu_bt.tree.convert import (
     CannotWrite,
     Spelling,

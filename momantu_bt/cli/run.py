@@ -190,7 +190,7 @@ def _breakpoints(
 
 
 def _check_outputs(wanted: _Outputs) -> None:
-    from momantu_bt.files import check_writable
+    from momantu_bt.formats.files import check_writable
 
     for path in (wanted.report, wanted.video):
         if path is not None:

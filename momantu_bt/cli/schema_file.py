@@ -10,7 +10,7 @@ from typing import Annotated, Any, TypeAlias
 import typer
 
 from momantu_bt.errors import ExitCode
-from momantu_bt.files import check_writable, write_whole
+from momantu_bt.formats.files import check_writable, write_whole
 
 Out: TypeAlias = Annotated[
     Path | None, typer.Option("--out", "-o", help="Write to this file; else print it.")

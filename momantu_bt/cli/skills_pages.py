@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from momantu_bt.errors import ExitCode
-from momantu_bt.files import write_whole
+from momantu_bt.formats.files import write_whole
 from momantu_bt.tree.plugins import SKILLS
 from momantu_bt.tree.show.skill_page import pages as pages_of
 

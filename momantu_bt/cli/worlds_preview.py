@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from momantu_bt.errors import ExitCode, InputError
-from momantu_bt.files import OutputError, check_writable, write_whole
+from momantu_bt.formats.files import OutputError, check_writable, write_whole
 from momantu_bt.robots.plugins import load_robot
 from momantu_bt.tree.plugins import WORLDS
 from momantu_bt.world import PreviewableWorld, WorldError

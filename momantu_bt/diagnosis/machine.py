@@ -8,8 +8,8 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
-from momantu_bt.cache import CACHE_VARIABLE, cache_folder
 from momantu_bt.diagnosis import Diagnosis
+from momantu_bt.formats.cache import CACHE_VARIABLE, cache_folder
 
 OLDEST, NEWEST = (3, 11), (3, 12)
 """Python versions that every dependency has wheels for."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from momantu_bt.files import OutputError
+from momantu_bt.formats.files import OutputError
 
 LOG = "run.mcap"
 REPORT = "report.json"

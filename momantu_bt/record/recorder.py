@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from momantu_bt.engine.context import RunContext
 from momantu_bt.engine.executor import Executor
 from momantu_bt.engine.outside import Heard
-from momantu_bt.files import OutputError, write_whole
+from momantu_bt.formats.files import OutputError, write_whole
 from momantu_bt.record.about import files_of, nodes_data, run_data
 from momantu_bt.record.channel import Channel, stamp_of
 from momantu_bt.record.codec import dumps

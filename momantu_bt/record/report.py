@@ -11,7 +11,7 @@ from typing import Any
 
 from momantu_bt.errors import ExitCode
 from momantu_bt.failure import FailureValue
-from momantu_bt.files import write_whole
+from momantu_bt.formats.files import write_whole
 from momantu_bt.messages import plain
 from momantu_bt.world import Incident
 

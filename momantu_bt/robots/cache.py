@@ -5,7 +5,8 @@ from __future__ import annotations
 import hashlib
 from pathlib import Path
 
-from momantu_bt.files import kept_folder, write_whole
+from momantu_bt.formats.cache import kept_folder
+from momantu_bt.formats.files import write_whole
 
 DIGITS = 16
 

@@ -15,7 +15,7 @@ from momantu_worlds.vulkan.choice import Choice, VulkanMissingError
 from momantu_worlds.vulkan.probe import ProbeResult, Way
 from momantu_worlds.vulkan.use import apply
 
-from momantu_bt.cache import CACHE_VARIABLE
+from momantu_bt.formats.cache import CACHE_VARIABLE
 
 
 @pytest.fixture(autouse=True)

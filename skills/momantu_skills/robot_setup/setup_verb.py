@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from momantu_bt.errors import ExitCode
-from momantu_bt.files import OutputError, write_whole
+from momantu_bt.formats.files import OutputError, write_whole
 from momantu_bt.lazy import lazily
 from momantu_bt.robots import RobotFileError, read_robot
 

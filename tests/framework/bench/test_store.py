@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from momantu_bt.bench.store import LOCK, RESULTS, Store, StoreError, read_rows
-from momantu_bt.files import OutputError
+from momantu_bt.formats.files import OutputError
 
 
 def row(number: int) -> dict[str, object]:

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from lxml import etree
 
-from momantu_bt.files import OutputError
+from momantu_bt.formats.files import OutputError
 from momantu_bt.page import write_page
 from momantu_bt.page.data import page_data
 from momantu_bt.page.page import SCRIPTS, as_json, page_text

@@ -9,7 +9,7 @@ import pytest
 
 from momantu_bt.engine.api import run
 from momantu_bt.engine.launch import LaunchError
-from momantu_bt.files import OutputError
+from momantu_bt.formats.files import OutputError
 from momantu_bt.record.reader import RecordError, read_record
 from momantu_bt.record.recorder import MOST_TICKS
 from momantu_bt.skill import Run, Skill

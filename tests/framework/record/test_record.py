@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from momantu_bt.engine.actuators import Issued
 from momantu_bt.failure import FailureValue
-from momantu_bt.files import OutputError, check_writable, write_whole
+from momantu_bt.formats.files import OutputError, check_writable, write_whole
 from momantu_bt.geometry import Pose2D
 from momantu_bt.messages import BaseVelocity
 from momantu_bt.record.encode import encode

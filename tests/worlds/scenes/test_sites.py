@@ -10,8 +10,8 @@ from momantu_worlds.scenes.loading import load_world, nominal, nominal_site, wor
 from momantu_worlds.scenes.site.cache import cached_nominal
 from momantu_worlds.scenes.site.maps import MOST_CACHED, with_maps
 
-from momantu_bt.cache import CACHE_VARIABLE
-from momantu_bt.files import write_whole
+from momantu_bt.formats.cache import CACHE_VARIABLE
+from momantu_bt.formats.files import write_whole
 from momantu_bt.robot import laser_band
 from momantu_bt.world import WorldError
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from momantu_bt.files import write_whole
+from momantu_bt.formats.files import write_whole
 from momantu_bt.formats.places import Place
 from momantu_bt.geometry import Pose2D, Transform
 from momantu_worlds.scenes.file.reader import parse_world

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from momantu_bt.errors import ExitCode
-from momantu_bt.files import OutputError, write_whole
+from momantu_bt.formats.files import OutputError, write_whole
 from momantu_bt.lazy import lazily
 from momantu_bt.robots.plugins import load_robot
 

@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from momantu_bt.errors import ExitCode, InputError
-from momantu_bt.files import OutputError
+from momantu_bt.formats.files import OutputError
 from momantu_bt.world import WorldError
 from momantu_worlds.sdf.deviations import Deviation, Outcome
 from momantu_worlds.sdf.importing import Import, import_world

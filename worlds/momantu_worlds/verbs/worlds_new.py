@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from momantu_bt.errors import ExitCode
-from momantu_bt.files import OutputError
+from momantu_bt.formats.files import OutputError
 from momantu_worlds.verbs.template import two_rooms
 
 

@@ -10,7 +10,7 @@ import typer
 
 from momantu_bt.descriptions.schema import editor_schema
 from momantu_bt.errors import ExitCode
-from momantu_bt.files import write_whole
+from momantu_bt.formats.files import write_whole
 from momantu_worlds.scenes.file.world import WorldFile
 from momantu_worlds.verbs.schema_descriptions import words_of
 

@@ -18,7 +18,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from momantu_bt.cache import cache_folder
+from momantu_bt.formats.cache import cache_folder
 from momantu_worlds.vulkan.apt import AptError, PrivateApt, System, this_system
 from momantu_worlds.vulkan.choice import (
     Choice,

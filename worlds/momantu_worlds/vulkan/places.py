@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from momantu_bt.cache import cache_folder
+from momantu_bt.formats.cache import cache_folder
 
 
 def driver_folder() -> Path:

@@ -16,7 +16,8 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from momantu_bt.files import kept_folder, write_whole
+from momantu_bt.formats.cache import kept_folder
+from momantu_bt.formats.files import write_whole
 from momantu_bt.geometry import Pose2D
 from momantu_bt.messages import ObjectClass, plain
 from momantu_bt.world import Overhang, Site, Surface

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from momantu_bt.files import write_whole
+from momantu_bt.formats.files import write_whole
 from momantu_bt.geometry import Array, Pose2D
 from momantu_bt.world import WorldError
 from momantu_worlds.scenes.arrange.episode import piece_parts, table_parts

@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from shutil import rmtree
 
-from momantu_bt.files import kept_folder
+from momantu_bt.formats.cache import kept_folder
 from momantu_bt.world import Site, WorldError
 from momantu_worlds.scenes.file.world import WorldFile
 from momantu_worlds.scenes.site.cache import cache_key

@@ -13,7 +13,7 @@ import numpy as np
 import trimesh
 from PIL import Image
 
-from momantu_bt.files import write_whole
+from momantu_bt.formats.files import write_whole
 from momantu_bt.geometry import Array
 from momantu_worlds.sdf.mesh.files import Piece
 

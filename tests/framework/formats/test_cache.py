@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from momantu_bt.cache import CACHE_VARIABLE, cache_folder
+from momantu_bt.formats.cache import CACHE_VARIABLE, cache_folder
 
 
 def test_the_cache_folder_follows_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:

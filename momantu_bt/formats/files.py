@@ -1,14 +1,11 @@
-"""Writing a file so that it is never half there, and folders for what is worked out and kept."""
+"""Writing a file so that it is never half there."""
 
 from __future__ import annotations
 
 import os
-import tempfile
 from contextlib import suppress
-from functools import cache
 from pathlib import Path
 
-from momantu_bt.cache import cache_folder
 from momantu_bt.errors import MomantuError
 
 
@@ -57,27 +54,3 @@ def check_writable(path: Path) -> None:
         raise OutputError(
             f"{path} cannot be written: {error.strerror or error}; choose a folder that is yours"
         ) from None
-
-
-def kept_folder(kind: str) -> Path:
-    """A folder for one kind of thing: in the user's cache, or one that goes with the process.
-
-    Raises:
-        OSError: neither the cache nor the folder of temporary files can be written.
-    """
-    with suppress(OSError):
-        return _writable(cache_folder() / kind)
-    return _writable(Path(_passing().name) / kind)
-
-
-@cache
-def _passing() -> tempfile.TemporaryDirectory[str]:
-    """Removed when the process ends."""
-    return tempfile.TemporaryDirectory(prefix="momantu_bt-")
-
-
-def _writable(path: Path) -> Path:
-    path.mkdir(parents=True, exist_ok=True)
-    if not os.access(path, os.W_OK):
-        raise PermissionError(f"{path} cannot be written")
-    return path

@@ -1,0 +1,45 @@
+"""Where what is worked out once and kept lies: the user's cache folder."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+
+CACHE_VARIABLE = "MOMANTU_BT_CACHE"
+"""Environment variable that names another cache folder, for homes that cannot be written."""
+
+
+def cache_folder() -> Path:
+    """`$MOMANTU_BT_CACHE`, else `$XDG_CACHE_HOME/momantu-bt`, else `~/.cache/momantu-bt`."""
+    named = os.environ.get(CACHE_VARIABLE)
+    if named:
+        return Path(named).expanduser().absolute()
+    base = os.environ.get("XDG_CACHE_HOME")
+    return (Path(base) if base else Path.home() / ".cache").absolute() / "momantu-bt"
+
+
+def kept_folder(kind: str) -> Path:
+    """A folder for one kind of thing: in the user's cache, or one that goes with the process.
+
+    Raises:
+        OSError: neither the cache nor the folder of temporary files can be written.
+    """
+    with suppress(OSError):
+        return _writable(cache_folder() / kind)
+    return _writable(Path(_passing().name) / kind)
+
+
+@cache
+def _passing() -> tempfile.TemporaryDirectory[str]:
+    """Removed when the process ends."""
+    return tempfile.TemporaryDirectory(prefix="momantu_bt-")
+
+
+def _writable(path: Path) -> Path:
+    path.mkdir(parents=True, exist_ok=True)
+    if not os.access(path, os.W_OK):
+        raise PermissionError(f"{path} cannot be written")
+    return path
