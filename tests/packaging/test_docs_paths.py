@@ -1,0 +1,117 @@
+"""Files, modules and tests that the documentation names exist; its tables of files are whole."""
+
+from __future__ import annotations
+
+import importlib.util
+import re
+import subprocess
+from fnmatch import fnmatch
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from momantu_bt import plugins
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")])
+PACKAGES = {
+    "momantu_bt": ROOT / "momantu_bt",
+    "momantu_skills": ROOT / "skills" / "momantu_skills",
+    "momantu_worlds": ROOT / "worlds" / "momantu_worlds",
+}
+TOPS = ("benchmarks/", "docs/", "momantu_bt/", "setup/", "skills/", "tests/", "trees/", "worlds/")
+OF_THE_READER = {
+    "test_look_round.py",
+    "turn/src/turn_skill/turn.py",
+    "turn/tests/test_speed.py",
+}
+"""Files that a page asks its reader to write."""
+GENERATED = {"records/", "trees/schema.json"}
+"""Files that a command on a page writes."""
+GROUPS = {value for value in vars(plugins).values() if str(value).startswith("momantu_bt.")}
+GROUPS |= {"momantu_bt.services", "momantu_bt.commands"}
+
+
+@cache
+def files() -> frozenset[str]:
+    """Every file and folder of the project."""
+    listed = ["git", "ls-files", "--cached", "--others", "--exclude-standard"]
+    said = subprocess.run(listed, cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    found = {path for path in said.splitlines() if (ROOT / path).exists()}
+    return frozenset(found | {str(folder) for path in found for folder in Path(path).parents})
+
+
+def spans(page: Path) -> list[str]:
+    """The code spans of a page's prose."""
+    prose = re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.M | re.S)
+    return [" ".join(span.split()) for span in re.findall(r"`([^`]+)`", prose)]
+
+
+def is_there(named: str) -> bool:
+    """Whether a file or folder has the name; `*` stands for anything, a path may begin anywhere."""
+    return any(
+        path == named or fnmatch(path, named) or fnmatch(path, f"*/{named}") for path in files()
+    )
+
+
+def missing_part(dotted: str) -> str | None:
+    """The part of a dotted name that nothing is called."""
+    top, *rest = dotted.split(".")
+    here = PACKAGES[top]
+    for number, part in enumerate(rest):
+        if (here / part).is_dir():
+            here /= part
+        elif (here / f"{part}.py").is_file():
+            here /= f"{part}.py"
+        else:
+            source = here if here.is_file() else here / "__init__.py"
+            known = set(re.findall(r"\w+", source.read_text(encoding="utf-8")))
+            return next((word for word in rest[number:] if word not in known), None)
+    return None
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_files_and_folders_exist(page: Path) -> None:
+    named = [span for span in spans(page) if re.fullmatch(r"[\w./*-]+", span)]
+    told = [span for span in named if span.startswith(TOPS) or span.endswith((".py", "/"))]
+    beside = {span for span in told if (page.parent / span).exists()}
+    absent = [span for span in told if not is_there(span.rstrip("/"))]
+    assert set(absent) - beside - OF_THE_READER - GENERATED == set()
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_modules_exist(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    dotted = set(re.findall(r"\bmomantu_(?:bt|skills|worlds)(?:\.[A-Za-z_]\w*)+", text)) - GROUPS
+    dotted = {name.removesuffix(".toml").removesuffix(".yaml") for name in dotted}
+    assert [name for name in sorted(dotted) if missing_part(name)] == []
+
+
+@cache
+def tests() -> str:
+    """The text of all tests, for names of functions."""
+    return "\n".join(path.read_text(encoding="utf-8") for path in (ROOT / "tests").rglob("*.py"))
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_tests_exist(page: Path) -> None:
+    prose = re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.M | re.S)
+    absent = []
+    for name, cut in re.findall(r"(?<!\w)((?:\w+/)*test_\w+)(…|\*)?", prose):
+        is_file = is_there(f"{name}.py")
+        if not is_file and not re.search(rf"def {name}{'' if cut else '[(]'}", tests()):
+            absent.append(name)
+    assert (
+        set(absent) - {path.removesuffix(".py") for path in OF_THE_READER} - {"test_node"} == set()
+    )
+
+
+def test_the_tables_of_files_are_those_of_the_files() -> None:
+    spec = importlib.util.spec_from_file_location("file_tables", ROOT / "setup" / "file_tables.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    page = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+    assert page == module.with_tables(page), "run `.venv/bin/python setup/file_tables.py`"
