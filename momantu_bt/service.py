@@ -11,7 +11,7 @@ import numpy as np
 
 from momantu_bt.frames import FrameBuffer
 from momantu_bt.geometry import Array, Pose2D, Transform
-from momantu_bt.messages import DetectedObject, RobotState
+from momantu_bt.messages import CameraImage, DetectedObject, RobotState
 from momantu_bt.robot import Robot, RobotDescription
 from momantu_bt.skill import Clock
 from momantu_bt.world import Site
@@ -96,6 +96,16 @@ class HeldObject:
     grasp_from_object: Transform
 
 
+@dataclass(frozen=True, slots=True)
+class Snapshot:
+    """A camera's picture with what was true when it was taken."""
+
+    image: CameraImage
+    odom_from_camera: Transform
+    odom_from_base: Transform
+    state: RobotState
+
+
 class PlanningScene(Protocol):
     """The robot, its surroundings and what it holds, as believed."""
 
@@ -113,8 +123,8 @@ class PlanningScene(Protocol):
         """Say what the gripper closed on; it counts as held while width and effort agree."""
         ...
 
-    def observe(self, robot: Robot) -> None:
-        """Take over what the robot's camera shows now: what an arm may meet."""
+    def observe(self, snapshot: Snapshot) -> None:
+        """Take over what a picture shows: what an arm may meet."""
         ...
 
     def footprint(self, state: RobotState, below: float = math.inf) -> Array:

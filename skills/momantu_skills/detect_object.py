@@ -10,7 +10,7 @@ from momantu_bt.geometry import Array
 from momantu_bt.lazy import lazily
 from momantu_bt.messages import DetectedObject, ObjectClass
 from momantu_bt.robot import CAMERA_CARRIER, Robot
-from momantu_bt.service import Localization, PlanningScene
+from momantu_bt.service import Localization, PlanningScene, Snapshot
 from momantu_bt.skill import Failure, In, Needs, Out, Run, Skill, compute
 
 with lazily():
@@ -59,7 +59,7 @@ class DetectObject(Skill):
         corners = self._corners()
         region = regions.surface_region(corners)
         pending = surveys.looks_over(self, robot, corners, LOOKS)
-        snapshots: list[pictures.Snapshot] = []
+        snapshots: list[Snapshot] = []
         result: detector.Detections | None = None
         best: DetectedObject | None = None
         while pending:
@@ -88,7 +88,7 @@ class DetectObject(Skill):
         return ObjectOn(self.object, self.on) if failure.code == "OBJECT_NOT_FOUND" else None
 
     def _measure(
-        self, snapshots: list[pictures.Snapshot], region: regions.SurfaceRegion
+        self, snapshots: list[Snapshot], region: regions.SurfaceRegion
     ) -> detector.Detections | None:
         for snapshot in snapshots[len(self._views) :]:
             self._views.append(pictures.see(snapshot, region, self.planning_scene))

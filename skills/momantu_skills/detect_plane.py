@@ -12,7 +12,7 @@ from momantu_bt.geometry import Array, Pose, Transform
 from momantu_bt.lazy import lazily
 from momantu_bt.messages import SupportPlane
 from momantu_bt.robot import CAMERA_CARRIER, Robot
-from momantu_bt.service import PlanningScene
+from momantu_bt.service import PlanningScene, Snapshot
 from momantu_bt.skill import Failure, In, Needs, Out, Run, Skill, compute
 
 with lazily():
@@ -61,7 +61,7 @@ class DetectPlane(Skill):
         """Look, measure, choose."""
         near = self.frames.lookup(ODOM, self.near.frame).apply(self.near.position)
         corners, region = regions.place_region(near)
-        snapshots: list[pictures.Snapshot] = []
+        snapshots: list[Snapshot] = []
         for point in surveys.looks_over(self, robot, corners, LOOKS):
             snapshot = yield from surveys.glance(self, robot, self.planning_scene, point)
             if snapshot is not None:
@@ -98,7 +98,7 @@ class DetectPlane(Skill):
 
     def _measure(
         self,
-        snapshots: list[pictures.Snapshot],
+        snapshots: list[Snapshot],
         region: regions.SurfaceRegion,
         near: Array,
         radius: float,

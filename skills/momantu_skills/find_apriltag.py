@@ -12,13 +12,13 @@ from momantu_bt.frames import ODOM
 from momantu_bt.geometry import Array, Pose
 from momantu_bt.lazy import lazily
 from momantu_bt.robot import CAMERA_CARRIER, Robot
-from momantu_bt.service import Localization, PlanningScene
+from momantu_bt.service import Localization, PlanningScene, Snapshot
 from momantu_bt.skill import Compute, Failure, In, Needs, Out, Run, Skill, compute
+from momantu_skills.perception.camera.snapshot import take
 
 with lazily():
     from momantu_skills.gaze import surveys
     from momantu_skills.perception import tags
-    from momantu_skills.perception.camera import pictures
     from momantu_skills.perception.geometry import regions
 
 
@@ -79,14 +79,14 @@ class FindAprilTag(Skill):
             self, robot, self.planning_scene, first.odom_from_tag.position
         )
         for _ in range(PICTURES):
-            sighting = yield from self._search(snapshot or pictures.take(self, robot), others)
+            sighting = yield from self._search(snapshot or take(robot, self.frames), others)
             snapshot = None
             if sighting is not None:
                 seen.append(sighting)
         return seen
 
     def _search(
-        self, snapshot: pictures.Snapshot, others: set[int]
+        self, snapshot: Snapshot, others: set[int]
     ) -> Generator[str | Compute, Any, tags.TagSighting | None]:
         ids, sighting = yield from compute(
             partial(tags.search, snapshot, self.tag_id, self.edge), budget=BUDGET

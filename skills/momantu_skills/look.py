@@ -12,7 +12,7 @@ from momantu_bt.geometry import Array, Pose
 from momantu_bt.robot import CAMERA_CARRIER, Robot
 from momantu_bt.skill import Failure, In, Needs, Run, Skill
 from momantu_skills.gaze.look_at import WITHIN, look_at
-from momantu_skills.manipulation.scene.service import PlanningSceneService
+from momantu_skills.manipulation.scene.arm_scene import ArmScene
 
 AHEAD = 3.0
 """m before the base, at the camera's own height."""
@@ -35,7 +35,7 @@ class Look(Skill):
         "OUT_OF_VIEW": "the camera's carrier cannot turn that far, or is stuck",
     }
     uses = {CAMERA_CARRIER}
-    planning_scene: PlanningSceneService = Needs()
+    planning_scene: ArmScene = Needs()
     one_of = (("at", "surface", "direction"),)
 
     @classmethod

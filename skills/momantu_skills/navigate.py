@@ -15,7 +15,7 @@ from momantu_bt.robot import CAMERA_CARRIER, Robot, Working
 from momantu_bt.service import Localization
 from momantu_bt.skill import Failure, In, Needs, Run, Skill
 from momantu_bt.world import Surface
-from momantu_skills.manipulation.scene.service import PlanningSceneService
+from momantu_skills.manipulation.scene.arm_scene import ArmScene
 from momantu_skills.navigation.config import NavigationConfig, configured
 from momantu_skills.navigation.drive.vehicle import Vehicle
 from momantu_skills.navigation.localize.confidence import estimate
@@ -59,7 +59,7 @@ class Navigate(Skill):
     one_of: ClassVar = (("in_front_of", "goal", "within_reach_of"),)
 
     localization: Localization = Needs()
-    planning_scene: PlanningSceneService = Needs()
+    planning_scene: ArmScene = Needs()
 
     @classmethod
     def rehearsal(cls, seed: int) -> Mapping[str, Any]:

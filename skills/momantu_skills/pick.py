@@ -16,7 +16,7 @@ from momantu_skills.gaze.look_at import look_at
 from momantu_skills.manipulation.arm import Arm
 from momantu_skills.manipulation.hand.freshness import check_fresh
 from momantu_skills.manipulation.hand.gripper import bump, move_gripper, open_hand, rested_force
-from momantu_skills.manipulation.scene.service import PlanningSceneService
+from momantu_skills.manipulation.scene.arm_scene import ArmScene
 
 with lazily():
     from momantu_skills.gaze import unseen_ways
@@ -56,7 +56,7 @@ class Pick(Skill):
         "ARM_STUCK": "the arm or the gripper does not follow its commands",
     }
     uses = {ARM, "gripper", CAMERA_CARRIER}
-    planning_scene: PlanningSceneService = Needs()
+    planning_scene: ArmScene = Needs()
 
     def run(self, robot: Robot) -> Run:
         """The whole skill; each step is a method below."""
@@ -96,7 +96,7 @@ class Pick(Skill):
     def _look(self, arm: Arm) -> Run:
         """See the surroundings, and that something stands where the object should be."""
         yield from self._turn_camera(arm)
-        self.planning_scene.observe(arm.robot)
+        arm.observe()
         arm.scene.support_below(self.object)
         thing = self.object
         pose, support = thing.pose.transform, thing.support_height
@@ -202,7 +202,7 @@ class Pick(Skill):
     def _look_again(self, arm: Arm) -> Run:
         """The place where it stood must be empty, unless the hand hides it."""
         yield "looking"
-        self.planning_scene.observe(arm.robot)
+        arm.observe()
         thing = self.object
         pose, support = thing.pose.transform, thing.support_height
         if verification.stands_there(arm.scene.points, pose, thing, support):

@@ -19,7 +19,7 @@ from momantu_skills.manipulation.arm import Arm
 from momantu_skills.manipulation.hand.freshness import check_fresh
 from momantu_skills.manipulation.hand.gripper import bump, open_hand, rested_force
 from momantu_skills.manipulation.hand.placing import PlacePlan, plan_place
-from momantu_skills.manipulation.scene.service import PlanningSceneService
+from momantu_skills.manipulation.scene.arm_scene import ArmScene
 
 with lazily():
     from momantu_skills.gaze import unseen_ways
@@ -49,7 +49,7 @@ class Place(Skill):
         "ARM_STUCK": "the arm or the gripper does not follow its commands",
     }
     uses = {ARM, "gripper", CAMERA_CARRIER}
-    planning_scene: PlanningSceneService = Needs()
+    planning_scene: ArmScene = Needs()
 
     def __init__(self) -> None:
         """Start without a spot."""
@@ -106,7 +106,7 @@ class Place(Skill):
         except Failure as failure:
             if failure.code != "OUT_OF_VIEW":
                 raise
-        self.planning_scene.observe(arm.robot)
+        arm.observe()
 
     def _plan(self, arm: Arm, held: HeldObject) -> PlacePlan:
         try:

@@ -9,7 +9,7 @@ from momantu_bt.skill import In, Needs, Run, Skill
 from momantu_skills.manipulation.arm import Arm
 from momantu_skills.manipulation.config import HandConfig
 from momantu_skills.manipulation.hand.gripper import open_hand
-from momantu_skills.manipulation.scene.service import PlanningSceneService
+from momantu_skills.manipulation.scene.arm_scene import ArmScene
 
 OPEN = 0.01
 """m short of its widest at which the gripper still counts as open: gauge and control."""
@@ -30,7 +30,7 @@ class Release(Skill):
         "ARM_STUCK": "the arm does not follow on its way back",
     }
     uses = {"gripper", ARM}
-    planning_scene: PlanningSceneService = Needs()
+    planning_scene: ArmScene = Needs()
 
     def run(self, robot: Robot) -> Run:
         """Open, wait until it is, draw back."""

@@ -16,7 +16,7 @@ from momantu_bt.messages import BaseVelocity
 from momantu_bt.robot import CAMERA_CARRIER, Robot, read_laser
 from momantu_bt.service import Localization
 from momantu_bt.skill import Failure, In, Needs, Run, Skill
-from momantu_skills.manipulation.scene.service import PlanningSceneService
+from momantu_skills.manipulation.scene.arm_scene import ArmScene
 from momantu_skills.navigation.control.footprint import discs
 from momantu_skills.navigation.localize.confidence import QUALITY, estimate, is_localized, sigmas
 from momantu_skills.navigation.map.sensing import Rays
@@ -61,7 +61,7 @@ class Relocalize(Skill):
     uses: ClassVar = {"base", CAMERA_CARRIER}
 
     localization: Localization = Needs()
-    planning_scene: PlanningSceneService = Needs()
+    planning_scene: ArmScene = Needs()
 
     def run(self, robot: Robot) -> Run:
         """Local first, then global; each is judged at rest."""

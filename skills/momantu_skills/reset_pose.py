@@ -14,7 +14,7 @@ from momantu_bt.messages import JointPositions, JointTrajectory
 from momantu_bt.robot import ARM, CAMERA_CARRIER, Robot
 from momantu_bt.skill import Compute, In, Needs, Run, Skill, compute
 from momantu_skills.manipulation.arm import Arm
-from momantu_skills.manipulation.scene.service import PlanningSceneService
+from momantu_skills.manipulation.scene.arm_scene import ArmScene
 
 with lazily():
     from momantu_skills.gaze import unseen_ways
@@ -43,7 +43,7 @@ class ResetPose(Skill):
         "ARM_STUCK": "the arm does not follow its trajectory",
     }
     uses = {ARM, CAMERA_CARRIER}
-    planning_scene: PlanningSceneService = Needs()
+    planning_scene: ArmScene = Needs()
 
     def run(self, robot: Robot) -> Run:
         """Look, plan, move; the camera turns at the same time."""
@@ -52,7 +52,7 @@ class ResetPose(Skill):
         yield from arm.settle()
         goal = arm.posed(wanted)
         if abs(goal - arm.joints).max() > CLOSE:
-            self.planning_scene.observe(robot)
+            arm.observe()
             for trajectory in (yield from self._way(arm, goal)):
                 for phase in arm.follow(trajectory, "moving"):
                     self._turn_camera(robot, wanted)
@@ -86,11 +86,11 @@ class ResetPose(Skill):
         poses = robot.description.named_poses
         if self.pose not in poses:
             near = nearest(self.pose, poses)
-            hint = f"; did you mean {near!r}?" if near else "."
+            hint = f"; did you mean {near!r}" if near else ""
             raise Failure(
                 "UNKNOWN_POSE",
-                f"{robot.description.name} has no pose {self.pose!r}{hint} "
-                f"Its poses: {', '.join(poses)}",
+                f"{robot.description.name} has no pose {self.pose!r}{hint}; "
+                f"its poses: {', '.join(poses)}",
                 known=list(poses),
             )
         return poses[self.pose]

@@ -24,8 +24,8 @@ from momantu_bt.messages import (
     WrenchReading,
     frozen,
 )
-from momantu_bt.robot import Robot, RobotDescription
-from momantu_bt.service import HeldObject, ServiceContext
+from momantu_bt.robot import RobotDescription
+from momantu_bt.service import HeldObject, ServiceContext, Snapshot
 from momantu_bt.testing import (
     ScriptedRobot,
     ScriptedWorld,
@@ -249,7 +249,7 @@ class SeenScene:
         self.held, self.robot = held, robot
         self.observed = 0
 
-    def observe(self, robot: Robot) -> None:
+    def observe(self, snapshot: Snapshot) -> None:
         self.observed += 1
 
     def is_robot(self, points: np.ndarray, state: RobotState) -> np.ndarray:

@@ -233,3 +233,21 @@ def test_nothing_there_is_contradicted_by_a_thing_there(tabletop: Any, scene_of:
 def test_what_cannot_be_reached_says_nothing_of_the_world(tabletop: Any, scene_of: Any) -> None:
     robot = tabletop((1.2, 0.45))
     assert pick(robot, scene_of(robot), robot.detected()).claim() is None
+
+
+class OtherScene:
+    """A planning scene that keeps the protocol and is of no class that this package has."""
+
+    def __init__(self, scene: Any) -> None:
+        self._inner = scene
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._inner, name)
+
+
+def test_any_planning_scene_that_keeps_the_protocol_will_do(tabletop: Any, scene_of: Any) -> None:
+    robot = tabletop()
+    scene = OtherScene(scene_of(robot))
+    result = pick(robot, scene, robot.detected())
+    assert result.status == "SUCCESS", result.explain()
+    assert scene.held is not None

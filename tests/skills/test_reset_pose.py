@@ -125,11 +125,15 @@ def test_what_is_held_stays_held(tabletop: Any, scene_of: Any) -> None:
     assert not any(actuator == "gripper" for time, actuator, _ in robot.commands if time > 0.06)
 
 
-def test_unknown_pose(tabletop: Any, scene_of: Any) -> None:
+@pytest.mark.parametrize(
+    ("pose", "hint"), [("hone", "; did you mean 'home'"), ("zzz", "")], ids=["near", "far"]
+)
+def test_unknown_pose(tabletop: Any, scene_of: Any, pose: str, hint: str) -> None:
     robot = tabletop()
-    result = reset(robot, scene_of(robot), "hone")
+    result = reset(robot, scene_of(robot), pose)
     assert result.code == "UNKNOWN_POSE"
-    assert "did you mean 'home'" in result.failure.message
+    poses = ", ".join(robot.description.named_poses)
+    assert result.failure.message == f"fetch has no pose {pose!r}{hint}; its poses: {poses}"
 
 
 def test_a_pose_inside_something_is_no_plan(tabletop: Any, scene_of: Any) -> None:

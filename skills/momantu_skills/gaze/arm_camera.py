@@ -21,7 +21,7 @@ from momantu_skills.manipulation.arm import LEAN_PENALTY, Arm
 from momantu_skills.manipulation.config import GazeConfig
 from momantu_skills.manipulation.model.arm_model import ArmModel
 from momantu_skills.manipulation.model.collision import CollisionWorld, Obstacle
-from momantu_skills.manipulation.scene.service import PlanningSceneService
+from momantu_skills.manipulation.scene.arm_scene import ArmScene
 
 THINKING = 0.2
 """s that choosing a posture and planning the way are given: twice the median."""
@@ -70,19 +70,19 @@ def _library(model: ArmModel) -> _Library:
 def gaze(
     skill: Skill,
     robot: Robot,
-    service: PlanningSceneService,
+    service: ArmScene,
     point_odom: Array,
     within: float,
     around: Sequence[Array] = (),
 ) -> Run:
-    """Move the arm until its camera sees a point (3,) in odom; see `perception.looking.look_at`.
+    """Move the arm until its camera sees a point (3,) in odom; see `look_at.look_at`.
 
     Raises:
         Failure: OUT_OF_VIEW, with what stopped the arm as its cause.
     """
     arm = Arm(skill, robot, service)
     yield from arm.settle()
-    service.observe(robot)
+    arm.observe()
     base_from_odom = arm.state.odom_from_base.inverse()
     solids = tuple(
         Obstacle(f"solid {i}", base_from_odom.apply(corners)) for i, corners in enumerate(around)

@@ -12,10 +12,10 @@ from momantu_bt.failure import Failure
 from momantu_bt.frames import ODOM
 from momantu_bt.geometry import Array
 from momantu_bt.robot import CameraSensor, Robot
-from momantu_bt.service import PlanningScene
+from momantu_bt.service import PlanningScene, Snapshot
 from momantu_bt.skill import Compute, Skill
 from momantu_skills.gaze.look_at import look_at
-from momantu_skills.perception.camera.pictures import Snapshot, take
+from momantu_skills.perception.camera.snapshot import take
 
 OFF_AXIS = math.radians(12.0)
 """How far from the middle of the picture a looked-at point may lie: it is still well inside."""
@@ -43,8 +43,9 @@ def glance(
         if failure.code != "OUT_OF_VIEW":
             raise
         return None
-    scene.observe(robot)
-    return take(skill, robot)
+    snapshot = take(robot, skill.frames)
+    scene.observe(snapshot)
+    return snapshot
 
 
 def looks_over(skill: Skill, robot: Robot, corners: Array, at_least: int) -> list[Array]:

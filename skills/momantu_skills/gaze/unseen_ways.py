@@ -66,7 +66,7 @@ def planned_in_sight(
                 break
             seen = False
             yield from arm.settle()
-        arm.service.observe(arm.robot)
+        arm.observe()
         made = yield from compute(plan, thinking)
         if not seen:
             break

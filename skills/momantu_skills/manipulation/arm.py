@@ -16,7 +16,8 @@ from momantu_bt.service import HeldObject
 from momantu_bt.skill import Skill
 from momantu_skills.manipulation.config import HandConfig, PlanningConfig
 from momantu_skills.manipulation.motion.following import STILL, Watch, follow
-from momantu_skills.manipulation.scene.service import PlanningSceneService
+from momantu_skills.manipulation.scene.arm_scene import ArmScene
+from momantu_skills.perception.camera.snapshot import take
 
 with lazily():
     from momantu_skills.manipulation.model import collision
@@ -38,7 +39,7 @@ AROUND = 0.08
 class Arm:
     """What skills that move the arm share. `service` is the run's planning scene."""
 
-    def __init__(self, skill: Skill, robot: Robot, service: PlanningSceneService) -> None:
+    def __init__(self, skill: Skill, robot: Robot, service: ArmScene) -> None:
         self.skill, self.robot, self.service = skill, robot, service
         self.scene: scene.Scene = service.scene
         self.planning, self.hand = PlanningConfig(), HandConfig()
@@ -64,6 +65,10 @@ class Arm:
     def open_width(self) -> float:
         """The widest opening of the gripper, m."""
         return self.scene.model.description.end_effector.max_width
+
+    def observe(self) -> None:
+        """Take a picture now and let the planning scene see the surroundings in it."""
+        self.service.observe(take(self.robot, self.skill.frames))
 
     def seeds(self, start: Array, count: int) -> Array:
         """Starts (count, n) for inverse kinematics: here, then random ones.

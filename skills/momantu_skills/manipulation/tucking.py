@@ -8,7 +8,7 @@ from momantu_bt.failure import Failure
 from momantu_bt.robot import Robot
 from momantu_bt.skill import Run, Skill, compute
 from momantu_skills.manipulation.arm import Arm
-from momantu_skills.manipulation.scene.service import PlanningSceneService
+from momantu_skills.manipulation.scene.arm_scene import ArmScene
 from momantu_skills.manipulation.scene.surroundings import within
 
 STICKS_OUT = 0.10
@@ -20,7 +20,7 @@ THINKING = 0.2
 NO_WAY = ("NO_PLAN", "START_IN_COLLISION")
 
 
-def take_in(skill: Skill, robot: Robot, service: PlanningSceneService) -> Run:
+def take_in(skill: Skill, robot: Robot, service: ArmScene) -> Run:
     """Fold an arm that reaches beyond the base, into `home`, or `carry` with what it holds.
 
     Where it finds no way, the base drives with the arm as it is: that may be what gives it room.
@@ -37,7 +37,7 @@ def take_in(skill: Skill, robot: Robot, service: PlanningSceneService) -> Run:
     if np.abs(goal - arm.joints).max() < THERE:
         return
     yield from arm.settle()
-    service.observe(robot)
+    arm.observe()
     try:
         way = yield from compute(lambda: arm.route([goal], held), THINKING)
     except Failure as failure:

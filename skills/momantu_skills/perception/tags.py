@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.messages import CameraImage
-from momantu_skills.perception.camera.pictures import Snapshot
+from momantu_bt.service import Snapshot
 
 FAMILY = "tag36h11"
 GAMMA = 2.2

@@ -145,13 +145,13 @@ class Turning:
         self.arm = arm(looks(AHEAD))
         self.arm.robot = None
         self.arm.skill = None
-        self.arm.service.observe = self._observe
+        self.arm.observe = self._observe
         self.arm.joints = np.zeros(2)
         self.arm.settle = lambda: iter(())
         self.looked: list[np.ndarray] = []
         self.strays = 0.0
         self._turns = turns
-        monkeypatch.setattr("momantu_skills.gaze.look_at.look_at", self._look_at)
+        monkeypatch.setattr("momantu_skills.gaze.unseen_ways.look_at", self._look_at)
 
     def _look_at(self, skill: Any, robot: Any, point: np.ndarray) -> Any:
         if not self._turns:
@@ -160,7 +160,7 @@ class Turning:
         self.looked.append(point)
         yield "look"
 
-    def _observe(self, robot: Any) -> None:
+    def _observe(self) -> None:
         if not self.looked:
             return
         x, y, _ = self.looked[-1]

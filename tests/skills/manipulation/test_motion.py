@@ -220,8 +220,20 @@ def test_what_makes_a_pose_stale(frame: str, stamp: float, says: str) -> None:
     assert caught.value.code == "STALE_POSE"
 
 
-def test_a_fresh_pose_is_not() -> None:
-    check_fresh(Pose(Transform(), "odom", 99.0), "can", 100.0, 95.0, HandConfig())
+@pytest.mark.parametrize(("age", "stale"), [(0.0, False), (59.9, False), (60.1, True)])
+@pytest.mark.parametrize(("since_contact", "touched"), [(0.0, False), (0.1, False), (-0.1, True)])
+def test_a_pose_goes_stale_with_time_and_with_contact(
+    age: float, stale: bool, since_contact: float, touched: bool
+) -> None:
+    """since_contact: s from the last contact to the picture that the pose is from."""
+    now = 100.0
+    pose = Pose(Transform(), "odom", now - age)
+    refused = False
+    try:
+        check_fresh(pose, "can", now, pose.stamp - since_contact, HandConfig())
+    except Failure:
+        refused = True
+    assert refused is (stale or touched)
 
 
 def test_an_escape_leaves_and_touches_nothing_new(model: ArmModel, tabletop: Any) -> None:

@@ -18,6 +18,7 @@ from momantu_skills.manipulation.hand.reaching import plan_pick
 from momantu_skills.manipulation.model.arm_model import ArmModel
 from momantu_skills.manipulation.motion.following import ARRIVED
 from momantu_skills.manipulation.motion.timing import timed
+from momantu_skills.perception.camera.snapshot import take
 
 from momantu_bt.failure import Failure
 from momantu_bt.geometry import Pose, Transform
@@ -32,7 +33,7 @@ EXACT = 1.5e-3
 def arm_of(robot: Any, scene: Any) -> Arm:
     """An arm as a skill has it, its surroundings seen."""
     scene.frames.add_state(robot.state())
-    scene.observe(robot)
+    scene.observe(take(robot, scene.frames))
     skill = SimpleNamespace(random=np.random.default_rng(0), clock=robot)
     return Arm(skill, robot, scene)  # type: ignore[arg-type]
 

@@ -25,6 +25,7 @@ from momantu_skills.manipulation.scene.surroundings import (
     support_of_plane,
     within,
 )
+from momantu_skills.perception.camera.snapshot import take
 
 from momantu_bt.geometry import Pose, Pose2D, Transform
 from momantu_bt.messages import DetectedObject, RobotState, SupportPlane
@@ -255,7 +256,7 @@ def test_surfaces_that_no_picture_showed_are_kept_clear_of(tabletop: Any, scene_
     robot.table = 0.01
     for ahead, free in ((0.0, True), (1.6, False)):
         scene.frames.set_map_from_odom(Transform((ahead, 0.0, -0.15)), robot.now())
-        scene.observe(robot)
+        scene.observe(take(robot, scene.frames))
         world = scene.scene.world(robot.state(), None, 0.0)
         assert world.free(q) is free, world.touching(q)
 
@@ -264,7 +265,7 @@ def test_a_picture_replaces_what_it_sees_through(tabletop: Any, scene_of: Any) -
     robot = tabletop()
     scene = scene_of(robot)
     scene.frames.add_state(robot.state())
-    scene.observe(robot)
+    scene.observe(take(robot, scene.frames))
 
     def near_can() -> int:
         """Cells of the can above what its shape hides of the table."""
@@ -276,7 +277,7 @@ def test_a_picture_replaces_what_it_sees_through(tabletop: Any, scene_of: Any) -
     robot.can = None
     robot.advance(0.05)
     scene.frames.add_state(robot.state())
-    scene.observe(robot)
+    scene.observe(take(robot, scene.frames))
     assert near_can() == 0
 
 

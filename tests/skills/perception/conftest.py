@@ -6,10 +6,11 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import pytest
-from momantu_skills.perception.camera.pictures import Snapshot, View, see
+from momantu_skills.perception.camera.pictures import View, see
 from momantu_skills.perception.geometry.regions import Region, disc
 
 from momantu_bt.geometry import Transform
+from momantu_bt.service import Snapshot
 from momantu_bt.testing import ScriptedRobot
 from momantu_bt.testing.painting import Solid
 

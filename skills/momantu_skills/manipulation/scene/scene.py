@@ -8,11 +8,10 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from momantu_bt.frames import ODOM, FrameBuffer
 from momantu_bt.geometry import Array, Transform
-from momantu_bt.messages import CameraImage, DetectedObject, RobotState, SupportPlane
-from momantu_bt.robot import Robot, RobotDescription, read_camera
-from momantu_bt.service import HeldObject
+from momantu_bt.messages import DetectedObject, RobotState, SupportPlane
+from momantu_bt.robot import RobotDescription
+from momantu_bt.service import HeldObject, Snapshot
 from momantu_skills.manipulation.config import SceneConfig
 from momantu_skills.manipulation.model.arm_model import arm_model
 from momantu_skills.manipulation.model.collision import (
@@ -67,52 +66,38 @@ class Scene:
 
     # seeing
 
-    def observe(self, robot: Robot, frames: FrameBuffer, held: HeldObject | None) -> None:
-        """Take a depth picture and update the cells that it shows."""
-        image = read_camera(robot)
-        base = self.model.description.base_frame
-        odom_from_camera = frames.lookup(ODOM, image.frame, image.stamp)
-        odom_from_base = frames.lookup(ODOM, base, image.stamp)
+    def observe(self, snapshot: Snapshot, held: HeldObject | None) -> None:
+        """Update the cells that a depth picture shows."""
+        image, odom_from_camera = snapshot.image, snapshot.odom_from_camera
         nearest = self.model.description.camera()[1].min_depth
         self.looks.add(image, odom_from_camera, nearest)
-        self.points = self._seen(robot, image, odom_from_camera, odom_from_base, held)
+        self.points = self._seen(snapshot, held)
         new = cells_of(self.points, odom_from_camera.position, FLOOR_BAND, self.config)
         old = self.surroundings.cells
-        old = old[self._still_believed(old, image, odom_from_camera, odom_from_base)]
+        old = old[self._still_believed(old, snapshot)]
         near = [
             support
             for support in self.surroundings.supports
-            if _distance(support.outline, odom_from_base) < FORGET
+            if _distance(support.outline, snapshot.odom_from_base) < FORGET
         ]
         cells: Array = np.unique(np.round(np.vstack([old, new]), 4), axis=0)
         self.surroundings = Surroundings(cells, tuple(near), image.stamp)
 
-    def _seen(
-        self,
-        robot: Robot,
-        image: CameraImage,
-        odom_from_camera: Transform,
-        odom_from_base: Transform,
-        held: HeldObject | None,
-    ) -> Array:
+    def _seen(self, snapshot: Snapshot, held: HeldObject | None) -> Array:
         """Points (n, 3) in odom of the picture, without the robot, within its reach."""
+        image, odom_from_base = snapshot.image, snapshot.odom_from_base
         optical = points_from_depth(image.depth, image.intrinsics, self.config.pixel_stride)
-        base_points = (odom_from_base.inverse() @ odom_from_camera).apply(optical)
+        base_points = (odom_from_base.inverse() @ snapshot.odom_from_camera).apply(optical)
         reach = self.model.description.working.reach[2] + self.config.beyond_reach
         base_points = base_points[np.linalg.norm(base_points[:, :2], axis=1) < reach]
-        own = self.is_robot(base_points, robot.state(), held)
+        own = self.is_robot(base_points, snapshot.state, held)
         return odom_from_base.apply(base_points[~own])
 
-    def _still_believed(
-        self,
-        cells: Array,
-        image: CameraImage,
-        odom_from_camera: Transform,
-        odom_from_base: Transform,
-    ) -> NDArray[np.bool_]:
+    def _still_believed(self, cells: Array, snapshot: Snapshot) -> NDArray[np.bool_]:
         """(n,) which older cells are near and not seen through in the new picture."""
-        near = np.linalg.norm(cells[:, :2] - odom_from_base.position[:2], axis=1) < FORGET
-        optical = odom_from_camera.inverse().apply(cells)
+        image, base = snapshot.image, snapshot.odom_from_base.position
+        near = np.linalg.norm(cells[:, :2] - base[:2], axis=1) < FORGET
+        optical = snapshot.odom_from_camera.inverse().apply(cells)
         z = np.maximum(optical[:, 2], 1e-3)
         k, (height, width) = image.intrinsics, image.depth.shape
         u = np.round(optical[:, 0] / z * k[0, 0] + k[0, 2]).astype(np.int64)

@@ -13,7 +13,7 @@ from momantu_bt.geometry import Array, Transform
 from momantu_bt.lazy import lazily
 from momantu_bt.messages import DetectedObject, RobotState, SupportPlane
 from momantu_bt.robot import Robot
-from momantu_bt.service import HeldObject, Service, ServiceContext
+from momantu_bt.service import HeldObject, Service, ServiceContext, Snapshot
 from momantu_skills.manipulation.config import SceneConfig
 
 with lazily():
@@ -75,13 +75,13 @@ class PlanningSceneService(Service):
         """Say that the hand has just let go of what it held."""
         self.holding.release(self._state.stamp)
 
-    def observe(self, robot: Robot) -> None:
-        """Take a depth picture now and see the surroundings in it.
+    def observe(self, snapshot: Snapshot) -> None:
+        """See the surroundings in a depth picture.
 
         What the newest picture shows replaces what older ones showed of the same region.
         """
         self._take_over_site()
-        self.scene.observe(robot, self.frames, self.held)
+        self.scene.observe(snapshot, self.held)
 
     def support(self, plane: SupportPlane) -> None:
         """Take over a measured surface."""

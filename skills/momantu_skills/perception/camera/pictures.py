@@ -1,4 +1,4 @@
-"""One look: a picture, where it was taken from, and the points in it that matter."""
+"""The points of a picture that matter: in the region asked, without the robot itself."""
 
 from __future__ import annotations
 
@@ -6,27 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from momantu_bt.frames import ODOM
-from momantu_bt.geometry import Array, Transform
-from momantu_bt.messages import CameraImage, RobotState
-from momantu_bt.robot import Robot, read_camera
-from momantu_bt.service import PlanningScene
-from momantu_bt.skill import Skill
+from momantu_bt.geometry import Array
+from momantu_bt.service import PlanningScene, Snapshot
 from momantu_skills.perception.camera.cloud import points_from_depth
 from momantu_skills.perception.geometry.regions import Region
 
 STRIDE = 2
 """Pixels between two samples: a can 1 m away still has 700 points."""
-
-
-@dataclass(frozen=True, slots=True)
-class Snapshot:
-    """A picture with what was true when it was taken."""
-
-    image: CameraImage
-    odom_from_camera: Transform
-    odom_from_base: Transform
-    state: RobotState
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,17 +26,6 @@ class View:
     def camera(self) -> Array:
         """Where the camera was, (3,) in odom, m."""
         return self.snapshot.odom_from_camera.position
-
-
-def take(skill: Skill, robot: Robot) -> Snapshot:
-    """Read the robot's first camera and look up where it was at the picture's stamp."""
-    image = read_camera(robot)
-    return Snapshot(
-        image,
-        skill.frames.lookup(ODOM, image.frame, image.stamp),
-        skill.frames.lookup(ODOM, robot.description.base_frame, image.stamp),
-        robot.state(),
-    )
 
 
 def see(snapshot: Snapshot, region: Region, scene: PlanningScene, stride: int = STRIDE) -> View:
