@@ -22,10 +22,12 @@ from typing import Any, ClassVar, Protocol, TypeAlias, TypeVar
 
 import numpy as np
 
+from momantu_bt.activity import Activity
 from momantu_bt.claim import Claim
 from momantu_bt.failure import CODE, Failure, FailureValue
 from momantu_bt.frames import FrameBuffer
 from momantu_bt.robot import Robot
+from momantu_bt.symptom import Symptom
 from momantu_bt.world import Site
 
 __all__ = ["Clock", "Compute", "Failure", "In", "Needs", "Out", "Port", "Run", "Skill", "compute"]
@@ -214,12 +216,20 @@ class Skill:
     failures: each code this skill raises, with the sentence that explains it.
     uses: actuators it commands, or CAMERA_CARRIER.
     one_of: groups of inputs with defaults; of each group a tree gives exactly one.
+    activities: what it does, for faults that begin while something does that; the value stands
+    behind the skill's name where a phase of a fault is written: "" as soon as it runs, "+2 s" a
+    while later, "/closing" when it notes that phase. None: as its `uses` and outputs tell.
+    symptoms: of each code, what is wrong in the world when the skill fails with it; codes that
+    no fault explains are left out. None: any of its codes may come of any fault of what it uses,
+    senses or is told.
     A fresh instance is made for each start; the engine sets what stands below `run`.
     """
 
     failures: ClassVar[Mapping[str, str]] = {}
     uses: ClassVar[frozenset[str] | set[str]] = frozenset()
     one_of: ClassVar[tuple[tuple[str, ...], ...]] = ()
+    activities: ClassVar[Mapping[Activity, str] | None] = None
+    symptoms: ClassVar[Mapping[str, frozenset[Symptom] | set[Symptom]] | None] = None
 
     ports: ClassVar[Mapping[str, Port]] = {}
     needs: ClassVar[tuple[str, ...]] = ()

@@ -21,6 +21,7 @@ from typing import Any, Protocol, runtime_checkable
 
 import momantu_bt
 from momantu_bt.engine.build import skills_in
+from momantu_bt.faults.tree_file import faults_source
 from momantu_bt.plugins import Group
 from momantu_bt.record.versions import LIBRARIES
 from momantu_bt.robots.meshes import MESHES
@@ -63,7 +64,7 @@ def made_of(
     found = _of_machine(_packages(document, world, robot))
     given = values.source if isinstance(values, Given) else {}
     folder = Path(document.file).parent
-    for file, text in document.source.items():
+    for file, text in {**document.source, **faults_source(document)}.items():
         if file not in given:
             found[f"the file {os.path.relpath(file, folder)}"] = _digest(text.encode())
     found["the world"] = world

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from momantu_bt.bench.spec import Row
+from momantu_bt.faults.tree_file import faults_source
 from momantu_bt.tree.load import read_file
 
 _PROJECT = "pyproject.toml"
@@ -17,7 +18,7 @@ _PROJECT = "pyproject.toml"
 
 @dataclass(frozen=True, slots=True)
 class Parcel:
-    """A tree file and all that it includes.
+    """A tree file, all that it includes, and the file of faults beside it.
 
     main: the tree's own file. texts: of all files, by their paths below one folder, with `/`.
     shown: what they are called where they come from.
@@ -35,10 +36,11 @@ class Parcel:
             TreeNotFound, TreeError: it cannot be read.
         """
         document, _ = read_file(Path(tree))
-        paths = {shown: Path(os.path.normpath(Path.cwd() / shown)) for shown in document.source}
+        source = {**document.source, **faults_source(document)}
+        paths = {shown: Path(os.path.normpath(Path.cwd() / shown)) for shown in source}
         folder = os.path.commonpath([path.parent for path in paths.values()])
         names = {shown: path.relative_to(folder).as_posix() for shown, path in paths.items()}
-        texts = {names[shown]: text for shown, text in document.source.items()}
+        texts = {names[shown]: text for shown, text in source.items()}
         return cls(names[document.file], texts, {name: shown for shown, name in names.items()})
 
     def unpack(self, folder: Path) -> Path:

@@ -123,7 +123,7 @@ def bench(
     place = one_tree(tree)
     chosen = choose(record, RECORD, "--record")
     board = given_values(set_ or [], values)
-    demands = demands_of(fault or [], faults)
+    demands = demands_of(place, fault or [], faults)
     broken: list[str | None] = [demand.fault for demand in demands] or [None]
     how = HowToRun(world, robot, board, max_time, referee, episode_limit, chosen, broken)
     plan, document = plan_of(place, parse_seeds(seeds), how)

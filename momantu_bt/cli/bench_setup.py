@@ -77,16 +77,22 @@ def plan_of(tree: str, seeds: Sequence[int], how: HowToRun) -> tuple[Plan, Docum
     return Plan(place, wanted, values=values, limit=how.limit, record=how.record, **told), document
 
 
-def demands_of(faults: Sequence[str], patterns: str | None) -> tuple[Demand, ...]:
+def demands_of(tree: str, faults: Sequence[str], patterns: str | None) -> tuple[Demand, ...]:
     """The faults that `--fault` and `--faults` mean, each once and always written the same way.
 
     Raises:
         FaultError: a text is not a fault, or a pattern matches no fault.
+        TreeNotFound, TreeError: the tree, or the file of faults beside it, is wrong.
     """
     from momantu_bt.faults.matrix import row_of, rows_like
     from momantu_bt.faults.spec import parse_fault
+    from momantu_bt.faults.tree_file import tree_faults
+    from momantu_bt.tree.files.lookup import find
+    from momantu_bt.tree.load import read_file
 
-    like = () if patterns is None else rows_like(patterns)
+    like: tuple[Demand, ...] = ()
+    if patterns is not None:
+        like = rows_like(patterns, tree_faults(read_file(find(tree))[0]).rows)
     texts = [*faults, *(demand.fault for demand in like)]
     found = [row_of(parse_fault(text)) for text in texts]
     return tuple({demand.fault: demand for demand in found}.values())

@@ -5,12 +5,15 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from momantu_bt.errors import ExitCode, InputError
+from momantu_bt.faults.tree_file import tree_beside, tree_faults
 from momantu_bt.formats.problems import Problem
+from momantu_bt.tree.files.lookup import is_faults_file
 from momantu_bt.tree.load import Checked, TreeError, TreeNotFound, load
 from momantu_bt.tree.problems import report
 from momantu_bt.tree.show.problem_pages import explanation
@@ -34,6 +37,8 @@ def check(
     ] = None,
 ) -> ExitCode:
     """Say everything that is wrong with tree files: all errors at once, each with its place.
+
+    A file of faults, such as my_tree.faults.yaml, is checked against the tree beside it.
 
     Exit code 0: they can run (there may be warnings); 2: they cannot.
 
@@ -81,6 +86,8 @@ class _FileChecked:
 def _checked(tree: str, world: str | None, robot: str | None, *, quiet: bool) -> _FileChecked:
     """Check one file, and unless quiet say what is found."""
     try:
+        if is_faults_file(Path(tree)):
+            return _checked_faults(Path(tree), quiet=quiet)
         checked = load(tree, world=world, robot=robot)
     except (TreeNotFound, TreeError) as error:
         if not quiet:
@@ -93,6 +100,14 @@ def _checked(tree: str, world: str | None, robot: str | None, *, quiet: bool) ->
             typer.echo(report(checked.notes, checked.document.source), err=True)
         typer.echo(_fine(tree, checked))
     return _FileChecked(tree, True, checked.notes)
+
+
+def _checked_faults(file: Path, *, quiet: bool) -> _FileChecked:
+    """Check a file of faults against the tree beside it."""
+    found = tree_faults(load(str(tree_beside(file))).document)
+    if not quiet:
+        typer.echo(f"{file}: no errors in {len(found.begins)} phases and {len(found.rows)} rows")
+    return _FileChecked(str(file), True)
 
 
 def _print_json(value: Any) -> None:

@@ -15,6 +15,7 @@ from momantu_bt.diagnosis.machine import machine
 from momantu_bt.diagnosis.packages import packages
 from momantu_bt.diagnosis.plugins import plugins
 from momantu_bt.errors import ExitCode
+from momantu_bt.faults.catalogue import FAULTS
 from momantu_bt.robots.plugins import ROBOTS
 from momantu_bt.tree.plugins import SERVICES, SKILLS, WORLDS
 
@@ -55,7 +56,7 @@ def diagnose(output: Path) -> Iterator[Diagnosis]:
     """Everything there is to look at, the quick and the certain first."""
     yield from machine(output)
     yield from packages()
-    yield from plugins((SKILLS, SERVICES, ROBOTS, WORLDS, COMMANDS))
+    yield from plugins((SKILLS, SERVICES, ROBOTS, WORLDS, FAULTS, COMMANDS))
 
 
 def mended(diagnosis: Diagnosis) -> Diagnosis:

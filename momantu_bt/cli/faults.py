@@ -7,12 +7,23 @@ from typing import Annotated
 
 import typer
 
+from momantu_bt.bench.table import columns
 from momantu_bt.cli.help import help_of
 from momantu_bt.errors import ExitCode
+from momantu_bt.faults.catalogue import kinds
+from momantu_bt.faults.pages import as_data, as_parameters, as_table, as_text
+from momantu_bt.faults.spec import parse_fault
+from momantu_bt.faults.tree_page import HEAD, tree_rows
+from momantu_bt.tree.load import load
+from momantu_bt.tree.registry import Registry
 
 faults = typer.Typer(rich_markup_mode=None, invoke_without_command=True)
 
 _JSON = Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")]
+_TREE = Annotated[
+    str | None,
+    typer.Option(metavar="TREE", help="Say when each begins in this tree, and how it must end."),
+]
 
 
 @faults.callback(help="List the faults of `run --fault`. `momantu-bt faults show NAME` shows one.")
@@ -22,22 +33,21 @@ def every(
     markdown: Annotated[
         bool, typer.Option("--markdown", help="Print the tables of docs/faults.md.")
     ] = False,
+    tree: _TREE = None,
 ) -> None:
     """List all faults, unless one of them is to be shown."""
     if context.invoked_subcommand is not None:
         return
     if markdown:
-        from momantu_bt.faults.pages import as_parameters, as_table
-
         typer.echo(f"{as_table()}\n\n{as_parameters()}")
     else:
-        _list(as_json)
+        _list(as_json, tree)
 
 
 @faults.command("list", help="List all faults.")
-def list_all(as_json: _JSON = False) -> None:
+def list_all(as_json: _JSON = False, tree: _TREE = None) -> None:
     """List all faults."""
-    _list(as_json)
+    _list(as_json, tree)
 
 
 def show_one(
@@ -49,25 +59,29 @@ def show_one(
     Examples:
       momantu-bt faults show gripper.slips
     """
-    from momantu_bt.faults.catalogue import KINDS
-    from momantu_bt.faults.pages import as_data, as_text
-    from momantu_bt.faults.spec import parse_fault
-
-    kind = KINDS[parse_fault(name).name]
+    kind = kinds()[parse_fault(name).name]
     typer.echo(json.dumps(as_data(kind), indent=2) if as_json else as_text(kind))
     return ExitCode.SUCCESS
 
 
-def _list(as_json: bool) -> None:
-    from momantu_bt.faults.catalogue import KINDS
-    from momantu_bt.faults.pages import as_data
+def _list(as_json: bool, tree: str | None) -> None:
+    if tree is not None:
+        _list_in(tree, as_json)
+    elif as_json:
+        typer.echo(json.dumps([as_data(kind) for kind in kinds().values()], indent=2))
+    else:
+        width = max(map(len, kinds()))
+        for name, kind in kinds().items():
+            typer.echo(f"{name:{width}}  {kind.doc}")
 
+
+def _list_in(tree: str, as_json: bool) -> None:
+    registry = Registry.installed()
+    rows = tree_rows(load(tree, registry).document, registry)
     if as_json:
-        typer.echo(json.dumps([as_data(kind) for kind in KINDS.values()], indent=2))
-        return
-    width = max(map(len, KINDS))
-    for name, kind in KINDS.items():
-        typer.echo(f"{name:{width}}  {kind.doc}")
+        typer.echo(json.dumps([row.as_dict() for row in rows], indent=2))
+    else:
+        typer.echo("\n".join(columns([HEAD, *(row.cells() for row in rows)], indent="")))
 
 
 faults.command("show", help=help_of(show_one))(show_one)

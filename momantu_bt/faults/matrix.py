@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 
 from momantu_bt.fault import Fault, FaultError
-from momantu_bt.faults.catalogue import KINDS
-from momantu_bt.faults.kind import FaultKind
+from momantu_bt.fault_kind import FaultKind
+from momantu_bt.faults.catalogue import kinds
+from momantu_bt.faults.reasons import installed_skills, true_reasons
 from momantu_bt.faults.spec import format_fault, parse_fault
 from momantu_bt.formats.names import valid_names
 
@@ -33,8 +34,8 @@ class Row:
 
     @property
     def reasons(self) -> frozenset[str]:
-        """Failure codes that are a true reason to give up."""
-        return self.kind.reasons
+        """Failure codes, of the engine and of installed skills, that are a true reason to stop."""
+        return true_reasons(self.kind, installed_skills().values())
 
     @property
     def must_end(self) -> str | frozenset[str]:
@@ -46,30 +47,34 @@ class Row:
 
 def rows() -> tuple[Row, ...]:
     """All rows: each kind as it usually is, and its variants."""
-    return tuple(row for kind in KINDS.values() for row in _rows_of(kind))
+    return tuple(row for kind in kinds().values() for row in _rows_of(kind))
 
 
-def rows_like(patterns: str) -> tuple[Row, ...]:
+def rows_like(patterns: str, own: Iterable[str] = ()) -> tuple[Row, ...]:
     """The rows that `all`, or patterns such as `camera.*,skill.hang` parted by commas, mean.
+
+    own: rows of one tree, as they are written, which come last.
 
     Raises:
         FaultError: a pattern that no kind of fault fits.
     """
     wanted = [text.strip() for text in patterns.split(",")]
+    having = kinds()
     for pattern in wanted:
-        if pattern != "all" and not any(fnmatchcase(name, pattern) for name in KINDS):
-            hint = valid_names(pattern, KINDS, "faults")
-            if own := [name for name in KINDS if name.startswith(f"{pattern}.")]:
+        if pattern != "all" and not any(fnmatchcase(name, pattern) for name in having):
+            hint = valid_names(pattern, having, "faults")
+            if own := [name for name in having if name.startswith(f"{pattern}.")]:
                 hint = f"{pattern}.* are {', '.join(own)}"
             raise FaultError(f"no fault is called {pattern!r}; {hint}")
+    every = (*rows(), *(row_of(parse_fault(text)) for text in own))
     return tuple(
-        row for row in rows() if any(p == "all" or fnmatchcase(row.kind.name, p) for p in wanted)
+        row for row in every if any(p == "all" or fnmatchcase(row.kind.name, p) for p in wanted)
     )
 
 
 def row_of(fault: Fault) -> Row:
     """The row that a fault belongs to: its variant's where the parameters are the variant's."""
-    kind = KINDS[fault.name]
+    kind = kinds()[fault.name]
     for variant in kind.variants:
         given = parse_fault(f"{kind.name}:{variant.parameters}").parameters
         differing = {k: v for k, v in given.items() if v != kind.defaults[k]}

@@ -6,10 +6,13 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from momantu_bt.faults.catalogue import KINDS
-from momantu_bt.faults.kind import FIRST_ANSWER, FIRST_SKILL, FaultKind
+from momantu_bt.activity import Activity
+from momantu_bt.fault_kind import FaultKind
+from momantu_bt.faults.catalogue import kinds
 from momantu_bt.faults.matrix import ENDED, RECOVERED, Row, rows
+from momantu_bt.faults.moments import usual_phases
 from momantu_bt.faults.phase import START
+from momantu_bt.faults.reasons import installed_skills
 from momantu_bt.skill import Port
 from momantu_bt.tree.types import label
 
@@ -20,6 +23,7 @@ _PLACES = {
     "skill": "in a skill of the tree",
     "process": "in the process",
 }
+_FIRST = {Activity.ANY: "the first skill", Activity.ANSWER: "the first skill with outputs"}
 
 
 def as_text(kind: FaultKind) -> str:
@@ -43,9 +47,9 @@ def as_data(kind: FaultKind) -> dict[str, Any]:
         "name": kind.name,
         "doc": kind.doc,
         "place": kind.place.value,
-        "phases": [_phase(text) for text in kind.phases] or [START],
+        "phases": list(_usual(kind)) or [START],
         "notice_s": kind.notice,
-        "reasons": sorted(kind.reasons),
+        "reasons": sorted(Row(kind.name, kind, kind.recoverable).reasons),
         "rows": [{"fault": row.fault, "recoverable": row.recoverable} for row in _rows(kind)],
         "parameters": [
             {
@@ -78,7 +82,7 @@ def as_table() -> str:
 def as_parameters() -> str:
     """Every kind's parameters and usual phases in Markdown."""
     lines = ["| fault | begins | parameters |", "|---|---|---|"]
-    for kind in KINDS.values():
+    for kind in kinds().values():
         parameters = "<br>".join(_parameter(port) for port in kind.parameters)
         lines.append(f"| `{kind.name}` | {_phases(kind)} | {parameters} |")
     return "\n".join(lines)
@@ -106,12 +110,16 @@ def _short_ending(row: Row) -> str:
 
 
 def _phases(kind: FaultKind) -> str:
-    return ", else ".join(_phase(text) for text in (*kind.phases, START))
+    return ", else ".join((*_usual(kind), START))
 
 
-def _phase(text: str) -> str:
-    words = {FIRST_SKILL: "the first skill", FIRST_ANSWER: "the first skill with outputs"}
-    return words.get(text, text)
+def _usual(kind: FaultKind) -> Iterator[str]:
+    """Its usual phases, with the installed skills."""
+    for moment in kind.begins:
+        if moment.activity in _FIRST:
+            yield _FIRST[moment.activity]
+        else:
+            yield from usual_phases((moment,), installed_skills())
 
 
 def _parameter(port: Port) -> str:
@@ -128,6 +136,6 @@ def _value(port: Port) -> Any:
 
 
 def _example(kind: FaultKind) -> str:
-    phase = next((text for text in kind.phases if not text.startswith("<")), None)
+    phase = next((text for text in _usual(kind) if text not in _FIRST.values()), None)
     given = f":{kind.parameters[0].name}={_value(kind.parameters[0])}" if kind.parameters else ""
     return f'"{kind.name}{"" if phase is None else "@" + phase}{given}"'

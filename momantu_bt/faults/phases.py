@@ -7,7 +7,8 @@ from fnmatch import fnmatchcase
 from typing import TypeAlias
 
 from momantu_bt.fault import FaultError
-from momantu_bt.faults.kind import FIRST_ANSWER, FIRST_SKILL, FaultKind
+from momantu_bt.fault_kind import FaultKind
+from momantu_bt.faults.moments import usual_phases
 from momantu_bt.faults.phase import START, Phase, parse_phase
 from momantu_bt.formats.names import valid_names
 from momantu_bt.skill import Skill
@@ -19,23 +20,22 @@ Skills: TypeAlias = Mapping[str, type[Skill]]
 
 
 def usual_phase(
-    kind: FaultKind, document: Document, skills: Skills, substitution: Substitution
+    kind: FaultKind,
+    document: Document,
+    skills: Skills,
+    substitution: Substitution,
+    told: str | None = None,
 ) -> str:
-    """The first of a kind's phases that the tree has; else the start.
+    """The first of a kind's phases that the run can reach; else the start.
 
-    skills: those that the run can reach, in the order of the file.
+    skills: those that the run can reach, in the order of the file. told: the phase that the
+    tree's own file of faults gives, which comes first.
     """
-    answering = (name for name, skill in skills.items() if _has_outputs(skill))
-    stand_ins = {FIRST_SKILL: next(iter(skills), None), FIRST_ANSWER: next(answering, None)}
-    for text in kind.phases:
-        phase = stand_ins.get(text, text)
-        if phase is not None and _fits(parse_phase(phase), document, substitution):
-            return phase
+    own: tuple[str, ...] = () if told is None else (told,)
+    for text in (*own, *usual_phases(kind.begins, skills)):
+        if _fits(parse_phase(text), document, substitution):
+            return text
     return START
-
-
-def _has_outputs(skill: type[Skill]) -> bool:
-    return any(port.direction == "out" for port in skill.ports.values())
 
 
 def check_phase(text: str, document: Document, substitution: Substitution) -> Phase:

@@ -2,49 +2,72 @@
 
 from __future__ import annotations
 
+from functools import partial
 from math import inf, pi
-from typing import Any
 
-from momantu_bt.faults.kind import FaultKind, Variant, Where, lasting, number, word
-
-LOOKING = ("detect_object", "find_apriltag", "detect_plane", "pick")
-DRIVING = ("navigate+2 s", "relocalize")
-REACHING = ("pick/reaching", "reset_pose", "place")
-SEEN_NOTHING = frozenset(
-    {"OBJECT_NOT_FOUND", "SURFACE_NOT_SEEN", "TAG_NOT_SEEN", "PLANE_NOT_FOUND", "NOTHING_THERE"}
+from momantu_bt.activity import Activity
+from momantu_bt.failure import SENSOR_DEAD, TIMEOUT
+from momantu_bt.fault_kind import (
+    FaultKind,
+    Moment,
+    Variant,
+    Where,
+    fault_kind,
+    lasting,
+    number,
+    word,
 )
-GRASPED_NOTHING = frozenset({"GRASP_MISSED", "SLIPPED", "NOT_HOLDING", "NOTHING_HELD", "LOST"})
-NO_WAY = frozenset({"PATH_BLOCKED", "NO_PATH", "NO_PROGRESS", "GOAL_BLOCKED"})
-LOST_ITSELF = frozenset({"NOT_LOCALIZED", "NO_PROGRESS"})
-SENSOR = frozenset({"SENSOR_DEAD"})
-ARM = frozenset({"ARM_STUCK", "NO_PLAN", "OUT_OF_VIEW"})
+from momantu_bt.robot import ARM
+from momantu_bt.symptom import Symptom
+
+GRASP = Moment(Activity.GRASP)
+MARKER = Moment(Activity.FIND_MARKER)
+LOOKING = (
+    Moment(Activity.FIND_OBJECT),
+    MARKER,
+    Moment(Activity.MEASURE_SURFACE),
+    GRASP,
+    Moment(Activity.LOOK),
+)
+DRIVING = (Moment(Activity.DRIVE), Moment(Activity.LOCALIZE))
+ARM_MOVES = (Moment(Activity.MOVE_ARM), Moment(Activity.SET_DOWN))
+SENSOR = (SENSOR_DEAD,)
+UNSEEN = frozenset({Symptom.NOT_SEEN})
+MISJUDGED = frozenset({Symptom.NOT_SEEN, Symptom.NOT_HELD})
+"""Of what stands somewhere else than where it is seen, or is not seen at all."""
+OFF_TARGET = frozenset(
+    {Symptom.ARM_OFF_COURSE, Symptom.NO_GRASP, Symptom.NO_CONTACT, Symptom.TOPPLED}
+)
+"""Of a hand that comes beside the place where it should."""
+ASTRAY = frozenset({Symptom.NOT_LOCALIZED, Symptom.WAY_BLOCKED})
+"""Of a base that is elsewhere than the robot believes."""
 _FOR_GOOD = (Variant("for=inf", recoverable=False),)
 
-
-def _kind(name: str, doc: str, *parameters: Any, **more: Any) -> FaultKind:
-    component, _, mode = name.partition(".")
-    return FaultKind(component, mode, doc, Where.ROBOT, parameters=parameters, **more)
-
+_kind = partial(fault_kind, place=Where.ROBOT)
+_base = partial(_kind, actuator="base")
+_arm = partial(_kind, actuator=ARM)
+_gripper = partial(_kind, actuator="gripper")
 
 CAMERA = (
     _kind(
         "camera.dead",
         "No camera answers.",
         lasting(5.0),
-        phases=LOOKING,
+        begins=LOOKING,
         notice=5.0,
         recoverable=True,
-        reasons=SENSOR,
+        codes=SENSOR,
         variants=_FOR_GOOD,
     ),
     _kind(
         "camera.frozen",
         "Every camera gives its last picture again and again, with new stamps.",
         lasting(5.0),
-        phases=LOOKING,
+        begins=LOOKING,
         notice=10.0,
         recoverable=True,
-        reasons=SENSOR | SEEN_NOTHING | GRASPED_NOTHING | {"STALE_POSE"},
+        symptoms=MISJUDGED | {Symptom.OUTDATED},
+        codes=SENSOR,
         variants=_FOR_GOOD,
     ),
     _kind(
@@ -52,10 +75,11 @@ CAMERA = (
         "The light is out: colours are dimmed, depth is as good as ever.",
         number("gain", 0.05, None, "what is left of each colour", 0.0, 1.0),
         lasting(10.0),
-        phases=("find_apriltag", *LOOKING),
+        begins=(MARKER, *(moment for moment in LOOKING if moment != MARKER)),
         notice=10.0,
         recoverable=True,
-        reasons=SENSOR | SEEN_NOTHING,
+        symptoms=UNSEEN,
+        codes=SENSOR,
         variants=_FOR_GOOD,
     ),
     _kind(
@@ -64,10 +88,10 @@ CAMERA = (
         number("scale", 1.01, None, "measured depth over true depth", 0.5, 2.0),
         number("offset", 0.0, "m", "added to the depth", -1.0, 1.0),
         lasting(inf),
-        phases=(),
+        begins=(),
         notice=60.0,
         recoverable=True,
-        reasons=SEEN_NOTHING | GRASPED_NOTHING | ARM | {"NO_GRASP", "NO_CONTACT", "TOPPLED"},
+        symptoms=MISJUDGED | OFF_TARGET,
     ),
     _kind(
         "camera.noisier",
@@ -75,20 +99,20 @@ CAMERA = (
         number("depth", 0.004, None, "sigma of depth z is this times z squared, 1/m", 0.0, 1.0),
         number("color", 15.0, None, "sigma in grey levels of 255", 0.0, 255.0),
         lasting(inf),
-        phases=(),
+        begins=(),
         notice=60.0,
         recoverable=True,
-        reasons=SEEN_NOTHING | GRASPED_NOTHING | {"NO_GRASP", "NO_FREE_SPOT"},
+        symptoms=MISJUDGED | {Symptom.NO_GRASP, Symptom.NO_ROOM},
     ),
     _kind(
         "camera.shifted",
         "Every camera is turned on its mount, and nobody has calibrated it since.",
         number("turn", 0.015, "rad", "by how much, about an axis that the seed chooses", 0.0, pi),
         lasting(inf),
-        phases=(),
+        begins=(),
         notice=60.0,
         recoverable=True,
-        reasons=SEEN_NOTHING | GRASPED_NOTHING | ARM | {"NO_GRASP", "NO_CONTACT", "TOPPLED"},
+        symptoms=MISJUDGED | OFF_TARGET,
     ),
 )
 
@@ -97,20 +121,22 @@ LASER = (
         "laser.dead",
         "No laser answers.",
         lasting(5.0),
-        phases=DRIVING,
+        begins=DRIVING,
         notice=2.0,
         recoverable=True,
-        reasons=SENSOR | LOST_ITSELF,
+        symptoms={Symptom.NOT_LOCALIZED},
+        codes=SENSOR,
         variants=_FOR_GOOD,
     ),
     _kind(
         "laser.stuck",
         "Every laser gives its last ranges again and again, with new stamps.",
         lasting(5.0),
-        phases=DRIVING,
+        begins=DRIVING,
         notice=5.0,
         recoverable=True,
-        reasons=SENSOR | LOST_ITSELF | NO_WAY,
+        symptoms=ASTRAY,
+        codes=SENSOR,
         variants=_FOR_GOOD,
     ),
     _kind(
@@ -119,10 +145,11 @@ LASER = (
         number("at", 0.0, "rad", "the sector's middle; 0 is ahead, the left is positive", -pi, pi),
         number("width", 0.5, "rad", "of the sector", 0.0, 2 * pi),
         lasting(20.0),
-        phases=DRIVING,
+        begins=DRIVING,
         notice=10.0,
         recoverable=True,
-        reasons=SENSOR | LOST_ITSELF | NO_WAY,
+        symptoms=ASTRAY,
+        codes=SENSOR,
         variants=_FOR_GOOD,
     ),
 )
@@ -133,119 +160,121 @@ ODOMETRY = (
         "The wheels slip: odometry counts another way and other turns than the base makes.",
         number("scale", 1.3, None, "reported motion over true motion", 0.0, 5.0),
         lasting(5.0),
-        phases=DRIVING,
+        begins=DRIVING,
         notice=20.0,
         recoverable=True,
-        reasons=LOST_ITSELF | NO_WAY | SEEN_NOTHING,
+        symptoms=ASTRAY | UNSEEN,
     ),
     _kind(
         "odometry.bias",
         "Odometry turns by itself while the base moves.",
         number("rate", 0.05, "rad/s", "of the turn that is none", -1.0, 1.0),
         lasting(20.0),
-        phases=DRIVING,
+        begins=DRIVING,
         notice=30.0,
         recoverable=True,
-        reasons=LOST_ITSELF | NO_WAY | SEEN_NOTHING,
+        symptoms=ASTRAY | UNSEEN,
     ),
 )
 
 BASE = (
-    _kind(
+    _base(
         "base.stuck",
         "The base does not move, whatever it is told.",
         lasting(10.0),
-        phases=DRIVING,
+        begins=DRIVING,
         notice=30.0,
         recoverable=True,
-        reasons=NO_WAY | LOST_ITSELF,
+        symptoms=ASTRAY,
         variants=_FOR_GOOD,
     ),
-    _kind(
+    _base(
         "base.slow",
         "The base drives and turns slower than it is told.",
         number("factor", 0.5, None, "true speed over commanded speed", 0.0, 1.0),
         lasting(inf),
-        phases=DRIVING,
+        begins=DRIVING,
         notice=60.0,
         recoverable=True,
-        reasons=NO_WAY | LOST_ITSELF | {"TIMEOUT"},
+        symptoms=ASTRAY,
+        codes={TIMEOUT},
     ),
-    _kind(
+    _base(
         "base.offset",
         "The base pulls to one side while it drives.",
         number("curvature", 0.2, None, "turn per way, rad/m; the left is positive", -5.0, 5.0),
         lasting(inf),
-        phases=DRIVING,
+        begins=DRIVING,
         notice=60.0,
         recoverable=True,
-        reasons=NO_WAY | LOST_ITSELF,
+        symptoms=ASTRAY,
     ),
 )
 
 ARM_ROWS = (
-    _kind(
+    _arm(
         "arm.stuck",
         "The arm does not move, whatever it is told.",
         lasting(5.0),
-        phases=REACHING,
+        begins=(Moment(Activity.REACH), *ARM_MOVES),
         notice=5.0,
         recoverable=True,
-        reasons=ARM,
+        symptoms={Symptom.ARM_OFF_COURSE},
         variants=_FOR_GOOD,
     ),
-    _kind(
+    _arm(
         "arm.slow",
         "The arm follows its trajectories slower than it is told.",
         number("factor", 0.7, None, "true speed over commanded speed", 0.05, 1.0),
         lasting(inf),
-        phases=("pick", "reset_pose", "place"),
+        begins=(GRASP, *ARM_MOVES),
         notice=10.0,
         recoverable=True,
-        reasons=ARM | {"TIMEOUT"},
+        symptoms={Symptom.ARM_OFF_COURSE},
+        codes={TIMEOUT},
     ),
-    _kind(
+    _arm(
         "arm.offset",
         "A joint is elsewhere than it says, since its encoder was mounted anew.",
         number("by", 0.03, "rad", "what the joint reports too much", -1.0, 1.0),
         word("joint", "", "which joint; else the arm's first one that turns"),
         lasting(inf),
-        phases=(),
+        begins=(),
         notice=60.0,
         recoverable=True,
-        reasons=ARM | GRASPED_NOTHING | {"NO_GRASP", "NO_CONTACT", "TOPPLED"},
+        symptoms={Symptom.NOT_HELD} | OFF_TARGET,
     ),
 )
 
 GRIPPER = (
-    _kind(
+    _gripper(
         "gripper.weak",
         "The gripper presses with less force than it is told.",
         number("factor", 0.3, None, "true force over commanded force", 0.001, 1.0),
         lasting(inf),
-        phases=("pick",),
+        begins=(GRASP,),
         notice=30.0,
         recoverable=True,
-        reasons=GRASPED_NOTHING | {"OBJECT_NOT_FOUND"},
+        symptoms={Symptom.NOT_HELD, Symptom.OBJECT_GONE},
     ),
-    _kind(
+    _gripper(
         "gripper.stuck",
         "The fingers stay as they are, whatever they are told.",
         lasting(10.0),
-        phases=("pick", "place"),
+        begins=(GRASP, Moment(Activity.SET_DOWN)),
         notice=15.0,
         recoverable=True,
-        reasons=frozenset({"GRIPPER_STUCK", "ARM_STUCK", "GRASP_MISSED", "NOT_OPEN"}),
+        symptoms={Symptom.HAND_STUCK},
         variants=_FOR_GOOD,
     ),
-    _kind(
+    _gripper(
         "gripper.slips",
         "The fingers lose their force until they are opened again.",
         number("force", 0.3, "N", "what is left", 0.001, 100.0),
-        phases=("Put/navigate+2 s", "after-pick+3 s", "place"),
+        begins=(Moment(Activity.GRASP, after=3.0), Moment(Activity.SET_DOWN)),
         notice=5.0,
         recoverable=False,
-        reasons=GRASPED_NOTHING | {"OBJECT_NOT_FOUND"},
+        symptoms={Symptom.NOT_HELD, Symptom.OBJECT_GONE},
     ),
 )
 

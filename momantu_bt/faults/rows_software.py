@@ -2,74 +2,64 @@
 
 from __future__ import annotations
 
+from functools import partial
 from math import inf
-from typing import Any
 
+from momantu_bt.activity import Activity
 from momantu_bt.failure import HUNG, SKILL_ERROR, TIMEOUT, WRONG_TYPE
-from momantu_bt.faults.kind import (
-    FIRST_ANSWER,
-    FIRST_SKILL,
-    FaultKind,
-    Where,
-    count,
-    lasting,
-    number,
-)
+from momantu_bt.fault_kind import FaultKind, Moment, Where, count, fault_kind, lasting, number
+from momantu_bt.symptom import Symptom
 
+ANY = Moment(Activity.ANY)
+ANSWER = Moment(Activity.ANSWER)
 _TIMES = count("times", 1, "how many starts of the skill it hits", least=1)
 
-
-def _kind(name: str, doc: str, *parameters: Any, **more: Any) -> FaultKind:
-    component, _, mode = name.partition(".")
-    where = more.pop("place", Where.SKILL)
-    return FaultKind(component, mode, doc, where, parameters=parameters, **more)
-
+_kind = partial(fault_kind, place=Where.SKILL)
 
 KINDS: tuple[FaultKind, ...] = (
     _kind(
         "skill.exception",
         "The skill raises what it does not declare.",
         _TIMES,
-        phases=(FIRST_SKILL,),
+        begins=(ANY,),
         notice=1.0,
         recoverable=True,
-        reasons=frozenset({SKILL_ERROR}),
+        codes={SKILL_ERROR},
     ),
     _kind(
         "skill.hang",
         "The skill runs in circles in Python and never gives a step back.",
         _TIMES,
-        phases=(FIRST_SKILL,),
+        begins=(ANY,),
         notice=1.0,
         recoverable=True,
-        reasons=frozenset({HUNG}),
+        codes={HUNG},
     ),
     _kind(
         "skill.hang_native",
         "The skill blocks in native code and keeps the interpreter's lock.",
-        phases=(FIRST_SKILL,),
+        begins=(ANY,),
         notice=1.0,
         recoverable=False,
-        reasons=frozenset(),
         ends_process=True,
     ),
     _kind(
         "skill.nan",
         "Every number among the skill's outputs is NaN.",
         _TIMES,
-        phases=(FIRST_ANSWER,),
+        begins=(ANSWER,),
         notice=60.0,
         recoverable=True,
-        reasons=frozenset({WRONG_TYPE}),
+        codes={WRONG_TYPE},
     ),
     _kind(
         "skill.wrong_type",
         "The skill's outputs are of types that it does not declare.",
         _TIMES,
-        phases=(FIRST_ANSWER,),
+        begins=(ANSWER,),
         notice=60.0,
         recoverable=True,
-        reasons=frozenset({WRONG_TYPE}),
+        codes={WRONG_TYPE},
     ),
     _kind(
         "skill.slow",
@@ -77,19 +67,19 @@ KINDS: tuple[FaultKind, ...] = (
         number("wall", 0.03, "s", "what each step works longer, in wall time", 0.0, 10.0),
         number("factor", 3.0, None, "ticks of a step over what they were", 1.0, 1000.0),
         lasting(inf),
-        phases=(FIRST_SKILL,),
+        begins=(ANY,),
         notice=60.0,
         recoverable=True,
-        reasons=frozenset({TIMEOUT, "ARM_STUCK", "NO_PROGRESS"}),
+        symptoms={Symptom.SLOW},
+        codes={TIMEOUT},
     ),
-    _kind(
+    fault_kind(
         "process.killed",
         "The process is ended by SIGKILL.",
         place=Where.PROCESS,
-        phases=("navigate+2 s", FIRST_SKILL),
+        begins=(Moment(Activity.DRIVE), ANY),
         notice=1.0,
         recoverable=False,
-        reasons=frozenset(),
         ends_process=True,
     ),
 )

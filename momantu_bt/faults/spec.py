@@ -8,8 +8,8 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from momantu_bt.fault import Fault, FaultError, FaultParameter
-from momantu_bt.faults.catalogue import KINDS
-from momantu_bt.faults.kind import FOR, FaultKind
+from momantu_bt.fault_kind import FOR, FaultKind
+from momantu_bt.faults.catalogue import kinds
 from momantu_bt.faults.phase import parse_phase
 from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.places import underlined
@@ -23,11 +23,26 @@ _FOREVER = ("inf", "for good")
 _SIGN = re.compile(r"[@:]")
 
 
+class FaultSyntaxError(FaultError):
+    """A text that is no fault; the message shows it with a caret under what is wrong.
+
+    begin, end: the wrong part of the text. reason: why, and what would be valid.
+    """
+
+    def __init__(self, text: str, begin: int, end: int, reason: str) -> None:
+        stretch = text[begin:end]
+        begin += len(stretch) - len(stretch.lstrip())
+        length = len(stretch.strip())
+        shown, carets = underlined(text, begin, length)
+        super().__init__(f"a fault is not right\n  {shown}\n  {carets} {reason}")
+        self.begin, self.end, self.reason = begin, begin + length, reason
+
+
 def parse_fault(text: str) -> Fault:
     """A fault as it is written, its defaults filled in.
 
     Raises:
-        FaultError: it is none; the message shows the text, where it is wrong and what is valid.
+        FaultSyntaxError: it is none; the message shows where it is wrong and what is valid.
     """
     sign = _SIGN.search(text)
     end = len(text) if sign is None else sign.start()
@@ -40,7 +55,7 @@ def parse_fault(text: str) -> Fault:
         try:
             parse_phase(phase)
         except ValueError as error:
-            raise _wrong(text, end + 1, rest, str(error)) from None
+            raise FaultSyntaxError(text, end + 1, rest, str(error)) from None
     given = _parameters(text, rest + 1, kind) if rest < len(text) else {}
     parameters = MappingProxyType({**kind.defaults, **given})
     return Fault(kind.component, kind.mode, phase, parameters)
@@ -48,7 +63,7 @@ def parse_fault(text: str) -> Fault:
 
 def format_fault(fault: Fault) -> str:
     """The shortest text that means the fault; its numbers are in SI units."""
-    kind = KINDS[fault.name]
+    kind = kinds()[fault.name]
     changed = [
         f"{name}={_written(value)}"
         for name, value in fault.parameters.items()
@@ -64,23 +79,28 @@ def _written(value: FaultParameter) -> str:
 
 def _kind(text: str, end: int) -> FaultKind:
     name = text[:end].strip()
-    found = KINDS.get(name)
+    having = kinds()
+    found = having.get(name)
     if found is not None:
         return found
     component, dot, mode = name.partition(".")
-    modes = [kind.mode for kind in KINDS.values() if kind.component == component]
+    modes = [kind.mode for kind in having.values() if kind.component == component]
     if not modes:
-        known = list(dict.fromkeys(kind.component for kind in KINDS.values()))
+        known = list(dict.fromkeys(kind.component for kind in having.values()))
         hint = valid_names(component, known, "components")
-        if component in (kind.mode for kind in KINDS.values()) and not dot:
-            whole = [name for name in KINDS if name.endswith(f".{component}")]
+        if component in (kind.mode for kind in having.values()) and not dot:
+            whole = [name for name in having if name.endswith(f".{component}")]
             hint = f"did you mean {' or '.join(whole)}?"
-        raise _wrong(text, 0, len(component), f"no component is called {component!r}; {hint}")
+        raise FaultSyntaxError(
+            text, 0, len(component), f"no component is called {component!r}; {hint}"
+        )
     if not dot:
         message = f"expected {FORM}; modes of {component}: {', '.join(modes)}"
-        raise _wrong(text, end, end + 1, message)
+        raise FaultSyntaxError(text, end, end + 1, message)
     hint = valid_names(mode, modes, f"modes of {component}")
-    raise _wrong(text, len(component) + 1, end, f"{component} has no mode {mode!r}; {hint}")
+    raise FaultSyntaxError(
+        text, len(component) + 1, end, f"{component} has no mode {mode!r}; {hint}"
+    )
 
 
 def _parameters(text: str, begin: int, kind: FaultKind) -> Mapping[str, FaultParameter]:
@@ -93,15 +113,19 @@ def _parameters(text: str, begin: int, kind: FaultKind) -> Mapping[str, FaultPar
         if name not in ports:
             hint = valid_names(name, ports, "parameters") if ports else "it takes none"
             message = f"{kind.name} has no parameter {name!r}; {hint}"
-            raise _wrong(text, begin, begin + len(written), message)
+            raise FaultSyntaxError(text, begin, begin + len(written), message)
         if not equals:
-            raise _wrong(text, begin, end, f"expected {name}=VALUE, {_expected(ports[name])}")
+            raise FaultSyntaxError(
+                text, begin, end, f"expected {name}=VALUE, {_expected(ports[name])}"
+            )
         if name in found:
-            raise _wrong(text, begin, end, f"{name} is given twice")
+            raise FaultSyntaxError(text, begin, end, f"{name} is given twice")
         try:
             found[name] = _value(value.strip(), ports[name])
         except ConversionError as error:
-            raise _wrong(text, begin + len(written) + 1, end, f"{name}: {error}") from None
+            raise FaultSyntaxError(
+                text, begin + len(written) + 1, end, f"{name}: {error}"
+            ) from None
         begin = end + 1
     return found
 
@@ -120,11 +144,3 @@ def _expected(port: Port) -> str:
         + (f", {port.bounds}" if port.bounded else "")
         + f": {port.doc}"
     )
-
-
-def _wrong(text: str, begin: int, end: int, message: str) -> FaultError:
-    """The text, a caret under what is wrong, and why."""
-    stretch = text[begin:end]
-    begin += len(stretch) - len(stretch.lstrip())
-    shown, carets = underlined(text, begin, len(stretch.strip()))
-    return FaultError(f"a fault is not right\n  {shown}\n  {carets} {message}")

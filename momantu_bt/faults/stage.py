@@ -11,16 +11,17 @@ from pathlib import Path
 from momantu_bt.engine.build import Built
 from momantu_bt.engine.context import RunContext
 from momantu_bt.fault import Effect, Fault, FaultError, FaultyWorld
+from momantu_bt.fault_kind import FaultKind, Where
 from momantu_bt.faults import robot as at_robot
 from momantu_bt.faults import site as at_site
-from momantu_bt.faults.catalogue import KINDS
+from momantu_bt.faults.catalogue import kinds
 from momantu_bt.faults.director import Director, Staged
-from momantu_bt.faults.kind import FaultKind, Where
 from momantu_bt.faults.phase import START, Phase, parse_phase
 from momantu_bt.faults.phases import check_phase, usual_phase
 from momantu_bt.faults.process import Killed
 from momantu_bt.faults.skills import skill_fault
 from momantu_bt.faults.skills.victim import SkillFault
+from momantu_bt.faults.tree_file import TreeFaults, tree_faults
 from momantu_bt.faults.watch import PhaseWatch
 from momantu_bt.formats.names import valid_names
 from momantu_bt.robot import Robot
@@ -53,15 +54,18 @@ def plan(
 
     Raises:
         FaultError: the tree or the run has nothing of the kind; the message says what it has.
+        TreeError, TreeNotFound: the file of faults beside the tree is wrong.
     """
     planned = []
+    told = tree_faults(document) if faults else TreeFaults()
     for fault in faults:
-        kind = KINDS[fault.name]
+        kind = kinds()[fault.name]
         if kind.place is not Where.PROCESS and not with_world:
             raise FaultError(f"{fault.name}: this run has no world, and so no robot and no skills")
         if kind.place is Where.SKILL and not skills:
             raise FaultError(f"{fault.name}: the tree runs no skill")
-        text = fault.phase or usual_phase(kind, document, skills, substitution)
+        own = told.begins.get(fault.name)
+        text = fault.phase or usual_phase(kind, document, skills, substitution, own)
         if kind.place is Where.SITE and parse_phase(text) != parse_phase(START):
             raise FaultError(f"{fault.name} is so from the start on; it takes no phase {text!r}")
         phase = check_phase(text, document, substitution)

@@ -7,8 +7,10 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
+from momantu_bt.activity import Activity
 from momantu_bt.failure import CODE
 from momantu_bt.skill import Port, Skill
+from momantu_bt.symptom import Symptom
 from momantu_bt.tree.catalogue import BUILT_IN, MODIFIERS, SPELLED
 from momantu_bt.tree.types import is_union, origin
 
@@ -46,7 +48,7 @@ def skill_objection(name: str, plugin: Any) -> str | None:
         wrong = _port(plugin, port)
         if wrong is not None:
             return wrong
-    return _failures(plugin) or _uses(plugin)
+    return _failures(plugin) or _uses(plugin) or _activities(plugin) or _symptoms(plugin)
 
 
 def _own_doc(kind: type[Skill]) -> bool:
@@ -83,3 +85,31 @@ def _failures(kind: type[Skill]) -> str | None:
 def _uses(kind: type[Skill]) -> str | None:
     named = isinstance(kind.uses, set | frozenset) and all(isinstance(u, str) for u in kind.uses)
     return None if named else f"{kind.__name__}.uses is no set of actuators' names"
+
+
+def _activities(kind: type[Skill]) -> str | None:
+    if kind.activities is None:
+        return None
+    said = f"{kind.__name__}.activities"
+    if not isinstance(kind.activities, Mapping):
+        return f"{said} is not a mapping, such as {{Activity.DRIVE: ''}}"
+    for activity, behind in kind.activities.items():
+        if activity not in tuple(Activity) or activity in (Activity.ANY, Activity.ANSWER):
+            return f"{said}: {activity!r} is not an activity that a skill declares"
+        if not isinstance(behind, str) or behind[:1] not in ("", "/", "+"):
+            return f"{said}: {behind!r} is not '', '/PHASE' or '+3 s'"
+    return None
+
+
+def _symptoms(kind: type[Skill]) -> str | None:
+    if kind.symptoms is None:
+        return None
+    said = f"{kind.__name__}.symptoms"
+    if not isinstance(kind.symptoms, Mapping):
+        return f"{said} is not a mapping of codes to sets of Symptom"
+    for code, symptoms in kind.symptoms.items():
+        if code not in kind.failures:
+            return f"{said}: {code!r} is not among its failures: {', '.join(kind.failures)}"
+        if not isinstance(symptoms, set | frozenset) or not symptoms <= set(Symptom):
+            return f"{said}: {code} has {symptoms!r}; expected a set of Symptom"
+    return None

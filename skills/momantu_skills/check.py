@@ -12,6 +12,7 @@ from momantu_bt.geometry import Pose2D
 from momantu_bt.robot import Robot
 from momantu_bt.service import Localization, PlanningScene
 from momantu_bt.skill import In, Needs, Run, Skill
+from momantu_bt.symptom import Symptom
 from momantu_skills.navigation.localize.confidence import estimate, is_localized, sigmas
 
 NEAR = 1.5
@@ -39,6 +40,12 @@ class Check(Skill):
         "NOT_NEAR": "the robot is not near the place",
         "NOT_OPEN": "the gripper is not open",
         "BAD_QUESTION": "the site has no such place",
+    }
+    activities = {}
+    symptoms = {
+        "NOT_HOLDING": {Symptom.NOT_HELD},
+        "NOT_LOCALIZED": {Symptom.NOT_LOCALIZED},
+        "NOT_OPEN": {Symptom.HAND_STUCK},
     }
     localization: Localization = Needs()
     planning_scene: PlanningScene = Needs()

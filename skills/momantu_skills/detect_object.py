@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 
+from momantu_bt.activity import Activity
 from momantu_bt.claim import Claim, ObjectAt, ObjectOn
 from momantu_bt.failure import FailureValue
 from momantu_bt.geometry import Array
@@ -12,6 +13,7 @@ from momantu_bt.messages import DetectedObject, ObjectClass
 from momantu_bt.robot import CAMERA_CARRIER, Robot
 from momantu_bt.service import Localization, PlanningScene, Snapshot
 from momantu_bt.skill import Failure, In, Needs, Out, Run, Skill, compute
+from momantu_bt.symptom import Symptom
 
 with lazily():
     from momantu_skills.gaze import surveys
@@ -45,6 +47,11 @@ class DetectObject(Skill):
         "SURFACE_NOT_SEEN": "no look showed a level surface where the site has one",
     }
     uses = {CAMERA_CARRIER}
+    activities = {Activity.FIND_OBJECT: ""}
+    symptoms = {
+        "OBJECT_NOT_FOUND": {Symptom.NOT_SEEN, Symptom.OBJECT_GONE},
+        "SURFACE_NOT_SEEN": {Symptom.NOT_SEEN},
+    }
     localization: Localization = Needs()
     planning_scene: PlanningScene = Needs()
 

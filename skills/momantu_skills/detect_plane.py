@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from functools import partial
 
+from momantu_bt.activity import Activity
 from momantu_bt.claim import Claim, PlaneAt, RoomAt
 from momantu_bt.failure import FailureValue
 from momantu_bt.frames import ODOM
@@ -14,6 +15,7 @@ from momantu_bt.messages import SupportPlane
 from momantu_bt.robot import CAMERA_CARRIER, Robot
 from momantu_bt.service import PlanningScene, Snapshot
 from momantu_bt.skill import Failure, In, Needs, Out, Run, Skill, compute
+from momantu_bt.symptom import Symptom
 
 with lazily():
     from momantu_skills.gaze import surveys
@@ -50,6 +52,11 @@ class DetectPlane(Skill):
         "NO_FREE_SPOT": "nothing on it within reach of `near` has room for the size",
     }
     uses = {CAMERA_CARRIER}
+    activities = {Activity.MEASURE_SURFACE: ""}
+    symptoms = {
+        "PLANE_NOT_FOUND": {Symptom.NOT_SEEN},
+        "NO_FREE_SPOT": {Symptom.NO_ROOM},
+    }
     planning_scene: PlanningScene = Needs()
 
     def __init__(self) -> None:

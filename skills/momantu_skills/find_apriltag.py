@@ -6,6 +6,7 @@ from collections.abc import Generator
 from functools import partial
 from typing import Any
 
+from momantu_bt.activity import Activity
 from momantu_bt.claim import Claim, TagAt, TagOn
 from momantu_bt.failure import FailureValue
 from momantu_bt.frames import ODOM
@@ -14,6 +15,7 @@ from momantu_bt.lazy import lazily
 from momantu_bt.robot import CAMERA_CARRIER, Robot
 from momantu_bt.service import Localization, PlanningScene, Snapshot
 from momantu_bt.skill import Compute, Failure, In, Needs, Out, Run, Skill, compute
+from momantu_bt.symptom import Symptom
 from momantu_skills.perception.camera.snapshot import take
 
 with lazily():
@@ -43,6 +45,10 @@ class FindAprilTag(Skill):
     tag_sigma: float = Out(unit="m", doc="standard uncertainty of its position")
     failures = {"TAG_NOT_SEEN": "no look of the sweep showed the tag; data lists other tags"}
     uses = {CAMERA_CARRIER}
+    activities = {Activity.FIND_MARKER: ""}
+    symptoms = {
+        "TAG_NOT_SEEN": {Symptom.NOT_SEEN, Symptom.MARKER_NOT_SEEN},
+    }
     localization: Localization = Needs()
     planning_scene: PlanningScene = Needs()
 

@@ -11,6 +11,7 @@ from momantu_bt.frames import ODOM
 from momantu_bt.geometry import Array, Pose
 from momantu_bt.robot import CAMERA_CARRIER, Robot
 from momantu_bt.skill import Failure, In, Needs, Run, Skill
+from momantu_bt.symptom import Symptom
 from momantu_skills.gaze.look_at import WITHIN, look_at
 from momantu_skills.manipulation.scene.arm_scene import ArmScene
 
@@ -35,6 +36,10 @@ class Look(Skill):
         "OUT_OF_VIEW": "the camera's carrier cannot turn that far, or is stuck",
     }
     uses = {CAMERA_CARRIER}
+    activities = {}
+    symptoms = {
+        "OUT_OF_VIEW": {Symptom.ARM_OFF_COURSE},
+    }
     planning_scene: ArmScene = Needs()
     one_of = (("at", "surface", "direction"),)
 

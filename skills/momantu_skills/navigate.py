@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
+from momantu_bt.activity import Activity
 from momantu_bt.claim import BaseAt, BaseNear, Claim
 from momantu_bt.failure import FailureValue
 from momantu_bt.frames import MAP, ODOM
@@ -14,6 +15,7 @@ from momantu_bt.lazy import lazily
 from momantu_bt.robot import CAMERA_CARRIER, Robot, Working
 from momantu_bt.service import Localization
 from momantu_bt.skill import Failure, In, Needs, Run, Skill
+from momantu_bt.symptom import Symptom
 from momantu_bt.world import Surface
 from momantu_skills.manipulation.scene.arm_scene import ArmScene
 from momantu_skills.navigation.config import NavigationConfig, configured
@@ -56,6 +58,15 @@ class Navigate(Skill):
         "ARM_STUCK": "the arm that carries the camera is stretched out and does not fold",
     }
     uses: ClassVar = {"base", CAMERA_CARRIER}
+    activities: ClassVar = {Activity.DRIVE: "+2 s"}
+    symptoms: ClassVar = {
+        "GOAL_BLOCKED": {Symptom.WAY_BLOCKED},
+        "NO_PATH": {Symptom.WAY_BLOCKED},
+        "PATH_BLOCKED": {Symptom.WAY_BLOCKED},
+        "NO_PROGRESS": {Symptom.WAY_BLOCKED, Symptom.NOT_LOCALIZED, Symptom.SLOW},
+        "NOT_LOCALIZED": {Symptom.NOT_LOCALIZED},
+        "ARM_STUCK": {Symptom.ARM_OFF_COURSE, Symptom.SLOW},
+    }
     one_of: ClassVar = (("in_front_of", "goal", "within_reach_of"),)
 
     localization: Localization = Needs()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Generator
 from typing import Any
 
+from momantu_bt.activity import Activity
 from momantu_bt.claim import Claim, Holding, ObjectAt
 from momantu_bt.failure import Failure, FailureValue
 from momantu_bt.geometry import Array, Transform
@@ -12,6 +13,7 @@ from momantu_bt.lazy import lazily
 from momantu_bt.messages import DetectedObject, GripperCommand, ObjectClass
 from momantu_bt.robot import ARM, CAMERA_CARRIER, Robot
 from momantu_bt.skill import Compute, In, Needs, Run, Skill
+from momantu_bt.symptom import Symptom
 from momantu_skills.gaze.look_at import look_at
 from momantu_skills.manipulation.arm import Arm
 from momantu_skills.manipulation.hand.freshness import check_fresh
@@ -56,6 +58,16 @@ class Pick(Skill):
         "ARM_STUCK": "the arm or the gripper does not follow its commands",
     }
     uses = {ARM, "gripper", CAMERA_CARRIER}
+    activities = {Activity.GRASP: "", Activity.REACH: "/reaching"}
+    symptoms = {
+        "STALE_POSE": {Symptom.OUTDATED},
+        "NOTHING_THERE": {Symptom.NOT_SEEN},
+        "NO_GRASP": {Symptom.NO_GRASP},
+        "NO_PLAN": {Symptom.ARM_OFF_COURSE, Symptom.ARM_WAY_BLOCKED},
+        "GRASP_MISSED": {Symptom.NOT_HELD, Symptom.HAND_STUCK},
+        "SLIPPED": {Symptom.NOT_HELD},
+        "ARM_STUCK": {Symptom.ARM_OFF_COURSE, Symptom.HAND_STUCK, Symptom.SLOW},
+    }
     planning_scene: ArmScene = Needs()
 
     def run(self, robot: Robot) -> Run:

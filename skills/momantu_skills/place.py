@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from momantu_bt.activity import Activity
 from momantu_bt.claim import Claim, Holding, SetDown
 from momantu_bt.failure import Failure, FailureValue
 from momantu_bt.geometry import Array, Pose, Transform
@@ -14,6 +15,7 @@ from momantu_bt.messages import SupportPlane
 from momantu_bt.robot import ARM, CAMERA_CARRIER, Robot
 from momantu_bt.service import HeldObject
 from momantu_bt.skill import In, Needs, Run, Skill
+from momantu_bt.symptom import Symptom
 from momantu_skills.gaze.look_at import look_at
 from momantu_skills.manipulation.arm import Arm
 from momantu_skills.manipulation.hand.freshness import check_fresh
@@ -49,6 +51,17 @@ class Place(Skill):
         "ARM_STUCK": "the arm or the gripper does not follow its commands",
     }
     uses = {ARM, "gripper", CAMERA_CARRIER}
+    activities = {Activity.SET_DOWN: ""}
+    symptoms = {
+        "NOTHING_HELD": {Symptom.NOT_HELD},
+        "STALE_POSE": {Symptom.OUTDATED},
+        "NO_PLACE_POSE": {Symptom.CANNOT_SET_DOWN},
+        "NO_PLAN": {Symptom.ARM_OFF_COURSE, Symptom.ARM_WAY_BLOCKED},
+        "NO_CONTACT": {Symptom.NO_CONTACT},
+        "LOST": {Symptom.NOT_HELD},
+        "TOPPLED": {Symptom.TOPPLED},
+        "ARM_STUCK": {Symptom.ARM_OFF_COURSE, Symptom.HAND_STUCK, Symptom.SLOW},
+    }
     planning_scene: ArmScene = Needs()
 
     def __init__(self) -> None:

@@ -6,6 +6,7 @@ from momantu_bt.claim import Claim, GripperOpen, Holding
 from momantu_bt.failure import FailureValue
 from momantu_bt.robot import ARM, Robot
 from momantu_bt.skill import In, Needs, Run, Skill
+from momantu_bt.symptom import Symptom
 from momantu_skills.manipulation.arm import Arm
 from momantu_skills.manipulation.config import HandConfig
 from momantu_skills.manipulation.hand.gripper import open_hand
@@ -30,6 +31,11 @@ class Release(Skill):
         "ARM_STUCK": "the arm does not follow on its way back",
     }
     uses = {"gripper", ARM}
+    activities = {}
+    symptoms = {
+        "GRIPPER_STUCK": {Symptom.HAND_STUCK},
+        "ARM_STUCK": {Symptom.ARM_OFF_COURSE, Symptom.SLOW},
+    }
     planning_scene: ArmScene = Needs()
 
     def run(self, robot: Robot) -> Run:

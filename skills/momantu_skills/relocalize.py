@@ -8,6 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from momantu_bt.activity import Activity
 from momantu_bt.claim import Claim
 from momantu_bt.failure import FailureValue
 from momantu_bt.geometry import Array
@@ -16,6 +17,7 @@ from momantu_bt.messages import BaseVelocity
 from momantu_bt.robot import CAMERA_CARRIER, Robot, read_laser
 from momantu_bt.service import Localization
 from momantu_bt.skill import Failure, In, Needs, Run, Skill
+from momantu_bt.symptom import Symptom
 from momantu_skills.manipulation.scene.arm_scene import ArmScene
 from momantu_skills.navigation.control.footprint import discs
 from momantu_skills.navigation.localize.confidence import QUALITY, estimate, is_localized, sigmas
@@ -59,6 +61,11 @@ class Relocalize(Skill):
         "ARM_STUCK": "the arm that carries the camera is stretched out and does not fold",
     }
     uses: ClassVar = {"base", CAMERA_CARRIER}
+    activities: ClassVar = {Activity.LOCALIZE: ""}
+    symptoms: ClassVar = {
+        "NOT_LOCALIZED": {Symptom.NOT_LOCALIZED},
+        "ARM_STUCK": {Symptom.ARM_OFF_COURSE, Symptom.SLOW},
+    }
 
     localization: Localization = Needs()
     planning_scene: ArmScene = Needs()

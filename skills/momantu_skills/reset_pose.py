@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Generator, Sequence
 from typing import Any
 
+from momantu_bt.activity import Activity
 from momantu_bt.claim import Claim, JointsAt
 from momantu_bt.failure import Failure, FailureValue
 from momantu_bt.formats.names import nearest
@@ -13,6 +14,7 @@ from momantu_bt.lazy import lazily
 from momantu_bt.messages import JointPositions, JointTrajectory
 from momantu_bt.robot import ARM, CAMERA_CARRIER, Robot
 from momantu_bt.skill import Compute, In, Needs, Run, Skill, compute
+from momantu_bt.symptom import Symptom
 from momantu_skills.manipulation.arm import Arm
 from momantu_skills.manipulation.scene.arm_scene import ArmScene
 
@@ -43,6 +45,11 @@ class ResetPose(Skill):
         "ARM_STUCK": "the arm does not follow its trajectory",
     }
     uses = {ARM, CAMERA_CARRIER}
+    activities = {Activity.MOVE_ARM: ""}
+    symptoms = {
+        "NO_PLAN": {Symptom.ARM_OFF_COURSE, Symptom.ARM_WAY_BLOCKED},
+        "ARM_STUCK": {Symptom.ARM_OFF_COURSE, Symptom.SLOW},
+    }
     planning_scene: ArmScene = Needs()
 
     def run(self, robot: Robot) -> Run:

@@ -11,6 +11,8 @@ SUFFIX = ".yaml"
 """Of bundled trees."""
 SUFFIXES = (SUFFIX, ".yml", ".xml", ".btproj")
 """Of tree files in either spelling."""
+FAULTS_SUFFIX = ".faults.yaml"
+"""Of a file of faults beside a tree file, in the place of the tree's own suffix."""
 VALUES = "values"
 """The folder of values for `--values`, beside the bundled trees."""
 _PACKAGE = Path(__file__).resolve().parents[2]
@@ -34,16 +36,27 @@ def bundled() -> dict[str, Path]:
     if folder is None:
         return {}
     paths = [*sorted(folder.glob(f"*{SUFFIX}")), *sorted(folder.glob(f"*/*{SUFFIX}"))]
-    trees = [path for path in paths if path.parent != folder / VALUES]
+    trees = [path for path in paths if path.parent != folder / VALUES and not is_faults_file(path)]
     return {path.relative_to(folder).with_suffix("").as_posix(): path for path in trees}
 
 
 def tree_files(folder: Path) -> list[Path]:
     """Files in a folder that are trees by their suffix, by name."""
     try:
-        return sorted(each for each in folder.iterdir() if each.suffix.lower() in SUFFIXES)
+        files = [each for each in folder.iterdir() if each.suffix.lower() in SUFFIXES]
     except OSError:
         return []
+    return sorted(each for each in files if not is_faults_file(each))
+
+
+def is_faults_file(path: Path) -> bool:
+    """Whether a file tells of faults in the tree beside it."""
+    return path.name.endswith(FAULTS_SUFFIX)
+
+
+def faults_file(tree: Path) -> Path:
+    """Where a tree's faults stand; the file need not exist."""
+    return tree.with_suffix(FAULTS_SUFFIX)
 
 
 def find(name: str) -> Path:

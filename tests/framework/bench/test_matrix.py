@@ -9,7 +9,7 @@ import pytest
 
 from momantu_bt.bench.matrix import Matrix, matrix_text
 from momantu_bt.bench.outcome import Outcome, outcome
-from momantu_bt.faults.kind import FaultKind, Where
+from momantu_bt.fault_kind import FaultKind, Where
 from momantu_bt.faults.matrix import Row as Demand
 from momantu_bt.faults.matrix import row_of, rows_like
 from momantu_bt.faults.spec import parse_fault
@@ -85,7 +85,7 @@ def test_danger_counts_once_the_fault_could_be_noticed_however_it_ended() -> Non
 
 def _kind(name: str, recoverable: bool) -> Demand:
     component, mode = name.split(".")
-    kind = FaultKind(component, mode, "…", Where.ROBOT, (), 5.0, recoverable, frozenset({"A"}))
+    kind = FaultKind(component, mode, "…", Where.ROBOT, (), 5.0, recoverable)
     return Demand(name, kind, recoverable)
 
 

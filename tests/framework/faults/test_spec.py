@@ -8,10 +8,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from momantu_bt.activity import Activity
+from momantu_bt.engine.build import skills_in
 from momantu_bt.failure import CODE, ENGINE_CODES
 from momantu_bt.fault import Fault, FaultError
-from momantu_bt.faults.catalogue import KINDS
-from momantu_bt.faults.kind import FOR
+from momantu_bt.fault_kind import FOR
+from momantu_bt.faults.catalogue import kinds
 from momantu_bt.faults.matrix import ENDED, RECOVERED, row_of, rows, rows_like
 from momantu_bt.faults.phase import Phase, parse_phase
 from momantu_bt.faults.phases import check_phase, usual_phase
@@ -28,7 +30,7 @@ NOTHING = Substitution()
 @st.composite
 def faults(draw) -> Fault:
     """Any fault with any parameters within their bounds."""
-    kind = KINDS[draw(st.sampled_from(sorted(KINDS)))]
+    kind = kinds()[draw(st.sampled_from(sorted(kinds())))]
     found = dict(kind.defaults)
     for port in kind.parameters:
         if port.type is str:
@@ -49,7 +51,7 @@ def faults(draw) -> Fault:
 def test_what_is_written_is_read_again_as_the_same_fault(fault):
     again = parse_fault(format_fault(fault))
     assert again == fault
-    assert list(again.parameters) == [port.name for port in KINDS[fault.name].parameters]
+    assert list(again.parameters) == [port.name for port in kinds()[fault.name].parameters]
 
 
 def test_units_and_defaults():
@@ -155,6 +157,7 @@ class Pick(Skill):
     """Takes something."""
 
     strength: float = In(1.0, doc="how much")
+    activities = {Activity.GRASP: "", Activity.REACH: "/reaching"}
 
     def run(self, robot) -> Run:
         yield "closing"
@@ -234,7 +237,7 @@ def test_phases_that_the_tree_has_not(document, text, said):
 
 def test_usual_phases_fall_back(document):
     def usual(name, skills):
-        return usual_phase(KINDS[name], document, skills, NOTHING)
+        return usual_phase(kinds()[name], document, skills, NOTHING)
 
     both = {"pick": Pick, "detect": Detect}
     assert usual("skill.hang", both) == "pick"
@@ -243,12 +246,12 @@ def test_usual_phases_fall_back(document):
     assert usual("gripper.slips", both) == "after-pick+3 s"
     assert usual("arm.stuck", both) == "pick/reaching"
     assert usual("laser.dead", both) == "start"
-    assert all(check_phase(usual(n, both), document, NOTHING) for n in KINDS)
+    assert all(check_phase(usual(n, both), document, NOTHING) for n in kinds())
 
 
 def test_every_usual_phase_is_one_that_the_bundled_tree_has():
     document = load("bring_object", Registry.installed()).document
-    skills = {name: SKILLS.load(name) for name in ("reset_pose", "navigate", "detect_object")}
-    for kind in KINDS.values():
+    skills = {name: SKILLS.load(name) for name in skills_in(document)}
+    for kind in kinds().values():
         phase = usual_phase(kind, document, skills, NOTHING)
-        assert (phase == "start") is (not kind.phases)
+        assert (phase == "start") is (not kind.begins)

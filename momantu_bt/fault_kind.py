@@ -1,34 +1,54 @@
-"""What is known of one kind of fault, before any run."""
+"""What is known of one kind of fault, before any run: a row of the entry points momantu_bt.faults.
+
+A kind names no skill, no code of a skill and no subtree. It names activities and symptoms; skills
+say which are theirs.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Any
 
+from momantu_bt.activity import Activity
 from momantu_bt.fault import FaultParameter
 from momantu_bt.skill import Port
+from momantu_bt.symptom import Symptom
 
-FIRST_SKILL = "<first skill>"
-"""A usual phase: while the tree's first skill runs."""
-FIRST_ANSWER = "<first skill with outputs>"
-"""A usual phase: while the first skill of the tree that has outputs runs."""
 FOR = "for"
 """The parameter that says how long a fault lasts, s; infinity: for good."""
 
 
 class Where(StrEnum):
-    """Where a fault enters."""
+    """Where a fault enters; lists of faults are in this order."""
 
     ROBOT = "robot"
     """at the robot's boundary, whatever the world"""
-    SITE = "site"
-    """in what the robot is told"""
     WORLD = "world"
     """in the surroundings, made by the world"""
+    SITE = "site"
+    """in what the robot is told"""
     SKILL = "skill"
     """in a skill of the tree"""
     PROCESS = "process"
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """When a fault usually begins: while the first skill of a tree that does something runs.
+
+    after: instead this many seconds after it ended in SUCCESS.
+    """
+
+    activity: Activity
+    after: float | None = None
+
+    def phase(self, skill: str, behind: str) -> str:
+        """The moment in the form of phases. behind: see `Skill.activities`."""
+        if self.after is None:
+            return f"{skill}{behind}"
+        return f"after-{skill}" + (f"+{self.after:g} s" if self.after else "")
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,9 +66,11 @@ class Variant:
 class FaultKind:
     """One kind of fault.
 
-    phases: its usual ones; the first that the tree has is taken, else it begins at the start.
+    begins: its usual moments; the first that the tree has is taken, else it begins at the start.
     notice: seconds within which a robot must notice it.
-    reasons: failure codes that are a true reason to give up because of it.
+    symptoms: what skills may notice of it. codes: those of the engine that are a true reason to
+    give up because of it; codes of skills follow from the symptoms.
+    actuator: which one it breaks, as skills name it in `uses`; "" for none.
     ends_process: nothing of the run is left to give a reason.
     """
 
@@ -56,12 +78,14 @@ class FaultKind:
     mode: str
     doc: str
     place: Where
-    phases: tuple[str, ...]
+    begins: tuple[Moment, ...]
     notice: float
     recoverable: bool
-    reasons: frozenset[str]
+    symptoms: frozenset[Symptom] = frozenset()
+    codes: frozenset[str] = frozenset()
     parameters: tuple[Port, ...] = ()
     variants: tuple[Variant, ...] = ()
+    actuator: str = ""
     ends_process: bool = False
 
     @property
@@ -73,6 +97,29 @@ class FaultKind:
     def defaults(self) -> Mapping[str, FaultParameter]:
         """Each parameter's value where nobody gives one."""
         return {port.name: port.default for port in self.parameters}
+
+
+def fault_kind(
+    name: str,
+    doc: str,
+    *parameters: Port,
+    place: Where,
+    symptoms: Iterable[Symptom] = (),
+    codes: Iterable[str] = (),
+    **more: Any,
+) -> FaultKind:
+    """A kind of fault by its name, `component.mode`; more: the other fields of FaultKind."""
+    component, _, mode = name.partition(".")
+    return FaultKind(
+        component,
+        mode,
+        doc,
+        place,
+        parameters=parameters,
+        symptoms=frozenset(symptoms),
+        codes=frozenset(codes),
+        **more,
+    )
 
 
 def number(

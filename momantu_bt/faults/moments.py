@@ -1,0 +1,57 @@
+"""When a kind of fault usually begins, with the skills that there are."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from types import MappingProxyType
+from typing import get_args
+
+from momantu_bt.activity import Activity
+from momantu_bt.fault_kind import Moment
+from momantu_bt.messages import DetectedObject, SupportPlane
+from momantu_bt.robot import ARM
+from momantu_bt.skill import Port, Skill
+
+_USING: Mapping[str, Activity] = MappingProxyType(
+    {"base": Activity.DRIVE, ARM: Activity.MOVE_ARM, "gripper": Activity.GRASP}
+)
+_GIVING: Mapping[type, Activity] = MappingProxyType(
+    {DetectedObject: Activity.FIND_OBJECT, SupportPlane: Activity.MEASURE_SURFACE}
+)
+
+
+def usual_phases(moments: Iterable[Moment], skills: Mapping[str, type[Skill]]) -> Iterator[str]:
+    """The phases that moments mean, in order; skills: by name, in the order of the tree."""
+    for moment in moments:
+        for name, skill in skills.items():
+            behind = activities_of(skill).get(moment.activity)
+            if behind is not None:
+                yield moment.phase(name, behind)
+
+
+def activities_of(skill: type[Skill]) -> Mapping[Activity, str]:
+    """What a skill does, as it declares it, else as its `uses` and its outputs tell.
+
+    The value stands behind the skill's name where a phase is written.
+    """
+    found = dict(_seeming(skill) if skill.activities is None else skill.activities)
+    found[Activity.ANY] = ""
+    if _outputs(skill):
+        found[Activity.ANSWER] = ""
+    return found
+
+
+def _seeming(skill: type[Skill]) -> Iterator[tuple[Activity, str]]:
+    for use, activity in _USING.items():
+        if use in skill.uses:
+            yield activity, ""
+    given = {type_ for port in _outputs(skill) for type_ in (port.type, *get_args(port.type))}
+    for kind, activity in _GIVING.items():
+        if kind in given:
+            yield activity, ""
+    if given:
+        yield Activity.LOOK, ""
+
+
+def _outputs(skill: type[Skill]) -> list[Port]:
+    return [port for port in skill.ports.values() if port.direction == "out"]
