@@ -27,6 +27,7 @@ OF_THE_READER = {
 """Files that a page asks its reader to write."""
 GENERATED = {"records/", "trees/schema.json"}
 """Files that a command on a page writes."""
+PLACEHOLDER = re.compile(r"\b(CODE|NAME)\b")
 API = (ROOT / "docs" / "api.md").read_text(encoding="utf-8")
 GROUPS = set(
     re.findall(r"^\| `(momantu_bt\.\w+)` \|", API.partition("## Entry points")[2], re.MULTILINE)
@@ -51,6 +52,7 @@ def spans(page: Path) -> list[str]:
 
 def is_there(named: str) -> bool:
     """Whether a file or folder has the name; `*` stands for anything, a path may begin anywhere."""
+    named = PLACEHOLDER.sub("*", named)
     return any(
         path == named or fnmatch(path, named) or fnmatch(path, f"*/{named}") for path in files()
     )
