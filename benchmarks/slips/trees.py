@@ -11,7 +11,7 @@ from momantu_bt.formats.places import Place
 from momantu_bt.formats.problems import Problem
 from momantu_bt.messages import VALUE_TYPES
 from momantu_bt.skill import Port
-from momantu_bt.tree.catalogue import SUBTREE, CodeText
+from momantu_bt.tree.catalogue import SUBTREE
 from momantu_bt.tree.check.checker import check
 from momantu_bt.tree.check.signatures import Context
 from momantu_bt.tree.files.lookup import bundled
@@ -21,6 +21,7 @@ from momantu_bt.tree.files.yaml.format import read as read_yaml
 from momantu_bt.tree.model import Document, Node
 from momantu_bt.tree.problems import Problems, TreeError
 from momantu_bt.tree.registry import Registry
+from momantu_bt.values.kinds import CodeText
 from slips.xml import XML_SLIPS, Slip
 from slips.yaml import SLIPS
 

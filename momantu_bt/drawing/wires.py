@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from momantu_bt.formats.places import Place
-from momantu_bt.tree.catalogue import ScriptText
 from momantu_bt.tree.check.checker import ROBOT_KEY
 from momantu_bt.tree.check.keys.flow import FAILURE_KEY
 from momantu_bt.tree.check.keys.reads import references
@@ -16,6 +15,7 @@ from momantu_bt.tree.model import Document, Literal, Node, Reference, Scope, Tre
 from momantu_bt.tree.problems import Problems
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.script import ScriptSyntaxError, parse
+from momantu_bt.values.kinds import ScriptText
 
 CALLER = "the caller"
 """Who writes the inputs of a subtree, and reads its outputs."""

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, TypeAlias
 
-from momantu_bt.engine.admit import freeze
 from momantu_bt.failure import SCRIPT_ERROR, Failure
 from momantu_bt.skill import MISSING
+from momantu_bt.values.contents import freeze
 
 ROOT_MARK = "@"
 """Before a key in a script: the key of the root's board."""
@@ -38,9 +38,9 @@ class Cell:
         self._journal = journal
 
     def write(self, value: Any) -> None:
-        """Replace the value; MISSING clears it."""
+        """Replace the value by an immutable one (see `freeze`); MISSING clears it."""
         self._journal.append((self, self.value))
-        self.value = freeze(value)
+        self.value = value
         self.writes += 1
 
 
@@ -135,8 +135,8 @@ class Board:
         return value
 
     def set(self, key: str, value: Any) -> None:
-        """Write a key; Failure SCRIPT_ERROR for one that is read-only."""
-        self.cell(key).write(value)
+        """Write a key, the value made immutable; Failure SCRIPT_ERROR for one that is read-only."""
+        self.cell(key).write(freeze(value))
 
     def has(self, key: str) -> bool:
         """Whether a key has a value."""

@@ -20,8 +20,7 @@ from momantu_bt.skill import Port, Skill
 from momantu_bt.tree.catalogue import AUTOREMAP, BUILT_IN, SUBTREE
 from momantu_bt.tree.model import Document, Literal, Node, PortValue, Reference, Tree
 from momantu_bt.tree.substitute.substitution import Substitution, reached
-from momantu_bt.tree.values.conversion import port_of
-from momantu_bt.tree.values.words import ConversionError
+from momantu_bt.values.words import ConversionError
 
 MAX_DEPTH = 250
 """Nodes within nodes, subtrees counted; each costs two of Python's 1000 frames when ticked."""
@@ -189,7 +188,7 @@ class _Builder:
                 given[name] = (inner.cell(name), reader(port, value, outer))
         for name, declaration in tree.ports.items():
             if name not in values and declaration.default is not None:
-                constant = reader(port_of(declaration), declaration.default, outer)
+                constant = reader(declaration.port(), declaration.default, outer)
                 given[name] = (inner.cell(name), constant)
         return given
 
@@ -200,7 +199,7 @@ def _is_wire(value: PortValue | None) -> TypeGuard[Reference]:
 
 def _declared(tree: Tree, name: str) -> Port:
     declaration = tree.ports.get(name)
-    return Port(name, "in", object, "") if declaration is None else port_of(declaration)
+    return Port(name, "in", object, "") if declaration is None else declaration.port()
 
 
 def skills_in(document: Document, substitution: Substitution | None = None) -> tuple[str, ...]:

@@ -37,7 +37,7 @@ from momantu_bt.tree.check.named_world import world_of
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.substitute.substitution import Substitution
-from momantu_bt.tree.values.conversion import natural
+from momantu_bt.values.convert import natural
 from momantu_bt.world import World
 
 if TYPE_CHECKING:

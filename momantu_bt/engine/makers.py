@@ -40,8 +40,9 @@ from momantu_bt.engine.nodes import (
 )
 from momantu_bt.engine.ports import Inputs, cell_of, inputs_of, outputs_of
 from momantu_bt.errors import MomantuError
-from momantu_bt.tree.catalogue import SWITCHES, NodeSpec, ScriptText
+from momantu_bt.tree.catalogue import SWITCHES, NodeSpec
 from momantu_bt.tree.model import Node, Reference
+from momantu_bt.values.kinds import ScriptText
 
 
 class BuildError(MomantuError):

@@ -9,9 +9,10 @@ from momantu_bt.engine.blackboard import ROOT_MARK, Board, Cell
 from momantu_bt.failure import INPUT_MISSING, WRONG_TYPE, Failure
 from momantu_bt.skill import MISSING, Port
 from momantu_bt.tree.model import Literal, PortValue, Reference, Scope, Template
-from momantu_bt.tree.script import ScriptError
-from momantu_bt.tree.values.conversion import convert, part, render
-from momantu_bt.tree.values.words import ConversionError
+from momantu_bt.tree.script import ScriptError, part
+from momantu_bt.values.admit import admit
+from momantu_bt.values.convert import convert
+from momantu_bt.values.words import ConversionError, render
 
 Reader: TypeAlias = Callable[[], Any]
 
@@ -130,12 +131,20 @@ def inputs_of(ports: Mapping[str, Port], values: Mapping[str, PortValue], board:
         if name in values:
             readers[name] = reader(port, values[name], board)
         elif port.default is not MISSING:
-            readers[name] = _constant(port.default)
+            readers[name] = _default_reader(port)
     return Inputs(readers)
 
 
-def _constant(value: Any) -> Reader:
-    return lambda: value
+def _default_reader(port: Port) -> Reader:
+    """None as a default means that nothing is given, whatever the port's type.
+
+    Another default that does not fit its type fails when it is read, with WRONG_TYPE.
+    """
+    try:
+        default = None if port.default is None else admit(port.default, port)
+    except Failure:
+        return lambda: admit(port.default, port)
+    return lambda: default
 
 
 def outputs_of(

@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 
 from momantu_bt.engine.actuators import Lease
-from momantu_bt.engine.admit import admit, admit_output, freeze
 from momantu_bt.engine.skill_errors import declared, hung_failure, skill_error
 from momantu_bt.engine.status import FAILURE, RUNNING, SUCCESS, Status
 from momantu_bt.engine.watchdog import Hung
 from momantu_bt.failure import INPUT_MISSING, SERVICE_MISSING, Failure, FailureValue
 from momantu_bt.frames import FrameBuffer
-from momantu_bt.skill import MISSING, Clock, Compute, Run, Skill
+from momantu_bt.skill import MISSING, Clock, Compute, Port, Run, Skill
+from momantu_bt.values.admit import admit_output
 from momantu_bt.world import Site
 
 SLOW_STEP = 0.020
@@ -41,6 +41,7 @@ class Session:
 
     status: of the newest step. phase: what the skill last yielded. failure: set with FAILURE.
     took: wall time of the newest step, s, declared work left out.
+    inputs: by port, as `Inputs` gives them: of the port's type and immutable.
     outputs: what has been written so far; all of them with SUCCESS.
     """
 
@@ -81,7 +82,7 @@ class Session:
             if self._generator is None:
                 self._generator = self._begin()
             elif live_inputs and self.skill is not None:
-                self.skill.port_values.update(self._admitted(live_inputs))
+                self.skill.port_values.update(live_inputs)
             self._advance(self._generator)
             if self.status is RUNNING:
                 self._admit_live_outputs()
@@ -118,7 +119,8 @@ class Session:
                 services=missing,
             )
         skill = self.kind()
-        skill.port_values.update(self._admitted(self._inputs))
+        self._refuse_unknown()
+        skill.port_values.update(self._inputs)
         absent = [
             p.name for p in self.kind.ports.values() if p.required and p.name not in self._inputs
         ]
@@ -144,15 +146,14 @@ class Session:
             )
         return generator
 
-    def _admitted(self, values: Mapping[str, Any]) -> dict[str, Any]:
+    def _refuse_unknown(self) -> None:
         ports = self.kind.ports
-        unknown = [name for name in values if name not in ports or ports[name].direction != "in"]
+        unknown = [n for n in self._inputs if n not in ports or ports[n].direction != "in"]
         if unknown:
             inputs = ", ".join(p.name for p in ports.values() if p.direction == "in") or "none"
             raise TypeError(
                 f"{self.kind.__name__} has no input {', '.join(unknown)}; inputs: {inputs}"
             )
-        return {name: admit(freeze(value), ports[name]) for name, value in values.items()}
 
     def _advance(self, generator: Run) -> None:
         now = self._context.clock.now()
@@ -193,8 +194,8 @@ class Session:
         values = self.skill.port_values
         for port in self._live:
             value = values.get(port.name, MISSING)
-            if value is not self._given.get(port.name, MISSING):
-                values[port.name] = self._given[port.name] = admit_output(value, port)
+            if value is not MISSING:
+                values[port.name] = self._admitted(value, port)
 
     def _finish(self) -> None:
         self._generator = None
@@ -218,7 +219,13 @@ class Session:
             value = values.get(port.name, MISSING)
             if value is MISSING:
                 raise TypeError(f"{self.kind.__name__} ended without giving output {port.name!r}")
-            values[port.name] = admit_output(value, port)
+            values[port.name] = self._admitted(value, port)
+
+    def _admitted(self, value: Any, port: Port) -> Any:
+        """An output's value; one that is known already is not looked at again."""
+        if value is not self._given.get(port.name, MISSING):
+            self._given[port.name] = admit_output(value, port)
+        return self._given[port.name]
 
     def _fail(self, failure: FailureValue) -> None:
         generator, self._generator = self._generator, None

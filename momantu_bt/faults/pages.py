@@ -14,7 +14,7 @@ from momantu_bt.faults.moments import usual_phases
 from momantu_bt.faults.phase import START
 from momantu_bt.faults.reasons import installed_skills
 from momantu_bt.skill import Port
-from momantu_bt.tree.types import label
+from momantu_bt.values.types import label
 
 _PLACES = {
     "robot": "at the robot's boundary, with any robot and world",

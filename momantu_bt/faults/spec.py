@@ -14,9 +14,9 @@ from momantu_bt.faults.phase import parse_phase
 from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.places import underlined
 from momantu_bt.skill import Port
-from momantu_bt.tree.types import label
-from momantu_bt.tree.values.conversion import convert
-from momantu_bt.tree.values.words import ConversionError
+from momantu_bt.values.convert import convert
+from momantu_bt.values.types import label
+from momantu_bt.values.words import ConversionError
 
 FORM = "COMPONENT.MODE[@PHASE][:name=value,name=value]"
 _FOREVER = ("inf", "for good")

@@ -22,7 +22,7 @@ from momantu_bt.replay.outside import NotRecorded, RecordedOutside
 from momantu_bt.replay.rebuild import Rebuilt, rebuild
 from momantu_bt.tree.check.checker import ROBOT_KEY
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.values.conversion import natural
+from momantu_bt.values.convert import natural
 
 _SERVICES = "/service/"
 

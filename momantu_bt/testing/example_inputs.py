@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-import dataclasses
-import typing
 from collections.abc import Mapping
-from enum import Enum
-from typing import Any, Literal, get_args
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
 
 from momantu_bt.geometry import Pose, Pose2D, Transform
 from momantu_bt.messages import DetectedObject, ObjectClass, SupportPlane
 from momantu_bt.robot import RobotDescription
 from momantu_bt.skill import Port, Skill
 from momantu_bt.tree.show.skill_example import within
-from momantu_bt.tree.types import is_union, origin, without_none
+from momantu_bt.values import kinds
+from momantu_bt.values.contents import freeze
+from momantu_bt.values.kinds import ValueKind, ValueType, kind_of, parts_of, without_none
 from momantu_bt.world import Site
 
 _POSE = Pose(Transform((1.8, 0.1, 0.765)), "odom", 0.0)
@@ -22,8 +24,6 @@ _KNOWN: Mapping[Any, Any] = {
     int: 1,
     float: 0.1,
     str: "text",
-    object: "anything",
-    Any: "anything",
     Transform: Transform(),
     Pose: _POSE,
     Pose2D: Pose2D(0.5, 0.0, 0.0),
@@ -78,33 +78,37 @@ def example_value(port: Port, site: Site, description: RobotDescription) -> Any:
     return type(value)(within(value, port)) if port.bounded else value
 
 
-def of_type(type_: Any) -> Any:
+def of_type(type_: ValueType) -> Any:
     """Some value of a type; NoExample when nothing is known of it."""
-    if isinstance(type_, typing.Hashable) and type_ in _KNOWN:
-        return _KNOWN[type_]
-    if is_union(type_):
-        return of_type(without_none(type_)[0])
-    if origin(type_) is Literal:
-        return get_args(type_)[0]
-    if origin(type_) is tuple:
-        items = get_args(type_)
-        return tuple(of_type(item) for item in items if item is not Ellipsis)
-    if isinstance(type_, type) and issubclass(type_, Enum):
-        return next(iter(type_))
-    if isinstance(type_, type) and issubclass(type_, str):
-        return type_("text")
-    if dataclasses.is_dataclass(type_) and isinstance(type_, type):
-        return _of_dataclass(type_)
-    raise NoExample(f"nothing is known of {type_!r}")
+    return _of_kind(kind_of(type_))
 
 
-def _of_dataclass(type_: type) -> Any:
-    hints = typing.get_type_hints(type_)
-    lacking = [
-        field.name
-        for field in dataclasses.fields(type_)
-        if field.init
-        and field.default is dataclasses.MISSING
-        and field.default_factory is dataclasses.MISSING
-    ]
-    return type_(**{name: of_type(hints[name]) for name in lacking})
+def _of_kind(kind: ValueKind) -> Any:
+    if isinstance(kind.type, type) and kind.type in _KNOWN:
+        return _KNOWN[kind.type]
+    match kind:
+        case kinds.Anything() | kinds.Unknown():
+            return "anything"
+        case kinds.Either():
+            return _of_kind(without_none(kind)[0])
+        case kinds.Choice():
+            return kind.values[0]
+        case kinds.Enumeration():
+            return next(iter(kind.type))
+        case kinds.Text():
+            return kind.type("text")
+        case kinds.Items() | kinds.QueueOf():
+            return (_of_kind(kind.item),)
+        case kinds.Fixed():
+            return tuple(map(_of_kind, kind.items))
+        case kinds.Table():
+            return MappingProxyType({_of_kind(kind.key): _of_kind(kind.item)})
+        case kinds.Array():
+            return freeze(np.zeros(3))
+        case kinds.Record():
+            lacking = [part for part in parts_of(kind.type) if part.required]
+            return kind.type(**{part.name: _of_kind(part.kind) for part in lacking})
+        case kinds.Nothing():
+            return None
+        case kinds.Truth() | kinds.Number() | kinds.Instance():
+            raise NoExample(f"nothing is known of {kind.type!r}")

@@ -11,7 +11,7 @@ from momantu_bt.engine.actuators import Actuators
 from momantu_bt.engine.services import Services
 from momantu_bt.engine.session import Session, SkillContext
 from momantu_bt.engine.status import FAILURE, RUNNING
-from momantu_bt.failure import FailureValue
+from momantu_bt.failure import Failure, FailureValue
 from momantu_bt.frames import FrameBuffer
 from momantu_bt.geometry import Transform
 from momantu_bt.robot import Robot
@@ -19,6 +19,7 @@ from momantu_bt.service import Service
 from momantu_bt.skill import Skill
 from momantu_bt.testing.robot import ScriptedRobot
 from momantu_bt.testing.world import ScriptedWorld
+from momantu_bt.values.admit import admit
 from momantu_bt.world import TICK, Site, World, seeded
 
 
@@ -85,6 +86,10 @@ def run_skill(
     step of the skill, to script events. After `max_time` simulated seconds the skill is halted.
     """
     place = world if world is not None else ScriptedWorld(robot, site)
+    try:
+        admitted = _admitted(skill, inputs or {})
+    except Failure as failure:
+        return SkillResult("FAILURE", {}, failure.value, (), 0.0, 0, None, place.robot)
     running = _Services(place, dict(services or {}), frames, seed)
     if map_from_odom is not None or (frames is None and "localization" not in running.services):
         running.frames.set_map_from_odom(map_from_odom or Transform(), place.now())
@@ -96,7 +101,7 @@ def run_skill(
         services=running.services,
     )
     lease = Actuators(place.robot).lease(skill.__name__, skill.uses)
-    session = Session(skill, inputs or {}, lease, context)
+    session = Session(skill, admitted, lease, context)
     began, phases, ticks = place.now(), [""], 0
     try:
         while place.now() - began < max_time - TICK / 2:
@@ -124,6 +129,16 @@ def run_skill(
         skill=session.skill,
         robot=place.robot,
     )
+
+
+def _admitted(skill: type[Skill], inputs: Mapping[str, Any]) -> dict[str, Any]:
+    """Inputs as a tree would give them; those that the skill does not have as they are.
+
+    Raises:
+        Failure: WRONG_TYPE.
+    """
+    ports = skill.ports
+    return {n: admit(v, ports[n]) if n in ports else v for n, v in inputs.items()}
 
 
 class _Services:

@@ -11,6 +11,8 @@ from enum import Enum
 from typing import Any, TypeAlias
 
 from momantu_bt.formats.places import Place
+from momantu_bt.skill import MISSING, Port
+from momantu_bt.values.types import parse_type
 
 
 class Scope(Enum):
@@ -138,6 +140,13 @@ class PortDeclaration:
     default: Literal | Reference | None = None
     doc: str = ""
     comments: tuple[str, ...] = field(default=(), compare=False)
+
+    def port(self) -> Port:
+        """What a skill would declare; KeyError when its type has no such name."""
+        default: Any = MISSING if self.default is None else None
+        if isinstance(self.default, Literal):
+            default = self.default.value
+        return Port(self.name, self.direction, parse_type(self.type_name), self.doc, default)
 
 
 @dataclass(slots=True)

@@ -12,7 +12,7 @@ from momantu_bt.failure import CODE
 from momantu_bt.skill import Port, Skill
 from momantu_bt.symptom import Symptom
 from momantu_bt.tree.catalogue import BUILT_IN, MODIFIERS, SPELLED
-from momantu_bt.tree.types import is_union, origin
+from momantu_bt.values.kinds import Unknown, ValueType, kind_of
 
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
 WORDS_OF_TREES = ("again", "any", "child", "children", "try", "catch", "then", "else", "do")
@@ -61,14 +61,13 @@ def _port(kind: type[Skill], port: Port) -> str | None:
     said = f"the port {kind.__name__}.{port.name}"
     if not isinstance(port.doc, str) or not port.doc.strip():
         return f"{said} has no doc: write {'In' if port.direction == 'in' else 'Out'}(doc=…)"
-    if isinstance(port.type, str) or port.type is None or not _is_type(port.type):
+    if port.type is None or not _is_type(port.type):
         return f"{said} has no type: {port.type!r} is none"
     return None
 
 
-def _is_type(annotation: Any) -> bool:
-    named = isinstance(annotation, type) or annotation is Any
-    return named or origin(annotation) is not None or is_union(annotation)
+def _is_type(annotation: ValueType) -> bool:
+    return isinstance(annotation, type) or not isinstance(kind_of(annotation), Unknown)
 
 
 def _failures(kind: type[Skill]) -> str | None:

@@ -8,7 +8,13 @@ import pytest
 
 from momantu_bt.formats.places import Place
 from momantu_bt.skill import Port
-from momantu_bt.tree.catalogue import BUILT_IN, CONDITIONS, SUBTREE, Kind, NodeSpec, ScriptText
+from momantu_bt.tree.catalogue import (
+    BUILT_IN,
+    CONDITIONS,
+    SUBTREE,
+    Kind,
+    NodeSpec,
+)
 from momantu_bt.tree.model import (
     FIRST_INPUT,
     Document,
@@ -22,6 +28,7 @@ from momantu_bt.tree.model import (
     Template,
     Tree,
 )
+from momantu_bt.values.kinds import ScriptText
 
 TREE_NAMES = ("Main", "Take", "Put")
 _TEXTS = (

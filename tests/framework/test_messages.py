@@ -10,7 +10,7 @@ import pytest
 from momantu_bt import messages
 from momantu_bt.geometry import Pose, Transform
 from momantu_bt.messages import DetectedObject, plain, register_value_type
-from momantu_bt.tree.types import parse_type
+from momantu_bt.values.types import parse_type
 
 
 @dataclass(frozen=True)

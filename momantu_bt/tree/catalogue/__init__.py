@@ -12,7 +12,7 @@ from momantu_bt.tree.catalogue.controls import CONTROLS
 from momantu_bt.tree.catalogue.decorators import DECORATORS
 from momantu_bt.tree.catalogue.leaves import LEAVES
 from momantu_bt.tree.catalogue.nav2 import NAV2
-from momantu_bt.tree.catalogue.spec import CodeText, Kind, NodeSpec, Queue, ScriptText
+from momantu_bt.tree.catalogue.spec import Kind, NodeSpec
 
 __all__ = [
     "AUTOREMAP",
@@ -29,11 +29,8 @@ __all__ = [
     "SUBTREE",
     "SWITCHES",
     "XML_CONDITIONS",
-    "CodeText",
     "Kind",
     "NodeSpec",
-    "Queue",
-    "ScriptText",
 ]
 
 SUBTREE = "SubTree"

@@ -6,17 +6,15 @@ from typing import Literal
 
 from momantu_bt.tree.catalogue.spec import (
     TIME,
-    CodeText,
     Kind,
     NodeSpec,
-    Queue,
-    ScriptText,
     by_name,
     decorator,
     input_port,
     output_port,
     time_ports,
 )
+from momantu_bt.values.kinds import CodeText, Queue, ScriptText
 
 _PLAIN = (
     decorator(

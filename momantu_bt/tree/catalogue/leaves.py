@@ -6,7 +6,8 @@ from typing import Literal
 
 from momantu_bt.failure import FAILED
 from momantu_bt.skill import Port
-from momantu_bt.tree.catalogue.spec import TIME, CodeText, ScriptText, input_port, leaf, time_ports
+from momantu_bt.tree.catalogue.spec import TIME, input_port, leaf, time_ports
+from momantu_bt.values.kinds import CodeText, ScriptText
 
 LEAVES = (
     leaf("AlwaysSuccess", ("succeed", "always_success"), "Succeeds at once."),

@@ -5,11 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import Any, Generic, TypeVar
+from typing import Any
 
 from momantu_bt.skill import MISSING, Port
-
-_T = TypeVar("_T")
 
 
 class Kind(StrEnum):
@@ -18,18 +16,6 @@ class Kind(StrEnum):
     CONTROL = "control"
     DECORATOR = "decorator"
     LEAF = "leaf"
-
-
-class ScriptText(str):
-    """The type of a port that holds a script in canonical form (`&& || !`, bare names)."""
-
-
-class CodeText(str):
-    """The type of a port that holds a failure code."""
-
-
-class Queue(Generic[_T]):
-    """The type of a port that takes a list, one value, or a text of values with `;` between."""
 
 
 @dataclass(frozen=True, slots=True)

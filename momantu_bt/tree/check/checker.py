@@ -9,7 +9,6 @@ from dataclasses import replace
 from momantu_bt.formats.places import Place
 from momantu_bt.formats.problems import Problem
 from momantu_bt.messages import RobotState
-from momantu_bt.tree.catalogue import ScriptText
 from momantu_bt.tree.check.guards import check_guards
 from momantu_bt.tree.check.handlers import check_handlers
 from momantu_bt.tree.check.keys.flow_check import check_keys
@@ -29,6 +28,7 @@ from momantu_bt.tree.model import Document, Literal, Node, Reference, Scope, Tre
 from momantu_bt.tree.problems import Problems, TooManyProblems
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.script import parse
+from momantu_bt.values.kinds import ScriptText
 
 ROBOT_KEY = "robot"
 """`$@robot.…`: what every run publishes of its robot."""

@@ -7,7 +7,7 @@ from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.places import Place
 from momantu_bt.messages import VALUE_TYPES
 from momantu_bt.skill import MISSING, Port
-from momantu_bt.tree.catalogue import AUTOREMAP, MODIFIERS, CodeText
+from momantu_bt.tree.catalogue import AUTOREMAP, MODIFIERS
 from momantu_bt.tree.check.signatures import Context, Signature, known_type, report_unknown_node
 from momantu_bt.tree.model import (
     FIRST_INPUT,
@@ -19,9 +19,10 @@ from momantu_bt.tree.model import (
     Template,
     Tree,
 )
-from momantu_bt.tree.types import assignable, label
-from momantu_bt.tree.values.conversion import convert, port_of
-from momantu_bt.tree.values.words import ConversionError
+from momantu_bt.values.convert import convert
+from momantu_bt.values.kinds import CodeText
+from momantu_bt.values.types import assignable, label
+from momantu_bt.values.words import ConversionError
 
 
 def check_tree_ports(context: Context, tree: Tree) -> None:
@@ -40,7 +41,7 @@ def _check_default(context: Context, name: str, declaration: PortDeclaration) ->
     if not isinstance(declaration.default, Literal):
         return
     try:
-        convert(declaration.default.value, port_of(declaration))
+        convert(declaration.default.value, declaration.port())
     except ConversionError as error:
         message = f"the default of {name!r}: {error}"
         context.problems.error("wrong-value", declaration.place, message)

@@ -15,8 +15,7 @@ from momantu_bt.tree.catalogue import AUTOREMAP, BUILT_IN, SUBTREE, NodeSpec
 from momantu_bt.tree.model import BROKEN, Document, Node, Tree
 from momantu_bt.tree.problems import Problems
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.types import parse_type
-from momantu_bt.tree.values.conversion import port_of
+from momantu_bt.values.types import parse_type
 from momantu_bt.world import Site
 
 _AUTOREMAP_PORT = Port(AUTOREMAP, "in", bool, "whether keys of one name are one key", False)
@@ -102,7 +101,7 @@ class Context:
             ports: dict[str, Port] = {}
             for name, declaration in tree.ports.items():
                 try:
-                    ports[name] = port_of(declaration)
+                    ports[name] = declaration.port()
                 except KeyError:
                     ports[name] = Port(name, declaration.direction, object, declaration.doc)
             self._trees[tree.name] = Signature(tree.name, ports, _first(ports))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from enum import Enum, auto
-from typing import TypeAlias, get_args
+from typing import TypeAlias
 
 from momantu_bt.tree.script.nodes import (
     Assignment,
@@ -20,7 +20,8 @@ from momantu_bt.tree.script.nodes import (
     Unary,
     Variable,
 )
-from momantu_bt.tree.types import ValueType, origin
+from momantu_bt.values import kinds
+from momantu_bt.values.kinds import ValueType, kind_of
 
 
 class Kind(Enum):
@@ -53,9 +54,9 @@ def check_types(statement: Expression, type_of: TypeOf) -> Kind:
         Mismatch: evaluating it would fail, whatever the values are.
     """
     if isinstance(statement, Constant):
-        return kind_of(type(statement.value))
+        return operand_kind(type(statement.value))
     if isinstance(statement, Variable):
-        return kind_of(type_of(statement))
+        return operand_kind(type_of(statement))
     if isinstance(statement, Unary):
         _must_be_number(statement.operator, statement.operand, type_of)
         return Kind.NUMBER
@@ -70,17 +71,22 @@ def check_types(statement: Expression, type_of: TypeOf) -> Kind:
     return _chain(statement, type_of)
 
 
-def kind_of(type_: ValueType) -> Kind:
+def operand_kind(type_: ValueType) -> Kind:
     """The kind of a type's values."""
-    if origin(type_) is not None:
-        kinds = {kind_of(type(value)) for value in get_args(type_)}
-        literal = str(origin(type_)).endswith("Literal")
-        return kinds.pop() if literal and len(kinds) == 1 else Kind.UNKNOWN
-    if type_ in (bool, int, float):
-        return Kind.NUMBER
-    if isinstance(type_, type) and issubclass(type_, str):
-        return Kind.TEXT
-    return Kind.UNKNOWN if type_ is object or not isinstance(type_, type) else Kind.OTHER
+    match kind_of(type_):
+        case kinds.Choice(values=values):
+            found = {operand_kind(type(value)) for value in values}
+            return found.pop() if len(found) == 1 else Kind.UNKNOWN
+        case kinds.Truth() | kinds.Number():
+            return Kind.NUMBER
+        case kinds.Text():
+            return Kind.TEXT
+        case kinds.Enumeration():
+            return Kind.TEXT if issubclass(type_, str) else Kind.OTHER
+        case kinds.Nothing() | kinds.Record() | kinds.Array() | kinds.Instance():
+            return Kind.OTHER
+        case _:
+            return Kind.UNKNOWN
 
 
 def _must_be_number(operator: str, operand: Expression, type_of: TypeOf) -> None:

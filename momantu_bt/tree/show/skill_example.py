@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from enum import Enum
-from typing import Any, Literal, get_args
+from typing import Any
 
 from momantu_bt.messages import ObjectClass
 from momantu_bt.skill import Port, Skill
@@ -11,7 +10,16 @@ from momantu_bt.tree import model
 from momantu_bt.tree.files.xml.attributes import port_attribute
 from momantu_bt.tree.files.yaml.scalars import literal
 from momantu_bt.tree.model import PortValue
-from momantu_bt.tree.types import is_union, origin, without_none
+from momantu_bt.values.kinds import (
+    Choice,
+    Enumeration,
+    Number,
+    Record,
+    Text,
+    Truth,
+    kind_of,
+    without_none,
+)
 
 WIDEST = 76
 """Characters of one line of an example."""
@@ -82,20 +90,21 @@ def _in_yaml(value: Any) -> str:
 def _value(port: Port) -> Any:
     if port.names in _NAMED:
         return _NAMED[port.names]
-    type_ = without_none(port.type)[0] if is_union(port.type) else port.type
-    if origin(type_) is Literal:
-        return get_args(type_)[0]
-    if not isinstance(type_, type):
-        return Wire(port.name)
-    if type_ is ObjectClass:
-        return {"category": "can", "diameter": "66 mm", "height": "12 cm"}
-    if issubclass(type_, Enum):
-        return next(iter(type_)).value
-    if type_ is bool:
-        return True
-    if type_ is int or type_ is float:
-        return _number(port, type_)
-    return "text" if issubclass(type_, str) else Wire(port.name)
+    match without_none(kind_of(port.type))[0]:
+        case Choice(values=(first, *_)):
+            return first
+        case Enumeration(type=enum):
+            return next(iter(enum)).value
+        case Truth():
+            return True
+        case Number(type=number):
+            return _number(port, number)
+        case Text():
+            return "text"
+        case Record(type=kind) if kind is ObjectClass:
+            return {"category": "can", "diameter": "66 mm", "height": "12 cm"}
+        case _:
+            return Wire(port.name)
 
 
 def within(number: float, port: Port) -> float:

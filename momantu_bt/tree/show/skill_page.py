@@ -8,7 +8,7 @@ from typing import Any
 
 from momantu_bt.skill import MISSING, Port, Skill
 from momantu_bt.tree.show.skill_example import xml_example, yaml_example
-from momantu_bt.tree.types import label
+from momantu_bt.values.types import label
 
 _HEADINGS = (("in", "Inputs"), ("out", "Outputs"))
 

@@ -23,8 +23,8 @@ from momantu_bt.tree.problems import Problems, TreeError
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.script import ScriptSyntaxError, parse
 from momantu_bt.tree.substitute.rules import Rule, RuleFile, Status, read_rules
-from momantu_bt.tree.values.conversion import convert
-from momantu_bt.tree.values.words import ConversionError
+from momantu_bt.values.convert import convert
+from momantu_bt.values.words import ConversionError
 
 
 @dataclass(frozen=True, slots=True)

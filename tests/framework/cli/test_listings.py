@@ -13,7 +13,7 @@ from momantu_bt.plugins import PluginError
 from momantu_bt.robots.plugins import ROBOTS
 from momantu_bt.tree.files.lookup import bundled
 from momantu_bt.tree.plugins import SKILLS, WORLDS
-from momantu_bt.tree.types import label
+from momantu_bt.values.types import label
 
 Out = pytest.CaptureFixture[str]
 TREE = "momantu_bt: 1\nvalues: {n: 66 mm}\ntrees:\n  Main: [{wait: 1 s, timeout: 3 s}]\n"

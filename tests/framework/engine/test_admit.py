@@ -10,19 +10,20 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from momantu_bt.engine.admit import admit, admit_output, fits, freeze
-from momantu_bt.engine.nan import nan_in
 from momantu_bt.engine.status import RUNNING, Status
 from momantu_bt.failure import Failure
 from momantu_bt.geometry import Pose, Pose2D, Transform
 from momantu_bt.skill import In, Out, Port, Run, Skill
 from momantu_bt.testing import run_skill
+from momantu_bt.values.admit import admit, admit_output
+from momantu_bt.values.contents import freeze, nan_in
 
 HERE = Pose2D(1.0, 2.0, 0.0)
 FITTING = [
     (3, int, True),
     (3.0, int, False),
-    (3, float, False),  # admitted all the same, as 3.0
+    (3, float, True),
+    ((3,), tuple[float, ...], True),
     (True, int, False),
     (True, float, False),
     (True, bool, True),
@@ -42,12 +43,14 @@ FITTING = [
     ((1, "2"), tuple[int, ...], False),
     ((1, "2"), tuple[int, str], True),
     ((1,), tuple[int, str], False),
+    ([1], tuple[int], True),
     ((1, 2), list[int], True),
     ((1, True), list[int], False),
     ((HERE,), list[Pose2D], True),
     (HERE, Pose2D, True),
     (HERE, Annotated[Pose2D, "in the map"], True),
     ({"a": 1}, dict[str, int], True),
+    ({"a": "x"}, dict[str, int], False),
     ({"a": 1}, Mapping[str, int], True),
     ({"a": 1}, dict, True),
     ([1], list, True),
@@ -60,9 +63,17 @@ FITTING = [
 ]
 
 
+def fits(value, kind):
+    try:
+        admit(value, Port("p", "out", kind, ""))
+    except Failure:
+        return False
+    return True
+
+
 @pytest.mark.parametrize(("value", "kind", "expected"), FITTING, ids=str)
-def test_which_frozen_values_fit_which_types(value, kind, expected):
-    assert fits(freeze(value), kind) is expected
+def test_which_values_fit_which_types(value, kind, expected):
+    assert fits(value, kind) is expected
 
 
 VALUES = st.recursive(

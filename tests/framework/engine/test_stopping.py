@@ -327,15 +327,22 @@ def test_what_broke_the_skill_is_the_cause_of_what_broke_its_cleanup():
     assert "yielded 3" in failure.cause.message
 
 
-def test_a_live_input_that_loses_its_type_ends_the_skill():
+def test_a_live_input_that_loses_its_type_ends_the_skill(run_yaml):
+    text = """
+values: {count: 1}
+trees:
+  Main:
+    parallel:
+      children:
+        - untidy: {ending: live, live: $count}
+        - sequence: [wait: 0.05 s, script: '$count := "two"', wait: 1 s]
+"""
     world = ScriptedWorld()
-    book = Actuators(world.robot)
-    untidy = session(Untidy, world, book, "untidy", live=1)
-    untidy.step({"live": 2})
-    assert untidy.step({"live": "two"}) is FAILURE
-    assert [link.code for link in untidy.failure.chain()] == ["SKILL_ERROR", "WRONG_TYPE"]
+    report = run_yaml(text, Untidy, world=world)
+    assert report.status == "FAILURE"
+    assert "WRONG_TYPE" in [link.code for link in report.failure.chain()]
     assert CLOSED == ["untidy"]
-    assert book.owner("base") is None
+    assert still(world)
 
 
 class Exhausted(Skill):

@@ -132,7 +132,7 @@ def test_readings_of_the_test_come_first() -> None:
 
 
 def test_inputs_fit_their_ports(world: ExampleWorld) -> None:
-    from momantu_bt.engine.admit import admit
+    from momantu_bt.values.admit import admit
 
     site, description = world.site, world.robot.description
     values = example_inputs(EveryType, site, description)

@@ -13,9 +13,9 @@ from momantu_bt.formats.units import UnitError, in_unit, quantity, units_of
 from momantu_bt.messages import VALUE_TYPES
 from momantu_bt.skill import Port
 from momantu_bt.tree.model import PortDeclaration
-from momantu_bt.tree.types import assignable, label, parse_type
-from momantu_bt.tree.values.conversion import convert, natural, port_of
-from momantu_bt.tree.values.words import ConversionError
+from momantu_bt.values.convert import convert, natural
+from momantu_bt.values.types import assignable, label, parse_type
+from momantu_bt.values.words import ConversionError
 
 KINDS = ["s", "m", "rad", "Hz", "N", "kg", "m/s", "rad/s", "m/s2", "rad/s2"]
 NUMBERS = st.floats(-1e6, 1e6).map(lambda x: round(x, 6))
@@ -120,7 +120,7 @@ def test_lists_flow_as_their_items_do(left: str, right: str) -> None:
 @pytest.mark.parametrize("name", ["txt", "list", "list of", "list of  txt", "int | text", ""])
 def test_names_of_no_type(name: str) -> None:
     with pytest.raises(KeyError):
-        port_of(PortDeclaration("p", "in", name, Place("t", 1, 1)))
+        PortDeclaration("p", "in", name, Place("t", 1, 1)).port()
 
 
 def test_an_enumeration_flows_into_itself() -> None:

@@ -14,8 +14,8 @@ from momantu_bt.tree.catalogue import BUILT_IN
 from momantu_bt.tree.check.checker import check as check_document
 from momantu_bt.tree.files.yaml.format import read
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.values.conversion import convert
-from momantu_bt.tree.values.words import ConversionError
+from momantu_bt.values.convert import convert
+from momantu_bt.values.words import ConversionError
 
 Expect = Callable[..., None]
 NUMBERS = st.integers(-50, 50)

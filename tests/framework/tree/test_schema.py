@@ -20,7 +20,7 @@ from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.show.problem_pages import codes, explanation
 from momantu_bt.tree.show.schema import tree_schema
 from momantu_bt.tree.show.schema_values import value_schema
-from momantu_bt.tree.types import ValueType
+from momantu_bt.values.kinds import ValueType
 
 TREES = sorted(bundled().values())
 HEADER = "momantu_bt: 1\nworld: rooms\ntrees:\n  Main:\n"

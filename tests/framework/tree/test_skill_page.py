@@ -17,7 +17,7 @@ from momantu_bt.tree.files.yaml.format import read
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.show.skill_example import Wire, example_ports, xml_example, yaml_example
 from momantu_bt.tree.show.skill_page import as_data, as_markdown, as_text, pages
-from momantu_bt.tree.types import label
+from momantu_bt.values.types import label
 
 DOCS = Path(__file__).parents[3] / "docs" / "skills"
 BUNDLED = {

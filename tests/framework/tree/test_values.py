@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 from momantu_bt.geometry import Pose, Pose2D, Transform
 from momantu_bt.messages import VALUE_TYPES, ObjectClass
 from momantu_bt.skill import Port
-from momantu_bt.tree.catalogue import Queue
-from momantu_bt.tree.types import assignable, label, parse_type
-from momantu_bt.tree.values.conversion import convert, natural, render
-from momantu_bt.tree.values.words import ConversionError
+from momantu_bt.values.convert import convert, natural
+from momantu_bt.values.kinds import Queue
+from momantu_bt.values.types import assignable, label, parse_type
+from momantu_bt.values.words import ConversionError, render
 
 
 class Colour(Enum):

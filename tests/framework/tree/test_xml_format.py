@@ -7,7 +7,7 @@ import pytest
 
 from momantu_bt.formats.places import Place
 from momantu_bt.formats.problems import Problem, Severity
-from momantu_bt.tree.catalogue import BUILT_IN, OWN_NODES, XML_CONDITIONS, ScriptText
+from momantu_bt.tree.catalogue import BUILT_IN, OWN_NODES, XML_CONDITIONS
 from momantu_bt.tree.files.xml.format import read
 from momantu_bt.tree.files.yaml.format import read as read_yaml
 from momantu_bt.tree.model import (
@@ -22,6 +22,7 @@ from momantu_bt.tree.model import (
 )
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.script import parse
+from momantu_bt.values.kinds import ScriptText
 
 Expect = Callable[..., None]
 OPENING = '<root BTCPP_format="4" xmlns:momantu="urn:momantu-bt:1">\n'

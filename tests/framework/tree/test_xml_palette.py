@@ -11,8 +11,8 @@ from momantu_bt.tree.files.xml.palette import palette
 from momantu_bt.tree.model import Literal, NodeModel
 from momantu_bt.tree.plugins import SKILLS
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.types import label, parse_type
-from momantu_bt.tree.values.conversion import convert
+from momantu_bt.values.convert import convert
+from momantu_bt.values.types import label, parse_type
 
 TREE = '<BehaviorTree ID="Main"><AlwaysSuccess/></BehaviorTree></root>'
 

@@ -13,7 +13,7 @@ from momantu_bt.tree.check.keys.known import Key, literal_type
 from momantu_bt.tree.check.keys.shared import TreeKeys, call_of
 from momantu_bt.tree.check.signatures import Context, Signature
 from momantu_bt.tree.model import Literal, Node, Reference, Scope, Tree
-from momantu_bt.tree.types import ValueType
+from momantu_bt.values.kinds import ValueType
 
 Rewrites = dict[tuple[str, ValueType], Key]
 """What nodes write: each key with each type it gets, and the place where it gets it first."""

@@ -7,11 +7,10 @@ known after its success and after its failure.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import get_args
 
 from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.places import Place, within
-from momantu_bt.tree.catalogue import BUILT_IN, PRE_CONDITIONS, SUBTREE, ScriptText
+from momantu_bt.tree.catalogue import BUILT_IN, PRE_CONDITIONS, SUBTREE
 from momantu_bt.tree.check.keys.changes import KeyChanges
 from momantu_bt.tree.check.keys.flow import FLOWS, After, Walk
 from momantu_bt.tree.check.keys.known import NEVER, Key, Known, both, literal_type, meet
@@ -22,7 +21,8 @@ from momantu_bt.tree.model import Literal, Node, Reference, Scope, Tree
 from momantu_bt.tree.script import Script, ScriptSyntaxError, parse
 from momantu_bt.tree.script.nodes import Variable
 from momantu_bt.tree.script.types import Mismatch, check_types
-from momantu_bt.tree.types import ValueType, label, origin
+from momantu_bt.values.kinds import Fixed, Items, ScriptText, ValueType, kind_of
+from momantu_bt.values.types import label
 
 
 def check_keys(context: Context, order: list[Tree], root_keys: Mapping[str, Key | None]) -> None:
@@ -301,8 +301,9 @@ class _KeyCheck:
         items = loop.ports.get(source)
         if declared is object and isinstance(items, Reference) and not items.fields:
             key = before.get(items.key)
-            if key is not None and origin(key.type) is tuple:
-                return get_args(key.type)[0]
+            match None if key is None else kind_of(key.type):
+                case Items(item=item) | Fixed(items=(item, *_)):
+                    return item.type
         return declared
 
     def script(self, text: str, before: Known, place: Place) -> Known:

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import typing
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass, fields
 from functools import cache
-from typing import Any, cast
+from typing import Any
 
 from momantu_bt.formats.places import Place
 from momantu_bt.tree.model import Literal
-from momantu_bt.tree.types import ValueType, assignable, without_none
-from momantu_bt.tree.values.conversion import natural
+from momantu_bt.values.convert import natural
+from momantu_bt.values.kinds import Number, Record, Text, Truth, ValueType, kind_of, without_none
+from momantu_bt.values.types import assignable
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,12 +141,13 @@ def part_type(type_: ValueType, parts: tuple[str, ...]) -> ValueType:
         KeyError: the type has no such part; the arguments are the part and the valid ones.
     """
     for name in parts:
-        choices = without_none(type_)
-        if len(choices) != 1 or not is_dataclass(choices[0]):
-            if choices[0] in (str, int, float, bool):
-                raise KeyError(name, ())
-            return object
-        known = _parts(cast(Any, choices[0]))
+        match without_none(kind_of(type_)):
+            case (Record(type=record),):
+                known = _parts(record)
+            case (Text() | Number() | Truth(),):
+                known = {}
+            case _:
+                return object
         if name not in known:
             raise KeyError(name, tuple(known))
         type_ = known[name]

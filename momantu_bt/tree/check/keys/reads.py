@@ -10,15 +10,16 @@ from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.places import Place
 from momantu_bt.formats.units import UnitError, in_unit
 from momantu_bt.skill import Port
-from momantu_bt.tree.catalogue import AUTOREMAP, SUBTREE, ScriptText
+from momantu_bt.tree.catalogue import AUTOREMAP, SUBTREE
 from momantu_bt.tree.check.keys.known import Key, Known, part_type
 from momantu_bt.tree.check.keys.shared import Call, TreeKeys
 from momantu_bt.tree.check.nodes import autoremaps, check_name
 from momantu_bt.tree.check.signatures import Context, Signature
 from momantu_bt.tree.model import BROKEN, Literal, Node, PortValue, Reference, Scope, Template, Tree
-from momantu_bt.tree.types import ValueType, label
-from momantu_bt.tree.values.conversion import convert
-from momantu_bt.tree.values.words import ConversionError
+from momantu_bt.values.convert import convert
+from momantu_bt.values.kinds import ScriptText, ValueType
+from momantu_bt.values.types import label
+from momantu_bt.values.words import ConversionError
 
 Demand: TypeAlias = tuple[str, str]
 """What a text must be: ("names", "place"), or a quantity in a unit: ("unit", "m")."""

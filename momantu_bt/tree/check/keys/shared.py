@@ -7,11 +7,12 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from momantu_bt.formats.places import Place
-from momantu_bt.tree.catalogue import AUTOREMAP, SUBTREE, ScriptText
+from momantu_bt.tree.catalogue import AUTOREMAP, SUBTREE
 from momantu_bt.tree.check.nodes import autoremaps
 from momantu_bt.tree.check.signatures import Context
 from momantu_bt.tree.model import BROKEN, Literal, Node, PortValue, Reference, Scope, Template, Tree
 from momantu_bt.tree.script import Script, ScriptSyntaxError, parse
+from momantu_bt.values.kinds import ScriptText
 
 MAX_KEYS = 1000
 """Different keys of one tree; each node knows of all that there are before it."""

@@ -15,7 +15,6 @@ from momantu_bt.tree.catalogue import (
     SUBTREE,
     XML_CONDITIONS,
     NodeSpec,
-    ScriptText,
 )
 from momantu_bt.tree.files.xml.ports import DESCRIPTION, DISABLED, NOTE, PREFIX, RESERVED
 from momantu_bt.tree.files.xml.text import attribute, is_xml
@@ -30,7 +29,8 @@ from momantu_bt.tree.model import (
     Scope,
 )
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.types import ValueType, parse_type
+from momantu_bt.values.kinds import ScriptText, ValueType
+from momantu_bt.values.types import parse_type
 
 _NAME = re.compile(r"[A-Za-z_][\w.-]*", re.ASCII)
 """What can be the name of a tag or an attribute, as all parsers agree."""

@@ -20,7 +20,7 @@ from momantu_bt.tree.model import (
     Template,
 )
 from momantu_bt.tree.problems import Problems
-from momantu_bt.tree.types import parse_type
+from momantu_bt.values.types import parse_type
 
 PORTS = {"input_port": "in", "output_port": "out", "inout_port": "inout"}
 """Elements of a model, and the direction they mean."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Mapping
-from typing import Any, get_args
+from typing import Any
 
 from lxml import etree
 
@@ -12,7 +12,8 @@ from momantu_bt.skill import MISSING, Port, Skill
 from momantu_bt.tree.catalogue import BUILT_IN, NAV2_NODES, OWN_NODES, Kind
 from momantu_bt.tree.files.xml.header import FORMAT
 from momantu_bt.tree.files.xml.ports import CATCH, PREFIX
-from momantu_bt.tree.types import label, origin, without_none
+from momantu_bt.values.kinds import Choice, kind_of, without_none
+from momantu_bt.values.types import label
 
 _KINDS = {Kind.CONTROL: "Control", Kind.DECORATOR: "Decorator", Kind.LEAF: "Action"}
 _TYPES = {"text": "std::string", "number": "double"}
@@ -58,17 +59,11 @@ def _model(
 
 
 def _type(port: Port) -> str:
-    choices = without_none(port.type)
-    if len(choices) == 1 and origin(choices[0]) is not None and _texts(choices[0]):
-        return _TYPES["text"]
-    if choices == (tuple,):
-        return "list of any"
+    match without_none(kind_of(port.type)):
+        case (Choice(values=values),) if all(isinstance(value, str) for value in values):
+            return _TYPES["text"]
     name = label(port.type)
     return _TYPES.get(name, name)
-
-
-def _texts(type_: Any) -> bool:
-    return all(isinstance(value, str) for value in get_args(type_))
 
 
 def _default(value: Any) -> str | None:

@@ -15,7 +15,6 @@ from momantu_bt.tree.catalogue import (
     SUBTREE,
     XML_CONDITIONS,
     NodeSpec,
-    ScriptText,
 )
 from momantu_bt.tree.files.xml.elements import OURS, Attribute, Element
 from momantu_bt.tree.files.xml.values import WireError, attribute_value, flow_value
@@ -32,7 +31,8 @@ from momantu_bt.tree.model import (
 )
 from momantu_bt.tree.problems import Problems
 from momantu_bt.tree.script import ScriptSyntaxError, parse
-from momantu_bt.tree.types import ValueType, parse_type
+from momantu_bt.values.kinds import ScriptText, ValueType
+from momantu_bt.values.types import parse_type
 
 EXPLICIT = ("Action", "Condition", "Control", "Decorator")
 """Tags whose ID is the node's type."""

@@ -7,8 +7,7 @@ Without a prefix attributes are BehaviorTree.CPP's: `{key}`, `{@key}`, `{=}`, el
 from __future__ import annotations
 
 import re
-import typing
-from enum import Enum
+from typing import Any
 
 from momantu_bt.formats.places import Place
 from momantu_bt.tree.files.yaml.core import resolve
@@ -17,7 +16,16 @@ from momantu_bt.tree.files.yaml.source import YamlSyntaxError, compose
 from momantu_bt.tree.files.yaml.values import KEY, port_value
 from momantu_bt.tree.model import Literal, PortValue, Reference, Scope
 from momantu_bt.tree.problems import Problems
-from momantu_bt.tree.types import ValueType, origin, without_none
+from momantu_bt.values.kinds import (
+    Choice,
+    Enumeration,
+    Text,
+    Truth,
+    ValueKind,
+    ValueType,
+    kind_of,
+    without_none,
+)
 
 SAME_NAME = "{=}"
 """Wires a port to the key of its own name."""
@@ -48,7 +56,7 @@ def attribute_value(text: str, port: str, type_: ValueType) -> PortValue:
     _refuse_half_a_wire(text)
     if takes_text(type_):
         return Literal(text)
-    if without_none(type_) == (bool,) and text in _BOOLS:
+    if text in _BOOLS and all(isinstance(kind, Truth) for kind in without_none(kind_of(type_))):
         return Literal(_BOOLS[text])
     return Literal(_plain(text))
 
@@ -71,20 +79,20 @@ def _refuse_half_a_wire(text: str) -> None:
 
 def takes_text(type_: ValueType) -> bool:
     """Whether a port of this type takes a text and nothing else, so that `5` is one."""
-    return all(_is_text(each) for each in without_none(type_))
+    return all(map(_is_text, without_none(kind_of(type_))))
 
 
-def _is_text(type_: ValueType) -> bool:
-    if origin(type_) is typing.Literal:
-        return all(isinstance(value, str) for value in typing.get_args(type_))
-    if not isinstance(type_, type):
-        return False
-    if issubclass(type_, Enum):
-        return all(isinstance(item.value, str) for item in type_)
-    return issubclass(type_, str)
+def _is_text(kind: ValueKind) -> bool:
+    match kind:
+        case Choice(values=values):
+            return all(isinstance(value, str) for value in values)
+        case Enumeration(type=enum):
+            return all(isinstance(item.value, str) for item in enum)
+        case _:
+            return isinstance(kind, Text)
 
 
-def _plain(text: str) -> typing.Any:
+def _plain(text: str) -> Any:
     """`5`, `0.5`, `true` as YAML 1.2 reads them, where it would write them so; else the text."""
     value = resolve(text)
     if isinstance(value, bool):

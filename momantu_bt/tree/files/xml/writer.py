@@ -19,7 +19,7 @@ from momantu_bt.tree.files.yaml.scalars import CannotWrite, literal, port_text
 from momantu_bt.tree.language import VERSION
 from momantu_bt.tree.model import Document, Handler, Literal, Node, NodeModel, PortDeclaration, Tree
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.types import parse_type
+from momantu_bt.values.types import parse_type
 
 __all__ = ["CannotWrite", "write"]
 

@@ -6,7 +6,7 @@ from collections.abc import Collection
 from dataclasses import dataclass
 
 from momantu_bt.plugins import PluginError
-from momantu_bt.tree.catalogue import BUILT_IN, MODIFIERS, SPELLED, SUBTREE, ScriptText
+from momantu_bt.tree.catalogue import BUILT_IN, MODIFIERS, SPELLED, SUBTREE
 from momantu_bt.tree.files.yaml.lines import STEP, WIDTH, above, beside, is_nested, signed, spread
 from momantu_bt.tree.files.yaml.scalars import (
     CannotWrite,
@@ -18,6 +18,7 @@ from momantu_bt.tree.files.yaml.scalars import (
 from momantu_bt.tree.language import AGAIN
 from momantu_bt.tree.model import FIRST_INPUT, Literal, Node, PortValue
 from momantu_bt.tree.registry import Registry
+from momantu_bt.values.kinds import ScriptText
 
 
 @dataclass(frozen=True, slots=True)

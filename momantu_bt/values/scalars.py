@@ -13,8 +13,8 @@ from typing import Any
 
 from momantu_bt.formats.names import nearest
 from momantu_bt.formats.units import UnitError, in_unit, quantity
-from momantu_bt.tree.catalogue import CodeText
-from momantu_bt.tree.values.words import ConversionError, in_words, shown, unfit
+from momantu_bt.values.kinds import CodeText
+from momantu_bt.values.words import ConversionError, in_words, shown, unfit
 
 _NUMBER = re.compile(r"[-+]?([0-9]+|[0-9]*\.[0-9]+|[0-9]+\.)([eE][-+]?[0-9]+)?")
 _LONGEST_NUMBER = 40

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from momantu_bt.formats.units import units_of
-from momantu_bt.tree.types import ValueType, label
+from momantu_bt.values.kinds import ValueType
+from momantu_bt.values.types import label
 
 
 class ConversionError(ValueError):
@@ -19,6 +20,11 @@ def in_words(value: Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def render(parts: Sequence[Any]) -> str:
+    """Text from its parts, references replaced by their values."""
+    return "".join(piece if isinstance(piece, str) else in_words(piece) for piece in parts)
 
 
 def unfit(value: Any, type_: ValueType, unit: str | None) -> ConversionError:

@@ -1,12 +1,39 @@
-"""Finding a NaN in a value, however deep it is."""
+"""What a value holds, whatever its type: made immutable, and searched for a NaN."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import fields, is_dataclass
+from types import MappingProxyType, NoneType
 from typing import Any
 
 import numpy as np
+
+_PLAIN = frozenset((bool, int, float, str, NoneType))
+"""Types of values that are immutable as they are."""
+
+
+def freeze(value: Any) -> Any:
+    """The same value made immutable: lists become tuples, arrays read-only, mappings proxies."""
+    if type(value) in _PLAIN:
+        return value
+    if type(value) in (list, tuple):
+        return tuple(freeze(item) for item in value)
+    if isinstance(value, np.ndarray):
+        if value.flags.writeable:
+            value = value.copy()
+            value.setflags(write=False)
+        return value
+    if isinstance(value, dict):
+        return MappingProxyType({key: freeze(item) for key, item in value.items()})
+    return value
+
+
+def retuple(value: list[Any] | tuple[Any, ...], items: list[Any]) -> tuple[Any, ...]:
+    """The items as a tuple; the value itself where it is a tuple of these very items."""
+    if isinstance(value, tuple) and all(a is b for a, b in zip(items, value, strict=True)):
+        return value
+    return tuple(items)
 
 
 def nan_in(value: Any) -> tuple[str, ...] | None:

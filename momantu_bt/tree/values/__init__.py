@@ -1,1 +1,0 @@
-"""What a port's value may be: types, units, and text turned into values."""

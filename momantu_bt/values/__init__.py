@@ -1,0 +1,1 @@
+"""Values at ports: the kinds of types there are, and text, numbers and Python values as each."""

@@ -1,0 +1,157 @@
+"""Values that a skill gives: whether they fit their port's type, and how they become immutable."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType, NoneType
+from typing import Any
+
+import numpy as np
+
+from momantu_bt.failure import WRONG_TYPE, Failure
+from momantu_bt.skill import Port
+from momantu_bt.values import kinds
+from momantu_bt.values.contents import freeze, nan_in, retuple
+from momantu_bt.values.kinds import ValueKind, ValueType, kind_of
+
+
+def admit(value: Any, port: Port) -> Any:
+    """The value made immutable, as the port takes it: an int becomes a float where one is asked.
+
+    Raises:
+        Failure: WRONG_TYPE, with what came and what was expected.
+    """
+    try:
+        return _admitted(value, kind_of(port.type))
+    except _MisfitError:
+        raise Failure(
+            WRONG_TYPE,
+            f"port {port.name} got {_shown(value)} of type {type(value).__name__}, "
+            f"expected {type_text(port.type)}",
+            port=port.name,
+            got=type(value).__name__,
+            expected=type_text(port.type),
+        ) from None
+
+
+def admit_output(value: Any, port: Port) -> Any:
+    """The same, with a number wherever there should be one.
+
+    Raises:
+        Failure: WRONG_TYPE, also for a NaN: nobody may move by one.
+    """
+    admitted = admit(value, port)
+    where = None if type(admitted) in _WITHOUT_NAN else nan_in(admitted)
+    if where is None:
+        return admitted
+    raise Failure(
+        WRONG_TYPE,
+        f"port {port.name} got a value whose {'.'.join((port.name, *where))} is NaN, "
+        "expected numbers",
+        port=port.name,
+        got="NaN",
+        expected=type_text(port.type),
+    )
+
+
+def type_text(annotation: ValueType) -> str:
+    """A type as a person writes it in Python."""
+    return annotation.__name__ if isinstance(annotation, type) else str(annotation)
+
+
+_WITHOUT_NAN = frozenset((bool, int, str, NoneType))
+"""Types of values that hold no NaN."""
+
+
+class _MisfitError(Exception):
+    """A value does not fit a kind."""
+
+
+def _admitted(value: Any, kind: ValueKind) -> Any:
+    """Raises _MisfitError."""
+    match kind:
+        case kinds.Anything() | kinds.Unknown():
+            return freeze(value)
+        case kinds.Number():
+            return _number(value, kind)
+        case kinds.Text():
+            return _instance(value, str)
+        case (
+            kinds.Truth()
+            | kinds.Enumeration()
+            | kinds.Record()
+            | kinds.Instance()
+            | kinds.Nothing()
+        ):
+            return _instance(value, kind.type)
+        case kinds.Choice():
+            return _choice(value, kind)
+        case kinds.Array():
+            return freeze(_instance(value, np.ndarray))
+        case kinds.Either():
+            return _option(value, kind)
+        case kinds.Items() | kinds.QueueOf():
+            return _items(value, kind)
+        case kinds.Fixed():
+            return _fixed(value, kind)
+        case kinds.Table():
+            return _table(value, kind)
+
+
+def _instance(value: Any, type_: ValueType) -> Any:
+    if isinstance(value, type_):
+        return value
+    raise _MisfitError
+
+
+def _number(value: Any, kind: kinds.Number) -> Any:
+    if type(value) is int and kind.type is float:
+        return float(value)
+    if isinstance(value, bool):
+        raise _MisfitError
+    return _instance(value, kind.type)
+
+
+def _choice(value: Any, kind: kinds.Choice) -> Any:
+    if any(type(value) is type(choice) and value == choice for choice in kind.values):
+        return value
+    raise _MisfitError
+
+
+def _option(value: Any, kind: kinds.Either) -> Any:
+    """As the first option that leaves it as it is, else as the first that takes it."""
+    found = []
+    for option in kind.options:
+        try:
+            found.append(_admitted(value, option))
+        except _MisfitError:
+            continue
+        if found[-1] is value:
+            return value
+    if not found:
+        raise _MisfitError
+    return found[0]
+
+
+def _items(value: Any, kind: kinds.Items | kinds.QueueOf) -> tuple[Any, ...]:
+    found = _instance(value, (list, tuple))
+    return retuple(found, [_admitted(item, kind.item) for item in found])
+
+
+def _fixed(value: Any, kind: kinds.Fixed) -> tuple[Any, ...]:
+    found = _instance(value, (list, tuple))
+    if len(found) != len(kind.items):
+        raise _MisfitError
+    return retuple(found, list(map(_admitted, found, kind.items)))
+
+
+def _table(value: Any, kind: kinds.Table) -> Mapping[Any, Any]:
+    found = _instance(value, Mapping)
+    return MappingProxyType(
+        {_admitted(key, kind.key): _admitted(item, kind.item) for key, item in found.items()}
+    )
+
+
+def _shown(value: Any, limit: int = 60) -> str:
+    text = repr(value)
+    return text if len(text) <= limit else text[: limit - 1] + "…"

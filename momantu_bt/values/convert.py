@@ -1,0 +1,233 @@
+"""Values as tree files write them, turned into what ports take.
+
+Used twice: by the checker on every literal, and by the engine on everything that reaches an
+input, so `convert` leaves alone what is of the right type already.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from momantu_bt.formats.names import nearest
+from momantu_bt.formats.units import UnitError, quantity
+from momantu_bt.skill import Port
+from momantu_bt.values import kinds
+from momantu_bt.values.contents import freeze, retuple
+from momantu_bt.values.kinds import ValueKind, kind_of, parts_of, without_none
+from momantu_bt.values.scalars import to_bool, to_choice, to_enum, to_number, to_text
+from momantu_bt.values.types import label
+from momantu_bt.values.words import ConversionError, in_words, shown, unfit
+
+_BOOLS = {"true": True, "1": True, "false": False, "0": False}
+"""What BehaviorTree.CPP takes for a bool within a text."""
+
+
+def convert(value: Any, port: Port) -> Any:
+    """A value as the port's type, immutable; one that is so already is returned as it is.
+
+    Numbers with units become SI numbers, mappings become the port's dataclass, lists tuples.
+
+    Raises:
+        ConversionError: it does not fit, or a number is out of the port's bounds.
+    """
+    found = _convert(value, kind_of(port.type), port.unit)
+    if port.bounded:
+        _check_bounds(value, found, port)
+    return found
+
+
+def _check_bounds(value: Any, found: Any, port: Port) -> None:
+    """Each number of a list by itself; what is no number has no bounds."""
+    for number in found if isinstance(found, tuple) else (found,):
+        if isinstance(number, int | float) and not port.allows(number):
+            said = value if isinstance(value, str) else shown(number)
+            unit = f" {port.unit}" if port.unit is not None else ""
+            raise ConversionError(f"{said} is out of range; expected {port.bounds}{unit}")
+
+
+def natural(value: Any) -> Any:
+    """A value that no port types yet: quantities become SI numbers, containers immutable.
+
+    A text that only looks like a quantity (`5 apples`) stays a text.
+    """
+    if isinstance(value, str):
+        try:
+            found = quantity(value)
+        except UnitError:
+            return value
+        return value if found is None else found.value
+    if isinstance(value, Mapping):
+        return MappingProxyType({str(key): natural(item) for key, item in value.items()})
+    if isinstance(value, list | tuple):
+        return tuple(natural(item) for item in value)
+    return freeze(value)
+
+
+def _convert(value: Any, kind: ValueKind, unit: str | None) -> Any:
+    match kind:
+        case kinds.Number():
+            return to_number(value, kind.type, unit)
+        case kinds.Text():
+            return to_text(value, kind.type)
+        case kinds.Truth():
+            return to_bool(value)
+        case kinds.Record():
+            return _to_dataclass(value, kind, unit)
+        case kinds.Either():
+            return _to_either(value, kind, unit)
+        case kinds.Anything() | kinds.Unknown():
+            return natural(value)
+        case kinds.Choice():
+            return to_choice(value, kind.values)
+        case kinds.Enumeration():
+            return to_enum(value, kind.type)
+        case kinds.Items():
+            return _to_items(value, kind, unit)
+        case kinds.Fixed():
+            return _to_fixed(value, kind, unit)
+        case kinds.QueueOf():
+            return _to_queue(value, kind)
+        case kinds.Table():
+            return _to_table(value, kind, unit)
+        case kinds.Array():
+            return _to_array(value)
+        case kinds.Instance() | kinds.Nothing():
+            if isinstance(value, kind.type):
+                return value
+            raise unfit(value, kind.type, unit)
+
+
+def _to_either(value: Any, kind: kinds.Either, unit: str | None) -> Any:
+    options = without_none(kind)
+    if value is None and len(options) < len(kind.options):
+        return None
+    if any(type(value) is option.type for option in options if not isinstance(option, _HOLDERS)):
+        return value
+    errors: list[ConversionError] = []
+    for option in sorted(options, key=lambda option: option.type is str):
+        try:
+            return _convert(value, option, unit)
+        except ConversionError as error:
+            errors.append(error)
+    if len(errors) == 1:
+        raise errors[0]
+    raise unfit(value, kind.type, unit)
+
+
+_HOLDERS = (kinds.Items, kinds.Table)
+"""Kinds of which a value of the very type may hold what does not fit, or may change."""
+
+
+def _to_items(value: Any, kind: kinds.Items, unit: str | None) -> tuple[Any, ...]:
+    found = _list(value, kind)
+    return _each(found, (kind.item,) * len(found), unit)
+
+
+def _to_fixed(value: Any, kind: kinds.Fixed, unit: str | None) -> tuple[Any, ...]:
+    found = _list(value, kind)
+    if len(kind.items) != len(found):
+        raise ConversionError(f"a list of {len(found)}; expected {label(kind.type)}")
+    return _each(found, kind.items, unit)
+
+
+def _list(value: Any, kind: ValueKind) -> list[Any] | tuple[Any, ...]:
+    if isinstance(value, list | tuple):
+        return value
+    raise ConversionError(f"{shown(value)} is not a list; expected {label(kind.type)}: [a, b]")
+
+
+def _each(
+    value: list[Any] | tuple[Any, ...], kinds: tuple[ValueKind, ...], unit: str | None
+) -> tuple[Any, ...]:
+    """The items as their kinds; the same tuple where nothing has changed."""
+    items = []
+    for index, (item, kind) in enumerate(zip(value, kinds, strict=True)):
+        try:
+            items.append(_convert(item, kind, unit))
+        except ConversionError as error:
+            raise ConversionError(f"item {index + 1} of the list: {error}") from None
+    return retuple(value, items)
+
+
+def _to_queue(value: Any, kind: kinds.QueueOf) -> tuple[Any, ...]:
+    """A list; or a text, split at each `;` as BehaviorTree.CPP does; or one value alone."""
+    if isinstance(value, str):
+        texts = value.removesuffix(";").split(";") if value else []
+        value = [_item(text, kind.item) for text in texts]
+    elif isinstance(value, bool | int | float):
+        value = [in_words(value) if isinstance(kind.item, kinds.Text) else value]
+    return _to_items(value, kinds.Items(kind.type, kind.item), None)
+
+
+def _item(text: str, kind: ValueKind) -> Any:
+    """One of the values in a text of several, as its type would be written alone."""
+    if isinstance(kind, kinds.Text):
+        return text
+    text = text.strip()
+    return _BOOLS.get(text.lower(), text) if isinstance(kind, kinds.Truth) else text
+
+
+def _to_table(value: Any, kind: kinds.Table, unit: str | None) -> Mapping[Any, Any]:
+    if not isinstance(value, Mapping):
+        raise unfit(value, kind.type, unit)
+    found = {}
+    for key, item in value.items():
+        try:
+            found[_convert(key, kind.key, None)] = _convert(item, kind.item, unit)
+        except ConversionError as error:
+            raise ConversionError(f"key {key!r}: {error}") from None
+    return MappingProxyType(found)
+
+
+def _to_array(value: Any) -> Any:
+    """A list of numbers, or of such lists, each perhaps with a unit."""
+    if isinstance(value, np.ndarray):
+        return freeze(value)
+    try:
+        array = np.array(natural(value), dtype=np.float64)
+    except (TypeError, ValueError):
+        array = np.array(math.nan)
+    if array.ndim == 0 or not np.isfinite(array).all():
+        raise ConversionError(f"{shown(value)} does not fit; expected a list of numbers")
+    array.flags.writeable = False
+    return array
+
+
+def _to_dataclass(value: Any, kind: kinds.Record, unit: str | None) -> Any:
+    if isinstance(value, kind.type):
+        return value
+    if not isinstance(value, Mapping):
+        raise unfit(value, kind.type, unit)
+    parts = parts_of(kind.type)
+    _refuse_unknown_fields(value, parts, kind)
+    arguments: dict[str, Any] = {}
+    for part in parts:
+        if part.name in value:
+            try:
+                arguments[part.name] = _convert(value[part.name], part.kind, part.unit)
+            except ConversionError as error:
+                raise ConversionError(f"field {part.name!r}: {error}") from None
+        elif part.required:
+            raise ConversionError(f"{label(kind.type)} needs the field {part.name!r}")
+    try:
+        return kind.type(**arguments)
+    except ValueError as error:
+        raise ConversionError(f"{label(kind.type)}: {error}") from None
+
+
+def _refuse_unknown_fields(
+    value: Mapping[str, Any], parts: tuple[kinds.Part, ...], kind: kinds.Record
+) -> None:
+    names = [part.name for part in parts]
+    for key in value:
+        if key not in names:
+            near = nearest(str(key), names)
+            hint = f", did you mean {near!r}?" if near else "."
+            raise ConversionError(
+                f"{label(kind.type)} has no field {key!r}{hint} Fields: {', '.join(names)}"
+            )

@@ -1,0 +1,292 @@
+"""The kinds of values that a port can take.
+
+A port's type is a Python annotation. `kind_of` reads it into one of the kinds below, with its
+parts. Whoever treats types differently (labels, the checker, conversion, schemas, examples)
+matches the kind and never takes an annotation apart. mypy tells where a kind is forgotten.
+"""
+
+from __future__ import annotations
+
+import inspect
+import types
+from collections import abc
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, is_dataclass
+from enum import Enum
+from functools import cache
+from typing import (
+    Annotated,
+    Any,
+    Generic,
+    Literal,
+    TypeAlias,
+    TypeVar,
+    Union,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
+
+import numpy as np
+
+ValueType: TypeAlias = Any
+"""A Python type as ports declare it: a class, `X | None`, `tuple[X, ...]`, `Literal[...]`."""
+
+_T = TypeVar("_T")
+
+
+# types that only ports of built-in nodes have
+
+
+class ScriptText(str):
+    """The type of a port that holds a script in canonical form (`&& || !`, bare names)."""
+
+
+class CodeText(str):
+    """The type of a port that holds a failure code."""
+
+
+class Queue(Generic[_T]):
+    """The type of a port that takes a list, one value, or a text of values with `;` between."""
+
+
+# the kinds
+
+
+@dataclass(frozen=True, slots=True)
+class _Kind:
+    """type: the annotation that it was read from."""
+
+    type: ValueType
+
+
+class Anything(_Kind):
+    """`Any` or `object`: every value fits."""
+
+    __slots__ = ()
+
+
+class Unknown(_Kind):
+    """What cannot be checked, such as a type variable or a protocol: every value fits."""
+
+    __slots__ = ()
+
+
+class Nothing(_Kind):
+    """None."""
+
+    __slots__ = ()
+
+
+class Truth(_Kind):
+    """A bool."""
+
+    __slots__ = ()
+
+
+class Number(_Kind):
+    """An int or a float; `type` says which. A float has perhaps a unit, which the port knows."""
+
+    __slots__ = ()
+
+
+class Text(_Kind):
+    """A str, or a subclass of it such as `CodeText`."""
+
+    __slots__ = ()
+
+
+class Enumeration(_Kind):
+    """A member of an Enum."""
+
+    __slots__ = ()
+
+
+class Array(_Kind):
+    """A NumPy array."""
+
+    __slots__ = ()
+
+
+class Record(_Kind):
+    """A dataclass; see `parts_of`."""
+
+    __slots__ = ()
+
+
+class Instance(_Kind):
+    """An instance of any other class."""
+
+    __slots__ = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Choice(_Kind):
+    """One of the values of a `Literal`."""
+
+    values: tuple[Any, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Items(_Kind):
+    """A list of any length; as a value it is a tuple."""
+
+    item: ValueKind
+
+
+@dataclass(frozen=True, slots=True)
+class Fixed(_Kind):
+    """A list with a kind for each item; as a value it is a tuple."""
+
+    items: tuple[ValueKind, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class QueueOf(_Kind):
+    """What a `Queue` takes; as a value it is a tuple."""
+
+    item: ValueKind
+
+
+@dataclass(frozen=True, slots=True)
+class Table(_Kind):
+    """A mapping; as a value it is read-only."""
+
+    key: ValueKind
+    item: ValueKind
+
+
+@dataclass(frozen=True, slots=True)
+class Either(_Kind):
+    """A union: `A | B`, `A | None`."""
+
+    options: tuple[ValueKind, ...]
+
+
+ValueKind: TypeAlias = (
+    Anything
+    | Unknown
+    | Nothing
+    | Truth
+    | Number
+    | Text
+    | Enumeration
+    | Array
+    | Record
+    | Instance
+    | Choice
+    | Items
+    | Fixed
+    | QueueOf
+    | Table
+    | Either
+)
+
+ANYTHING = Anything(object)
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """One field of a dataclass. unit: the SI unit of a number. required: it has no default."""
+
+    name: str
+    kind: ValueKind
+    unit: str | None
+    required: bool
+
+
+def kind_of(type_: ValueType) -> ValueKind:
+    """The kind of a type.
+
+    Forms such as `A | B` are read anew each time: `B | A` is equal to it and reads differently.
+    """
+    return _of_class(type_) if isinstance(type_, type) else _of_form(type_)
+
+
+def without_none(kind: ValueKind) -> tuple[ValueKind, ...]:
+    """The alternatives of a union except None, or the kind alone."""
+    if not isinstance(kind, Either):
+        return (kind,)
+    return tuple(option for option in kind.options if not isinstance(option, Nothing))
+
+
+@cache
+def parts_of(type_: type) -> tuple[Part, ...]:
+    """The fields of a dataclass that its constructor takes, in their order."""
+    hints = get_type_hints(type_)
+    taken = inspect.signature(type_).parameters
+    empty = inspect.Parameter.empty
+    return tuple(
+        Part(
+            field.name,
+            kind_of(hints[field.name]),
+            field.metadata.get("unit"),
+            taken[field.name].default is empty,
+        )
+        for field in fields(type_)
+        if field.init and field.name in taken
+    )
+
+
+@cache
+def _of_class(type_: type) -> ValueKind:
+    if type_ in _EXACTLY:
+        return _EXACTLY[type_]
+    if issubclass(type_, Enum):
+        return Enumeration(type_)
+    if issubclass(type_, str):
+        return Text(type_)
+    if issubclass(type_, np.ndarray):
+        return Array(type_)
+    if is_dataclass(type_):
+        return Record(type_)
+    return Instance(type_) if _is_checkable(type_) else Unknown(type_)
+
+
+_LISTS = (tuple, list, abc.Sequence, abc.MutableSequence)
+_MAPPINGS = (dict, abc.Mapping, abc.MutableMapping, types.MappingProxyType)
+_EXACTLY: Mapping[Any, ValueKind] = {
+    object: ANYTHING,
+    Any: ANYTHING,
+    bool: Truth(bool),
+    int: Number(int),
+    float: Number(float),
+    types.NoneType: Nothing(types.NoneType),
+    Queue: QueueOf(Queue, ANYTHING),
+    **{each: Items(each, ANYTHING) for each in _LISTS},
+    **{each: Table(each, ANYTHING, ANYTHING) for each in _MAPPINGS},
+}
+"""Classes whose subclasses are of another kind."""
+
+
+def _is_checkable(type_: type) -> bool:
+    """Whether `isinstance` takes it; most protocols it does not."""
+    try:
+        isinstance(None, type_)
+    except TypeError:
+        return False
+    return True
+
+
+def _of_form(type_: ValueType) -> ValueKind:
+    if type_ is None:
+        return Nothing(types.NoneType)
+    head: Any = get_origin(type_)
+    arguments = get_args(type_)
+    if not arguments:
+        return kind_of(head) if isinstance(head, type) else Unknown(type_)
+    if head is Annotated:
+        return kind_of(arguments[0])
+    if head is Literal:
+        return Choice(type_, arguments)
+    if head is Union or head is types.UnionType:
+        return Either(type_, tuple(map(kind_of, arguments)))
+    if head is Queue:
+        return QueueOf(type_, kind_of(arguments[0]))
+    if head is tuple and arguments[1:] != (Ellipsis,):
+        return Fixed(type_, tuple(map(kind_of, arguments)))
+    if head in _LISTS:
+        return Items(type_, kind_of(arguments[0]))
+    if head in _MAPPINGS:
+        return Table(type_, *map(kind_of, arguments))
+    return kind_of(head) if isinstance(head, type) else Unknown(type_)
