@@ -68,7 +68,7 @@ def excerpt(place: Place, text: str, note: str = "") -> str:
     characters and lines of any length are shown so that the caret stands where it should.
     """
     lines = lines_of(text)
-    if not 0 < place.line <= len(lines):
+    if not text or not 0 < place.line <= len(lines):
         return f"  {note}" if note else ""
     return marked(place, lines[place.line - 1], note)
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from momantu_bt.record.floor_plan import FREE, OCCUPIED
+from momantu_bt.record.floor_plan import FREE_BYTE, OCCUPIED_BYTE
 from momantu_bt.record.recording import Recording
 
 _COLOURS = {"free": (0, 0, 0, 0), "occupied": (112, 118, 126, 255), "unknown": (128, 128, 128, 40)}
@@ -28,7 +28,7 @@ def plan_image(recording: Recording) -> dict[str, Any] | None:
     cells = cells.reshape(-1, grid["row_stride"])[:, : grid["column_count"]]
     corner, size = grid["pose"]["position"], grid["cell_size"]
     rows, columns = cells.shape
-    known_rows, known_columns = np.nonzero((cells == FREE) | (cells == OCCUPIED))
+    known_rows, known_columns = np.nonzero((cells == FREE_BYTE) | (cells == OCCUPIED_BYTE))
     if len(known_rows) == 0:
         known_rows, known_columns = np.array([0, rows - 1]), np.array([0, columns - 1])
     return {
@@ -51,8 +51,8 @@ def _png(cells: NDArray[np.uint8]) -> bytes:
     from PIL import Image
 
     kinds = np.full(cells.shape, 2, dtype=np.uint8)
-    kinds[cells == FREE] = 0
-    kinds[cells == OCCUPIED] = 1
+    kinds[cells == FREE_BYTE] = 0
+    kinds[cells == OCCUPIED_BYTE] = 1
     picture = Image.fromarray(kinds[::-1].copy(), mode="P")
     picture.putpalette([part for colour in _COLOURS.values() for part in colour[:3]])
     out = io.BytesIO()

@@ -16,10 +16,11 @@ from momantu_bt.engine.context import RunContext
 from momantu_bt.engine.executor import Executor
 from momantu_bt.engine.outside import Heard
 from momantu_bt.formats.files import OutputError, write_whole
+from momantu_bt.formats.maps import read_map
 from momantu_bt.record.about import files_of, nodes_data, run_data
 from momantu_bt.record.channel import Channel, stamp_of
 from momantu_bt.record.codec import dumps
-from momantu_bt.record.floor_plan import grid_text, read_floor_plan
+from momantu_bt.record.floor_plan import grid_text
 from momantu_bt.record.folder import LOG, REPORT, prepare_folder
 from momantu_bt.record.log_lines import LogLines
 from momantu_bt.record.mcap_file import McapFile
@@ -143,7 +144,7 @@ class Recorder:
         if map_file is None:
             return
         try:
-            text = grid_text(read_floor_plan(map_file))
+            text = grid_text(read_map(map_file))
         except ValueError as error:
             self._noted(f"the record has no map: {error}")
             return

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from momantu_bt.formats.maps import OCCUPIED
 from momantu_bt.geometry import Pose2D
 from momantu_bt.robot import BaseLimits
 from momantu_skills.manipulation.model import arm_model
@@ -16,7 +17,7 @@ from momantu_skills.navigation.control.guard import safe_share
 from momantu_skills.navigation.control.mppi import Mppi
 from momantu_skills.navigation.localize.localizer import Localizer
 from momantu_skills.navigation.map.costmap import Costmap
-from momantu_skills.navigation.map.maps import OCCUPIED, GridMap
+from momantu_skills.navigation.map.maps import GridMap
 from momantu_skills.navigation.map.sensing import Rays
 from momantu_skills.navigation.plan.planner import plan
 

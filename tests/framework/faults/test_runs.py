@@ -8,14 +8,18 @@ import signal
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 
 from momantu_bt.fault import FaultError
+from momantu_bt.faults.site import told
 from momantu_bt.faults.skills.outputs import without_numbers
+from momantu_bt.faults.spec import parse_fault
+from momantu_bt.formats.maps import FREE, OCCUPIED, read_map
 from momantu_bt.geometry import Transform
 from momantu_bt.record.film import FilmObserver
 from momantu_bt.skill import Run, Skill
-from momantu_bt.testing import ExampleWorld, ScriptedWorld
+from momantu_bt.testing import ExampleWorld, ScriptedWorld, scripted_site
 from momantu_bt.world import TICK
 
 DRIVE = "  Main: [{drive: {ticks: 40}}]\n"
@@ -282,9 +286,8 @@ def test_surfaces_are_told_too_high(run_tree):
 
 
 def test_a_wrong_map_lacks_a_wall_or_lies_elsewhere(run_tree):
-    from momantu_skills.navigation.map.maps import FREE, OCCUPIED, read_map
 
-    def told(fault, seed=0):
+    def maps_of(fault, seed=0):
         Spy.heard.clear()
         maps = []
         world = ExampleWorld()
@@ -302,18 +305,41 @@ def test_a_wrong_map_lacks_a_wall_or_lies_elsewhere(run_tree):
         assert not Spy.heard[0].map_file.exists()
         return maps
 
-    wrong, right = told("map.wrong:missing=1 m")
-    differ = wrong.cells != right.cells
+    wrong, right = maps_of("map.wrong:missing=1 m")
+    differ = wrong.cells() != right.cells()
     assert 0 < differ.sum() <= 21 * 21
-    assert (right.cells[differ] == OCCUPIED).all()
-    assert (wrong.cells[differ] == FREE).all()
+    assert (right.cells()[differ] == OCCUPIED).all()
+    assert (wrong.cells()[differ] == FREE).all()
     assert wrong.origin == right.origin
-    assert (told("map.wrong:missing=1 m")[0].cells == wrong.cells).all()
-    assert (told("map.wrong:missing=1 m", seed=1)[0].cells != wrong.cells).any()
-    wrong, right = told("map.wrong:missing=0,shift=50 cm")
-    assert (wrong.cells == right.cells).all()
+    assert (maps_of("map.wrong:missing=1 m")[0].cells() == wrong.cells()).all()
+    assert (maps_of("map.wrong:missing=1 m", seed=1)[0].cells() != wrong.cells()).any()
+    wrong, right = maps_of("map.wrong:missing=0,shift=50 cm")
+    assert (wrong.cells() == right.cells()).all()
     away = (wrong.origin[0] - right.origin[0], wrong.origin[1] - right.origin[1])
     assert math.hypot(*away) == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize(
+    ("header", "kind"),
+    [(b"P5 3 3 65535\n", ">u2"), (b"P2\n# plain\n3 3 100\n", ""), (b"P5 3 3 1 ", "u1")],
+)
+def test_every_map_that_a_robot_can_drive_on_can_be_made_wrong(tmp_path, header, kind):
+    brightest = int(header.split()[-1])
+    levels = np.full((3, 3), brightest)
+    levels[1, 1] = 0
+    body = levels.astype(kind).tobytes() if kind else " ".join(map(str, levels.ravel())).encode()
+    (tmp_path / "map.pgm").write_bytes(header + body)
+    (tmp_path / "map.yaml").write_text(
+        "image: map.pgm\nresolution: 0.1\norigin: [0, 0, 0]\nnegate: 0\n"
+        "occupied_thresh: 0.65\nfree_thresh: 0.25\n"
+    )
+    site = scripted_site(map_file=tmp_path / "map.yaml")
+    out = tmp_path / "out"
+    out.mkdir()
+    wrong = read_map(told(site, parse_fault("map.wrong:missing=0.1 m"), 0, out).map_file)
+    assert (read_map(site.map_file).cells() == OCCUPIED).sum() == 1
+    assert (wrong.cells() == FREE).all()
+    assert wrong.brightest == brightest
 
 
 # the process

@@ -10,9 +10,10 @@ import pytest
 from momantu_skills.navigation.config import NavigationConfig
 from momantu_skills.navigation.control.footprint import discs, half_width
 from momantu_skills.navigation.map.costmap import Costmap
-from momantu_skills.navigation.map.maps import OCCUPIED, GridMap
+from momantu_skills.navigation.map.maps import GridMap
 
 from momantu_bt.failure import Failure
+from momantu_bt.formats.maps import OCCUPIED
 from momantu_bt.geometry import Pose2D
 from momantu_bt.robot import BaseLimits
 from momantu_bt.skill import Compute

@@ -11,9 +11,10 @@ from momantu_skills.navigation.control import graceful
 from momantu_skills.navigation.control.guard import safe_share
 from momantu_skills.navigation.control.mppi import Mppi
 from momantu_skills.navigation.map.costmap import Costmap
-from momantu_skills.navigation.map.maps import OCCUPIED, GridMap
+from momantu_skills.navigation.map.maps import GridMap
 from momantu_skills.navigation.plan.planner import plan
 
+from momantu_bt.formats.maps import OCCUPIED
 from momantu_bt.geometry import Pose2D, wrap_angle
 from momantu_bt.robot import BaseLimits
 

@@ -8,9 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from momantu_skills.navigation.config import NavigationConfig
 from momantu_skills.navigation.map.costmap import FAR, SURE, Costmap
-from momantu_skills.navigation.map.maps import OCCUPIED, GridMap
+from momantu_skills.navigation.map.maps import GridMap
 from momantu_skills.navigation.map.sensing import Rays
 
+from momantu_bt.formats.maps import OCCUPIED
 from momantu_bt.geometry import Pose2D
 
 DISC = np.array([[0.0, 0.0, 0.2]])

@@ -9,10 +9,11 @@ from hypothesis import strategies as st
 from momantu_skills.navigation.localize.fit import scan_fit
 from momantu_skills.navigation.localize.particle_filter import likelihood_field, log_likelihoods
 from momantu_skills.navigation.map.fields import surface_distance
-from momantu_skills.navigation.map.maps import OCCUPIED, GridMap
+from momantu_skills.navigation.map.maps import GridMap
 from momantu_skills.navigation.map.sensing import Rays
 from scipy.ndimage import map_coordinates
 
+from momantu_bt.formats.maps import OCCUPIED
 from momantu_bt.geometry import Pose2D
 
 SEEDS = st.integers(0, 10_000)

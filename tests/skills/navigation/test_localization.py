@@ -13,9 +13,10 @@ from momantu_skills.navigation.localize.fit import scan_fit
 from momantu_skills.navigation.localize.localizer import Localizer
 from momantu_skills.navigation.localize.service import LocalizationService
 from momantu_skills.navigation.map.fields import surface_distance
-from momantu_skills.navigation.map.maps import FREE, OCCUPIED, GridMap, read_map
+from momantu_skills.navigation.map.maps import GridMap, read_grid
 from momantu_skills.navigation.map.sensing import SPREAD, Rays
 
+from momantu_bt.formats.maps import FREE, OCCUPIED
 from momantu_bt.geometry import Pose2D, Transform
 from momantu_bt.messages import BaseVelocity, LaserScan
 from momantu_bt.robot import Robot
@@ -239,6 +240,6 @@ def test_a_site_without_a_map_is_refused() -> None:
 def test_every_cell_of_the_flat_map_is_read_back(flat) -> None:  # type: ignore[no-untyped-def]
     path = flat().site.map_file
     assert isinstance(path, Path)
-    grid = read_map(path)
+    grid = read_grid(path)
     assert grid.cells[grid.index(0.0, 0.0)] == FREE
     assert grid.cells[grid.index(3.9, 0.2)] == OCCUPIED

@@ -8,9 +8,10 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from momantu_skills.navigation.config import NavigationConfig
 from momantu_skills.navigation.map.costmap import Costmap
-from momantu_skills.navigation.map.maps import OCCUPIED, GridMap
+from momantu_skills.navigation.map.maps import GridMap
 from momantu_skills.navigation.plan.planner import TIGHT_BY, plan
 
+from momantu_bt.formats.maps import OCCUPIED
 from momantu_bt.geometry import Pose2D
 
 RADIUS = 0.3

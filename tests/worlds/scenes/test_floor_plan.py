@@ -11,9 +11,9 @@ from momantu_worlds.scenes.site.floor_plan import (
     UNKNOWN,
     cells_of,
     draw_plans,
-    save_plan,
 )
 
+from momantu_bt.formats.maps import write_map
 from momantu_bt.robot import laser_band
 
 WORLD = load_world("four_rooms")
@@ -22,17 +22,17 @@ PLAN, OVERHANG = draw_plans(WORLD, laser_band(FETCH), FETCH.height)
 
 
 def at(plan, x, y):
-    return plan.pixels[cells_of(plan, x, y)]
+    return plan.levels[cells_of(plan, x, y)]
 
 
 def test_the_picture_is_a_binary_pgm_of_the_size_it_says(tmp_path):
-    save_plan(PLAN, tmp_path / "map.yaml")
+    write_map(tmp_path / "map.yaml", PLAN)
     data = (tmp_path / "map.pgm").read_bytes()
     kind, size, most, pixels = data.split(b"\n", 3)
     assert (kind, most) == (b"P5", b"255")
     columns, rows = (int(n) for n in size.split())
     assert len(pixels) == columns * rows
-    assert np.array_equal(np.frombuffer(pixels, np.uint8).reshape(rows, columns), PLAN.pixels)
+    assert np.array_equal(np.frombuffer(pixels, np.uint8).reshape(rows, columns), PLAN.levels)
 
 
 def test_walls_are_occupied_along_their_whole_length():
@@ -46,7 +46,7 @@ def test_walls_are_occupied_along_their_whole_length():
 def test_walls_are_as_thick_as_they_are():
     # 0.15 m is three cells, or four where the wall lies across their borders
     row, column = cells_of(PLAN, -8.0, 1.737)
-    thick = (PLAN.pixels[row - 6 : row + 7, column] == OCCUPIED).sum()
+    thick = (PLAN.levels[row - 6 : row + 7, column] == OCCUPIED).sum()
     assert thick in (3, 4)
 
 
@@ -60,8 +60,8 @@ def test_doorways_and_places_are_free():
 
 
 def test_outside_is_unknown():
-    assert PLAN.pixels[0, 0] == UNKNOWN
-    assert PLAN.pixels[-1, -1] == UNKNOWN
+    assert PLAN.levels[0, 0] == UNKNOWN
+    assert PLAN.levels[-1, -1] == UNKNOWN
 
 
 @pytest.mark.parametrize("name", ["table_a", "table_b"])
@@ -72,13 +72,13 @@ def test_a_table_is_legs_for_the_laser_and_a_top_above(name):
     reach = 0.5 * max(table.size[:2])
     top, left = cells_of(PLAN, table.at[0] - reach, table.at[1] + reach)
     bottom, right = cells_of(PLAN, table.at[0] + reach, table.at[1] - reach)
-    legs = (PLAN.pixels[top : bottom + 1, left : right + 1] == OCCUPIED).sum()
-    covered = (OVERHANG.pixels[top : bottom + 1, left : right + 1] == OCCUPIED).sum()
+    legs = (PLAN.levels[top : bottom + 1, left : right + 1] == OCCUPIED).sum()
+    covered = (OVERHANG.levels[top : bottom + 1, left : right + 1] == OCCUPIED).sum()
     assert 0 < legs < 0.25 * covered
 
 
 def test_the_layers_never_hold_the_same_cell():
-    assert not ((PLAN.pixels == OCCUPIED) & (OVERHANG.pixels == OCCUPIED)).any()
+    assert not ((PLAN.levels == OCCUPIED) & (OVERHANG.levels == OCCUPIED)).any()
 
 
 def test_furniture_that_is_closed_to_the_floor_is_on_the_map():

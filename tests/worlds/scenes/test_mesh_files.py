@@ -139,7 +139,7 @@ def test_mesh_furniture_is_on_the_map_and_the_laser_meets_it(write, two_boxes):
     assert world.mesh_files() == (two_boxes,)
     plan, _ = draw_plans(world, (0.3, 0.3), 1.4)
     for x, y in ((4, 3), (4.9, 3), (3, 0.9)):
-        assert plan.pixels[cells_of(plan, x, y)] == OCCUPIED
+        assert plan.levels[cells_of(plan, x, y)] == OCCUPIED
     bodies = [b for b in draw_episode(path, 1).bodies if b.name in ("thing", "part")]
     triangles = map_triangles(bodies).reshape(-1, 3)
     assert triangles[:, 2].max() == pytest.approx(1.5, abs=1e-6)

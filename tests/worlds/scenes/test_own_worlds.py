@@ -234,7 +234,7 @@ def test_a_goal_may_be_beside_nothing(write):
 
 
 def at(plan, x, y):
-    return plan.pixels[cells_of(plan, x, y)]
+    return plan.levels[cells_of(plan, x, y)]
 
 
 def test_the_map_has_rooms_doors_and_bodies_at_the_height_of_the_laser(write):

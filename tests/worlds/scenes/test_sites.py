@@ -10,10 +10,10 @@ from momantu_worlds.scenes.loading import load_world, nominal, nominal_site, wor
 from momantu_worlds.scenes.site.cache import cached_nominal
 from momantu_worlds.scenes.site.maps import MOST_CACHED, with_maps
 
+from momantu_bt.descriptions.reading import DescriptionError
 from momantu_bt.formats.cache import CACHE_VARIABLE
 from momantu_bt.formats.files import write_whole
 from momantu_bt.robot import laser_band
-from momantu_bt.world import WorldError
 
 PATH = world_path("four_rooms")
 FETCH = fetch()
@@ -123,8 +123,8 @@ def test_a_map_that_the_file_names_is_taken(copy):
     assert maps(copy) == (own, None)
 
 
-def test_a_missing_world_file_is_a_world_error(tmp_path):
-    with pytest.raises(WorldError, match="cannot be read"):
+def test_a_missing_world_file_is_told(tmp_path):
+    with pytest.raises(DescriptionError, match="cannot be read"):
         nominal(tmp_path / "none.yaml")
 
 

@@ -9,12 +9,13 @@ from itertools import product
 import numpy as np
 
 from momantu_bt.failure import FRAME_UNKNOWN, Failure
+from momantu_bt.formats.maps import OCCUPIED
 from momantu_bt.frames import MAP, ODOM, FrameBuffer
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.world import Site, Surface
 from momantu_skills.manipulation.model.collision import Obstacle
 from momantu_skills.navigation.map.fields import clearance
-from momantu_skills.navigation.map.maps import OCCUPIED, read_map
+from momantu_skills.navigation.map.maps import read_grid
 
 BESIDE = 0.04
 """m by which it may stand beside where the site has it, and localization be wrong, all sides."""
@@ -82,7 +83,7 @@ class FloorPlan:
     def __init__(self, site: Site, frames: FrameBuffer) -> None:
         self._frames = frames
         files = [file for file in (site.map_file, site.overhang_file) if file is not None]
-        grids = [read_map(file) for file in files]
+        grids = [read_grid(file) for file in files]
         self._layers = [(g, clearance(g.cells == OCCUPIED, g.resolution)) for g in grids]
 
     def distance(self, points: Array) -> Array:

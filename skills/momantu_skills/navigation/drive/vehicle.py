@@ -15,7 +15,7 @@ from momantu_bt.service import Localization, PlanningScene
 from momantu_bt.skill import Run, Skill
 from momantu_skills.navigation.config import NavigationConfig
 from momantu_skills.navigation.control.footprint import discs, half_width
-from momantu_skills.navigation.map.maps import read_map
+from momantu_skills.navigation.map.maps import read_grid
 from momantu_skills.navigation.map.sensing import Rays, obstacles_and_floor
 from momantu_skills.perception.camera.aiming import aim
 
@@ -59,9 +59,9 @@ class Vehicle:
         site, description = skill.site, robot.description
         if site.map_file is None:
             raise ValueError(f"site {site.name!r} has no map_file to drive in")
-        overhang = None if site.overhang_file is None else read_map(site.overhang_file)
+        overhang = None if site.overhang_file is None else read_grid(site.overhang_file)
         self.config, self.limits = config, description.base
-        self.costmap = costmap.Costmap(read_map(site.map_file), overhang, config)
+        self.costmap = costmap.Costmap(read_grid(site.map_file), overhang, config)
         self.localization = localization
         self._skill, self._robot, self._scene = skill, robot, scene
         self._frames, self._clock = skill.frames, skill.clock

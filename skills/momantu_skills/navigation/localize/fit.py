@@ -8,9 +8,10 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from momantu_bt.formats.maps import OCCUPIED
 from momantu_bt.geometry import Array, Pose2D
 from momantu_skills.navigation.map.fields import Field, sample
-from momantu_skills.navigation.map.maps import OCCUPIED, GridMap
+from momantu_skills.navigation.map.maps import GridMap
 from momantu_skills.navigation.map.sensing import Rays
 
 HIT = 0.15

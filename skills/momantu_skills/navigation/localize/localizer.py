@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from momantu_bt.formats.maps import FREE, OCCUPIED
 from momantu_bt.geometry import Array, Pose2D
 from momantu_skills.navigation.config import LocalizationConfig
 from momantu_skills.navigation.localize.belief import covariance, main_cluster
@@ -16,7 +17,7 @@ from momantu_skills.navigation.localize.particle_filter import (
     log_likelihoods,
 )
 from momantu_skills.navigation.map.fields import surface_distance
-from momantu_skills.navigation.map.maps import FREE, OCCUPIED, GridMap
+from momantu_skills.navigation.map.maps import GridMap
 from momantu_skills.navigation.map.sensing import Rays
 
 COARSE = 3.0

@@ -12,7 +12,7 @@ from momantu_bt.robot import Robot, read_laser
 from momantu_bt.service import Service, ServiceContext
 from momantu_skills.navigation.config import LocalizationConfig, configured
 from momantu_skills.navigation.localize.confidence import sigmas
-from momantu_skills.navigation.map.maps import read_map
+from momantu_skills.navigation.map.maps import read_grid
 from momantu_skills.navigation.map.sensing import Rays
 
 with lazily():
@@ -49,7 +49,7 @@ class LocalizationService(Service):
         self._laser = context.description.laser()[0]
         self._base = context.description.base_frame
         self._localizer: localizer.Localizer = localizer.Localizer(
-            read_map(context.site.map_file), self._config, context.random
+            read_grid(context.site.map_file), self._config, context.random
         )
         self._odom_from_base: Pose2D | None = None
         self._since_scan = [0.0, 0.0]

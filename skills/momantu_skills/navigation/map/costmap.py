@@ -8,10 +8,11 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from momantu_bt.formats.maps import FREE, OCCUPIED
 from momantu_bt.geometry import Array, Pose2D
 from momantu_skills.navigation.config import NavigationConfig
 from momantu_skills.navigation.map.fields import Field, clearance, sample
-from momantu_skills.navigation.map.maps import FREE, OCCUPIED, GridMap
+from momantu_skills.navigation.map.maps import GridMap
 from momantu_skills.navigation.map.sensing import Rays
 
 FAR = 1.0

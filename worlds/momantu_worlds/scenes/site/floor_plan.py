@@ -9,13 +9,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from momantu_bt.formats.files import write_whole
+from momantu_bt.formats.maps import MapPicture
 from momantu_bt.geometry import Array, Pose2D
 from momantu_bt.world import WorldError
 from momantu_worlds.scenes.arrange.episode import piece_parts, table_parts
@@ -27,24 +25,14 @@ from momantu_worlds.scenes.site.coverage import Standing, covered, standing_of
 
 OCCUPIED, UNKNOWN, FREE = 0, 205, 254
 """Grey levels; map_server reads a level g as occupied with probability (255 - g) / 255."""
-OCCUPIED_ABOVE, FREE_BELOW = 0.65, 0.196
 MARGIN = 0.5
 """m; of unknown floor drawn around the outer walls."""
 MOST_CELLS = 25_000_000
 
 
-@dataclass(frozen=True, slots=True)
-class FloorPlan:
-    """A picture of the floor. origin: of its lower left corner in the map, m. Row 0 is the top."""
-
-    pixels: NDArray[np.uint8]
-    origin: tuple[float, float]
-    resolution: float
-
-
 def draw_plans(
     world: WorldFile, band: tuple[float, float], robot_height: float
-) -> tuple[FloorPlan, FloorPlan]:
+) -> tuple[MapPicture, MapPicture]:
     """The map and the overhang layer of a world.
 
     band: heights above the floor that the laser sees, m; equal for a plane. robot_height: what is
@@ -72,11 +60,19 @@ def draw_plans(
     solid = covered(centers, [*walls, *standing], cell, band)
     hanging = covered(centers, standing, cell, (DOORSTEP, robot_height)) & ~solid
     plan = np.where(solid, OCCUPIED, np.where(_inside(world, centers), FREE, UNKNOWN))
-    origin = (round(float(low[0]), 6), round(float(low[1]), 6))
+    origin = _short(round(float(low[0]), 6)), _short(round(float(low[1]), 6))
+    resolution = _short(cell)
     return (
-        FloorPlan(np.flipud(plan).astype(np.uint8), origin, cell),
-        FloorPlan(np.flipud(np.where(hanging, OCCUPIED, FREE)).astype(np.uint8), origin, cell),
+        MapPicture(np.flipud(plan).astype(np.uint8), resolution, origin),
+        MapPicture(
+            np.flipud(np.where(hanging, OCCUPIED, FREE)).astype(np.uint8), resolution, origin
+        ),
     )
+
+
+def _short(number: float) -> float:
+    """The number with six significant digits, as the map's file has it."""
+    return float(f"{number:g}")
 
 
 def known_parts(world: WorldFile) -> Iterator[Standing]:
@@ -124,24 +120,8 @@ def _inside(world: WorldFile, centers: Array) -> NDArray[np.bool_]:
     return np.asarray(np.all((centers >= low) & (centers <= high), axis=-1))
 
 
-def save_plan(plan: FloorPlan, yaml_file: Path) -> None:
-    """Write a plan as map_server's YAML beside a binary PGM of the same name."""
-    picture = yaml_file.with_suffix(".pgm")
-    rows, columns = plan.pixels.shape
-    write_whole(picture, f"P5\n{columns} {rows}\n255\n".encode() + plan.pixels.tobytes())
-    text = (
-        f"image: {picture.name}\n"
-        f"resolution: {plan.resolution:g}\n"
-        f"origin: [{plan.origin[0]:g}, {plan.origin[1]:g}, 0]\n"
-        "negate: 0\n"
-        f"occupied_thresh: {OCCUPIED_ABOVE}\n"
-        f"free_thresh: {FREE_BELOW}\n"
-    )
-    write_whole(yaml_file, text)
-
-
-def cells_of(plan: FloorPlan, x: float, y: float) -> tuple[int, int]:
+def cells_of(plan: MapPicture, x: float, y: float) -> tuple[int, int]:
     """(row, column) of the pixel that shows a point of the map."""
     column = math.floor((x - plan.origin[0]) / plan.resolution)
-    row = plan.pixels.shape[0] - 1 - math.floor((y - plan.origin[1]) / plan.resolution)
+    row = plan.levels.shape[0] - 1 - math.floor((y - plan.origin[1]) / plan.resolution)
     return row, column

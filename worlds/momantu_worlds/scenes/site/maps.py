@@ -10,10 +10,11 @@ from pathlib import Path
 from shutil import rmtree
 
 from momantu_bt.formats.cache import kept_folder
+from momantu_bt.formats.maps import write_map
 from momantu_bt.world import Site, WorldError
 from momantu_worlds.scenes.file.world import WorldFile
 from momantu_worlds.scenes.site.cache import cache_key
-from momantu_worlds.scenes.site.floor_plan import draw_plans, save_plan
+from momantu_worlds.scenes.site.floor_plan import draw_plans
 
 MOST_CACHED = 16
 """Maps of one world: for several robots, and for the file as it was in the last edits."""
@@ -43,7 +44,7 @@ def _drawn(world: WorldFile, band: tuple[float, float], robot_height: float) -> 
     if not all(file.is_file() for file in files):
         folder.mkdir(exist_ok=True)
         for plan, file in zip(draw_plans(world, band, robot_height), files, strict=True):
-            save_plan(plan, file)
+            write_map(file, plan)
         _evict(folder)
     return files
 

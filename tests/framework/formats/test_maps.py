@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from momantu_skills.navigation.map.maps import FREE, OCCUPIED, UNKNOWN, read_map
+from PIL import Image
+
+from momantu_bt.formats.maps import FREE, OCCUPIED, UNKNOWN, MapPicture, read_map, write_map
 
 GOOD = {
     "image": "plan.pgm",
@@ -89,7 +91,7 @@ def test_any_bytes_are_a_map_or_named(body: bytes, head: bytes) -> None:
         says = ""
         cells = np.full((1, 1), FREE)
         try:
-            cells = read_map(path).cells
+            cells = read_map(path).cells()
         except ValueError as error:
             says = str(error)
     assert says == "" or "plan.pgm" in says
@@ -129,18 +131,95 @@ def test_each_pixel_is_judged_by_the_thresholds(
     body = " ".join(map(str, pixels.ravel())).encode() if plain else pixels.astype(wide).tobytes()
     header = f"P{2 if plain else 5}\n# made by hand\n{columns} # wide\n{rows} {brightest}\n"
     with TemporaryDirectory() as folder:
-        grid = read_map(_write(Path(folder), header.encode() + body))
+        cells = read_map(_write(Path(folder), header.encode() + body)).cells()
     dark = 1.0 - pixels[::-1] / brightest
     expected = np.where(dark > 0.65, OCCUPIED, np.where(dark < 0.196, FREE, UNKNOWN))
-    assert (grid.cells == expected).all()
-    assert not grid.cells.flags.writeable
+    assert (cells == expected).all()
 
 
 def test_bytes_after_the_picture_are_let_be(tmp_path: Path) -> None:
-    assert read_map(_write(tmp_path, PGM + b"more")).cells.shape == (2, 3)
+    assert read_map(_write(tmp_path, PGM + b"more")).cells().shape == (2, 3)
 
 
 def test_a_picture_elsewhere_is_found_from_the_yamls_folder(tmp_path: Path) -> None:
     (tmp_path / "pictures").mkdir()
     (tmp_path / "pictures" / "floor.pgm").write_bytes(PGM)
-    assert read_map(_write(tmp_path, b"", image="pictures/floor.pgm")).cells.shape == (2, 3)
+    assert read_map(_write(tmp_path, b"", image="pictures/floor.pgm")).cells().shape == (2, 3)
+
+
+YAML = """image: plan.pgm
+resolution: 0.05
+origin: [-1.0, 2.0, 0.0]
+negate: {negate}
+occupied_thresh: 0.65
+free_thresh: 0.196
+"""
+
+
+def _write_text(folder: Path, pgm: bytes, text: str = YAML.format(negate=0)) -> Path:
+    (folder / "plan.pgm").write_bytes(pgm)
+    (folder / "plan.yaml").write_text(text)
+    return folder / "plan.yaml"
+
+
+@pytest.mark.parametrize("plain", [True, False])
+@pytest.mark.parametrize("negate", [0, 1])
+def test_trinary_values_and_row_order(tmp_path: Path, plain: bool, negate: int) -> None:
+    pixels = [0, 254, 205, 254, 254, 0]
+    if negate:
+        pixels = [255 - p for p in pixels]
+    body = " ".join(map(str, pixels)).encode() if plain else bytes(pixels)
+    header = b"P2\n# a comment\n3 2 255\n" if plain else b"P5\n# a comment\n3 2\n255\n"
+    grid = read_map(_write_text(tmp_path, header + body, YAML.format(negate=negate)))
+    assert grid.cells().tolist() == [[FREE, FREE, OCCUPIED], [OCCUPIED, FREE, UNKNOWN]]
+    assert grid.origin == (-1.0, 2.0)
+    assert grid.levels.shape == (2, 3)
+
+
+@pytest.mark.parametrize(
+    ("pgm", "text", "says"),
+    [
+        (b"P5 3 2 255\n12345", None, "truncated"),
+        (b"GIF89a", None, "neither a PGM, a PNG nor a BMP"),
+        (b"", None, "neither a PGM"),
+        (b"P5 0 2 255\n", None, "neither a PGM"),
+        (b"P5 1 1 255\n1", "[1, 2]", "no map_server file"),
+        (b"P5 1 1 255\n1", "a: [", "is not YAML"),
+        (b"P5 1 1 255\n1", YAML.format(negate=0).replace("0.05", "fine"), "resolution"),
+        (b"P5 1 1 255\n1", YAML.format(negate=0).replace("0.05", "0"), "resolution"),
+        (b"P5 1 1 255\n1", YAML.format(negate=0).replace("2.0, 0.0", "2.0, 0.3"), "yaw"),
+        (b"P5 1 1 255\n1", YAML.format(negate=0).replace("2.0, 0.0", "2.0"), "origin"),
+        (b"P5 1 1 255\n1", YAML.format(negate=0) + "mode: scale\n", "trinary"),
+        (b"P5 1 1 255\n1", YAML.format(negate=0).replace("plan.pgm", "else.pgm"), "else.pgm"),
+    ],
+)
+def test_broken_files_are_named(tmp_path: Path, pgm: bytes, text: str | None, says: str) -> None:
+    path = _write_text(tmp_path, pgm, text or YAML.format(negate=0))
+    with pytest.raises(ValueError, match=says) as caught:
+        read_map(path)
+    assert str(tmp_path) in str(caught.value)
+
+
+def test_a_missing_file_is_named(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="nowhere.yaml cannot be read"):
+        read_map(tmp_path / "nowhere.yaml")
+
+
+@given(
+    st.sampled_from([255, 1, 100, 65535]), st.booleans(), st.integers(0, 1000), st.floats(-1e3, 1e3)
+)
+def test_what_is_written_is_read(brightest: int, negate: bool, seed: int, x: float) -> None:
+    levels = np.random.default_rng(seed).integers(0, brightest + 1, (3, 4))
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "plan.yaml"
+        write_map(path, MapPicture(levels, 0.05, (x, 2.0), brightest, negate, 0.7, 0.2))
+        found = read_map(path)
+    assert (found.levels == levels).all()
+    assert (found.brightest, found.origin, found.resolution) == (brightest, (x, 2.0), 0.05)
+    assert (found.negate, found.occupied_thresh, found.free_thresh) == (negate, 0.7, 0.2)
+
+
+def test_a_png_is_read_as_well(tmp_path: Path) -> None:
+    Image.fromarray(np.array([[0, 254], [205, 254]], np.uint8)).save(tmp_path / "floor.png")
+    found = read_map(_write(tmp_path, image="floor.png"))
+    assert found.cells().tolist() == [[UNKNOWN, FREE], [OCCUPIED, FREE]]

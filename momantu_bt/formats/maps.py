@@ -1,0 +1,197 @@
+"""Floor plans in map_server's format: a YAML file beside a picture, mode trinary.
+
+Pillow reads the picture: PGM (P2 and P5, any number of grey levels, comments), PNG and BMP, as
+map_server does; https://docs.ros.org/en/jazzy/p/nav2_map_server says what the keys mean.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import warnings
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, UnidentifiedImageError
+from ruamel.yaml import YAML
+from ruamel.yaml.error import YAMLError
+
+from momantu_bt.errors import MomantuError
+from momantu_bt.formats.files import write_whole
+
+FREE, OCCUPIED, UNKNOWN = 0, 1, 2
+"""What a cell can be."""
+OCCUPIED_ABOVE, FREE_BELOW = 0.65, 0.196
+"""map_server's usual thresholds: shares of black above and below which a cell is known."""
+MAX_CELLS = 100_000_000
+"""A picture of more pixels is taken for a mistake: 500 m x 500 m at 0.05 m."""
+
+_FORMATS = ("PPM", "PNG", "BMP")
+"""Pillow's names; PPM has PGM with it."""
+_GAP = rb"(?:\s|#[^\r\n]*[\r\n])+"
+_PGM = re.compile(rb"P[25]" + _GAP + rb"\d+" + _GAP + rb"\d+" + _GAP + rb"(\d+)\s")
+
+
+class MapError(MomantuError, ValueError):
+    """A map is missing or broken; the message says which file, where and what is valid."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MapPicture:
+    """A map as its files have it.
+
+    levels: grey levels (rows, columns), row 0 at the top, 0 black. brightest: the level of white.
+    resolution: m per pixel. origin: map coordinates (x, y) of the picture's lower left corner, m.
+    negate: white is occupied. occupied_thresh, free_thresh: shares of black, as in the YAML file.
+    """
+
+    levels: NDArray[Any]
+    resolution: float
+    origin: tuple[float, float]
+    brightest: int = 255
+    negate: bool = False
+    occupied_thresh: float = OCCUPIED_ABOVE
+    free_thresh: float = FREE_BELOW
+
+    @property
+    def free_level(self) -> int:
+        """The grey level of what is surely free."""
+        return 0 if self.negate else self.brightest
+
+    def occupied(self) -> NDArray[np.bool_]:
+        """(rows, columns), row 0 at the top: which pixels are occupied."""
+        return np.asarray(self._darkness() > self.occupied_thresh)
+
+    def cells(self) -> NDArray[np.uint8]:
+        """(rows, columns) of FREE, OCCUPIED and UNKNOWN, row 0 at the smallest y."""
+        free = self._darkness() < self.free_thresh
+        cells = np.where(self.occupied(), OCCUPIED, np.where(free, FREE, UNKNOWN))
+        return np.ascontiguousarray(cells.astype(np.uint8)[::-1])
+
+    def _darkness(self) -> NDArray[np.float64]:
+        darkness = 1.0 - np.asarray(self.levels, dtype=np.float64) / self.brightest
+        return 1.0 - darkness if self.negate else darkness
+
+
+def read_map(path: Path) -> MapPicture:
+    """The map that a map_server YAML file describes.
+
+    Raises:
+        MapError: a file is missing or broken.
+    """
+    entry = _read_yaml(path)
+    resolution = _number(path, entry, "resolution")
+    if not resolution > 0.0:
+        raise MapError(f"{path}: resolution is {resolution}, expected metres per pixel above 0")
+    origin = _origin(path, entry)
+    if entry.get("mode", "trinary") != "trinary":
+        raise MapError(f"{path}: mode is {entry['mode']!r}, only trinary can be read")
+    levels, brightest = _read_picture(path.parent / str(entry["image"]))
+    return MapPicture(
+        levels,
+        resolution,
+        origin,
+        brightest,
+        bool(entry.get("negate", 0)),
+        _number(path, entry, "occupied_thresh"),
+        _number(path, entry, "free_thresh"),
+    )
+
+
+def write_map(path: Path, map_: MapPicture) -> None:
+    """Write a map as YAML beside a binary PGM of the same name.
+
+    Raises:
+        OutputError: the folder cannot be written.
+    """
+    picture = path.with_suffix(".pgm")
+    rows, columns = map_.levels.shape
+    kind = np.dtype(np.uint8) if map_.brightest < 256 else np.dtype(">u2")
+    header = f"P5\n{columns} {rows}\n{map_.brightest}\n"
+    write_whole(picture, header.encode() + map_.levels.astype(kind).tobytes())
+    text = (
+        f"image: {picture.name}\n"
+        f"resolution: {map_.resolution!r}\n"
+        f"origin: [{map_.origin[0]!r}, {map_.origin[1]!r}, 0]\n"
+        f"negate: {int(map_.negate)}\n"
+        f"occupied_thresh: {map_.occupied_thresh!r}\n"
+        f"free_thresh: {map_.free_thresh!r}\n"
+    )
+    write_whole(path, text)
+
+
+def _read_yaml(path: Path) -> dict[str, Any]:
+    try:
+        entry = YAML(typ="safe", pure=True).load(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise MapError(f"the map {path} cannot be read: {error.strerror}") from None
+    except (YAMLError, UnicodeDecodeError) as error:
+        raise MapError(f"{path} is not YAML: {error}") from None
+    if not isinstance(entry, dict) or "image" not in entry:
+        raise MapError(
+            f"{path} is no map_server file; expected keys image, resolution, origin, negate, "
+            "occupied_thresh, free_thresh"
+        )
+    return entry
+
+
+def _number(path: Path, entry: dict[str, Any], key: str) -> float:
+    value = _finite(entry.get(key))
+    if value is None:
+        raise MapError(f"{path}: {key} is {entry.get(key)!r}, expected a number")
+    return value
+
+
+def _origin(path: Path, entry: dict[str, Any]) -> tuple[float, float]:
+    origin = entry.get("origin")
+    values = [_finite(value) for value in origin] if isinstance(origin, list) else []
+    numbers = [value for value in values if value is not None]
+    if not len(values) == len(numbers) == 3:
+        raise MapError(f"{path}: origin is {origin!r}, expected [x, y, yaw] in m and rad")
+    x, y, yaw = numbers
+    if yaw != 0.0:
+        raise MapError(f"{path}: origin has yaw {yaw}; only unturned maps can be read, write 0.0")
+    return x, y
+
+
+def _finite(value: object) -> float | None:
+    """A YAML value as a number; None for anything else, infinities and booleans included."""
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        return None
+    return float(value)
+
+
+def _read_picture(path: Path) -> tuple[NDArray[Any], int]:
+    """Grey levels (rows, columns) of a picture, and the level of white."""
+    try:
+        with warnings.catch_warnings(action="ignore"), Image.open(path, formats=_FORMATS) as image:
+            columns, rows = image.size
+            if columns * rows > MAX_CELLS:
+                raise MapError(f"{path}: {columns} x {rows} pixels; at most {MAX_CELLS} are read")
+            fine = image.mode in ("I", "I;16")
+            levels = np.asarray(image if fine else image.convert("L"))
+    except MapError:
+        raise
+    except FileNotFoundError:
+        raise MapError(f"the map's picture {path} cannot be read: there is no such file") from None
+    except UnidentifiedImageError:
+        raise MapError(
+            f"the map's picture {path} cannot be read: it is neither a PGM, a PNG nor a BMP file"
+        ) from None
+    except (OSError, ValueError, SyntaxError, OverflowError, Image.DecompressionBombError) as error:
+        raise MapError(f"the map's picture {path} cannot be read: {error}") from None
+    white = 255 if levels.dtype == np.uint8 else 65535
+    brightest = _brightest(path) or white
+    if brightest != white:  # Pillow spreads them over all levels; each has one of its own
+        levels = np.rint(levels * (brightest / white)).astype(np.int32)
+    return levels, brightest
+
+
+def _brightest(path: Path) -> int | None:
+    """The level of white that a PGM file names in its header."""
+    with path.open("rb") as file:
+        found = _PGM.match(file.read(4096))
+    return None if found is None else int(found[1])
