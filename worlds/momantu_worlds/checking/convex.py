@@ -2,7 +2,9 @@
 
 Two convex polyhedra overlap when no axis separates them, and the axes that matter are the normals
 of both and the cross products of their edges (Gottschalk, Lin and Manocha, OBBTree, SIGGRAPH 1996);
-the least overlap along any of these is how far one must be moved to be free of the other.
+the least overlap along any of these is how far one must be moved to be free of the other. Coal's
+penetration depth (EPA) is not used: for solids that touch exactly, as boards and posts of furniture
+do, it may be the largest double.
 """
 
 from __future__ import annotations

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+import shapely
 
 from momantu_bt.failure import Failure
 from momantu_bt.frames import KinematicTree
@@ -83,10 +84,7 @@ def measured(description: RobotDescription) -> Measures:
 
 def _inner_radius(corners: Array) -> float:
     """Distance from the origin to the nearest edge of a polygon around it."""
-    edges = np.roll(corners, -1, axis=0) - corners
-    along = np.clip(-(corners * edges).sum(axis=1) / (edges**2).sum(axis=1), 0.0, 1.0)
-    nearest = corners + along[:, None] * edges
-    return float(np.hypot(nearest[:, 0], nearest[:, 1]).min())
+    return float(shapely.Polygon(corners).exterior.distance(shapely.Point(0.0, 0.0)))
 
 
 def _eyes(description: RobotDescription, kinematics: KinematicTree) -> tuple[float, ...]:

@@ -15,6 +15,7 @@ from momantu_bt.lazy import lazily
 
 with lazily():
     import cv2
+    import shapely
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,8 +32,16 @@ class Rectangle:
         own = np.array([(x, y), (-x, y), (-x, -y), (x, -y)])
         return np.array(own @ np.array([(c, s), (-s, c)]) + (self.pose.x, self.pose.y))
 
+    def polygon(self) -> shapely.Polygon:
+        """As Shapely's polygon, for distances from other shapes."""
+        return shapely.Polygon(self.corners())
+
     def distance(self, points: Array) -> Array:
-        """Distance of points (..., 2) from the rectangle, 0 inside, m."""
+        """Distance of points (..., 2) from the rectangle, 0 inside, m.
+
+        In the rectangle's own frame, for whole grids of cells at once: cells that lie exactly at a
+        distance, as they often do on a grid, must count alike wherever the rectangle stands.
+        """
         c, s = math.cos(self.pose.yaw), math.sin(self.pose.yaw)
         dx, dy = points[..., 0] - self.pose.x, points[..., 1] - self.pose.y
         out_x = np.maximum(np.abs(c * dx + s * dy) - self.size[0] / 2, 0.0)
@@ -41,26 +50,8 @@ class Rectangle:
 
 
 def gap(a: Rectangle, b: Rectangle) -> float:
-    """Distance between two rectangles, 0 when they touch or overlap, m.
-
-    Convex polygons that do not overlap are nearest to each other at a corner of one of them;
-    overlap is found by the separating axis theorem.
-    """
-    ours, theirs = a.corners(), b.corners()
-    if not _separated(ours, theirs):
-        return 0.0
-    return float(min(a.distance(theirs).min(), b.distance(ours).min()))
-
-
-def _separated(a: Array, b: Array) -> bool:
-    for corners in (a, b):
-        for i in range(2):
-            edge = corners[i + 1] - corners[i]
-            axis = np.array((-edge[1], edge[0]))
-            along_a, along_b = a @ axis, b @ axis
-            if along_a.max() < along_b.min() or along_b.max() < along_a.min():
-                return True
-    return False
+    """Distance between two rectangles, 0 when they touch or overlap, m."""
+    return float(shapely.distance(a.polygon(), b.polygon()))
 
 
 def clear_of(rectangle: Rectangle, others: Iterable[Rectangle], least: float) -> bool:
@@ -76,27 +67,10 @@ def clear_of(rectangle: Rectangle, others: Iterable[Rectangle], least: float) ->
 
 
 def convex_outline(points: Array) -> Array:
-    """Corners (k, 2) of the convex hull of points (n, 2), counter-clockwise.
-
-    Andrew's monotone chain (1979).
-    """
-    ordered = np.unique(points, axis=0).tolist()
-    if len(ordered) < 3:
-        return np.array(ordered)
-    lower, upper = _chain(ordered), _chain(ordered[::-1])
-    return np.array(lower[:-1] + upper[:-1])
-
-
-def _chain(points: list[list[float]]) -> list[list[float]]:
-    chain: list[list[float]] = []
-    for x, y in points:
-        while len(chain) > 1:
-            (ax, ay), (bx, by) = chain[-2], chain[-1]
-            if (bx - ax) * (y - ay) - (by - ay) * (x - ax) > 0:
-                break
-            chain.pop()
-        chain.append([x, y])
-    return chain
+    """Corners (k, 2) of the convex hull of points (n, 2), counter-clockwise."""
+    hull = shapely.orient_polygons(shapely.convex_hull(shapely.multipoints(points)))
+    corners: Array = shapely.get_coordinates(hull)
+    return corners[:-1] if hull.geom_type == "Polygon" else corners
 
 
 def slab_outline(points: Array, low: float, high: float) -> Array:
@@ -116,13 +90,9 @@ def slab_outline(points: Array, low: float, high: float) -> Array:
 
 
 def in_outline(points: Array, corners: Array) -> NDArray[np.bool_]:
-    """Which of points (..., 2) lie within a simple polygon (n, 2): the even-odd rule."""
-    inside = np.zeros(points.shape[:-1], dtype=np.bool_)
-    x, y = points[..., 0], points[..., 1]
-    for (ax, ay), (bx, by) in zip(corners, np.roll(corners, -1, axis=0), strict=True):
-        if ay != by:
-            crosses = (ay > y) != (by > y)
-            inside ^= crosses & (x < ax + (y - ay) * (bx - ax) / (by - ay))
+    """Which of points (..., 2) lie within a simple polygon (n, 2)."""
+    polygon = shapely.Polygon(corners)
+    inside: NDArray[np.bool_] = shapely.contains_xy(polygon, points[..., 0], points[..., 1])
     return inside
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array
@@ -98,20 +99,5 @@ def _in_plane(normal: Array) -> Array:
 
 
 def _hull_area(points: Array) -> float:
-    """Area of the convex hull of points (n, 2), m2 (Andrew's monotone chain)."""
-    order = points[np.lexsort((points[:, 1], points[:, 0]))]
-    outline: list[Array] = []
-    for half in (order, order[::-1]):
-        chain: list[Array] = []
-        for point in half:
-            while len(chain) > 1 and _turn(chain[-2], chain[-1], point) <= 0.0:
-                chain.pop()
-            chain.append(point)
-        outline += chain[:-1]
-    corners = np.array(outline)
-    x, y = corners.T
-    return abs(float(x @ np.roll(y, -1) - y @ np.roll(x, -1))) / 2.0
-
-
-def _turn(a: Array, b: Array, c: Array) -> float:
-    return float((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
+    """Area of the convex hull of points (n, 2), m2."""
+    return float(shapely.convex_hull(shapely.multipoints(points)).area)
