@@ -20,7 +20,7 @@ import numpy as np
 
 import momantu_bt
 from momantu_bt.engine.executor import Executor
-from momantu_bt.engine.nodes.skill import SkillLeaf
+from momantu_bt.engine.skill_leaf import SkillLeaf
 from momantu_bt.engine.status import RUNNING
 from momantu_bt.geometry import Pose2D
 from momantu_bt.messages import RobotState

@@ -21,6 +21,7 @@ from momantu_bt.bench.spec import EpisodeSpec, Row
 from momantu_bt.errors import MomantuError
 from momantu_bt.fault import FaultError
 from momantu_bt.formats.files import write_whole
+from momantu_bt.tree.catalogue import NODES
 
 if TYPE_CHECKING:
     from momantu_bt.engine.executor import Executor, Observer
@@ -31,8 +32,6 @@ if TYPE_CHECKING:
 
 _PR_SET_PDEATHSIG = 1
 """`prctl(2)`: the signal that a process gets when its parent dies."""
-_RETRYING = ("Recover", "RetryUntilSuccessful", "RecoveryNode")
-"""Nodes that start their first child again after it failed."""
 
 
 _KEPT = (
@@ -136,8 +135,9 @@ def _record(spec: EpisodeSpec) -> Path | None:
 
 def _tries(node: TreeNode) -> int:
     """How often a node began its first child anew after a failure."""
-    if node.model.type not in _RETRYING or not node.kids:
-        return os.EX_OK
+    spec = NODES.get(node.model.type)
+    if spec is None or not spec.retries or not node.kids:
+        return 0
     return max(0, node.kids[0].runs - node.runs)
 
 

@@ -18,18 +18,18 @@ from momantu_bt.cli.terminal import Terminal
 from momantu_bt.engine.blackboard import Board
 from momantu_bt.engine.executor import Executor
 from momantu_bt.engine.node import TreeNode
-from momantu_bt.engine.nodes.subtree import SubTree
 from momantu_bt.engine.ports import Inputs
 from momantu_bt.engine.status import RUNNING, Status
+from momantu_bt.engine.subtree import SubTree
 from momantu_bt.errors import InputError
 from momantu_bt.failure import Failure
 from momantu_bt.formats.names import nearest, valid_names
 from momantu_bt.messages import plain
 from momantu_bt.record.lines import tree_lines
 from momantu_bt.skill import MISSING
+from momantu_bt.tree.catalogue.wording import value_text
 from momantu_bt.tree.model import Document, Node
 from momantu_bt.tree.script.nodes import part
-from momantu_bt.tree.show.printing import value_text
 from momantu_bt.tree.substitute.substitution import Substitution, names, reached
 
 PROMPT = "break> "
@@ -144,10 +144,10 @@ def _where(run: Executor, node: TreeNode) -> Iterator[str]:
 
 
 def _above(node: TreeNode) -> Iterator[TreeNode]:
-    parent = node.parent
+    parent = node.above
     while isinstance(parent, TreeNode):
         yield parent
-        parent = parent.parent
+        parent = parent.above
 
 
 def _ports(node: TreeNode) -> Iterator[tuple[str, str]]:

@@ -13,11 +13,12 @@ from momantu_bt.drawing.difference import difference
 from momantu_bt.drawing.wires import Wire, wire_lines, wires
 from momantu_bt.errors import ExitCode
 from momantu_bt.formats.files import write_whole
+from momantu_bt.tree.catalogue.wording import value_text
 from momantu_bt.tree.check.named_world import world_of
 from momantu_bt.tree.load import load
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.show.printing import lines, value_text
+from momantu_bt.tree.show.printing import lines
 
 INDENT = "  "
 

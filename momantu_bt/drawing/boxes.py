@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from momantu_bt.drawing.wires import Wire, wires
 from momantu_bt.formats.places import cells
-from momantu_bt.tree.catalogue import BUILT_IN, SUBTREE
+from momantu_bt.tree.catalogue import NODES, SUBTREE
 from momantu_bt.tree.model import Document, Handler, Node, Tree
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.show.printing import (
@@ -123,7 +123,7 @@ def _boxes(tree: Tree, first: int) -> tuple[Box, ...]:
 def _kind(node: Node) -> str:
     if node.type == SUBTREE:
         return "subtree"
-    spec = BUILT_IN.get(node.type)
+    spec = NODES.get(node.type)
     return SKILL if spec is None else str(spec.kind)
 
 

@@ -7,8 +7,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from momantu_bt.drawing.matching import Unit, match, plain, units
+from momantu_bt.tree.catalogue.wording import value_text
 from momantu_bt.tree.model import Document, Literal, PortValue, Tree
-from momantu_bt.tree.show.printing import heading, text, title, value_text
+from momantu_bt.tree.show.printing import heading, text, title
 
 SAME, ADDED, REMOVED, CHANGED = " ", "+", "-", "~"
 

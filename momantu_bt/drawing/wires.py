@@ -8,9 +8,9 @@ from pathlib import Path
 
 from momantu_bt.formats.places import Place
 from momantu_bt.tree.check.checker import ROBOT_KEY
-from momantu_bt.tree.check.keys.flow import FAILURE_KEY
 from momantu_bt.tree.check.keys.reads import references
 from momantu_bt.tree.check.signatures import Context
+from momantu_bt.tree.language import FAILURE_KEY
 from momantu_bt.tree.model import Document, Literal, Node, Reference, Scope, Tree
 from momantu_bt.tree.problems import Problems
 from momantu_bt.tree.registry import Registry

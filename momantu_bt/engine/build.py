@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, TypeAlias, TypeGuard
+from typing import TypeAlias, TypeGuard, cast
 
 from momantu_bt.engine.blackboard import Board, Cell
 from momantu_bt.engine.conditions import Conditions
 from momantu_bt.engine.context import RunContext
-from momantu_bt.engine.makers import MAKERS, BuildError, Parts
-from momantu_bt.engine.node import TreeNode
-from momantu_bt.engine.nodes import guards, recovery
-from momantu_bt.engine.nodes.skill import SkillLeaf
-from momantu_bt.engine.nodes.substituted import Substituted
-from momantu_bt.engine.nodes.subtree import SubTree
-from momantu_bt.engine.ports import Reader, cell_of, inputs_of, outputs_of, reader
+from momantu_bt.engine.disabled import Disabled
+from momantu_bt.engine.node import BuildError, Parts, TreeNode
+from momantu_bt.engine.ports import Reader, cell_of, reader
+from momantu_bt.engine.skill_leaf import SkillLeaf
+from momantu_bt.engine.substituted import Substituted
+from momantu_bt.engine.subtree import SubTree
 from momantu_bt.skill import Port, Skill
-from momantu_bt.tree.catalogue import AUTOREMAP, BUILT_IN, SUBTREE
+from momantu_bt.tree.catalogue import AUTOREMAP, NODE_CLASSES, NODES, SUBTREE
+from momantu_bt.tree.language import FAILURE_KEY
 from momantu_bt.tree.model import Document, Literal, Node, PortValue, Reference, Tree
 from momantu_bt.tree.substitute.substitution import Substitution, reached
 from momantu_bt.values.words import ConversionError
@@ -59,14 +59,8 @@ def build(
     nodes = (root, *root.below)
     for index, node in enumerate(nodes):
         node.index = index
-        node.depth = 0 if node.parent is None else _depth(node)
+        node.depth = 0 if node.above is None else node.above.depth + 1
     return Built(root, nodes, board)
-
-
-def _depth(node: TreeNode) -> int:
-    parent = node.parent
-    assert isinstance(parent, TreeNode)
-    return parent.depth + 1
 
 
 def _tree(document: Document, name: str) -> Tree:
@@ -99,71 +93,55 @@ class _Builder:
 
     def _made(self, model: Node, board: Board, path: str) -> TreeNode:
         conditions = Conditions(model.conditions, board) if model.conditions else None
+        parts = Parts(model, self.context, board, conditions=conditions)
         if model.disabled:
-            return guards.Disabled(model, self.context)
+            return Disabled(replace(parts, conditions=None))
         if self.substitution.of(model):
-            return self._substituted(model, board, path, conditions)
+            return self._substituted(parts, path)
         if model.type == SUBTREE:
-            return self._subtree(model, board, path, conditions)
-        if model.type in ("Recover", "Handle"):
-            return self._catching(model, board, path, conditions)
-        spec = BUILT_IN.get(model.type)
+            return self._subtree(parts, path)
+        spec = NODES.get(model.type)
         if spec is None:
-            return self._skill(model, board, path, conditions)
-        if model.type not in MAKERS:
-            raise BuildError(f"{model.place}: the engine has no node {model.type!r}")
-        kids = [self.node(m, board, f"{path}.{i}") for i, m in enumerate(model.children)]
-        return MAKERS[model.type](Parts(model, spec, self.context, kids, conditions, board))
+            return self._skill(parts, path)
+        kids = tuple(self.node(m, board, f"{path}.{i}") for i, m in enumerate(model.children))
+        parts = replace(parts, ports=spec.ports, kids=kids)
+        if spec.handlers:
+            parts = self._with_handlers(parts, path)
+        kind = cast(type[TreeNode], NODE_CLASSES[model.type])
+        return kind(parts)
 
-    def _substituted(
-        self, model: Node, board: Board, path: str, conditions: Conditions | None
-    ) -> Substituted:
+    def _substituted(self, parts: Parts, path: str) -> Substituted:
+        model, board = parts.model, parts.board
         kids: tuple[TreeNode, ...] = ()
         if not self.substitution.replaces(model):
             kids = (self.node(replace(model, conditions={}), board, path),)
         cells = {n: cell_of(v, board) for n, v in model.ports.items() if _is_wire(v)}
         results = self.substitution.of(model)
-        return Substituted(model, self.context, kids, conditions, results=results, outputs=cells)
+        return Substituted(replace(parts, kids=kids), results=results, outputs=cells)
 
-    def _skill(
-        self, model: Node, board: Board, path: str, conditions: Conditions | None
-    ) -> SkillLeaf:
+    def _skill(self, parts: Parts, path: str) -> SkillLeaf:
+        model = parts.model
         kind = self.skill_of(model.type)
         if not self.context.outside.runs_skills(self.context.body):
             raise BuildError(f"{model.place}: {model.type} is a skill and needs a world")
-        return SkillLeaf(
-            model,
-            self.context,
-            (),
-            conditions,
-            kind=kind,
-            inputs=inputs_of(kind.ports, model.ports, board),
-            outputs=outputs_of(kind.ports, model.ports, board),
-            path=f"{path}:{model.type}",
-        )
+        return SkillLeaf(replace(parts, ports=kind.ports), kind=kind, path=f"{path}:{model.type}")
 
-    def _catching(
-        self, model: Node, board: Board, path: str, conditions: Conditions | None
-    ) -> TreeNode:
+    def _with_handlers(self, parts: Parts, path: str) -> Parts:
+        """The nodes that answer failures, which see the failure as a key."""
         caught = Cell(f"{path}/failure", self.context.writes)
-        inside = board.with_cells({"failure": caught})
-        kids = [self.node(model.children[0], board, f"{path}.0")]
-        catches = []
-        for number, handler in enumerate(model.handlers, start=1):
+        inside = parts.board.with_cells({FAILURE_KEY: caught})
+        kids = list(parts.kids)
+        answers = []
+        for number, handler in enumerate(parts.model.handlers, start=len(kids)):
             answer = None
             if handler.node is not None:
                 answer = self.node(handler.node, inside, f"{path}.{number}")
                 kids.append(answer)
-            catches.append(recovery.Catch(handler.codes, answer))
-        made: Any = (model, self.context, kids, conditions)
-        if model.type == "Handle":
-            return recovery.Handle(*made, catches=catches, caught=caught)
-        inputs = inputs_of(BUILT_IN["Recover"].ports, model.ports, board)
-        return recovery.Recover(*made, catches=catches, caught=caught, inputs=inputs)
+            answers.append((handler.codes, answer))
+        return replace(parts, kids=tuple(kids), answers=tuple(answers), caught=caught)
 
-    def _subtree(
-        self, model: Node, board: Board, path: str, conditions: Conditions | None
-    ) -> SubTree:
+    def _subtree(self, parts: Parts, path: str) -> SubTree:
+        model, board = parts.model, parts.board
         tree = _tree(self.document, model.target or "")
         wired = {n: d.default for n, d in tree.ports.items() if _is_wire(d.default)}
         values: dict[str, PortValue] = {**wired, **model.ports}
@@ -174,8 +152,7 @@ class _Builder:
         )
         given = self._given(tree, values, board, inner)
         child = self.node(tree.root, inner, f"{path}.0")
-        made: Any = (model, self.context, (child,), conditions)
-        return SubTree(*made, given=given, wires=wires, board=inner)
+        return SubTree(replace(parts, kids=(child,)), given=given, wires=wires, board=inner)
 
     def _given(
         self, tree: Tree, values: Mapping[str, PortValue], outer: Board, inner: Board
@@ -211,6 +188,6 @@ def skills_in(document: Document, substitution: Substitution | None = None) -> t
     found = {
         node.type: None
         for node in reached(document, replacing.results)
-        if node.type not in BUILT_IN and node.type != SUBTREE and not replacing.replaces(node)
+        if node.type not in NODES and node.type != SUBTREE and not replacing.replaces(node)
     }
     return tuple(found)

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
 from momantu_bt.engine.build import Built
+from momantu_bt.engine.causes import running_as_cause
 from momantu_bt.engine.context import RunContext
 from momantu_bt.engine.interrupts import Interrupts
 from momantu_bt.engine.node import TreeNode
-from momantu_bt.engine.nodes.timing import running_as_cause
 from momantu_bt.engine.services import Services
 from momantu_bt.engine.session import CLOCK_SLACK
 from momantu_bt.engine.status import FAILURE, RUNNING, Status

@@ -1,41 +1,35 @@
 """The node that every other node is: status, conditions, halting and bookkeeping.
 
-Nodes are py_trees behaviours, so that its displays and visitors work on them, but tick and stop
-after BehaviorTree.CPP 4: `execute` asks the conditions, then `step`, then runs the scripts that
-follow an end. `state` is what a parent decides by (IDLE, RUNNING, or an end not yet collected);
-`shown` is the newest result, for people: it is IDLE again as soon as a node above starts anew,
-without a change of its own in the journal.
+Nodes tick and stop as in BehaviorTree.CPP 4: `execute` asks the conditions, then `step`, then runs
+the scripts that follow an end. `state` is what a parent decides by (IDLE, RUNNING, or an end not
+yet collected); `shown` is the newest result, for people: it is IDLE again as soon as a node above
+starts anew, without a change of its own in the journal.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
-from typing import TypeAlias
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import ClassVar
 
-import py_trees
-from py_trees.behaviour import Behaviour
-
+from momantu_bt.engine.blackboard import Board, Cell
 from momantu_bt.engine.changes import Change
 from momantu_bt.engine.conditions import Conditions
 from momantu_bt.engine.context import RunContext
+from momantu_bt.engine.ports import Inputs, cell_of, inputs_of, outputs_of
 from momantu_bt.engine.role import Role
 from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Status
+from momantu_bt.errors import MomantuError
 from momantu_bt.failure import FAILED, SCRIPT_ERROR, Failure, FailureValue
-from momantu_bt.tree.catalogue import BUILT_IN
-from momantu_bt.tree.model import Node
+from momantu_bt.skill import Port
+from momantu_bt.tree.catalogue import NODES, NodeSpec
+from momantu_bt.tree.model import Node, Reference
 from momantu_bt.tree.script import ScriptError
 from momantu_bt.tree.show.printing import text
 
-PyTreesStatus: TypeAlias = py_trees.common.Status
 
-_AS_PY_TREES: Mapping[Status, PyTreesStatus] = {
-    IDLE: PyTreesStatus.INVALID,
-    SKIPPED: PyTreesStatus.INVALID,
-    RUNNING: PyTreesStatus.RUNNING,
-    SUCCESS: PyTreesStatus.SUCCESS,
-    FAILURE: PyTreesStatus.FAILURE,
-}
+class BuildError(MomantuError):
+    """The model cannot become nodes: the checker would have said so."""
 
 
 class _Top:
@@ -47,36 +41,73 @@ class _Top:
 _TOP = _Top()
 
 
-class TreeNode(Behaviour):
+@dataclass(frozen=True, slots=True)
+class Parts:
+    """What a node is made of; nodes take the values of their ports from it.
+
+    kids: its children, those of handlers after the others. answers: codes of each handler, and
+    its node; None just tries again. caught: the cell that handlers see as `$failure`.
+    """
+
+    model: Node
+    context: RunContext
+    board: Board
+    ports: Mapping[str, Port] = field(default_factory=dict)
+    kids: tuple[TreeNode, ...] = ()
+    conditions: Conditions | None = None
+    answers: tuple[tuple[tuple[str, ...], TreeNode | None], ...] = ()
+    caught: Cell | None = None
+
+    def inputs(self, *keys: str) -> Inputs:
+        """Readers of its inputs. keys: inputs that mean the keys of their names unless given.
+
+        Raises:
+            ConversionError: a literal does not fit its port.
+        """
+        defaults = {name: Reference(name) for name in keys}
+        return inputs_of(self.ports, {**defaults, **self.model.ports}, self.board)
+
+    def outputs(self) -> dict[str, Cell]:
+        """The cells of its outputs that are wired, by port."""
+        return outputs_of(self.ports, self.model.ports, self.board)
+
+    def key(self, port: str) -> Cell:
+        """The cell that a port is wired to.
+
+        Raises:
+            BuildError: the port is not wired to a key.
+        """
+        value = self.model.ports.get(port)
+        if not isinstance(value, Reference):
+            raise BuildError(f"{self.model.place}: {self.model.type} needs `{port}: $key`")
+        return cell_of(value, self.board)
+
+
+class TreeNode:
     """One node of a running tree. Subclasses write `step`, and `clear` for what they remember.
 
-    model: what the tree file says. label: the same in one line, with values once it has started.
-    index: its number in the order of the file.
+    spec: what a kind of node says of itself. model: what the tree file says. label: the same in
+    one line, with values once it has started. index: its number in the order of the file.
     runs, failures, ticks, seconds: how often it started, failed, was ticked, and for how long
     it was active by the world's clock.
     """
 
-    def __init__(
-        self,
-        model: Node,
-        context: RunContext,
-        children: Sequence[TreeNode] = (),
-        conditions: Conditions | None = None,
-    ) -> None:
+    spec: ClassVar[NodeSpec]
+
+    def __init__(self, parts: Parts) -> None:
         self.state = IDLE
         self._shown = IDLE
         self._shown_in_run = 0
         self._above: TreeNode | _Top = _TOP
-        super().__init__(_name(model))
-        self.model = model
-        self.label = text(model)
-        self.context = context
-        self.kids = tuple(children)
-        self.children = list(children)
-        self.conditions = conditions
+        self.model = parts.model
+        self.name = _name(parts.model)
+        self.label = text(parts.model)
+        self.context = parts.context
+        self.kids = parts.kids
+        self.conditions = parts.conditions
         self.failure: FailureValue | None = None
         self._raised: FailureValue | None = None
-        self.place = f"{model.place.file}:{model.place.line}"
+        self.place = f"{parts.model.place.file}:{parts.model.place.line}"
         self.index = 0
         self.depth = 0
         self.runs = self.failures = self.ticks = 0
@@ -84,7 +115,7 @@ class TreeNode(Behaviour):
         self.started_at: float | None = None
         self.ticked_at = 0
         for child in self.kids:
-            child.parent = child._above = self
+            child._above = self
         self.below: tuple[TreeNode, ...] = tuple(
             node for child in self.kids for node in (child, *child.below)
         )
@@ -109,9 +140,12 @@ class TreeNode(Behaviour):
     @property
     def role(self) -> Role:
         """What it is to a person."""
-        if self.model.type == "Sequence":
-            return Role.STEPS if self.model.name is None else Role.NAMED_STEPS
         return Role.PLAIN
+
+    @property
+    def answered(self) -> tuple[int, ...]:
+        """How often each of its handlers has answered a failure."""
+        return ()
 
     @property
     def above(self) -> TreeNode | None:
@@ -227,32 +261,6 @@ class TreeNode(Behaviour):
         """Why a child that returned FAILURE did so."""
         return child.failure or child.own(FailureValue(FAILED, "failed without a reason"))
 
-    # py_trees
-
-    @property
-    def status(self) -> PyTreesStatus:
-        """The newest result in py_trees' words; IDLE and SKIPPED are its INVALID."""
-        return _AS_PY_TREES[self.shown]
-
-    @status.setter
-    def status(self, value: PyTreesStatus) -> None:
-        """Ignored: py_trees' constructor sets it, `execute` and `halt` decide it."""
-
-    def update(self) -> PyTreesStatus:
-        """Demanded by py_trees, called by nobody: `step` does the work."""
-        return self.status
-
-    def tick(self) -> Iterator[Behaviour]:
-        """Tick, then yield every node that was ticked, children first, for py_trees' visitors."""
-        self.execute()
-        for node in self.iterate():
-            if isinstance(node, TreeNode) and node.ticked_at == self.context.tick:
-                yield node
-
-    def stop(self, new_status: PyTreesStatus = PyTreesStatus.INVALID) -> None:
-        """Halt, whatever py_trees would have it become."""
-        self.reset()
-
     # bookkeeping
 
     def _conditioned(self, conditions: Conditions) -> Status:
@@ -287,5 +295,5 @@ class TreeNode(Behaviour):
 
 def _name(model: Node) -> str:
     """Its own name, else the subtree's, else its spelling in YAML, else the skill's."""
-    spec = BUILT_IN.get(model.type)
+    spec = NODES.get(model.type)
     return model.name or model.target or (model.type if spec is None else spec.yaml[0])

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from momantu_bt.engine.executor import Ending, Executor
 from momantu_bt.engine.node import TreeNode
-from momantu_bt.engine.nodes.recovery import Catching
-from momantu_bt.engine.nodes.skill import SkillLeaf
+from momantu_bt.engine.skill_leaf import SkillLeaf
 from momantu_bt.record.report import NodeReport, Report
 from momantu_bt.record.versions import versions
 
@@ -53,5 +52,5 @@ def _node_report(node: TreeNode) -> NodeReport:
         slow_ticks=0 if slow is None else slow.slow_steps,
         slowest_s=0.0 if slow is None else round(slow.slowest, 4),
         conditions={} if node.conditions is None else node.conditions.counts,
-        answered=tuple(node.answered) if isinstance(node, Catching) else (),
+        answered=node.answered,
     )

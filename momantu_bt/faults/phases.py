@@ -12,7 +12,7 @@ from momantu_bt.faults.moments import usual_phases
 from momantu_bt.faults.phase import START, Phase, parse_phase
 from momantu_bt.formats.names import valid_names
 from momantu_bt.skill import Skill
-from momantu_bt.tree.catalogue import BUILT_IN, SUBTREE
+from momantu_bt.tree.catalogue import NODES, SUBTREE
 from momantu_bt.tree.model import Document, Node
 from momantu_bt.tree.substitute.substitution import Substitution, names, reached
 
@@ -89,7 +89,7 @@ def _named(name: str, document: Document, substitution: Substitution) -> bool:
 
 
 def _is_skill(node: Node) -> bool:
-    return node.type not in BUILT_IN and node.type != SUBTREE
+    return node.type not in NODES and node.type != SUBTREE
 
 
 def _inside(outer: list[str], document: Document, substitution: Substitution) -> Iterator[Node]:

@@ -87,9 +87,9 @@ def _matching(
 
 def _is_inside(node: TreeNode, outer: Sequence[str], document: Document) -> bool:
     left = list(outer)
-    above = node.parent
+    above = node.above
     while left and isinstance(above, TreeNode):
         if wears(above.model, left[-1], document):
             left.pop()
-        above = above.parent
+        above = above.above
     return not left

@@ -9,7 +9,7 @@ from typing import Any
 from momantu_bt.page.bars import Bar, bars
 from momantu_bt.page.codes import FAILURE, IDLE, RUNNING, STATUS_NUMBERS, SUCCESS
 from momantu_bt.record.recording import Recording
-from momantu_bt.tree.catalogue import BUILT_IN
+from momantu_bt.tree.catalogue import NODES
 
 _ENDED = {SUCCESS: "succeeded", IDLE: "was stopped", RUNNING: "still runs at the end"}
 
@@ -25,7 +25,7 @@ def lanes(recording: Recording, failures: Sequence[Mapping[str, Any]]) -> list[d
     found = [
         {"name": _spelled(kind), "kind": "skill", "bars": [_row(recording, bar) for bar in same]}
         for kind, same in kinds.items()
-        if kind not in BUILT_IN or any(bar.end > bar.begin for bar in same)
+        if kind not in NODES or any(bar.end > bar.begin for bar in same)
     ]
     told = {
         "failures": [_failure(failure) for failure in failures],
@@ -41,7 +41,7 @@ def lanes(recording: Recording, failures: Sequence[Mapping[str, Any]]) -> list[d
 
 
 def _spelled(kind: str) -> str:
-    return BUILT_IN[kind].yaml[0] if kind in BUILT_IN else kind
+    return NODES[kind].yaml[0] if kind in NODES else kind
 
 
 def _row(recording: Recording, bar: Bar) -> dict[str, Any]:

@@ -74,7 +74,7 @@ def _node(node: TreeNode) -> Mapping[str, Any]:
         "type": node.model.target or node.model.type,
         "place": node.place,
         "depth": node.depth,
-        "parent": node.parent.index if isinstance(node.parent, TreeNode) else None,
+        "parent": None if node.above is None else node.above.index,
         "label": node.label,
         "role": node.role.value,
     }

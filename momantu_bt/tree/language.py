@@ -21,6 +21,9 @@ ANY = "any"
 """What a handler of all other codes is for."""
 _HANDLER_CODE = re.compile(rf"(?:\w+\.)?{CODE.pattern}|{ANY}")
 
+FAILURE_KEY = "failure"
+"""The key by which a handler reads what it answers."""
+
 
 def handler_codes(text: str, place: Place, problems: Problems) -> tuple[str, ...]:
     """What a handler is for (`A | B`), without what cannot be a code, which is reported."""

@@ -11,20 +11,19 @@ from momantu_bt.activity import Activity
 from momantu_bt.failure import CODE
 from momantu_bt.skill import Port, Skill
 from momantu_bt.symptom import Symptom
-from momantu_bt.tree.catalogue import BUILT_IN, MODIFIERS, SPELLED
-from momantu_bt.values.kinds import Unknown, ValueType, kind_of
+from momantu_bt.tree.catalogue import MODIFIERS, NODES, SPELLED
+from momantu_bt.tree.catalogue.words import WORDS_OF_TREES
+from momantu_bt.values.kinds import is_type
 
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
-WORDS_OF_TREES = ("again", "any", "child", "children", "try", "catch", "then", "else", "do")
-"""Words that stand where a node's name could, and mean something else."""
 
 
 def bad_skill_name(name: str) -> str | None:
     """Why no skill can be called so; None when one can."""
     if not _NAME.fullmatch(name):
         return f"{name!r} is no name for a skill: lower-case letters, digits and underscores"
-    if name in SPELLED or name in BUILT_IN:
-        return f"{name!r} is a built-in node; give the entry point another name"
+    if name in SPELLED or name in NODES:
+        return f"{name!r} is a node of the language; give the entry point another name"
     if name in MODIFIERS:
         return f"{name!r} is a modifier of nodes; give the entry point another name"
     if name in WORDS_OF_TREES or keyword.iskeyword(name):
@@ -61,13 +60,9 @@ def _port(kind: type[Skill], port: Port) -> str | None:
     said = f"the port {kind.__name__}.{port.name}"
     if not isinstance(port.doc, str) or not port.doc.strip():
         return f"{said} has no doc: write {'In' if port.direction == 'in' else 'Out'}(doc=…)"
-    if port.type is None or not _is_type(port.type):
+    if port.type is None or not is_type(port.type):
         return f"{said} has no type: {port.type!r} is none"
     return None
-
-
-def _is_type(annotation: ValueType) -> bool:
-    return isinstance(annotation, type) or not isinstance(kind_of(annotation), Unknown)
 
 
 def _failures(kind: type[Skill]) -> str | None:

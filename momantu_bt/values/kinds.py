@@ -203,6 +203,11 @@ def kind_of(type_: ValueType) -> ValueKind:
     return _of_class(type_) if isinstance(type_, type) else _of_form(type_)
 
 
+def is_type(annotation: ValueType) -> bool:
+    """Whether an annotation says what values it takes."""
+    return isinstance(annotation, type) or not isinstance(kind_of(annotation), Unknown)
+
+
 def without_none(kind: ValueKind) -> tuple[ValueKind, ...]:
     """The alternatives of a union except None, or the kind alone."""
     if not isinstance(kind, Either):

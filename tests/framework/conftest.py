@@ -8,13 +8,7 @@ import pytest
 
 from momantu_bt.formats.places import Place
 from momantu_bt.skill import Port
-from momantu_bt.tree.catalogue import (
-    BUILT_IN,
-    CONDITIONS,
-    SUBTREE,
-    Kind,
-    NodeSpec,
-)
+from momantu_bt.tree.catalogue import CONDITIONS, NODES, SUBTREE, Kind, NodeSpec
 from momantu_bt.tree.model import (
     FIRST_INPUT,
     Document,
@@ -106,7 +100,7 @@ class Sower:
         if depth == 0 or kind < 0.25:
             node = self.leaf(names)
         else:
-            inner = [spec for spec in BUILT_IN.values() if spec.kind is not Kind.LEAF]
+            inner = [spec for spec in NODES.values() if spec.kind is not Kind.LEAF]
             node = self.inner(r.choice(inner), names, depth)
         if r.random() < 0.2:
             node.name, node.disabled = r.choice([None, *_NAMES]), r.random() < 0.5
@@ -122,7 +116,7 @@ class Sower:
         if kind == 1:
             ports = {key: self.value() for key in self.some(_KEYS)}
             return Node(SUBTREE, _HERE, ports=ports, target=r.choice(names))
-        specs = [spec for spec in BUILT_IN.values() if spec.kind is Kind.LEAF]
+        specs = [spec for spec in NODES.values() if spec.kind is Kind.LEAF]
         return self.with_ports(r.choice(specs))
 
     def any_ports(self) -> dict[str, PortValue]:

@@ -9,10 +9,10 @@ from dataclasses import replace
 from momantu_bt.formats.places import Place
 from momantu_bt.formats.problems import Problem
 from momantu_bt.messages import RobotState
+from momantu_bt.tree.catalogue.known import Key, literal_type
 from momantu_bt.tree.check.guards import check_guards
 from momantu_bt.tree.check.handlers import check_handlers
 from momantu_bt.tree.check.keys.flow_check import check_keys
-from momantu_bt.tree.check.keys.known import Key, literal_type
 from momantu_bt.tree.check.nodes import check_node, check_tree_ports
 from momantu_bt.tree.check.signatures import Context
 from momantu_bt.tree.check.surroundings import look_up_surroundings

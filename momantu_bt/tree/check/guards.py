@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from momantu_bt.tree.catalogue import SUBTREE
+from momantu_bt.tree.catalogue import NODES, SUBTREE
 from momantu_bt.tree.check.keys.shared import scripts_of
 from momantu_bt.tree.check.signatures import Context
 from momantu_bt.tree.model import Node, Reference, Scope, Tree
-
-_PLAIN = ("Sequence", "AsyncSequence", "SequenceWithMemory")
-_CONDITIONS = ("ScriptCondition", "WasEntryUpdated", "GoalUpdated")
 
 
 def check_guards(context: Context, order: list[Tree], published: frozenset[str]) -> None:
@@ -22,7 +19,8 @@ def check_guards(context: Context, order: list[Tree], published: frozenset[str])
         for node in tree.root.walk():
             if _runs_long(context, node, long):
                 long.add(tree.name)
-            if node.type in _PLAIN and not node.disabled:
+            spec = NODES.get(node.type)
+            if spec is not None and spec.in_turn and not node.disabled:
                 _check_sequence(context, node, published, long)
 
 
@@ -30,7 +28,8 @@ def _check_sequence(
     context: Context, sequence: Node, published: frozenset[str], long: set[str]
 ) -> None:
     for index, child in enumerate(sequence.children):
-        if child.type not in _CONDITIONS or child.disabled:
+        spec = NODES.get(child.type)
+        if spec is None or not spec.condition or child.disabled:
             continue
         changing = sorted(_read_on_root(context, child) & published)
         if not changing:

@@ -4,21 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from momantu_bt.failure import (
-    DECLINED,
-    ENGINE_CODES,
-    FAILED,
-    FRAME_UNKNOWN,
-    HALTED,
-    INPUT_MISSING,
-    NO_ANSWER,
-    SCRIPT_ERROR,
-    TIMEOUT,
-    WRONG_TYPE,
-)
+from momantu_bt.failure import ENGINE_CODES, FAILED, HALTED, SCRIPT_ERROR, TIMEOUT
 from momantu_bt.formats.names import nearest
 from momantu_bt.formats.places import Place, within
 from momantu_bt.tree.catalogue import SUBTREE
+from momantu_bt.tree.catalogue.codes import UNKNOWN, Codes, Failing, joined
 from momantu_bt.tree.check.signatures import Context
 from momantu_bt.tree.language import ANY
 from momantu_bt.tree.model import Handler, Literal, Node, Reference, Tree
@@ -26,16 +16,6 @@ from momantu_bt.tree.model import Handler, Literal, Node, Reference, Tree
 _ANY_SKILL = frozenset(ENGINE_CODES) - {TIMEOUT, FAILED, HALTED, SCRIPT_ERROR}
 """What the engine makes of a skill's end beside the codes that it declares."""
 
-_ANY_BUILT_IN = frozenset({FAILED, INPUT_MISSING, WRONG_TYPE, SCRIPT_ERROR})
-
-Codes = frozenset[str]
-"""Codes, bare and as `pick.SLIPPED`. UNKNOWN stands for any."""
-UNKNOWN = "?"
-_OF_BUILT_IN: Mapping[str, Codes] = {
-    "Ask": frozenset({NO_ANSWER}),
-    "Confirm": frozenset({DECLINED, NO_ANSWER}),
-    "DistanceController": frozenset({FRAME_UNKNOWN}),
-}
 _HANDLED_CODE = Reference("failure", ("code",))
 
 
@@ -70,65 +50,34 @@ def _codes(
     of_tree: Mapping[str, Codes],
     meant: Mapping[int, Codes],
 ) -> Codes:
-    below = _joined(*(of_node[id(child)] for child in node.children))
-    handled = _joined(*(of_node[id(h.node)] for h in node.handlers if h.node is not None))
-    if node.type == "Fail":
-        found = _raised(node, meant.get(id(node)))
-    elif node.type == "TestNode":
-        raised = _raised(node, meant.get(id(node))) if "code" in node.ports else frozenset()
-        found = raised | {FAILED, SCRIPT_ERROR}
-    elif node.type == "ElseFail":
-        found = _raised(node, meant.get(id(node))) if below else below
-    else:
-        found = _own(context, node, below, handled, of_tree)
+    below = joined(*(of_node[id(child)] for child in node.children))
+    handled = joined(*(of_node[id(h.node)] for h in node.handlers if h.node is not None))
+    found = _own(context, node, Failing(below, handled, _named(node, meant.get(id(node)))), of_tree)
     if node.conditions:
         asked = {FAILED, SCRIPT_ERROR} if "fail_if" in node.conditions else {SCRIPT_ERROR}
-        found = _joined(found, frozenset(asked))
+        found = joined(found, frozenset(asked))
     return frozenset() if node.disabled else found
 
 
-def _joined(*parts: Codes) -> Codes:
-    """All codes of some sets: a set of them itself where it has them all, to copy no big ones."""
-    distinct = set(parts)
-    largest = max(distinct, key=len, default=frozenset())
-    if all(part <= largest for part in distinct):
-        return largest
-    return frozenset().union(*distinct)
-
-
-def _own(
-    context: Context, node: Node, below: Codes, handled: Codes, of_tree: Mapping[str, Codes]
-) -> Codes:
+def _own(context: Context, node: Node, failing: Failing, of_tree: Mapping[str, Codes]) -> Codes:
     if node.type == SUBTREE:
         return of_tree.get(node.target or "", frozenset({UNKNOWN}))
-    if node.type == "Handle":
-        return _left_over(node, below) | handled
-    if node.type == "ForceSuccess":
-        return frozenset()
-    if node.type == "Timeout":
-        return _joined(below, frozenset({TIMEOUT}))
     signature = context.signature(node)
     if signature is None:
         return frozenset({UNKNOWN})
-    if signature.skill is not None:
-        own = {*signature.skill.failures, *_ANY_SKILL}
-        return frozenset(own | {f"{node.type}.{code}" for code in own})
-    answers = _OF_BUILT_IN.get(node.type, frozenset())
-    return _joined(below, handled, answers, _ANY_BUILT_IN)
+    if signature.spec is not None:
+        return signature.spec.codes(node, failing)
+    assert signature.skill is not None
+    own = {*signature.skill.failures, *_ANY_SKILL}
+    return frozenset(own | {f"{node.type}.{code}" for code in own})
 
 
-def _raised(node: Node, handled: Codes | None) -> Codes:
+def _named(node: Node, handled: Codes | None) -> Codes:
+    """The codes that the port `code` of a node can hold."""
     code = node.ports.get("code")
     if code == _HANDLED_CODE and handled is not None:
         return handled
     return frozenset({str(code.value) if isinstance(code, Literal) else UNKNOWN})
-
-
-def _left_over(node: Node, below: Codes) -> Codes:
-    caught = {code for handler in node.handlers for code in handler.codes}
-    if ANY in caught:
-        return frozenset()
-    return frozenset(code for code in below if code not in caught)
 
 
 def _check(context: Context, node: Node, possible: Codes) -> None:

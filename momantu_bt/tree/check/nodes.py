@@ -64,7 +64,7 @@ def check_node(context: Context, node: Node) -> None:
     for name in list(node.ports):
         _check_port(context, node, name, signature)
     _check_one_of(context, node, signature)
-    _check_default_answer(context, node)
+    _check_values(context, node, signature)
     for name, port in signature.ports.items():
         needed = _is_needed(port, signature) and not autoremaps(node)
         if needed and name not in node.ports and name not in node.port_places:
@@ -147,16 +147,13 @@ def _check_one_of(context: Context, node: Node, signature: Signature) -> None:
             context.problems.error("one-of", place, message, "remove one")
 
 
-def _check_default_answer(context: Context, node: Node) -> None:
-    """The default of `ask` is one of its choices, where both are written out."""
-    choices, default = (node.ports.get(name) for name in ("choices", "default"))
-    if node.type != "Ask" or not isinstance(choices, Literal) or not isinstance(default, Literal):
-        return
-    known = choices.value
-    if isinstance(known, list) and known and default.value not in [*known, None]:
-        message = f"{default.value!r} is none of the choices"
-        hint = valid_names(str(default.value), map(str, known), "choices")
-        context.problems.error("wrong-value", node.port_places["default"], message, hint)
+def _check_values(context: Context, node: Node, signature: Signature) -> None:
+    """What the node itself says of its values."""
+    objection = None if signature.spec is None else signature.spec.objection
+    found = None if objection is None else objection(node)
+    if found is not None:
+        place = node.port_places.get(found.port, node.place)
+        context.problems.error("wrong-value", place, found.message, found.hint)
 
 
 def _check_switch(context: Context, node: Node, signature: Signature) -> None:

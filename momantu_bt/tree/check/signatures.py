@@ -11,7 +11,7 @@ from momantu_bt.formats.places import Place
 from momantu_bt.plugins import PluginError
 from momantu_bt.robot import RobotDescription
 from momantu_bt.skill import Port, Skill
-from momantu_bt.tree.catalogue import AUTOREMAP, BUILT_IN, SUBTREE, NodeSpec
+from momantu_bt.tree.catalogue import AUTOREMAP, NODES, SUBTREE, NodeSpec
 from momantu_bt.tree.model import BROKEN, Document, Node, Tree
 from momantu_bt.tree.problems import Problems
 from momantu_bt.tree.registry import Registry
@@ -60,7 +60,7 @@ class Context:
 
     def signature(self, node: Node) -> Signature | None:
         """What this node takes and gives; None where it is unknown or broken."""
-        spec = BUILT_IN.get(node.type)
+        spec = NODES.get(node.type)
         if spec is not None:
             said = node.type if self.is_xml(node.place) else spec.yaml[0]
             return Signature(said, spec.ports, spec.first, spec=spec)
@@ -138,7 +138,7 @@ def report_unknown_node(context: Context, node: Node) -> None:
         except PluginError as error:
             context.problems.error("broken-plugin", node.place, str(error), "run momantu-bt doctor")
         return
-    spellings = [spec.yaml[0] for spec in BUILT_IN.values()]
+    spellings = [spec.yaml[0] for spec in NODES.values()]
     skills = [*context.document.trees, *context.registry.skills]
     near = nearest(name, [*skills, *spellings])
     hint = f"did you mean {near}?" if near else valid_names(name, skills, "trees and skills")

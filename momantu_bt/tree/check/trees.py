@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import TypeAlias
 
 from momantu_bt.formats.places import Place
-from momantu_bt.tree.catalogue import BUILT_IN, SUBTREE
+from momantu_bt.tree.catalogue import NODES, SUBTREE
 from momantu_bt.tree.check.signatures import Context
 from momantu_bt.tree.model import Document, Node, Tree
 
@@ -125,7 +125,7 @@ def check_parallel(context: Context, order: list[Tree]) -> None:
             of_node[id(node)] = _uses(context, node, of_node, of_tree)
         of_tree[tree.name] = of_node[id(tree.root)]
         for node in tree.root.walk():
-            spec = BUILT_IN.get(node.type)
+            spec = NODES.get(node.type)
             if spec is not None and spec.concurrent:
                 _check_overlap(context, node, of_node)
 

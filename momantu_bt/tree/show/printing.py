@@ -2,23 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
-from momantu_bt.tree.catalogue import BUILT_IN, SUBTREE
-from momantu_bt.tree.model import (
-    Document,
-    Handler,
-    Literal,
-    Node,
-    PortValue,
-    Reference,
-    Scope,
-    Template,
-    Tree,
-)
-from momantu_bt.tree.script import ScriptSyntaxError, yaml_spelling
+from momantu_bt.tree.catalogue import NODES
+from momantu_bt.tree.catalogue.wording import ports_in_words, script_text
+from momantu_bt.tree.model import Document, Handler, Node, Tree
 
 _WIDEST = 96
 """Characters of one node's text; longer values are cut."""
@@ -73,7 +62,7 @@ def handler_text(handler: Handler) -> str:
 def unwrap(node: Node) -> tuple[Node, list[Node]]:
     """A node without the decorators around it, and those, outermost first."""
     around: list[Node] = []
-    while _is_decorator(node) and len(node.children) == 1 and not node.conditions:
+    while _has_words(node) and len(node.children) == 1 and not node.conditions:
         around.append(node)
         node = node.children[0]
     return node, around
@@ -93,36 +82,9 @@ def text(node: Node, around: list[Node] | None = None) -> str:
 
 def extra_texts(node: Node, around: list[Node] | None = None) -> list[str]:
     """What is wrapped around a node, innermost first, and its conditions, in words."""
-    extras = [_decorator(outer) for outer in reversed(around or [])]
-    extras += [f"{name} {_script(script)}" for name, script in node.conditions.items()]
+    extras = [_in_words(outer) for outer in reversed(around or [])]
+    extras += [f"{name} {script_text(script)}" for name, script in node.conditions.items()]
     return [*extras, "disabled"] if node.disabled else extras
-
-
-def value_text(value: PortValue) -> str:
-    """A port's value as a tree file writes it."""
-    if isinstance(value, Reference):
-        return "$" + _key(value)
-    if isinstance(value, Template):
-        parts = (p if isinstance(p, str) else f"${{{_key(p)}}}" for p in value.parts)
-        return '"' + "".join(parts) + '"'
-    return _plain(value.value)
-
-
-def _key(reference: Reference) -> str:
-    at = "@" if reference.scope is Scope.ROOT else ""
-    return at + ".".join((reference.key, *reference.fields))
-
-
-def _plain(value: Any) -> str:
-    if value is None:
-        return "nothing"
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, dict):
-        return "{" + ", ".join(f"{k}: {_plain(v)}" for k, v in value.items()) + "}"
-    if isinstance(value, list):
-        return "[" + ", ".join(_plain(item) for item in value) + "]"
-    return str(value)
 
 
 def heading(tree: Tree) -> str:
@@ -135,108 +97,41 @@ def heading(tree: Tree) -> str:
     return words
 
 
-def _is_decorator(node: Node) -> bool:
-    return node.type in _IN_WORDS
-
-
 def _roles(node: Node) -> list[str]:
     """What each child is to the node."""
-    spec = BUILT_IN.get(node.type)
+    spec = NODES.get(node.type)
     if spec is None or spec.handlers:
         return []
-    if spec.switch:
-        cases = (node.ports.get(f"case_{i}", Literal("?")) for i in range(1, spec.switch + 1))
-        return [*(value_text(case) for case in cases), "else"]
-    if node.type == "TryCatch":
-        return [*[""] * (len(node.children) - 1), "in any failure"]
-    if node.type == "RecoveryNode":
-        return ["", "to recover"]
+    if spec.roles is not None:
+        return spec.roles(node)
     return ["" if role == "child" else role.replace("_do", "") for role in spec.positions]
 
 
 def title(node: Node) -> str:
     """What a node is, after its name where it has one."""
-    words = {
-        "Recover": "recover",
-        "IfThenElse": "if",
-        "WhileDoElse": "while",
-    }
-    spec = BUILT_IN.get(node.type)
-    plain = words.get(node.type) or (spec.yaml[0] if spec is not None else node.type)
-    said = (node.target or plain) if node.type == SUBTREE else plain.replace("_", " ")
+    spec = NODES.get(node.type)
     if spec is None:
         said = node.target or node.type
+    else:
+        said = (spec.title or spec.yaml[0]).replace("_", " ")
     return f"{node.name}: {said}" if node.name else said
 
 
 def port_texts(node: Node) -> list[str]:
     """A node's ports, each with its value."""
-    if node.type == "Recover":
-        attempts = node.ports.get("attempts")
-        return [f"with {_tries(attempts)}"] if attempts is not None else []
-    if node.type in ("Script", "ScriptCondition", "Precondition"):
-        return [_script(str(v.value)) for v in node.ports.values() if isinstance(v, Literal)]
-    return [
-        value_text(value) if _is_bare(node, name) else f"{name} {value_text(value)}"
-        for name, value in node.ports.items()
-        if not name.startswith("case_") or node.type == SUBTREE
-    ]
+    spec = NODES.get(node.type)
+    if spec is not None and spec.port_words is not None:
+        return spec.port_words(node)
+    return ports_in_words(node, node.ports)
 
 
-def _is_bare(node: Node, port: str) -> bool:
-    """Whether the value was written without the port's name (`reset_pose: home`)."""
-    place = node.port_places.get(port)
-    return place is None or node.port_name_places.get(port) == place
+def _has_words(node: Node) -> bool:
+    """Whether it is a decorator that stands on its child's line."""
+    spec = NODES.get(node.type)
+    return spec is not None and spec.around is not None
 
 
-def _tries(value: PortValue) -> str:
-    if value == Literal(1):
-        return "1 try"
-    if value == Literal(-1):
-        return "tries without end"
-    return f"{value_text(value)} tries"
-
-
-def _script(script: str) -> str:
-    try:
-        return yaml_spelling(script)
-    except ScriptSyntaxError:
-        return script
-
-
-def _count(node: Node, port: str) -> str:
-    return _tries(node.ports.get(port, Literal("?")))
-
-
-def _duration(node: Node) -> str:
-    if "msec" in node.ports:
-        return f"{value_text(node.ports['msec'])} ms"
-    value = node.ports.get("duration", Literal("?"))
-    shown = value_text(value)
-    bare = isinstance(value, Literal) and isinstance(value.value, int | float)
-    return f"{shown} s" if bare else shown
-
-
-def _entry(node: Node) -> str:
-    return value_text(node.ports.get("entry", Literal("?")))
-
-
-_IN_WORDS: dict[str, Callable[[Node], str]] = {
-    "RetryUntilSuccessful": lambda n: _count(n, "attempts"),
-    "Repeat": lambda n: _count(n, "cycles").replace("tries", "rounds").replace("try", "round"),
-    "Timeout": lambda n: f"at most {_duration(n)}",
-    "Delay": lambda n: f"after {_duration(n)}",
-    "Inverter": lambda n: "inverted",
-    "ForceSuccess": lambda n: "success in any case",
-    "ForceFailure": lambda n: "failure in any case",
-    "ElseFail": lambda n: f"else {value_text(n.ports.get('code', Literal('?')))}",
-    "KeepRunningUntilFailure": lambda n: "again and again until it fails",
-    "RunOnce": lambda n: "once only",
-    "SkipUnlessUpdated": lambda n: f"only when {_entry(n)} is new",
-    "WaitValueUpdate": lambda n: f"waits until {_entry(n)} is written",
-    "SingleTrigger": lambda n: "once at each start",
-}
-
-
-def _decorator(node: Node) -> str:
-    return _IN_WORDS[node.type](node)
+def _in_words(node: Node) -> str:
+    around = NODES[node.type].around
+    assert around is not None
+    return around(node)

@@ -11,14 +11,7 @@ from typing import Any, TypeAlias
 
 from momantu_bt.failure import CODE, ENGINE_CODES
 from momantu_bt.skill import Port, Skill
-from momantu_bt.tree.catalogue import (
-    CONDITIONS,
-    FORCED,
-    MODIFIERS,
-    SPELLED,
-    Kind,
-    NodeSpec,
-)
+from momantu_bt.tree.catalogue import CONDITIONS, FORCED, MODIFIERS, SPELLED, Kind, NodeSpec
 from momantu_bt.tree.files.yaml.words import COMPANIONS
 from momantu_bt.tree.language import AGAIN, ANY, TREE_NAME
 from momantu_bt.tree.show.schema_values import SCRIPT, Names, value_schema

@@ -11,7 +11,7 @@ from typing import Any
 from momantu_bt.failure import ENGINE_CODES
 from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.problems import errors
-from momantu_bt.tree.catalogue import BUILT_IN, SUBTREE
+from momantu_bt.tree.catalogue import NODES, SUBTREE
 from momantu_bt.tree.check.checker import ROBOT_KEY
 from momantu_bt.tree.check.keys.reads import references
 from momantu_bt.tree.check.named_world import world_of
@@ -24,6 +24,7 @@ from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.script import ScriptSyntaxError, parse
 from momantu_bt.tree.substitute.rules import Rule, RuleFile, Status, read_rules
 from momantu_bt.values.convert import convert
+from momantu_bt.values.kinds import ScriptText
 from momantu_bt.values.words import ConversionError
 
 
@@ -115,7 +116,7 @@ def reached(document: Document, replaced: Mapping[int, tuple[Result, ...]]) -> I
 
 def names(node: Node) -> list[str]:
     """What a node can be called by: its own name, its tree, its type or skill."""
-    spec = BUILT_IN.get(node.type)
+    spec = NODES.get(node.type)
     spellings = spec.yaml if spec is not None else ()
     said = (node.name, node.target, node.type if node.type != SUBTREE else None, *spellings)
     return list(dict.fromkeys(word for word in said if word))
@@ -236,7 +237,9 @@ def _read_by(node: Node, replaced: bool) -> Iterator[Reference]:
         for value in node.ports.values():
             yield from (r for r in references(value) if r.scope is Scope.ROOT)
         code = node.ports.get("code")
-        if node.type in ("Script", "ScriptCondition") and isinstance(code, Literal):
+        spec = NODES.get(node.type)
+        port = spec.ports.get("code") if spec is not None else None
+        if port is not None and port.type is ScriptText and isinstance(code, Literal):
             scripts.append(str(code.value))
     for script in scripts:
         try:

@@ -6,16 +6,15 @@ from typing import Any
 import pytest
 
 from momantu_bt.engine.api import run
-from momantu_bt.engine.blackboard import Board
+from momantu_bt.engine.blackboard import Board, Cell
 from momantu_bt.engine.context import RunContext
-from momantu_bt.engine.node import TreeNode
-from momantu_bt.engine.ports import Inputs
+from momantu_bt.engine.node import Parts, TreeNode
 from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Status
 from momantu_bt.formats.places import Place
-from momantu_bt.skill import MISSING, Skill
+from momantu_bt.skill import Skill
 from momantu_bt.testing import ManualClock, ScriptedWorld
-from momantu_bt.tree.catalogue import BUILT_IN
-from momantu_bt.tree.model import Node
+from momantu_bt.tree.catalogue import NODES
+from momantu_bt.tree.model import Node, Reference
 from momantu_bt.tree.registry import Registry
 
 LETTERS = {"R": RUNNING, "S": SUCCESS, "F": FAILURE, "K": SKIPPED, "I": IDLE}
@@ -25,7 +24,7 @@ class Leaf(TreeNode):
     """Returns the statuses of its script in turn, the last one for ever; counts halts."""
 
     def __init__(self, model: Node, context: RunContext, script: str) -> None:
-        super().__init__(model, context)
+        super().__init__(Parts(model, context, Board(context.writes)))
         self.script = [LETTERS[letter] for letter in script]
         self.given = 0
         self.halts = 0
@@ -60,14 +59,32 @@ class Bench:
             self.leaf(kid, f"leaf{i}") if isinstance(kid, str) else kid
             for i, kid in enumerate(kids)
         ]
-        named: dict[str, Any] = {}
-        spec = BUILT_IN.get(kind.__name__)
-        declared = spec.ports.values() if spec is not None else ()
-        defaults = {port.name: port.default for port in declared if port.default is not MISSING}
-        given = {**defaults, **ports}
-        if given:
-            named["inputs"] = Inputs({name: (lambda v=value: v) for name, value in given.items()})
-        return kind(self.model(kind.__name__), self.context, children, None, **named)
+        return kind(self.parts(self.model(kind.spec.type), children, **ports))
+
+    def parts(
+        self, model: Node, children: Sequence[TreeNode], /, answers: Any = (), **ports: Any
+    ) -> Parts:
+        """What a node is made of. ports: values, each on a key of its own, or References.
+
+        answers: of a node with handlers, codes and the child that answers them.
+        """
+        for name, value in ports.items():
+            reference = value
+            if not isinstance(value, Reference):
+                reference = Reference(f"{model.name or model.type}_{name}_{len(self.board.cells)}")
+                self.board.cell(reference.key).value = value  # not in the journal of the run
+            model.ports[name] = reference
+        caught = Cell(f"{model.name}/failure", self.context.writes)
+        spec = NODES[model.type]
+        return Parts(
+            model,
+            self.context,
+            self.board,
+            spec.ports,
+            tuple(children),
+            answers=tuple(answers),
+            caught=caught,
+        )
 
     def tick(self, node: TreeNode) -> str:
         self.context.begin_tick()

@@ -12,19 +12,16 @@ from __future__ import annotations
 
 import re
 import shlex
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, cast
 
 from momantu_bt.engine.blackboard import Board, Cell
-from momantu_bt.engine.makers import MAKERS, Parts
-from momantu_bt.engine.node import TreeNode
-from momantu_bt.engine.nodes.recovery import Catch, Handle, Recover
-from momantu_bt.engine.nodes.subtree import SubTree
-from momantu_bt.engine.ports import inputs_of
+from momantu_bt.engine.node import Parts, TreeNode
+from momantu_bt.engine.subtree import SubTree
 from momantu_bt.formats.places import Place
 from momantu_bt.geometry import Pose2D
 from momantu_bt.skill import MISSING
-from momantu_bt.tree.catalogue import BUILT_IN
+from momantu_bt.tree.catalogue import NODE_CLASSES, NODES
 from momantu_bt.tree.files.xml.values import attribute_value
 from momantu_bt.tree.model import Literal, Node, PortValue, Reference
 from tests.framework.engine.conftest import Bench, Leaf
@@ -120,7 +117,7 @@ def assert_consistent(node: TreeNode) -> None:
 
 def made(bench: Bench, row: Row, kids: list[Telling]) -> TreeNode:
     """The node of a row, its ports read as an XML file's attributes are."""
-    spec = BUILT_IN.get(row.type)
+    spec = NODES.get(row.type)
     names = {xml: port for port, xml in spec.xml.items()} if spec is not None else {}
     model = Node(row.type, Place("test.yaml", 1, 1))
     for attribute, text in row.attributes.items():
@@ -128,18 +125,14 @@ def made(bench: Bench, row: Row, kids: list[Telling]) -> TreeNode:
         assert spec is not None
         assert port in spec.ports, f"{row.type} has no port {port}"
         model.ports[port] = _value(port, text, spec)
-    arguments: Any = (model, bench.context, kids, None)
+    parts = Parts(model, bench.context, bench.board, kids=tuple(kids))
     if row.type == "SubTree":
-        return SubTree(*arguments, given={}, wires={}, board=Board([]))
-    if spec is not None and spec.handlers:
-        caught = Cell("failure", bench.context.writes)
-        catches = [Catch(("any",), kid) for kid in kids[1:2]]
-        named: dict[str, Any] = {"catches": catches, "caught": caught}
-        if row.type == "Handle":
-            return Handle(*arguments, **named)
-        return Recover(*arguments, **named, inputs=inputs_of(spec.ports, model.ports, bench.board))
+        return SubTree(parts, given={}, wires={}, board=Board([]))
     assert spec is not None
-    return MAKERS[row.type](Parts(model, spec, bench.context, kids, None, bench.board))
+    answers = tuple((("any",), kid) for kid in kids[1:2]) if spec.handlers else ()
+    caught = Cell("failure", bench.context.writes)
+    kind = cast(type[TreeNode], NODE_CLASSES[row.type])
+    return kind(replace(parts, ports=spec.ports, answers=answers, caught=caught))
 
 
 def _value(port: str, text: str, spec: Any) -> PortValue:

@@ -102,7 +102,7 @@ class Leaving:
 
 
 def test_whoever_interrupts_instead_leaves_the_node_running(bench):
-    from momantu_bt.engine.nodes.asking import Confirm
+    from momantu_bt.nodes.asking import Confirm
 
     bench.context.person = Leaving()
     node = bench.node(Confirm, [], question="Well?", default=None)

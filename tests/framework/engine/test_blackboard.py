@@ -8,9 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from momantu_bt.engine.blackboard import Board, Cell, ReadOnlyCell, rollback
-from momantu_bt.engine.nodes.updates import WasEntryUpdated
 from momantu_bt.failure import Failure
+from momantu_bt.nodes.updates import WasEntryUpdated
 from momantu_bt.skill import MISSING
+from momantu_bt.tree.model import Reference
 
 VALUES = st.recursive(
     st.none() | st.integers() | st.floats(allow_nan=False) | st.text(),
@@ -126,7 +127,8 @@ def test_a_published_key_counts_as_written_when_another_value_is_found_there():
 def test_a_node_that_watches_a_published_key_sees_each_new_value(bench):
     values = ["a"]
     cell = ReadOnlyCell("robot", lambda: values[-1])
-    node = WasEntryUpdated(bench.model("WasEntryUpdated"), bench.context, (), None, entry=cell)
+    bench.board.publish(cell)
+    node = bench.node(WasEntryUpdated, [], entry=Reference("robot"))
     assert [bench.tick(node), bench.tick(node)] == ["S", "F"]
     values.append("b")
     assert [bench.tick(node), bench.tick(node)] == ["S", "F"]

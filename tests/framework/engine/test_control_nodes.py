@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from momantu_bt.engine.nodes.branches import IfThenElse, WhileDoElse
-from momantu_bt.engine.nodes.fallbacks import Fallback, RoundRobin
-from momantu_bt.engine.nodes.parallel import Parallel
-from momantu_bt.engine.nodes.reactive import ReactiveSequence
-from momantu_bt.engine.nodes.sequences import AsyncSequence, Sequence
 from momantu_bt.engine.status import IDLE, RUNNING
+from momantu_bt.nodes.branches import IfThenElse, WhileDoElse
+from momantu_bt.nodes.fallbacks import Fallback, RoundRobin
+from momantu_bt.nodes.parallel import Parallel
+from momantu_bt.nodes.reactive import ReactiveSequence
+from momantu_bt.nodes.sequences import AsyncSequence, Sequence
 
 
 def test_parallel_does_not_tick_again_what_has_ended(bench):

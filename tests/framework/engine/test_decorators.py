@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from momantu_bt.engine.nodes.forcing import ForceSuccess, Inverter
-from momantu_bt.engine.nodes.loops import (
+from momantu_bt.engine.status import IDLE, RUNNING
+from momantu_bt.nodes.forcing import ForceSuccess, Inverter
+from momantu_bt.nodes.loops import (
     KeepRunningUntilFailure,
     RetryUntilSuccessful,
     RunOnce,
 )
-from momantu_bt.engine.nodes.timing import Timeout
-from momantu_bt.engine.status import IDLE, RUNNING
+from momantu_bt.nodes.timing import Timeout
 
 
 @pytest.mark.parametrize("kind", [Inverter, ForceSuccess, KeepRunningUntilFailure])

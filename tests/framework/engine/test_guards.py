@@ -7,23 +7,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from momantu_bt.engine.conditions import Conditions
-from momantu_bt.engine.nodes.guards import Precondition
-from momantu_bt.engine.nodes.scripts import Code
-from momantu_bt.engine.nodes.sequences import Sequence
-from momantu_bt.engine.ports import Inputs
 from momantu_bt.engine.status import IDLE, RUNNING
+from momantu_bt.nodes.precondition import Precondition
+from momantu_bt.nodes.sequences import Sequence
+from momantu_bt.tree.model import Literal
 
 
 def guarded(bench, script, instead="FAILURE", code="open"):
     """A precondition on the key `open` around a leaf."""
-    return Precondition(
-        bench.model("Precondition"),
-        bench.context,
-        [bench.leaf(script)],
-        None,
-        inputs=Inputs({"else": lambda: instead}),
-        code=Code(lambda: code, bench.board),
-    )
+    model = bench.model("Precondition")
+    model.ports = {"else": Literal(instead), "if": Literal(code)}
+    return Precondition(bench.parts(model, [bench.leaf(script)]))
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from momantu_bt.tree.catalogue import BUILT_IN, SUBTREE, Kind
+from momantu_bt.tree.catalogue import NODES, SUBTREE, Kind
 from tests.framework.engine.node_table import Row, played, rows
 
 FOLDER = Path(__file__).parent / "node_tables"
@@ -32,10 +32,10 @@ def test_a_node_does_what_its_tables_say(type_: str) -> None:
 
 
 def test_every_node_has_a_table() -> None:
-    assert set(TABLES) == {*BUILT_IN, SUBTREE}
+    assert set(TABLES) == {*NODES, SUBTREE}
 
 
-@pytest.mark.parametrize("type_", [t for t, s in BUILT_IN.items() if s.kind is not Kind.LEAF])
+@pytest.mark.parametrize("type_", [t for t, s in NODES.items() if s.kind is not Kind.LEAF])
 def test_a_table_has_every_status_of_a_child_a_halt_and_a_second_start(type_: str) -> None:
     ticks = " ".join(" ".join(row.trace) for row in TABLES[type_])
     for letter in "RSFK":

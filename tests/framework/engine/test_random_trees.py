@@ -10,34 +10,32 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from momantu_bt.engine.blackboard import Cell
 from momantu_bt.engine.build import Built
 from momantu_bt.engine.decorator import Decorator
 from momantu_bt.engine.executor import Executor
 from momantu_bt.engine.interrupts import Interrupts
 from momantu_bt.engine.no_world import NoWorld
-from momantu_bt.engine.nodes.branches import IfThenElse, WhileDoElse
-from momantu_bt.engine.nodes.fallbacks import AsyncFallback, Fallback, RoundRobin
-from momantu_bt.engine.nodes.forcing import ElseFail, ForceFailure, ForceSuccess, Inverter
-from momantu_bt.engine.nodes.loops import (
+from momantu_bt.engine.status import FAILURE, IDLE, RUNNING
+from momantu_bt.nodes.branches import IfThenElse, WhileDoElse
+from momantu_bt.nodes.fallbacks import AsyncFallback, Fallback, RoundRobin
+from momantu_bt.nodes.forcing import ElseFail, ForceFailure, ForceSuccess, Inverter
+from momantu_bt.nodes.loops import (
     KeepRunningUntilFailure,
     Repeat,
     RetryUntilSuccessful,
     RunOnce,
 )
-from momantu_bt.engine.nodes.parallel import Parallel, ParallelAll
-from momantu_bt.engine.nodes.pipelines import NonblockingSequence, PipelineSequence
-from momantu_bt.engine.nodes.queues import QueueLoop
-from momantu_bt.engine.nodes.rates import RateController, SingleTrigger
-from momantu_bt.engine.nodes.reactive import ReactiveFallback, ReactiveSequence
-from momantu_bt.engine.nodes.recovery import Catch, Handle, Recover
-from momantu_bt.engine.nodes.retreat import RecoveryNode
-from momantu_bt.engine.nodes.sequences import AsyncSequence, Sequence, SequenceWithMemory
-from momantu_bt.engine.nodes.switch import Switch
-from momantu_bt.engine.nodes.timing import Delay, Timeout
-from momantu_bt.engine.nodes.try_catch import TryCatch
-from momantu_bt.engine.ports import Inputs
-from momantu_bt.engine.status import FAILURE, IDLE, RUNNING
+from momantu_bt.nodes.parallel import Parallel, ParallelAll
+from momantu_bt.nodes.pipelines import NonblockingSequence, PipelineSequence
+from momantu_bt.nodes.queues import LoopInt
+from momantu_bt.nodes.rates import RateController, SingleTrigger
+from momantu_bt.nodes.reactive import ReactiveFallback, ReactiveSequence
+from momantu_bt.nodes.recover import Handle, Recover
+from momantu_bt.nodes.recovery_node import RecoveryNode
+from momantu_bt.nodes.sequences import AsyncSequence, Sequence, SequenceWithMemory
+from momantu_bt.nodes.switch import Switch2
+from momantu_bt.nodes.timing import Delay, Timeout
+from momantu_bt.nodes.try_catch import TryCatch
 
 ANY_NUMBER = (
     Sequence,
@@ -68,12 +66,12 @@ PORTS = {
     RecoveryNode: {"number_of_retries": st.integers(0, 2)},
     TryCatch: {"catch_on_halt": st.booleans()},
     RateController: {"hz": st.sampled_from([5.0, 20.0])},
-    Switch: {"variable": st.sampled_from(["a", "b", "c"])},
-    QueueLoop: {"queue": st.sampled_from([(), (1,), (1, 2)])},
+    Switch2: {"variable": st.sampled_from(["a", "b", "c"])},
+    LoopInt: {"queue": st.sampled_from([(), (1,), (1, 2)])},
 }
 REMEMBERING = (SequenceWithMemory, RoundRobin, RunOnce)
 """Nodes that keep something over their end or a halt, and are meant to."""
-GOING_ON = (QueueLoop, RateController, SingleTrigger)
+GOING_ON = (LoopInt, RateController, SingleTrigger)
 """Nodes that go on after an end that nobody collects, as `if` without `else` leaves its own."""
 FAILING_THEMSELVES = (Inverter, ForceFailure, Parallel, Delay, SingleTrigger)
 """Of a delay a timeout says that it was waiting."""
@@ -94,7 +92,7 @@ def above(draw, kids, kinds):
         fewest, most = 2, 3
     elif kind in TWO:
         fewest, most = 2, 2
-    elif kind is Switch:
+    elif kind is Switch2:
         fewest, most = 3, 3
     elif issubclass(kind, Decorator):
         fewest, most = 1, 1
@@ -122,7 +120,7 @@ class Plant:
         self.nodes = (self.root, *self.root.below)
         for index, node in enumerate(self.nodes):
             node.index = index
-            node.depth = 0 if node.parent is None else node.parent.depth + 1
+            node.depth = 0 if node.above is None else node.above.depth + 1
         self.by_name = {node.name: node for node in self.nodes}
 
     def node(self, spec):
@@ -134,18 +132,13 @@ class Plant:
             return leaf
         kind, children, ports = spec
         kids = [self.node(child) for child in children]
-        named = {}
-        if kind is Switch:
+        if kind is Switch2:
             ports = {**ports, "case_1": "a", "case_2": "b"}
-        if kind is QueueLoop:
-            ports = {**ports, "if_empty": "SUCCESS"}
-            named["value"] = None
-        if ports:
-            named["inputs"] = Inputs({key: (lambda v=value: v) for key, value in ports.items()})
+        answers = ()
         if issubclass(kind, Recover | Handle):
-            named["caught"] = Cell(f"{name}/failure", self.bench.context.writes)
-            named["catches"] = [Catch(("any",), kid) for kid in kids[1:]] or [Catch(("X",), None)]
-        return kind(self.bench.model(kind.__name__, name), self.bench.context, kids, None, **named)
+            answers = [(("any",), kid) for kid in kids[1:]] or [(("X",), None)]
+        model = self.bench.model(kind.spec.type, name)
+        return kind(self.bench.parts(model, kids, answers, **ports))
 
     def running(self):
         return [leaf for leaf in self.leaves if leaf.state is RUNNING]

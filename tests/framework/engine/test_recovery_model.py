@@ -6,12 +6,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from momantu_bt.engine.blackboard import Cell
-from momantu_bt.engine.node import TreeNode
-from momantu_bt.engine.nodes.fallbacks import RoundRobin
-from momantu_bt.engine.nodes.recovery import Catch, Handle, Recover
-from momantu_bt.engine.ports import Inputs
+from momantu_bt.engine.blackboard import Board
+from momantu_bt.engine.node import Parts, TreeNode
 from momantu_bt.engine.status import FAILURE, RUNNING, SUCCESS
+from momantu_bt.nodes.fallbacks import RoundRobin
+from momantu_bt.nodes.recover import Handle, Recover
 from momantu_bt.record.changes import ChangeLines
 from momantu_bt.record.reader import read_record
 from momantu_bt.skill import MISSING, Failure, In, Run, Skill
@@ -26,7 +25,7 @@ class Planned(TreeNode):
     """
 
     def __init__(self, model, context, plan, events, cell=None):
-        super().__init__(model, context)
+        super().__init__(Parts(model, context, Board(context.writes)))
         self.plan, self.events, self.cell = plan, events, cell
         self.starts = self.left = 0
 
@@ -112,12 +111,9 @@ def made(bench, kind, plan, catches, **inputs):
             name = bench.model("AlwaysSuccess", f"handler{index}")
             node = Planned(name, bench.context, handler, events, theirs)
             kids.append(node)
-        rules.append(Catch(tuple(codes), node))
-    named = {"inputs": Inputs({k: (lambda v=v: v) for k, v in inputs.items()})} if inputs else {}
-    caught = Cell("failure", bench.context.writes)
-    model = bench.model(kind.__name__, "recovery")
-    node = kind(model, bench.context, kids, None, catches=rules, caught=caught, **named)
-    return node, events, caught
+        rules.append((tuple(codes), node))
+    node = kind(bench.parts(bench.model(kind.__name__, "recovery"), kids, rules, **inputs))
+    return node, events, node.caught
 
 
 @given(plan=PLANS, catches=CATCHES, attempts=st.integers(1, 5))
@@ -190,15 +186,8 @@ def test_a_round_robin_of_handlers_goes_round_and_ends_when_all_failed(new_bench
     ]
     handler = bench.node(RoundRobin, steps)
     body = Planned(bench.model("AlwaysSuccess", "try"), bench.context, [(0, "A")], events)
-    node = Recover(
-        bench.model("Recover"),
-        bench.context,
-        [body, handler],
-        None,
-        catches=[Catch(("A",), handler)],
-        caught=Cell("failure", bench.context.writes),
-        inputs=Inputs({"attempts": lambda: tries}),
-    )
+    handlers = [(("A",), handler)]
+    node = Recover(bench.parts(bench.model("Recover"), [body, handler], handlers, attempts=tries))
     assert bench.ticks(node, most=100).endswith("F")
     expected, at = [], 0
     for count in range(1, tries + 1):

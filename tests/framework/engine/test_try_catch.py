@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from momantu_bt.engine.nodes.retreat import RecoveryNode
-from momantu_bt.engine.nodes.try_catch import TryCatch
 from momantu_bt.engine.ports import Inputs
 from momantu_bt.engine.status import IDLE
 from momantu_bt.failure import INPUT_MISSING, Failure
+from momantu_bt.nodes.recovery_node import RecoveryNode
+from momantu_bt.nodes.try_catch import TryCatch
 
 
 def test_the_failure_is_the_tried_childs_with_the_cleaners_beside_it(bench):

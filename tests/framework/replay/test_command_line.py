@@ -135,7 +135,7 @@ def test_a_record_that_was_cut_off_is_shown_up_to_there(folder, call, tmp_path):
 def test_check_says_that_the_tree_does_the_same_or_where_it_does_not(folder, call, monkeypatch):
     code, out, _ = call("replay", folder / "run", "--check")
     assert (code, out) == (0, "the tree did the same in all 30 ticks\n")
-    from momantu_bt.engine.nodes.timing import Sleep
+    from momantu_bt.nodes.timing import Sleep
 
     monkeypatch.setattr(Sleep, "step", lambda self: self.fail("BROKEN", "as if it were changed"))
     code, out, _ = call("replay", folder / "run", "--check")

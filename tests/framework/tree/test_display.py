@@ -2,10 +2,11 @@
 
 import pytest
 
-from momantu_bt.tree.catalogue import BUILT_IN, CONDITIONS
+from momantu_bt.tree.catalogue import CONDITIONS, NODES
+from momantu_bt.tree.catalogue.wording import value_text
 from momantu_bt.tree.files.yaml.format import read
 from momantu_bt.tree.model import Document, Literal, Reference, Scope, Template
-from momantu_bt.tree.show.printing import lines, value_text
+from momantu_bt.tree.show.printing import lines
 
 
 def document(node: str) -> Document:
@@ -67,9 +68,9 @@ WRITTEN = {
 }
 
 
-@pytest.mark.parametrize("type_", sorted({*BUILT_IN, *WRITTEN}))
+@pytest.mark.parametrize("type_", sorted({*NODES, *WRITTEN}))
 def test_every_kind_of_node_in_words(type_: str) -> None:
-    spec = BUILT_IN.get(type_)
+    spec = NODES.get(type_)
     if type_ in WRITTEN:
         node, expected = WRITTEN[type_]
         shown = [line.text for line in lines(document(node)) if line.depth > 0]

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from momantu_bt.formats.problems import Problem
-from momantu_bt.tree.catalogue import BUILT_IN
+from momantu_bt.tree.catalogue import NODES
 from momantu_bt.tree.show.problem_pages import codes
 
 ROOT = Path(__file__).parents[3]
@@ -30,7 +30,7 @@ def test_the_table_has_every_built_in_node() -> None:
     page = PAGE[: PAGE.index("## Modifiers")]
     rows = re.findall(r"^\| `(\w+)` \| (\w+)[^|]*\|([^|]*)\|$", page, re.MULTILINE)
     shown = {type_: (yaml, set(re.findall(r"`(\w+)`", ports))) for yaml, type_, ports in rows}
-    assert shown == {spec.type: (spec.yaml[0], set(spec.ports)) for spec in BUILT_IN.values()}
+    assert shown == {spec.type: (spec.yaml[0], set(spec.ports)) for spec in NODES.values()}
 
 
 @pytest.mark.parametrize(

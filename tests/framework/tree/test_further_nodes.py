@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pytest
 
 from momantu_bt.formats.problems import Problem, Severity
-from momantu_bt.tree.catalogue import BUILT_IN, SWITCHES
+from momantu_bt.tree.catalogue import NODES, SWITCHES
 from momantu_bt.tree.files.xml.format import read as read_xml
 from momantu_bt.tree.files.xml.writer import write as write_xml
 from momantu_bt.tree.files.yaml.format import read
@@ -176,7 +176,7 @@ def test_in_xml_a_key_is_also_named_without_braces(node: str) -> None:
 
 
 def test_nodes_with_a_queue_or_a_watched_key_say_so_in_the_catalogue() -> None:
-    for spec in BUILT_IN.values():
+    for spec in NODES.values():
         assert set(spec.keys) <= set(spec.ports)
         assert set(spec.may_be_empty) <= set(spec.ports)
         assert spec.item is None or set(spec.item) <= set(spec.ports)

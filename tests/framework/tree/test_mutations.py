@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 
-from momantu_bt.tree.catalogue import BUILT_IN, MODIFIERS
+from momantu_bt.tree.catalogue import MODIFIERS, NODES
 from momantu_bt.tree.model import Node
 from momantu_bt.tree.registry import Registry
 
@@ -113,7 +113,7 @@ def test_the_judgement_of_free_text_and_of_what_may_be_left_out() -> None:
 
 def test_good_trees_use_every_node_and_modifier(trees: list[Any]) -> None:
     used = {node.type for good in trees for node in nodes_of(good)}
-    assert set(BUILT_IN) <= used
+    assert set(NODES) <= used
     written = set(re.findall(r"\b(\w+):", "".join(good.text for good in trees if not good.as_xml)))
     assert set(MODIFIERS) <= written
 

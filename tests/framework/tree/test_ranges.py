@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 import momantu_bt
 from momantu_bt.formats.problems import Problem
 from momantu_bt.skill import In, Port, Skill
-from momantu_bt.tree.catalogue import BUILT_IN
+from momantu_bt.tree.catalogue import NODES
 from momantu_bt.tree.check.checker import check as check_document
 from momantu_bt.tree.files.yaml.format import read
 from momantu_bt.tree.registry import Registry
@@ -51,7 +51,7 @@ def test_not_a_number_is_out_of_every_range() -> None:
 
 
 def test_defaults_of_built_in_nodes_are_within_their_bounds() -> None:
-    bounded = [p for spec in BUILT_IN.values() for p in spec.ports.values() if p.bounds]
+    bounded = [p for spec in NODES.values() for p in spec.ports.values() if p.bounds]
     assert len(bounded) > 10
     for port in bounded:
         if isinstance(port.default, int | float):

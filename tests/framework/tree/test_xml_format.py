@@ -7,7 +7,7 @@ import pytest
 
 from momantu_bt.formats.places import Place
 from momantu_bt.formats.problems import Problem, Severity
-from momantu_bt.tree.catalogue import BUILT_IN, OWN_NODES, XML_CONDITIONS
+from momantu_bt.tree.catalogue import NODES, XML_CONDITIONS, is_ours
 from momantu_bt.tree.files.xml.format import read
 from momantu_bt.tree.files.yaml.format import read as read_yaml
 from momantu_bt.tree.model import (
@@ -146,10 +146,10 @@ def test_explicit_tags(root: Root) -> None:
     assert root('<Decorator ID="Inverter"><AlwaysSuccess/></Decorator>').type == "Inverter"
 
 
-@pytest.mark.parametrize("type_", sorted(BUILT_IN))
+@pytest.mark.parametrize("type_", sorted(NODES))
 def test_every_node_of_the_catalogue_with_every_port(type_: str, root: Root) -> None:
-    spec = BUILT_IN[type_]
-    prefix = "momantu:" if type_ in OWN_NODES else ""
+    spec = NODES[type_]
+    prefix = "momantu:" if is_ours(type_) else ""
     names = {port: spec.xml.get(port, port) or f"momantu:{port}" for port in spec.ports}
     once = [port for port in names if not any(port in group[1:] for group in spec.one_of)]
     given = {port: "x" if spec.ports[port].type is ScriptText else "{k}" for port in once}

@@ -4,7 +4,7 @@ import pytest
 
 from momantu_bt.cli import main
 from momantu_bt.skill import MISSING, Port
-from momantu_bt.tree.catalogue import BUILT_IN, NAV2_NODES, OWN_NODES
+from momantu_bt.tree.catalogue import NODES, Dialect, of_dialect
 from momantu_bt.tree.files.xml.format import read
 from momantu_bt.tree.files.xml.models import our_type
 from momantu_bt.tree.files.xml.palette import palette
@@ -60,12 +60,12 @@ def test_defaults_that_fit_an_attribute_are_there(registry: Registry) -> None:
 
 def test_our_own_nodes_nav2s_and_handlers() -> None:
     found = models(palette({}))
-    ours = {f"momantu:{name}" for name in OWN_NODES & BUILT_IN.keys()}
-    assert set(found) == {*ours, "momantu:Catch", *NAV2_NODES}
+    ours = {f"momantu:{name}" for name in of_dialect(Dialect.OURS)}
+    assert set(found) == {*ours, "momantu:Catch", *of_dialect(Dialect.NAV2)}
     assert found["RecoveryNode"].kind == "Control"
     assert [port.name for port in found["RateController"].ports] == ["hz"]
-    for name in OWN_NODES & BUILT_IN.keys():
-        assert {port.name for port in found[f"momantu:{name}"].ports} == set(BUILT_IN[name].ports)
+    for name in of_dialect(Dialect.OURS):
+        assert {port.name for port in found[f"momantu:{name}"].ports} == set(NODES[name].ports)
     assert parse_type(our_type(found["momantu:ForEach"].ports[0].type_name)) == tuple[object, ...]
 
 

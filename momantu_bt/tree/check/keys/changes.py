@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from momantu_bt.skill import Port
-from momantu_bt.tree.catalogue import SUBTREE
-from momantu_bt.tree.check.keys.known import Key, literal_type
+from momantu_bt.tree.catalogue import NODES, SUBTREE
+from momantu_bt.tree.catalogue.known import Key, literal_type
 from momantu_bt.tree.check.keys.shared import TreeKeys, call_of
 from momantu_bt.tree.check.signatures import Context, Signature
 from momantu_bt.tree.model import Literal, Node, Reference, Scope, Tree
@@ -79,7 +79,8 @@ class KeyChanges:
         return found
 
     def _own_removals(self, node: Node) -> Iterable[str]:
-        key = node.ports.get("key") if node.type == "UnsetBlackboard" else None
+        spec = NODES.get(node.type)
+        key = node.ports.get(spec.removes or "") if spec is not None else None
         if isinstance(key, Reference) and key.scope is Scope.LOCAL:
             return [key.key]
         if node.type != SUBTREE:
@@ -90,7 +91,8 @@ class KeyChanges:
 
 def _types(node: Node, port: Port, signature: Signature) -> list[ValueType]:
     """What an output of a node may be."""
-    given = node.ports.get("value") if node.type == "SetBlackboard" else None
+    copies = signature.spec.copies if signature.spec is not None else {}
+    given = node.ports.get(copies.get(port.name, ""))
     if isinstance(given, Literal):
         return [literal_type(given)]
     item = signature.spec.item if signature.spec is not None else None

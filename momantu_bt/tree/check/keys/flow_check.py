@@ -6,14 +6,15 @@ known after its success and after its failure.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.places import Place, within
-from momantu_bt.tree.catalogue import BUILT_IN, PRE_CONDITIONS, SUBTREE
+from momantu_bt.tree.catalogue import NODES, PRE_CONDITIONS, SUBTREE, NodeSpec
+from momantu_bt.tree.catalogue.flow import After, Walk, as_written
+from momantu_bt.tree.catalogue.known import NEVER, Key, Known, literal_type, meet
+from momantu_bt.tree.catalogue.spec import Kind, Scripts
 from momantu_bt.tree.check.keys.changes import KeyChanges
-from momantu_bt.tree.check.keys.flow import FLOWS, After, Walk
-from momantu_bt.tree.check.keys.known import NEVER, Key, Known, both, literal_type, meet
 from momantu_bt.tree.check.keys.reads import Demand, KeyReads, Written, references
 from momantu_bt.tree.check.keys.shared import Call, call_of, shared_keys
 from momantu_bt.tree.check.signatures import Context, Signature
@@ -49,7 +50,7 @@ class _KeyCheck:
         self.reads, self.context, self.tree = reads, reads.context, reads.tree
         self.ports = self.context.tree_signature(self.tree).ports
         self.changes = KeyChanges(self.context, self.tree, reads.keys)
-        self.walk = Walk(self.node, self.changes.removed, self.changes.rewritten)
+        self.walk = self.walking(self.node)
 
     def run(self) -> None:
         after = self.node(self.tree.root, self.start())
@@ -64,6 +65,11 @@ class _KeyCheck:
             if port.direction == "out":
                 self.output_of_tree(name, success.get(name), success)
         self.watched()
+
+    def walking(self, into: Callable[[Node, Known], After]) -> Walk:
+        """What flows ask."""
+        removed, rewritten = self.changes.removed, self.changes.rewritten
+        return Walk(into, removed, rewritten, self.outputs, self.script_at)
 
     def report_unread(self) -> None:
         """What is written and read nowhere; any tree may read what the main one has."""
@@ -165,58 +171,29 @@ class _KeyCheck:
                     self.reads.see(reference)
             return After(before, before)
         self.reads.inputs(node, signature, self.at_any_tick(node, before))
+        spec = signature.spec
+        scripts = Scripts.ASKED if spec is None else spec.scripts
         for name, port in signature.ports.items():
             code = node.ports.get(name)
-            if port.type is ScriptText and isinstance(code, Literal) and node.type != "TestNode":
-                after = self.script(str(code.value), before, node.port_places[name])
-                before = after if node.type == "Script" else before
-        flow = FLOWS.get(node.type)
-        if flow is None:
-            return self.leaf(node, signature, before)
-        if signature.spec is not None and signature.spec.item is not None:
-            return flow(self.with_item(node, signature.spec.item), node, before)
-        return flow(self.walk, node, self.handed_on(node, signature, before))
-
-    def leaf(self, node: Node, signature: Signature, before: Known) -> After:
-        key = node.ports.get("key")
-        if node.type == "UnsetBlackboard":
-            gone = before.lacking([key.key]) if isinstance(key, Reference) else before
-            return After(gone, before)
+            if port.type is ScriptText and isinstance(code, Literal) and scripts is not Scripts.OWN:
+                after = self.script_at(node, name, before)
+                before = after if scripts is Scripts.RUN else before
         if node.type == SUBTREE:
-            return self.subtree(call_of(self.context, node), signature, before)
-        after = self.outputs(node, signature, before)
-        if node.type == "AlwaysSuccess":
-            return After(after, NEVER)
-        if node.type in ("AlwaysFailure", "Fail"):
-            return After(NEVER, before)
-        if node.type == "TestNode":
-            return self.test_node(node, before)
-        return After(after, before)
+            return self.subtree(call_of(self.context, node), before)
+        if spec is None:
+            return as_written(self.walk, node, before)
+        if spec.item is not None:
+            return spec.flow(self.with_item(node, spec.item), node, before)
+        if spec.kind is not Kind.LEAF:
+            before = self.handed_on(node, signature, spec, before)
+        return spec.flow(self.walk, node, before)
 
-    def test_node(self, node: Node, before: Known) -> After:
-        """After the scripts that follow its end; each of them may fail."""
-
-        def then(known: Known, name: str) -> Known:
-            code = node.ports.get(name)
-            if not isinstance(code, Literal):
-                return known
-            return self.script(str(code.value), known, node.port_places[name])
-
-        then(before, "return_status_script")
-        good, bad = then(before, "success_script"), then(before, "failure_script")
-        success = both(good, then(meet(good, bad), "post_script"))
-        status = node.ports.get("return_status", Literal("SUCCESS"))
-        if "return_status_script" in node.ports or not isinstance(status, Literal):
-            return After(success, before, before)
-        ends = {"SUCCESS": After(success, before), "SKIPPED": After(NEVER, before, before)}
-        return ends.get(str(status.value), After(NEVER, before))
-
-    def subtree(self, call: Call, signature: Signature, before: Known) -> After:
+    def subtree(self, call: Call, before: Known) -> After:
         """A tree that is run: what it needs, and which of the keys it shares have a value then."""
         inside = self.reads.keys[call.tree.name]
         self.reads.of_call(call, inside, before)
         kept = before.lacking(call.local(inside.removed))
-        success = self.outputs(call.node, signature, kept)
+        success = self.outputs(call.node, kept)
         success = self.known_after(success, call, call.local(inside.success))
         return After(success, self.known_after(kept, call, call.local(inside.failure)))
 
@@ -235,7 +212,12 @@ class _KeyCheck:
                 found[outer] = Key(type_, call.place(inner))
         return known.having_all(found)
 
-    def outputs(self, node: Node, signature: Signature, before: Known) -> Known:
+    def outputs(self, node: Node, before: Known) -> Known:
+        """What is known once the outputs of a node have been written."""
+        signature = self.context.signature(node)
+        if signature is None:
+            return before
+        copies = {} if signature.spec is None else signature.spec.copies
         after = before
         for name, value in node.ports.items():
             port = signature.ports.get(name)
@@ -245,17 +227,17 @@ class _KeyCheck:
                 continue
             place = node.port_places.get(name, node.place)
             self.reads.written.append(Written(value.key, place, signature.said))
-            given = node.ports.get("value") if node.type == "SetBlackboard" else None
+            given = node.ports.get(copies.get(name, ""))
             type_ = literal_type(given) if isinstance(given, Literal) else port.type
             after = after.having(value.key, Key(type_, place))
         return after
 
-    def handed_on(self, node: Node, signature: Signature, before: Known) -> Known:
-        """What `goal_updater` writes for its child: what its inputs have."""
+    def handed_on(self, node: Node, signature: Signature, spec: NodeSpec, before: Known) -> Known:
+        """What a node with children writes for them: what the inputs that it copies have."""
         after = before
         for name, value in node.ports.items():
-            source = node.ports.get(name.replace("output_", "input_"))
-            port = signature.ports.get(name)
+            source = node.ports.get(spec.copies.get(name, ""))
+            port = spec.ports.get(name)
             if port is None or port.direction != "out" or not isinstance(value, Reference):
                 continue
             place = node.port_places.get(name, node.place)
@@ -279,7 +261,7 @@ class _KeyCheck:
                 self.reads.given.add(value.key)
             return self.node(child, before)
 
-        return Walk(walk, self.changes.removed, self.changes.rewritten)
+        return self.walking(walk)
 
     def written_items(self, loop: Node, source: str, before: Known) -> Key | None:
         """The item of a loop over a list that is written in the file."""
@@ -297,7 +279,7 @@ class _KeyCheck:
         return Key(types.pop() if len(types) == 1 else object, place, literals)
 
     def item_type(self, loop: Node, output: str, source: str, before: Known) -> ValueType:
-        declared = BUILT_IN[loop.type].ports[output].type
+        declared = NODES[loop.type].ports[output].type
         items = loop.ports.get(source)
         if declared is object and isinstance(items, Reference) and not items.fields:
             key = before.get(items.key)
@@ -305,6 +287,13 @@ class _KeyCheck:
                 case Items(item=item) | Fixed(items=(item, *_)):
                     return item.type
         return declared
+
+    def script_at(self, node: Node, port: str, before: Known) -> Known:
+        """What is known after the script at a port."""
+        code = node.ports.get(port)
+        if not isinstance(code, Literal):
+            return before
+        return self.script(str(code.value), before, node.port_places[port])
 
     def script(self, text: str, before: Known, place: Place) -> Known:
         try:

@@ -11,7 +11,7 @@ from momantu_bt.formats.places import Place
 from momantu_bt.formats.units import UnitError, in_unit
 from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue import AUTOREMAP, SUBTREE
-from momantu_bt.tree.check.keys.known import Key, Known, part_type
+from momantu_bt.tree.catalogue.known import Key, Known, part_type
 from momantu_bt.tree.check.keys.shared import Call, TreeKeys
 from momantu_bt.tree.check.nodes import autoremaps, check_name
 from momantu_bt.tree.check.signatures import Context, Signature

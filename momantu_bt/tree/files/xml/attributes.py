@@ -9,13 +9,7 @@ from typing import Any
 from momantu_bt.formats.units import UnitError, in_unit
 from momantu_bt.plugins import PluginError
 from momantu_bt.skill import Port
-from momantu_bt.tree.catalogue import (
-    AUTOREMAP,
-    BUILT_IN,
-    SUBTREE,
-    XML_CONDITIONS,
-    NodeSpec,
-)
+from momantu_bt.tree.catalogue import AUTOREMAP, NODES, SUBTREE, XML_CONDITIONS, NodeSpec
 from momantu_bt.tree.files.xml.ports import DESCRIPTION, DISABLED, NOTE, PREFIX, RESERVED
 from momantu_bt.tree.files.xml.text import attribute, is_xml
 from momantu_bt.tree.files.xml.values import WireError, attribute_value
@@ -120,7 +114,7 @@ class AttributeWriter:
     def _port(self, node: Node, name: str, value: PortValue) -> str:
         if not _has_attribute(node, name):
             return ""
-        spec = BUILT_IN.get(node.type)
+        spec = NODES.get(node.type)
         shown = name if spec is None else spec.xml.get(name, name)
         type_ = self._type(node, name)
         if type_ is ScriptText:
@@ -139,7 +133,7 @@ class AttributeWriter:
         return _milliseconds(spec, name, value) + ours
 
     def _type(self, node: Node, name: str) -> ValueType:
-        spec = BUILT_IN.get(node.type)
+        spec = NODES.get(node.type)
         if spec is not None:
             return spec.ports[name].type if name in spec.ports else object
         if node.type == SUBTREE:
@@ -163,7 +157,7 @@ class AttributeWriter:
 
 def _has_attribute(node: Node, name: str) -> bool:
     """Whether an attribute can be named after a port."""
-    return is_name(name) and (node.type in BUILT_IN or name not in (DISABLED, NOTE))
+    return is_name(name) and (node.type in NODES or name not in (DISABLED, NOTE))
 
 
 def _unset_key(value: PortValue, text: str | None) -> str | None:

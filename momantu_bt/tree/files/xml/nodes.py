@@ -12,12 +12,7 @@ from dataclasses import dataclass, field
 from momantu_bt.formats.names import nearest, valid_names
 from momantu_bt.plugins import PluginError
 from momantu_bt.skill import Port
-from momantu_bt.tree.catalogue import (
-    BUILT_IN,
-    OWN_NODES,
-    SUBTREE,
-    NodeSpec,
-)
+from momantu_bt.tree.catalogue import NODES, SUBTREE, Dialect, NodeSpec, is_ours, of_dialect
 from momantu_bt.tree.files.queue import Put, into_handler
 from momantu_bt.tree.files.xml.elements import OURS, Element
 from momantu_bt.tree.files.xml.ports import CATCH, EXPLICIT, PREFIX, PortReader
@@ -57,7 +52,7 @@ class NodeReader:
             return node
         node.type = type_
         self._refuse_text(element)
-        spec = BUILT_IN.get(type_)
+        spec = NODES.get(type_)
         if type_ == SUBTREE:
             self._target(node, element)
         reader = PortReader(node, element, self.problems)
@@ -103,7 +98,7 @@ class NodeReader:
         name = element.name
         if name in EXPLICIT:
             return self._explicit_type(element)
-        if name in OWN_NODES:
+        if is_ours(name):
             return self._unknown(element, f"did you mean momantu:{name}?")
         if name in ONCE and name not in self.registry.skills:
             return self._unknown(element, f"did you mean {ONCE[name]}?")
@@ -117,18 +112,18 @@ class NodeReader:
         return None
 
     def _own_type(self, element: Element) -> str | None:
-        if element.name in OWN_NODES & BUILT_IN.keys():
+        if is_ours(element.name):
             return element.name
-        if element.name in BUILT_IN:
+        if element.name in NODES:
             return self._unknown(element, f"did you mean {element.name}?")
-        known = sorted(OWN_NODES & BUILT_IN.keys())
+        known = of_dialect(Dialect.OURS)
         near = nearest(element.name, known)
         hint = f"did you mean momantu:{near}?" if near else ""
         return self._unknown(element, hint or valid_names(element.name, known, "nodes of ours"))
 
     def _explicit_type(self, element: Element) -> str | None:
         identity = element.get("ID")
-        if identity is not None and identity.value.removeprefix(PREFIX) in OWN_NODES:
+        if identity is not None and is_ours(identity.value.removeprefix(PREFIX)):
             return identity.value.removeprefix(PREFIX)
         if identity is not None and identity.value:
             return identity.value
@@ -168,7 +163,7 @@ class NodeReader:
         if spec is not None and spec.handlers:
             inside = [each for each in inside if not _is_handler(each)]
             for each in catches:
-                self._handler(node, each)
+                self._handler(node, each, spec)
             if not catches:
                 message = f"<{element.said}> without a <momantu:{CATCH}>"
                 hint = f'write <momantu:{CATCH} codes="A | B">…</momantu:{CATCH}>'
@@ -190,7 +185,7 @@ class NodeReader:
             message = f"<{element.said}> has {count or 'no'} children; `{missing}` is missing"
             self.problems.error("missing-child", element.place, message)
 
-    def _handler(self, node: Node, element: Element) -> None:
+    def _handler(self, node: Node, element: Element, spec: NodeSpec) -> None:
         self._refuse_text(element)
         codes = element.get("codes")
         for each in element.attributes:
@@ -210,7 +205,7 @@ class NodeReader:
             self.problems.error("children", element.children[1].place, message, "use <Sequence>")
         elif element.children:
             self._waiting.append((element.children[0], into_handler(handler)))
-        elif node.type != "Recover":
+        elif not spec.tries_again:
             message = f"<momantu:{CATCH}> without a child is `again`"
             hint = "it has a meaning in <momantu:Recover> alone"
             self.problems.error("again", element.place, message, hint)

@@ -9,7 +9,7 @@ from typing import Any
 from lxml import etree
 
 from momantu_bt.skill import MISSING, Port, Skill
-from momantu_bt.tree.catalogue import BUILT_IN, NAV2_NODES, OWN_NODES, Kind
+from momantu_bt.tree.catalogue import NODES, Dialect, Kind, of_dialect, plugged_in
 from momantu_bt.tree.files.xml.header import FORMAT
 from momantu_bt.tree.files.xml.ports import CATCH, PREFIX
 from momantu_bt.values.kinds import Choice, kind_of, without_none
@@ -29,11 +29,11 @@ def palette(skills: Mapping[str, type[Skill]]) -> str:
     section = etree.SubElement(root, "TreeNodesModel")
     for name, skill in sorted(skills.items()):
         _model(section, "Action", name, skill.ports, inspect.getdoc(skill) or "")
-    for name in sorted(OWN_NODES & BUILT_IN.keys()):
-        spec = BUILT_IN[name]
+    for name in of_dialect(Dialect.OURS):
+        spec = NODES[name]
         _model(section, _KINDS[spec.kind], PREFIX + name, spec.ports, spec.doc)
-    for name in sorted(NAV2_NODES):
-        spec = BUILT_IN[name]
+    for name in (*of_dialect(Dialect.NAV2), *plugged_in()):
+        spec = NODES[name]
         _model(section, _KINDS[spec.kind], name, spec.ports, spec.doc)
     codes = Port("codes", "in", str, "codes of failures, `A | B` several, `any` the rest")
     doc = "What Recover or Handle do after these failures; without a child: try again."

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import zip_longest
 from typing import TypeAlias
 
-from momantu_bt.tree.catalogue import BUILT_IN, OWN_NODES, SUBTREE
+from momantu_bt.tree.catalogue import NODES, SUBTREE, is_ours
 from momantu_bt.tree.files.xml.attributes import AttributeWriter, is_name, plain
 from momantu_bt.tree.files.xml.elements import OURS
 from momantu_bt.tree.files.xml.header import FORMAT
@@ -179,7 +179,7 @@ class _NodeWriter:
         return lines
 
     def _node(self, node: Node, pad: str) -> Iterator[_Piece]:
-        spec = BUILT_IN.get(node.type)
+        spec = NODES.get(node.type)
         cases = [f"case_{number + 1}" for number in range(spec.switch if spec is not None else 0)]
         remarks = {key: texts for key, texts in node.port_comments.items() if key not in cases}
         yield from above(node.comments, pad)
@@ -215,9 +215,9 @@ class _NodeWriter:
 
     def _tag(self, node: Node) -> tuple[str, str]:
         """The tag, and the attribute that says what it is where the tag cannot."""
-        if node.type in OWN_NODES:
+        if is_ours(node.type):
             return PREFIX + node.type, ""
-        if node.type in BUILT_IN or node.type == SUBTREE:
+        if node.type in NODES or node.type == SUBTREE:
             return node.type, ""
         taken = (*EXPLICIT, *ONCE, *self.document.trees)
         if is_name(node.type) and node.type not in taken:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from momantu_bt.tree.catalogue import BUILT_IN, SWITCHES
+from momantu_bt.tree.catalogue import NODES, SWITCHES
 from momantu_bt.tree.files.yaml.children import read_control
 from momantu_bt.tree.files.yaml.ports import read_port
 from momantu_bt.tree.files.yaml.raw import Entries, Items, Raw, Scalar
@@ -19,7 +19,7 @@ def read_branches(
     """`if:` or `while_do:`, and what stands beside it."""
     places = {key.text: raw for key, raw in companions}
     reading.later(as_condition(value) or value, node.children.append)
-    for name in COMPANIONS[BUILT_IN[node.type].yaml[0]]:
+    for name in COMPANIONS[NODES[node.type].yaml[0]]:
         if name in places:
             reading.later(places[name], node.children.append)
         elif name != "else":

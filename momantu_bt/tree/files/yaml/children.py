@@ -45,7 +45,7 @@ def read_handlers(node: Node, value: Raw, spec: NodeSpec, reading: Reading) -> N
         if name not in having:
             reading.error("missing-child", node.place, f"`{said(node)}` without `{name}:`")
     if "catch" in having:
-        _handlers(node, having["catch"], reading)
+        _handlers(node, having["catch"], spec, reading)
 
 
 def split(
@@ -66,7 +66,7 @@ def split(
     return values
 
 
-def _handlers(node: Node, raw: Raw, reading: Reading) -> None:
+def _handlers(node: Node, raw: Raw, spec: NodeSpec, reading: Reading) -> None:
     if not isinstance(raw, Entries) or not raw.entries:
         hint = "under it, lines such as `CODE | OTHER_CODE: node`"
         reading.error("wrong-value", raw.place, "`catch` is a mapping of codes to nodes", hint)
@@ -77,7 +77,7 @@ def _handlers(node: Node, raw: Raw, reading: Reading) -> None:
         handler = Handler(codes, None, key.place)
         node.handlers.append(handler)
         if isinstance(value, Scalar) and value.text == AGAIN:
-            if node.type != "Recover":
+            if not spec.tries_again:
                 reading.error("again", value.place, "`again` has a meaning in `recover` alone")
             continue
         reading.later(value, into_handler(handler))

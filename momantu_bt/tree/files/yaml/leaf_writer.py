@@ -6,7 +6,7 @@ from collections.abc import Collection
 from dataclasses import dataclass
 
 from momantu_bt.plugins import PluginError
-from momantu_bt.tree.catalogue import BUILT_IN, MODIFIERS, SPELLED, SUBTREE
+from momantu_bt.tree.catalogue import MODIFIERS, NODES, SPELLED, SUBTREE
 from momantu_bt.tree.files.yaml.lines import STEP, WIDTH, above, beside, is_nested, signed, spread
 from momantu_bt.tree.files.yaml.scalars import (
     CannotWrite,
@@ -67,7 +67,7 @@ class LeafWriter:
 
     def port(self, node: Node, name: str, value: PortValue, *, flow: bool = False) -> str:
         """One port's value; a script in our spelling."""
-        spec = BUILT_IN.get(node.type)
+        spec = NODES.get(node.type)
         port = spec.ports.get(name) if spec is not None else None
         if port is not None and port.type is ScriptText and isinstance(value, Literal):
             return script_text(str(value.value), flow=flow)
@@ -80,7 +80,7 @@ class LeafWriter:
         ((name, value),) = node.ports.items()
         if isinstance(value, Literal) and (value.value is None or is_nested(value)):
             return False
-        spec = BUILT_IN.get(node.type)
+        spec = NODES.get(node.type)
         if spec is not None:
             script = spec.ports[name].type is ScriptText if name in spec.ports else False
             spelled = not script or script_spelling(_text(value)) is not None
@@ -104,12 +104,12 @@ class LeafWriter:
 
     def key(self, node: Node) -> str:
         """The node's name in YAML, as a key."""
-        spec = BUILT_IN.get(node.type)
+        spec = NODES.get(node.type)
         if spec is not None:
             return spec.yaml[0]
         name = node.target if node.type == SUBTREE else node.type
         tree = node.type == SUBTREE
-        words = (*SPELLED, *BUILT_IN, *MODIFIERS, SUBTREE, AGAIN)
+        words = (*SPELLED, *NODES, *MODIFIERS, SUBTREE, AGAIN)
         if not name or "$" in name or name in words or (name in self.trees) is not tree:
             raise CannotWrite(f"no node in YAML is called {name!r}")
         return scalar(name)

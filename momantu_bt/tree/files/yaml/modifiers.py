@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from momantu_bt.formats.names import nearest
-from momantu_bt.tree.catalogue import BUILT_IN, FORCED, MODIFIERS, SPELLED, NodeSpec
+from momantu_bt.tree.catalogue import FORCED, MODIFIERS, NODES, SPELLED, NodeSpec
 from momantu_bt.tree.files.yaml.ports import is_empty, read_port, read_ports
 from momantu_bt.tree.files.yaml.raw import Entries, Raw, Scalar
 from momantu_bt.tree.files.yaml.reading import Reading, said
@@ -92,7 +92,7 @@ def _decorator_spec(key: Scalar, value: Raw, problems: Problems) -> NodeSpec | N
         return SPELLED[key.text]
     text = value.text if isinstance(value, Scalar) else ""
     if text in FORCED:
-        return BUILT_IN[FORCED[text]]
+        return NODES[FORCED[text]]
     near = nearest(text, FORCED)
     hint = f"did you mean {near}?" if near else "write success or failure"
     problems.error("wrong-value", value.place, "`force` is success or failure", hint)

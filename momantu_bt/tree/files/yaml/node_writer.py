@@ -9,7 +9,7 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from momantu_bt.tree.catalogue import BUILT_IN, Kind
+from momantu_bt.tree.catalogue import NODES, Kind
 from momantu_bt.tree.files.yaml.leaf_writer import LeafWriter
 from momantu_bt.tree.files.yaml.lines import STEP, WIDTH, above, beside
 from momantu_bt.tree.files.yaml.scalars import (
@@ -155,7 +155,7 @@ class NodeWriter:
     def _modifier(self, node: Node) -> str:
         if node.type in FORCE:
             return FORCE[node.type]
-        key = BUILT_IN[node.type].yaml[0]
+        key = NODES[node.type].yaml[0]
         values = [f" {port_text(value)}" for value in node.ports.values()]
         return f"{key}:{''.join(values)}"
 
@@ -172,7 +172,7 @@ class NodeWriter:
 
     def _keyed(self, node: Node, lead: str, pad: str, more: bool) -> list[_Piece]:
         """The node's key with all that belongs under it. more: other keys follow."""
-        spec = BUILT_IN.get(node.type)
+        spec = NODES.get(node.type)
         key, end = self.leaves.key(node), above(node.end_comments, pad + STEP, every=True)
         heading = f"{lead}{key}:{beside(node.comments)}"
         if spec is not None and spec.switch and (cases := switch_cases(node)) is not None:
@@ -193,7 +193,7 @@ class NodeWriter:
         return [*self.leaves.lines(node, lead, pad, more), *end]
 
     def _children(self, node: Node, pad: str) -> list[_Piece]:
-        if not node.ports and node.type in BUILT_IN:
+        if not node.ports and node.type in NODES:
             return [_Body(child, f"{pad}{STEP}- ") for child in node.children]
         items = [_Body(child, f"{pad}{STEP * 2}- ") for child in node.children]
         return [*self.leaves.ports(node, pad + STEP), f"{pad}{STEP}children:", *items]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from momantu_bt.tree.catalogue import BUILT_IN, MODIFIERS, SPELLED, SUBTREE, Kind, NodeSpec
+from momantu_bt.tree.catalogue import MODIFIERS, NODES, SPELLED, SUBTREE, Kind, NodeSpec
 from momantu_bt.tree.files.queue import Put
 from momantu_bt.tree.files.yaml.branches import read_branches, read_switch
 from momantu_bt.tree.files.yaml.children import read_control, read_decorator, read_handlers, split
@@ -98,8 +98,8 @@ class NodeReader:
             return self.reading.broken("again", key.place, message)
         if "$" in name:
             return self.reading.broken("not-a-node", key.place, f"{name} is a wire, not a node")
-        if name in BUILT_IN or name == SUBTREE:
-            ours = BUILT_IN[name].yaml[0] if name in BUILT_IN else "the tree's name"
+        if name in NODES or name == SUBTREE:
+            ours = NODES[name].yaml[0] if name in NODES else "the tree's name"
             message, hint = f"no node is called {name!r}", f"did you mean {ours}?"
             return self.reading.broken("unknown-node", key.place, message, hint)
         return None

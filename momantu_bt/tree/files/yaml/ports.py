@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from momantu_bt.formats.names import nearest
 from momantu_bt.formats.places import Place
-from momantu_bt.tree.catalogue import BUILT_IN, SPELLED, SUBTREE, Kind, NodeSpec
+from momantu_bt.tree.catalogue import NODES, SPELLED, SUBTREE, Kind, NodeSpec
 from momantu_bt.tree.files.yaml.raw import Entries, Items, Raw, Scalar
 from momantu_bt.tree.files.yaml.reading import Reading, said
 from momantu_bt.tree.files.yaml.scripts import read_script
@@ -68,4 +68,4 @@ def is_empty(value: Raw) -> bool:
 def _near_control(node: Node) -> str | None:
     """What a mistyped node with a list of others was meant to be."""
     controls = [name for name, spec in SPELLED.items() if spec.kind is Kind.CONTROL]
-    return None if node.type in (SUBTREE, *BUILT_IN) else nearest(node.type, controls)
+    return None if node.type in (SUBTREE, *NODES) else nearest(node.type, controls)

@@ -7,7 +7,7 @@ from collections.abc import Collection
 from dataclasses import dataclass, field
 
 from momantu_bt.formats.places import Place
-from momantu_bt.tree.catalogue import BUILT_IN, SPELLED
+from momantu_bt.tree.catalogue import NODES, SPELLED
 from momantu_bt.tree.files.queue import Put
 from momantu_bt.tree.files.yaml.raw import Items, Raw
 from momantu_bt.tree.model import BROKEN, Node
@@ -52,5 +52,5 @@ class Reading:
 
 def said(node: Node) -> str:
     """The node as the file calls it."""
-    spec = BUILT_IN.get(node.type)
+    spec = NODES.get(node.type)
     return node.target or (spec.yaml[0] if spec is not None else node.type)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from momantu_bt.tree.catalogue import BUILT_IN, FORCED, Kind
+from momantu_bt.tree.catalogue import FORCED, NODES, Kind
 from momantu_bt.tree.files.yaml.lines import above, is_nested
 from momantu_bt.tree.files.yaml.scalars import port_text, scalar, script_spelling
 from momantu_bt.tree.model import Literal, Node, PortValue
@@ -13,7 +13,7 @@ FORCE = {type_: f"force: {word}" for word, type_ in FORCED.items()}
 
 def is_short(node: Node) -> bool:
     """Whether it may stand in braces: a leaf with nothing but ports, or a decorator around one."""
-    spec = BUILT_IN.get(node.type)
+    spec = NODES.get(node.type)
     if spec is not None and spec.kind is Kind.DECORATOR:
         below = node.children[0] if len(node.children) == 1 else node
         return not _says_more(node) and not below.children and is_short(below)
@@ -35,7 +35,7 @@ def has_modifiers(node: Node) -> bool:
 
 def can_be_modifier(node: Node) -> bool:
     """Whether it is a decorator that says no more than a key beside its child can."""
-    spec = BUILT_IN.get(node.type)
+    spec = NODES.get(node.type)
     if spec is None or not (spec.modifier or node.type in FORCE) or len(node.children) != 1:
         return False
     if node.name is not None or node.note is not None or node.disabled or node.conditions:
@@ -51,7 +51,7 @@ def _is_nothing(value: PortValue) -> bool:
 
 def switch_cases(node: Node) -> list[str] | None:
     """The keys of `cases:`; None where the ports cannot be written so."""
-    values = [node.ports.get(name) for name in BUILT_IN[node.type].ports]
+    values = [node.ports.get(name) for name in NODES[node.type].ports]
     if len(node.ports) != len(values) or len(node.children) != len(values):
         return None
     if any(value is None or is_nested(value) for value in values):

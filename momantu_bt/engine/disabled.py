@@ -1,0 +1,20 @@
+"""The node that the tree file disables."""
+
+from __future__ import annotations
+
+from momantu_bt.engine.node import TreeNode
+from momantu_bt.engine.status import SKIPPED, Status
+
+
+class Disabled(TreeNode):
+    """Always SKIPPED, and never started; what is below it in the file is not built."""
+
+    def execute(self) -> Status:
+        """SKIPPED, which is no run."""
+        status = super().execute()
+        self.runs = 0
+        return status
+
+    def step(self) -> Status:
+        """SKIPPED."""
+        return SKIPPED

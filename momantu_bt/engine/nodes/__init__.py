@@ -1,1 +1,0 @@
-"""The classes of the built-in nodes, by canonical type."""

@@ -1,0 +1,83 @@
+"""A node that a rule of a test replaces: it does what the rule says, not what it is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from momantu_bt.engine.blackboard import Cell
+from momantu_bt.engine.node import Parts, TreeNode
+from momantu_bt.engine.role import Role
+from momantu_bt.engine.session import CLOCK_SLACK
+from momantu_bt.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS, Status
+from momantu_bt.tree.substitute.substitution import Result
+
+
+class Substituted(TreeNode):
+    """Gives the results in turn, each as often as it says; then its child, the node itself.
+
+    Conditions are this node's; the child has none of its own.
+    """
+
+    def __init__(
+        self, parts: Parts, *, results: Sequence[Result], outputs: Mapping[str, Cell]
+    ) -> None:
+        super().__init__(parts)
+        self.results = tuple(results)
+        self.outputs = dict(outputs)
+        self.at = self.given = 0
+        self.result: Result | None = None
+        self.begun = 0.0
+
+    @property
+    def is_itself(self) -> bool:
+        """Whether the rules are used up and the node runs."""
+        return self.at >= len(self.results)
+
+    @property
+    def role(self) -> Role:
+        """It acts, whatever it stands for."""
+        return Role.ACT
+
+    @property
+    def note(self) -> str:
+        """That this is not the node."""
+        return "" if self.is_itself and self.result is None else "substituted"
+
+    def step(self) -> Status:
+        """Begin the next result, or go on with this one."""
+        if self.state is not RUNNING:
+            self._next()
+        self.state = RUNNING
+        if self.result is None:
+            return self._itself()
+        if self.result.status == "RUNNING":
+            return RUNNING
+        if self.context.now < self.begun + self.result.delay - CLOCK_SLACK:
+            return RUNNING
+        return self._end_with(self.result)
+
+    def _next(self) -> None:
+        self.result, self.begun = None, self.context.now
+        if self.is_itself:
+            return
+        self.result = self.results[self.at]
+        self.given += 1
+        if self.given == self.result.times:
+            self.at, self.given = self.at + 1, 0
+
+    def _end_with(self, result: Result) -> Status:
+        if result.status == "SKIPPED":
+            return SKIPPED
+        if result.status == "FAILURE":
+            return self.fail(result.code, result.message or "a rule of the test says so")
+        for name, value in result.outputs.items():
+            if name in self.outputs:
+                self.outputs[name].write(value)
+        return SUCCESS
+
+    def _itself(self) -> Status:
+        child = self.kids[0]
+        status = child.execute()
+        if status.completed:
+            child.reset()
+        return self.fail_with(self.failure_of(child)) if status is FAILURE else status

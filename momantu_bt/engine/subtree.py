@@ -1,0 +1,57 @@
+"""SubTree: another tree of the document, on a board of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from momantu_bt.engine.blackboard import Board, Cell
+from momantu_bt.engine.causes import through
+from momantu_bt.engine.decorator import Decorator
+from momantu_bt.engine.label import label
+from momantu_bt.engine.node import Parts
+from momantu_bt.engine.ports import Reader
+from momantu_bt.engine.role import Role
+from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, Status
+
+
+class SubTree(Decorator):
+    """The status of the tree inside; its failures carry this node's name and place.
+
+    A key that is wired to a key outside is that key. Everything else that is given (a value, a
+    part of a value, a text, a default) is written to the inner key at each start. board: the keys
+    inside.
+    """
+
+    def __init__(
+        self,
+        parts: Parts,
+        *,
+        given: Mapping[str, tuple[Cell, Reader]],
+        wires: Mapping[str, Cell],
+        board: Board,
+    ) -> None:
+        super().__init__(parts)
+        self.given = dict(given)
+        self.wires = dict(wires)
+        self.board = board
+
+    @property
+    def role(self) -> Role:
+        """A tree of its own."""
+        return Role.TREE
+
+    def step(self) -> Status:
+        """Tick the tree inside."""
+        if self.state is IDLE:
+            for cell, read in self.given.values():
+                cell.write(read())
+            values = {name: cell.value for name, (cell, _) in self.given.items()}
+            values |= {name: cell.value for name, cell in self.wires.items()}
+            self.label = label(self.model, values)
+            self.state = RUNNING
+        status = self.child.execute()
+        if status is FAILURE:
+            self.fail_with(through(self, self.failure_of(self.child)))
+        if status.completed:
+            self.child.reset()
+        return status

@@ -1,0 +1,1 @@
+"""The built-in nodes: a file per family, each with what the language and the engine need of it."""

@@ -1,0 +1,241 @@
+"""Repeat, RetryUntilSuccessful, KeepRunningUntilFailure, ForEach, RunOnce: the child again.
+
+| child returns | Repeat            | RetryUntilSuccessful | KeepRunningUntilFailure |
+|---------------|-------------------|----------------------|-------------------------|
+| SUCCESS       | again; in the end SUCCESS | SUCCESS      | again                   |
+| FAILURE       | FAILURE           | again; in the end FAILURE | FAILURE            |
+| RUNNING       | RUNNING           | RUNNING              | RUNNING                 |
+| SKIPPED       | SKIPPED           | SKIPPED              | RUNNING                 |
+
+After a round that began and ended within one tick a tick passes, so that what is around can
+interrupt; after a longer one the next begins at once. -1 rounds are without end.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from momantu_bt.engine.causes import with_tries
+from momantu_bt.engine.decorator import Decorator
+from momantu_bt.engine.node import Parts
+from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Status
+from momantu_bt.tree.catalogue.flow import After, Walk, again, around, as_child, perhaps
+from momantu_bt.tree.catalogue.known import NEVER, Known, meet
+from momantu_bt.tree.catalogue.spec import Dialect, decorator, input_port, output_port
+from momantu_bt.tree.catalogue.wording import tries_text
+from momantu_bt.tree.model import Node
+
+
+def _until_failure(walk: Walk, node: Node, before: Known) -> After:
+    end = as_child(walk, node, before)
+    return After(NEVER, end.failure, end.skipped)
+
+
+def _once(walk: Walk, node: Node, before: Known) -> After:
+    """Later, the child is skipped and what it wrote is still there, or its end is repeated."""
+    end = as_child(walk, node, before)
+    return After(end.success, meet(end.failure, before), before)
+
+
+class Repeat(Decorator):
+    """Runs the child again when it succeeds."""
+
+    spec = decorator(
+        "Repeat",
+        "repeat",
+        "Runs the child again when it succeeds.",
+        input_port("cycles", int, "runs in all; -1 is without end", least=1, endless=True),
+        xml={"cycles": "num_cycles"},
+        flow=again(around),
+        around=lambda node: tries_text(node, "cycles", "round", "rounds"),
+    )
+
+    def __init__(self, parts: Parts) -> None:
+        super().__init__(parts)
+        self.inputs = parts.inputs()
+        self.count = 0
+
+    def step(self) -> Status:
+        """Rounds until the child runs, ends otherwise, or a tick is to pass."""
+        cycles: int = self.inputs["cycles"]
+        self.state = RUNNING
+        while self.count < cycles or cycles == -1:
+            fresh = self.child.state is IDLE
+            status = self.child.execute()
+            if status is RUNNING:
+                return RUNNING
+            self.child.reset()
+            if status is SKIPPED:
+                return SKIPPED
+            if status is FAILURE:
+                self.count = 0
+                return self.pass_on(FAILURE)
+            self.count += 1
+            if fresh and (self.count < cycles or cycles == -1):
+                return RUNNING
+        self.count = 0
+        return SUCCESS
+
+    @property
+    def note(self) -> str:
+        """Which round it is."""
+        return f"round {self.count + 1}"
+
+    def clear(self) -> None:
+        """No rounds yet."""
+        self.count = 0
+
+
+class RetryUntilSuccessful(Decorator):
+    """Runs the child again when it fails; `attempts` counts all tries."""
+
+    spec = decorator(
+        "RetryUntilSuccessful",
+        "retry",
+        "Runs the child again when it fails.",
+        input_port("attempts", int, "tries in all; -1 is without end", least=1, endless=True),
+        xml={"attempts": "num_attempts"},
+        retries=True,
+        flow=again(around),
+        around=lambda node: tries_text(node, "attempts"),
+    )
+
+    def __init__(self, parts: Parts) -> None:
+        super().__init__(parts)
+        self.inputs = parts.inputs()
+        self.count = 0
+
+    def step(self) -> Status:
+        """Tries until the child runs, ends otherwise, or a tick is to pass."""
+        attempts: int = self.inputs["attempts"]
+        self.state = RUNNING
+        while self.count < attempts or attempts == -1:
+            fresh = self.child.state is IDLE
+            status = self.child.execute()
+            if status is RUNNING:
+                return RUNNING
+            self.child.reset()
+            if status is not FAILURE:
+                self.count = 0 if status is SUCCESS else self.count
+                return status
+            self.count += 1
+            attempts = self.inputs["attempts"]
+            if fresh and (self.count < attempts or attempts == -1):
+                return RUNNING
+        tries, self.count = self.count, 0
+        return self.fail_with(with_tries(self, self.failure_of(self.child), tries, attempts))
+
+    @property
+    def note(self) -> str:
+        """Which try it is."""
+        return f"try {self.count + 1}"
+
+    def clear(self) -> None:
+        """No tries yet."""
+        self.count = 0
+
+
+class KeepRunningUntilFailure(Decorator):
+    """Runs the child again and again until it fails."""
+
+    spec = decorator(
+        "KeepRunningUntilFailure",
+        "keep_running_until_failure",
+        "Runs the child again and again until it fails.",
+        flow=again(_until_failure),
+        around=lambda node: "again and again until it fails",
+    )
+
+    def step(self) -> Status:
+        """One round at most."""
+        self.state = RUNNING
+        status = self.child.execute()
+        if status is FAILURE or status is SUCCESS:
+            self.child.reset()
+        if status is FAILURE:
+            return self.pass_on(FAILURE)
+        return RUNNING
+
+
+class ForEach(Decorator):
+    """Runs the child for each item of a list.
+
+    The items are read when it starts; `as` holds the item of the round. SUCCESS after the last
+    item (at once for an empty list), FAILURE with the child's; a skipped round counts as done.
+    """
+
+    spec = decorator(
+        "ForEach",
+        "for_each",
+        "Runs the child for each item of a list, until it fails.",
+        input_port("in", tuple, "the items"),
+        output_port("as", object, "the key that holds the item of the round"),
+        first=None,
+        modifier=False,
+        dialect=Dialect.OURS,
+        item=("as", "in"),
+        flow=again(perhaps),
+    )
+
+    def __init__(self, parts: Parts) -> None:
+        super().__init__(parts)
+        self.inputs = parts.inputs()
+        self.item = parts.key("as")
+        self.items: tuple[Any, ...] | None = None
+        self.at = 0
+
+    def step(self) -> Status:
+        """One round at most."""
+        if self.items is None:
+            self.items, self.at = tuple(self.inputs["in"]), 0
+        self.state = RUNNING
+        if self.at < len(self.items):
+            if self.child.state is IDLE:
+                self.item.write(self.items[self.at])
+            status = self.child.execute()
+            if status is RUNNING:
+                return RUNNING
+            self.child.reset()
+            if status is FAILURE:
+                self.items = None
+                return self.pass_on(FAILURE)
+            self.at += 1
+            if self.at < len(self.items):
+                return RUNNING
+        self.items = None
+        return SUCCESS
+
+    def clear(self) -> None:
+        """The list is read anew."""
+        self.items = None
+
+
+class RunOnce(Decorator):
+    """Runs the child to its end once in the life of the tree; then SKIPPED, or that end again."""
+
+    spec = decorator(
+        "RunOnce",
+        "run_once",
+        "Runs the child once in the life of the tree.",
+        input_port("then_skip", bool, "skipped afterwards, instead of repeating the result", True),
+        flow=_once,
+        around=lambda node: "once only",
+    )
+
+    def __init__(self, parts: Parts) -> None:
+        super().__init__(parts)
+        self.inputs = parts.inputs()
+        self.result: Status | None = None
+
+    def step(self) -> Status:
+        """Tick the child until its first end."""
+        if self.result is not None:
+            if self.inputs["then_skip"]:
+                return SKIPPED
+            return self.pass_on(self.result)
+        self.state = RUNNING
+        status = self.child.execute()
+        if status.completed:
+            self.result = status
+            self.child.reset()
+        return self.pass_on(status)

@@ -1,0 +1,111 @@
+"""LoopInt, LoopDouble, LoopString, LoopBool: the child once for each item of a queue.
+
+| child returns   | the loop                                                  |
+|-----------------|-----------------------------------------------------------|
+| SUCCESS SKIPPED | RUNNING; the next tick takes the next item                |
+| FAILURE         | FAILURE                                                   |
+| RUNNING         | RUNNING                                                   |
+
+When no item is left (or there was none) it ends with `if_empty`. The queue is read when the node
+starts; what is on the blackboard keeps its items.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import Any, Literal
+
+from momantu_bt.engine.decorator import Decorator
+from momantu_bt.engine.node import Parts
+from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, Status
+from momantu_bt.failure import FAILED
+from momantu_bt.tree.catalogue.flow import again, perhaps
+from momantu_bt.tree.catalogue.spec import NodeSpec, decorator, input_port, output_port
+from momantu_bt.values.kinds import Queue
+
+
+def _spec(type_: str, yaml: str, item: type) -> NodeSpec:
+    return decorator(
+        type_,
+        yaml,
+        "Takes item after item from a queue and runs the child for each, until it fails.",
+        input_port("queue", Queue[item], "a list, or a text such as `1;2;3`"),  # type: ignore[valid-type]
+        input_port(
+            "if_empty",
+            Literal["SUCCESS", "FAILURE", "SKIPPED"],
+            "the result when the queue is empty, at last or from the start",
+            "SUCCESS",
+        ),
+        output_port("value", item, "the key that holds the item", None),
+        modifier=False,
+        item=("value", "queue"),
+        flow=again(perhaps),
+    )
+
+
+class QueueLoop(Decorator):
+    """value: the cell that holds the item of the round, None where nothing is wired."""
+
+    def __init__(self, parts: Parts) -> None:
+        super().__init__(parts)
+        self.inputs = parts.inputs()
+        self.value = parts.outputs().get("value")
+        self.left: deque[Any] = deque()
+        self.in_round = False
+
+    def step(self) -> Status:
+        """Take an item unless the child is at work, then tick the child."""
+        if self.state is IDLE:
+            self.in_round = False
+            self.left = deque(self.inputs["queue"])
+        if not self.in_round:
+            if not self.left:
+                return self._empty()
+            item = self.left.popleft()
+            if self.value is not None:
+                self.value.write(item)
+        self.state = RUNNING
+        status = self.child.execute()
+        self.in_round = status is RUNNING
+        if status is RUNNING:
+            return RUNNING
+        self.child.reset()
+        return self.pass_on(FAILURE) if status is FAILURE else RUNNING
+
+    @property
+    def note(self) -> str:
+        """How many items are waiting."""
+        return f"{len(self.left)} left"
+
+    def clear(self) -> None:
+        """The queue is read anew."""
+        self.left.clear()
+        self.in_round = False
+
+    def _empty(self) -> Status:
+        ending = Status[self.inputs["if_empty"]]
+        return self.fail(FAILED, "its queue is empty") if ending is FAILURE else ending
+
+
+class LoopInt(QueueLoop):
+    """Over integers."""
+
+    spec = _spec("LoopInt", "loop_int", int)
+
+
+class LoopDouble(QueueLoop):
+    """Over numbers."""
+
+    spec = _spec("LoopDouble", "loop_number", float)
+
+
+class LoopString(QueueLoop):
+    """Over texts."""
+
+    spec = _spec("LoopString", "loop_text", str)
+
+
+class LoopBool(QueueLoop):
+    """Over yes and no."""
+
+    spec = _spec("LoopBool", "loop_bool", bool)

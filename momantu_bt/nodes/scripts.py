@@ -1,0 +1,89 @@
+"""Script and ScriptCondition: the leaves that read and write the blackboard by a script."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache
+
+from momantu_bt.engine.blackboard import Board
+from momantu_bt.engine.node import Parts, TreeNode
+from momantu_bt.engine.status import SUCCESS, Status
+from momantu_bt.failure import FAILED, SCRIPT_ERROR, Failure
+from momantu_bt.tree import script
+from momantu_bt.tree.catalogue.spec import Scripts, input_port, leaf
+from momantu_bt.tree.catalogue.wording import script_ports
+from momantu_bt.tree.script import ScriptSyntaxError, parse, truth
+from momantu_bt.values.kinds import ScriptText
+
+_parsed: Callable[[str], script.Script] = lru_cache(maxsize=256)(parse)
+
+
+class Code:
+    """A script on a board. `read` gives its text: usually a constant, possibly a wire's value."""
+
+    def __init__(self, read: Callable[[], str], board: Board) -> None:
+        self._read = read
+        self._board = board
+
+    @property
+    def text(self) -> str:
+        """The script as written."""
+        return self._read()
+
+    def run(self) -> object:
+        """Run it; ScriptError or Failure SCRIPT_ERROR when that cannot be done."""
+        try:
+            parsed = _parsed(self._read())
+        except ScriptSyntaxError as error:
+            raise Failure(SCRIPT_ERROR, f"`{self.text}`: {error}") from None
+        return parsed.run(self._board)
+
+    def holds(self) -> bool:
+        """Run it as a condition."""
+        return truth(self.run())
+
+
+def code_at(parts: Parts, port: str) -> Code:
+    """The script at a port, on the board that its node sees."""
+    return Code(parts.inputs().readers[port], parts.board)
+
+
+class Script(TreeNode):
+    """Runs a script and succeeds; fails with SCRIPT_ERROR when it cannot be evaluated."""
+
+    spec = leaf(
+        "Script",
+        "script",
+        "Runs a script.",
+        input_port("code", ScriptText, "the script"),
+        scripts=Scripts.RUN,
+        port_words=script_ports,
+    )
+
+    def __init__(self, parts: Parts) -> None:
+        super().__init__(parts)
+        self.code = code_at(parts, "code")
+
+    def step(self) -> Status:
+        """Run it."""
+        self.code.run()
+        return SUCCESS
+
+
+class ScriptCondition(Script):
+    """SUCCESS when the condition holds, else FAILURE with FAILED."""
+
+    spec = leaf(
+        "ScriptCondition",
+        "condition",
+        "Succeeds when a condition holds, fails when it does not.",
+        input_port("code", ScriptText, "the condition"),
+        condition=True,
+        port_words=script_ports,
+    )
+
+    def step(self) -> Status:
+        """Ask it."""
+        if self.code.holds():
+            return SUCCESS
+        return self.fail(FAILED, f"`{self.code.text}` does not hold")

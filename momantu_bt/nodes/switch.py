@@ -1,0 +1,156 @@
+"""Switch2 to Switch6: the child of the case that equals a variable, else the last child.
+
+The variable is asked on each tick; a child that is no longer meant is halted. The chosen child's
+status is the node's. A variable without a value chooses the last child.
+"""
+
+from __future__ import annotations
+
+import re
+from enum import Enum
+from typing import Any
+
+from momantu_bt.engine.node import Parts, TreeNode
+from momantu_bt.engine.status import FAILURE, RUNNING, Status
+from momantu_bt.failure import INPUT_MISSING, Failure
+from momantu_bt.tree.catalogue.flow import After, Walk, again
+from momantu_bt.tree.catalogue.known import NEVER, Known, meet
+from momantu_bt.tree.catalogue.spec import NodeSpec, control, input_port
+from momantu_bt.tree.catalogue.wording import port_text, ports_in_words
+from momantu_bt.tree.model import Node
+from momantu_bt.tree.script.nodes import EPSILON
+
+_NUMBER = re.compile(r"-?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
+
+
+def _cases(walk: Walk, node: Node, before: Known) -> After:
+    ends = [walk(child, before) for child in node.children]
+    return After(
+        meet(NEVER, *(end.success for end in ends)),
+        meet(before, *(end.failure for end in ends)),
+        meet(NEVER, *(end.skipped for end in ends)),
+    )
+
+
+def _spec(cases: int) -> NodeSpec:
+    ports = [input_port(f"case_{i}", object, "a value of `variable`") for i in range(1, cases + 1)]
+    return control(
+        f"Switch{cases}",
+        "switch",
+        "Runs the child of the case that equals the variable, else the last child.",
+        input_port("variable", object, "what is compared, on each tick"),
+        *ports,
+        children=(cases + 1, cases + 1),
+        switch=cases,
+        flow=again(_cases),
+        port_words=_variable,
+        roles=_roles,
+    )
+
+
+def _variable(node: Node) -> list[str]:
+    """Its ports in words: the cases stand before the children."""
+    plain = {name: value for name, value in node.ports.items() if not name.startswith("case_")}
+    return ports_in_words(node, plain)
+
+
+def _roles(node: Node) -> list[str]:
+    count = int(node.type.removeprefix("Switch"))
+    return [*(port_text(node, f"case_{i}") for i in range(1, count + 1)), "else"]
+
+
+class Switch(TreeNode):
+    """Children: one for each case in order, then the one for everything else."""
+
+    def __init__(self, parts: Parts) -> None:
+        super().__init__(parts)
+        self.inputs = parts.inputs()
+        self.at: int | None = None
+
+    def step(self) -> Status:
+        """Choose, halt the child that is no longer meant, tick the chosen one."""
+        chosen = self._chosen()
+        if self.at is not None and self.at != chosen:
+            self.kids[self.at].reset()
+        child = self.kids[chosen]
+        status = child.execute()
+        self.at = chosen if status is RUNNING else None
+        if status is RUNNING:
+            return RUNNING
+        if status is FAILURE:
+            self.fail_with(self.failure_of(child))
+        self.reset_children()
+        return status
+
+    def clear(self) -> None:
+        """No child is chosen."""
+        self.at = None
+
+    def _chosen(self) -> int:
+        default = len(self.kids) - 1
+        try:
+            variable = self.inputs["variable"]
+        except Failure as failure:
+            if failure.value.code == INPUT_MISSING:
+                return default
+            raise
+        cases = (self.inputs[f"case_{number}"] for number in range(1, default + 1))
+        return next((i for i, case in enumerate(cases) if is_case(variable, case)), default)
+
+
+class Switch2(Switch):
+    """Of two cases."""
+
+    spec = _spec(2)
+
+
+class Switch3(Switch):
+    """Of three cases."""
+
+    spec = _spec(3)
+
+
+class Switch4(Switch):
+    """Of four cases."""
+
+    spec = _spec(4)
+
+
+class Switch5(Switch):
+    """Of five cases."""
+
+    spec = _spec(5)
+
+
+class Switch6(Switch):
+    """Of six cases."""
+
+    spec = _spec(6)
+
+
+def is_case(value: Any, case: Any) -> bool:
+    """Whether a value is the one that a case names: equal as it is, as text or as a number.
+
+    A text that reads as a number is one; numbers are equal within `EPSILON`; `true` is no number.
+    """
+    value, case = (_bare(value), _bare(case))
+    if type(value) is type(case) and value == case:
+        return True
+    left, right = _number(value), _number(case)
+    return left is not None and right is not None and abs(left - right) <= EPSILON
+
+
+def _bare(value: Any) -> Any:
+    if isinstance(value, Enum):
+        return value.value
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return value
+
+
+def _number(value: Any) -> float | None:
+    if isinstance(value, int | float):
+        return float(value)
+    if isinstance(value, str) and _NUMBER.fullmatch(value):
+        return float(value)
+    return None

@@ -1,0 +1,55 @@
+"""Which failure codes can come out of a node, from those that its children can fail with."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from momantu_bt.failure import FAILED, INPUT_MISSING, SCRIPT_ERROR, WRONG_TYPE
+from momantu_bt.tree.model import Node
+
+Codes: TypeAlias = frozenset[str]
+"""Codes, bare and as `pick.SLIPPED`. UNKNOWN stands for any."""
+UNKNOWN = "?"
+NO_CODES: Codes = frozenset()
+
+ANY_NODE: Codes = frozenset({FAILED, INPUT_MISSING, WRONG_TYPE, SCRIPT_ERROR})
+"""Every node of the language can fail with these."""
+
+
+@dataclass(frozen=True, slots=True)
+class Failing:
+    """What is known below a node.
+
+    children: codes of its children. handlers: codes of what its handlers run. named: the codes
+    that its port `code` can hold.
+    """
+
+    children: Codes
+    handlers: Codes
+    named: Codes
+
+
+CodeFlow: TypeAlias = Callable[[Node, Failing], Codes]
+"""The codes that a node can fail with."""
+
+
+def joined(*parts: Codes) -> Codes:
+    """All codes of some sets: a set of them itself where it has them all, to copy no big ones."""
+    distinct = set(parts)
+    largest = max(distinct, key=len, default=NO_CODES)
+    if all(part <= largest for part in distinct):
+        return largest
+    return NO_CODES.union(*distinct)
+
+
+def passed_on(node: Node, failing: Failing) -> Codes:
+    """The children's and the handlers' codes, and those of every node."""
+    return joined(failing.children, failing.handlers, ANY_NODE)
+
+
+def and_also(*codes: str) -> CodeFlow:
+    """The same, and codes of the node's own."""
+    own = ANY_NODE | frozenset(codes)
+    return lambda node, failing: joined(failing.children, failing.handlers, own)

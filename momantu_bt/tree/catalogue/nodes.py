@@ -1,0 +1,125 @@
+"""Every node that a tree can have, built in or plugged in: by canonical type and by spelling."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache, lru_cache
+from importlib import import_module
+from importlib.metadata import EntryPoint
+from typing import ClassVar, Protocol, TypeVar
+
+from momantu_bt.plugins import Group, PluginError
+from momantu_bt.tree.catalogue.built_in import BUILT_IN
+from momantu_bt.tree.catalogue.objection import node_objection
+from momantu_bt.tree.catalogue.spec import Dialect, NodeSpec
+from momantu_bt.tree.catalogue.words import CONDITIONS, NODE_KEYS
+
+K = TypeVar("K")
+V = TypeVar("V")
+
+
+class NodeClass(Protocol):
+    """What the language knows of a node's class; the engine makes nodes of it."""
+
+    spec: ClassVar[NodeSpec]
+
+
+def _objection(name: str, plugin: object) -> str | None:
+    built_in = {spelling for kind in _built_in().values() for spelling in kind.spec.yaml}
+    return node_objection(name, plugin, built_in)
+
+
+PLUGINS: Group[type[NodeClass]] = Group("momantu_bt.nodes", "node", _objection)
+"""Nodes that other packages bring, by YAML spelling."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Tables:
+    """classes: by canonical type. The specs: by type, by YAML spelling, by number of cases."""
+
+    classes: Mapping[str, type[NodeClass]]
+    specs: Mapping[str, NodeSpec]
+    spelled: Mapping[str, NodeSpec]
+    switches: Mapping[int, NodeSpec]
+    modifiers: Mapping[str, str]
+
+
+class Table(Mapping[K, V]):
+    """One of the tables. It is read when it is first asked: nodes are imported then."""
+
+    def __init__(self, read: Callable[[_Tables], Mapping[K, V]]) -> None:
+        self._read = read
+
+    def __getitem__(self, key: K) -> V:
+        return self._read(_tables())[key]
+
+    def __iter__(self) -> Iterator[K]:
+        return iter(self._read(_tables()))
+
+    def __len__(self) -> int:
+        return len(self._read(_tables()))
+
+
+NODES: Table[str, NodeSpec] = Table(lambda tables: tables.specs)
+"""What each node says of itself, by canonical type."""
+SPELLED: Table[str, NodeSpec] = Table(lambda tables: tables.spelled)
+"""The same by YAML spelling."""
+SWITCHES: Table[int, NodeSpec] = Table(lambda tables: tables.switches)
+"""The switches by their number of cases; in YAML all are `switch`."""
+NODE_CLASSES: Table[str, type[NodeClass]] = Table(lambda tables: tables.classes)
+"""Classes by canonical type."""
+MODIFIERS: Table[str, str] = Table(lambda tables: tables.modifiers)
+"""Reserved modifier names of YAML, and what each one is: `key`, `condition` or `decorator`."""
+
+
+def of_dialect(dialect: Dialect) -> list[str]:
+    """Types of the built-in nodes of one dialect, sorted."""
+    return sorted(name for name in BUILT_IN if NODES[name].dialect is dialect)
+
+
+def plugged_in() -> list[str]:
+    """Types of the nodes that other packages bring, sorted."""
+    return sorted(NODES.keys() - BUILT_IN.keys())
+
+
+def is_ours(name: str) -> bool:
+    """Whether a node stands in our namespace in XML: BehaviorTree.CPP and Nav2 lack it."""
+    return name in BUILT_IN and NODES[name].dialect is Dialect.OURS
+
+
+def _tables() -> _Tables:
+    return _read(tuple(PLUGINS.installed().items()))
+
+
+@cache
+def _built_in() -> Mapping[str, type[NodeClass]]:
+    found = {}
+    for type_, module in BUILT_IN.items():
+        found[type_] = getattr(import_module(f"momantu_bt.nodes.{module}"), type_)
+    return found
+
+
+@lru_cache(maxsize=4)
+def _read(having: tuple[tuple[str, EntryPoint], ...]) -> _Tables:
+    """having: the plug-ins. A broken one is left out; `PLUGINS.load` says why to who uses it."""
+    classes = dict(_built_in())
+    for name, _ in having:
+        try:
+            plugin = PLUGINS.load(name)
+        except PluginError:
+            continue
+        classes[plugin.spec.type] = plugin
+    specs = {type_: kind.spec for type_, kind in classes.items()}
+    return _Tables(
+        classes=classes,
+        specs=specs,
+        spelled={name: spec for spec in specs.values() for name in spec.yaml},
+        switches={spec.switch: spec for spec in specs.values() if spec.switch},
+        modifiers={
+            **dict.fromkeys(NODE_KEYS, "key"),
+            **dict.fromkeys(CONDITIONS, "condition"),
+            **{spec.yaml[0]: "decorator" for spec in specs.values() if spec.modifier},
+            "force": "decorator",
+        },
+    )

@@ -1,0 +1,96 @@
+"""What a node of another package has to be, so that trees can use it."""
+
+from __future__ import annotations
+
+import keyword
+import re
+from collections.abc import Collection
+
+from momantu_bt.skill import Port
+from momantu_bt.tree.catalogue.built_in import BUILT_IN
+from momantu_bt.tree.catalogue.spec import Kind, NodeSpec
+from momantu_bt.tree.catalogue.words import (
+    CONDITIONS,
+    FORCED,
+    NODE_KEYS,
+    SUBTREE,
+    WORDS_OF_TREES,
+)
+from momantu_bt.values.kinds import is_type
+
+_NAME = re.compile(r"[a-z][a-z0-9_]*")
+_RESERVED = (*WORDS_OF_TREES, *CONDITIONS, *NODE_KEYS, *FORCED, "force", "switch", "cases")
+_LATER = "give the entry point and the spec another name"
+
+
+def node_objection(name: str, plugin: object, built_in: Collection[str]) -> str | None:
+    """Why trees cannot use this as a node; None when they can.
+
+    name: of the entry point. built_in: spellings of the built-in nodes.
+    """
+    if not isinstance(plugin, type):
+        return f"{type(plugin).__name__} is not a class"
+    if not callable(getattr(plugin, "execute", None)):
+        return f"{plugin.__name__} is not a subclass of momantu_bt.engine.node.TreeNode"
+    spec = getattr(plugin, "spec", None)
+    if not isinstance(spec, NodeSpec):
+        return f"{plugin.__name__} has no `spec`: write control(…), decorator(…) or leaf(…)"
+    return (
+        _bad_name(name, plugin.__name__, built_in)
+        or _bad_spelling(name, spec)
+        or _bad_spec(spec)
+        or next(filter(None, (_bad_port(name, port) for port in spec.ports.values())), None)
+    )
+
+
+def type_of(name: str) -> str:
+    """The canonical type of a node by its YAML spelling: `EveryNth` for `every_nth`."""
+    return "".join(word.capitalize() for word in name.split("_"))
+
+
+def _bad_name(name: str, class_name: str, built_in: Collection[str]) -> str | None:
+    if not _NAME.fullmatch(name):
+        return f"{name!r} is not a name for a node: lower-case letters, digits and underscores"
+    if name in built_in or type_of(name) in BUILT_IN or type_of(name) == SUBTREE:
+        return f"{name!r} is a built-in node; {_LATER}"
+    if name in _RESERVED or keyword.iskeyword(name):
+        return f"{name!r} is a word of tree files or of Python; {_LATER}"
+    return None
+
+
+def _bad_spelling(name: str, spec: NodeSpec) -> str | None:
+    if spec.yaml != (name,):
+        return f"its spec is spelled {' and '.join(spec.yaml)}, and its entry point {name}"
+    if spec.type != type_of(name):
+        return f"its spec has the type {spec.type!r}; of {name!r} it is {type_of(name)!r}"
+    return None
+
+
+def _bad_spec(spec: NodeSpec) -> str | None:
+    least, most = spec.children
+    if not spec.doc.strip():
+        return "its spec has no doc: one sentence that says what it does"
+    if spec.switch or spec.handlers:
+        return "`switch` and `handlers` are for built-in nodes; take children instead"
+    if spec.kind is Kind.LEAF and most != 0:
+        return "its spec is a leaf's and has children; write control(…)"
+    if spec.kind is Kind.CONTROL and spec.positions:
+        return "`positions` are for built-in control nodes; take a list of children"
+    if least < 0 or (most is not None and most < least):
+        return f"its spec has from {least} to {most} children; expected least and most"
+    if spec.first is not None and spec.first not in spec.ports:
+        return f"its spec's `first` is {spec.first!r}, and it has no such port"
+    named = (*spec.keys, *spec.may_be_empty, *spec.copies, *spec.copies.values(), *spec.xml)
+    named += (*(spec.item or ()), *(name for group in spec.one_of for name in group))
+    missing = next((port for port in named if port not in spec.ports), None)
+    return None if missing is None else f"its spec names the port {missing!r}, which it has not"
+
+
+def _bad_port(name: str, port: Port) -> str | None:
+    if port.name in ("child", "children"):
+        return f"the port {name}.{port.name} would hide what stands below the node; rename it"
+    if not isinstance(port.doc, str) or not port.doc.strip():
+        return f"the port {name}.{port.name} has no doc"
+    if isinstance(port.type, str) or not is_type(port.type):
+        return f"the port {name}.{port.name} has no type: {port.type!r} is not one"
+    return None

@@ -1,0 +1,41 @@
+"""Words of the language that are no node's: subtrees, conditions, keys beside a node."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+SUBTREE = "SubTree"
+"""Canonical type of a node that runs another tree of the document; `Node.target` names it."""
+
+AUTOREMAP = "_autoremap"
+"""Port of a SubTree: whether every key inside that no wire names is the same key outside."""
+
+FORCED: Mapping[str, str] = {"success": "ForceSuccess", "failure": "ForceFailure"}
+"""What the modifier `force:` makes of its value."""
+
+PRE_CONDITIONS = ("fail_if", "succeed_if", "skip_if", "while")
+"""Conditions asked before a node's tick, in this order (BehaviorTree.CPP's)."""
+
+POST_SCRIPTS = ("on_success", "on_failure", "on_halt", "after")
+"""Scripts run when a node ends: so, or (`after`) with success or failure."""
+
+CONDITIONS = (*PRE_CONDITIONS, *POST_SCRIPTS)
+"""Keys of `Node.conditions`."""
+
+XML_CONDITIONS: Mapping[str, str] = {
+    "fail_if": "_failureIf",
+    "succeed_if": "_successIf",
+    "skip_if": "_skipIf",
+    "while": "_while",
+    "on_success": "_onSuccess",
+    "on_failure": "_onFailure",
+    "on_halt": "_onHalted",
+    "after": "_post",
+}
+"""BehaviorTree.CPP's attributes for the conditions."""
+
+NODE_KEYS = ("name", "note", "disabled")
+"""Modifiers that are neither decorators nor conditions."""
+
+WORDS_OF_TREES = ("again", "any", "child", "children", "try", "catch", "then", "else", "do")
+"""Words that stand where a node's name could, and mean something else."""
