@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import fields, is_dataclass
 from enum import Enum
-from typing import Any
+from functools import cache
+from types import NoneType
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -17,6 +19,8 @@ _FLOAT = struct.Struct("<d").pack
 _PLACE, _TRACEBACK = "place", "traceback"
 """Parts of a failure that depend on where the files lie; neither enters."""
 
+_Writer: TypeAlias = Callable[[Any, list[bytes]], None]
+
 
 def encode(value: Any) -> bytes:
     """Canonical bytes: every float to its last bit, mappings in the order of their keys.
@@ -26,44 +30,91 @@ def encode(value: Any) -> bytes:
     if type(value) is float:
         return b"f" + _FLOAT(value)
     parts: list[bytes] = []
-    _encode(value, parts)
+    _writer(type(value))(value, parts)
     return b"".join(parts)
 
 
-def _encode(value: Any, out: list[bytes]) -> None:
-    if isinstance(value, float):
-        out.append(b"f" + _FLOAT(value))
-    elif value is None or value is MISSING or isinstance(value, bool | int | Enum):
-        out.append(f"{type(value).__name__}:{value!r};".encode())
-    elif isinstance(value, str):
-        text = value.encode("utf-8", "surrogatepass")
-        out.append(b"s%d:" % len(text) + text)
-    elif isinstance(value, np.ndarray) and value.dtype.hasobject:
-        _encode(value.tolist(), out)
-    elif isinstance(value, np.ndarray):
-        out.append(f"a{value.dtype.str}{value.shape}".encode() + value.tobytes())
-    elif isinstance(value, np.generic):
-        _encode(value.item(), out)
-    elif isinstance(value, Mapping):
-        _encode_mapping(value, out)
-    elif isinstance(value, list | tuple):
-        out.append(b"l%d:" % len(value))
-        for item in value:
-            _encode(item, out)
-    elif isinstance(value, FailureValue):
-        named = {f.name: getattr(value, f.name) for f in fields(value)}
-        _encode_mapping({k: v for k, v in named.items() if k != _PLACE}, out)
-    elif is_dataclass(value):
-        out.append(type(value).__qualname__.encode())
-        for field in fields(value):
-            _encode(getattr(value, field.name), out)
+def _find_writer(kind: Any) -> _Writer:
+    for base, write in _WRITERS:
+        if issubclass(kind, base):
+            return write
+    return _dataclass(kind) if is_dataclass(kind) else _unknown
+
+
+_writer: Callable[[Any], _Writer] = cache(_find_writer)
+"""How values of a type are written, which is found once."""
+
+
+def _float(value: float, out: list[bytes]) -> None:
+    out.append(b"f" + _FLOAT(value))
+
+
+def _by_name(value: Any, out: list[bytes]) -> None:
+    out.append(f"{type(value).__name__}:{value!r};".encode())
+
+
+def _text(value: str, out: list[bytes]) -> None:
+    text = value.encode("utf-8", "surrogatepass")
+    out.append(b"s%d:" % len(text) + text)
+
+
+def _array(value: np.ndarray[Any, Any], out: list[bytes]) -> None:
+    if value.dtype.hasobject:
+        held = value.tolist()
+        _writer(type(held))(held, out)
     else:
-        out.append(f"?{type(value).__qualname__};".encode())
+        out.append(f"a{value.dtype.str}{value.shape}".encode() + value.tobytes())
 
 
-def _encode_mapping(value: Mapping[Any, Any], out: list[bytes]) -> None:
+def _scalar(value: np.generic, out: list[bytes]) -> None:
+    held = value.item()
+    _writer(type(held))(held, out)
+
+
+def _mapping(value: Mapping[Any, Any], out: list[bytes]) -> None:
     out.append(b"m%d:" % len(value))
     for key in sorted(value, key=str):
         if key != _TRACEBACK:
-            _encode(str(key), out)
-            _encode(value[key], out)
+            _text(str(key), out)
+            item = value[key]
+            _writer(type(item))(item, out)
+
+
+def _list(value: list[Any] | tuple[Any, ...], out: list[bytes]) -> None:
+    out.append(b"l%d:" % len(value))
+    for item in value:
+        _writer(type(item))(item, out)
+
+
+def _failure(value: FailureValue, out: list[bytes]) -> None:
+    names = (field.name for field in fields(value))
+    _mapping({name: getattr(value, name) for name in names if name != _PLACE}, out)
+
+
+def _dataclass(kind: Any) -> _Writer:
+    name, names = kind.__qualname__.encode(), [field.name for field in fields(kind)]
+
+    def write(value: Any, out: list[bytes]) -> None:
+        out.append(name)
+        for each in names:
+            item = getattr(value, each)
+            _writer(type(item))(item, out)
+
+    return write
+
+
+def _unknown(value: Any, out: list[bytes]) -> None:
+    out.append(f"?{type(value).__qualname__};".encode())
+
+
+_WRITERS: tuple[tuple[Any, _Writer], ...] = (
+    (float, _float),
+    (NoneType | type(MISSING) | bool | int | Enum, _by_name),
+    (str, _text),
+    (np.ndarray, _array),
+    (np.generic, _scalar),
+    (Mapping, _mapping),
+    (list | tuple, _list),
+    (FailureValue, _failure),
+)
+"""What is written how, the first that fits; the rest are dataclasses, or unknown."""

@@ -157,7 +157,7 @@ def test_sets_have_one_order():
     ],
 )
 def test_other_data_is_refused(data):
-    with pytest.raises(CodecError, match="no value of a record"):
+    with pytest.raises(CodecError, match="not a value of a record"):
         from_json(data)
 
 
