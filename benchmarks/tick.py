@@ -37,11 +37,11 @@ from py_trees.composites import Composite, Selector, Sequence
 from momantu_bt.engine.build import Built, build
 from momantu_bt.engine.context import RunContext
 from momantu_bt.engine.executor import Executor
-from momantu_bt.engine.launch import Options
+from momantu_bt.engine.fingerprint import Fingerprint
 from momantu_bt.engine.no_world import NoWorld
 from momantu_bt.formats.places import Place
-from momantu_bt.record.fingerprint import Fingerprint
 from momantu_bt.record.recorder import Recorder
+from momantu_bt.running.options import RunOptions
 from momantu_bt.testing import ManualClock
 from momantu_bt.tree.model import Document, Literal, Node, PortValue, Reference, Tree
 
@@ -143,7 +143,7 @@ def recorded_tick(document: Document, folder: Path) -> Tick:
     run.fingerprint = Fingerprint()
     recorder = Recorder(folder / "record", print)
     recorder.listen(context)
-    recorder.begin(document, Options(), run)
+    recorder.begin(document, run, RunOptions().recorded(), {})
     run.observers = [recorder]
 
     def tick() -> None:

@@ -8,11 +8,11 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from momantu_bt.engine.api import run
     from momantu_bt.failure import Failure
     from momantu_bt.geometry import Pose, Pose2D, Transform
     from momantu_bt.record.report import Report
     from momantu_bt.robot import CAMERA_CARRIER, Robot
+    from momantu_bt.running.api import run
     from momantu_bt.service import Service, ServiceContext
     from momantu_bt.skill import In, Needs, Out, Run, Skill, compute
     from momantu_bt.world import Site, World
@@ -37,7 +37,7 @@ _HOMES = {
     "Transform": "geometry",
     "World": "world",
     "compute": "skill",
-    "run": "engine.api",
+    "run": "running.api",
 }
 
 __all__ = [

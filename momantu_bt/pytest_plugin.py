@@ -60,7 +60,7 @@ def run_tree(tmp_path: Path) -> Iterator[RunTree]:
         seed: int = 0,
         max_time: float = 60.0,
     ) -> Report:
-        from momantu_bt.engine.api import run
+        from momantu_bt.running.api import run
         from momantu_bt.testing import ExampleWorld, ScriptedWorld
         from momantu_bt.tree.registry import Registry
 

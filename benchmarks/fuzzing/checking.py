@@ -26,7 +26,7 @@ def check_file(path: Path, registry: Registry) -> int:
     """
     try:
         checked = load(str(path), registry)
-        problems, source = checked.notes, checked.document.source
+        problems, source = checked.problems, checked.document.source
     except TreeError as error:
         problems, source = error.problems, error.source
         if not problems:

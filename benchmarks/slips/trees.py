@@ -62,10 +62,10 @@ class GoodTree:
         self.text = self.text or self.path.read_text(encoding="utf-8")
         if self.as_xml:
             plain = read_yaml(self.text, "t.yaml")[0]
-            check(plain, self.registry)
-            self.text = write_xml(plain, self.registry)
-        self.document, reading = self.read(self.text)
-        wrong = check(self.document, self.registry, reading=reading)
+            self.text = write_xml(check(plain, self.registry).document, self.registry)
+        document, reading = self.read(self.text)
+        checked = check(document, self.registry, reading=reading)
+        self.document, wrong = checked.document, checked.problems
         assert not wrong, f"{self.path}: {wrong[0].place}: {wrong[0].message}"
         context = Context(self.document, self.registry, Problems())
         for tree in self.document.trees.values():
@@ -91,7 +91,8 @@ class GoodTree:
             document, found = self.read(text)
         except TreeError as error:
             return None, error.problems
-        return document, check(document, self.registry, reading=found)
+        checked = check(document, self.registry, reading=found)
+        return checked.document, checked.problems
 
     def _note(self, context: Context, node: Node) -> None:
         signature = context.signature(node)

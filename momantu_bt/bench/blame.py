@@ -11,8 +11,8 @@ from typing import Any
 from momantu_bt.bench.outcome import succeeded
 from momantu_bt.bench.process import REPORT
 from momantu_bt.bench.spec import Row
+from momantu_bt.engine.ending import ERROR
 from momantu_bt.failure import HALTED
-from momantu_bt.record.report import ERROR
 
 REFEREE = "the referee"
 """Who is to blame where the tree succeeded and ground truth denies it."""

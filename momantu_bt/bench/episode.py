@@ -14,21 +14,24 @@ import signal
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-import momantu_bt.cli.threads  # noqa: F401 - before numpy, which the next imports load
+import momantu_bt.threads  # noqa: F401 - before numpy, which the next imports load
+from momantu_bt.bench.made_of import difference, made_of
 from momantu_bt.bench.spec import EpisodeSpec, Row
+from momantu_bt.engine.executor import Executor, Observer
+from momantu_bt.engine.node import TreeNode
 from momantu_bt.errors import MomantuError
 from momantu_bt.fault import FaultError
+from momantu_bt.faults.spec import parse_fault
 from momantu_bt.formats.files import write_whole
+from momantu_bt.record.report import Report
+from momantu_bt.running.launch import launch
+from momantu_bt.running.options import RunOptions
+from momantu_bt.running.prepare import prepare
 from momantu_bt.tree.catalogue import NODES
-
-if TYPE_CHECKING:
-    from momantu_bt.engine.executor import Executor, Observer
-    from momantu_bt.engine.node import TreeNode
-    from momantu_bt.record.report import Report
-    from momantu_bt.tree.load import Checked
-    from momantu_bt.tree.registry import Registry
+from momantu_bt.tree.model import Document
+from momantu_bt.tree.registry import Registry
 
 _PR_SET_PDEATHSIG = 1
 """`prctl(2)`: the signal that a process gets when its parent dies."""
@@ -75,42 +78,35 @@ def run(spec: EpisodeSpec) -> tuple[Report, int]:
         FaultError: the tree, the robot or the world cannot have the fault.
         TreeError, LaunchError, WorldError and the like: it cannot begin.
     """
-    from momantu_bt.engine.launch import Options, launch
-    from momantu_bt.faults.spec import parse_fault
-    from momantu_bt.tree.load import load
-    from momantu_bt.tree.registry import Registry
-
-    registry = Registry.installed()
-    checked = load(
-        spec.tree, registry, world=spec.world, robot=spec.robot, values=dict(spec.values)
-    )
-    _check(spec, checked, registry)
-    options = Options(
+    options = RunOptions(
         world=spec.world,
         robot=spec.robot,
         seed=spec.seed,
+        values=dict(spec.values),
         max_time=spec.max_time,
         referee=spec.referee,
         audit=True,
-        record=_record(spec),
+        record=None if spec.record is None else Path(spec.record),
         faults=() if spec.fault is None else (parse_fault(spec.fault),),
     )
+    prepared = prepare(spec.tree, options)
+    _check(spec, prepared.document, prepared.registry)
+    if spec.record is not None:
+        shutil.rmtree(spec.record, ignore_errors=True)  # of an attempt that was interrupted
     executors: list[Executor] = []
 
     def watch(executor: Executor) -> list[Observer]:
         executors.append(executor)
         return []
 
-    report = launch(checked.document, options, registry, watch)
+    report = launch(prepared, watch)
     return report, sum(map(_tries, executors[0].built.nodes))
 
 
-def _check(spec: EpisodeSpec, checked: Checked, registry: Registry) -> None:
+def _check(spec: EpisodeSpec, document: Document, registry: Registry) -> None:
     """Files edited since, or other versions on another machine, do not mix into the results."""
-    from momantu_bt.bench.made_of import difference, made_of
-
     made = made_of(
-        checked.document,
+        document,
         registry,
         world=spec.world,
         robot=spec.robot,
@@ -123,14 +119,6 @@ def _check(spec: EpisodeSpec, checked: Checked, registry: Registry) -> None:
             f"{', '.join(changed)}: not what it was when the bench began; begin it anew, "
             "or undo the change and go on"
         )
-
-
-def _record(spec: EpisodeSpec) -> Path | None:
-    """Where it leaves a record; one of an attempt that was interrupted is removed."""
-    if spec.record is None:
-        return None
-    shutil.rmtree(spec.record, ignore_errors=True)
-    return Path(spec.record)
 
 
 def _tries(node: TreeNode) -> int:

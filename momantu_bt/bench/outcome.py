@@ -8,10 +8,10 @@ from typing import Any
 
 from momantu_bt.bench.process import HUNG, IMPOSSIBLE, REPORT
 from momantu_bt.bench.spec import Row
+from momantu_bt.engine.ending import SUCCESS
 from momantu_bt.faults.matrix import Row as Demand
 from momantu_bt.faults.matrix import row_of
 from momantu_bt.faults.spec import parse_fault
-from momantu_bt.record.report import SUCCESS
 
 
 class Outcome(StrEnum):

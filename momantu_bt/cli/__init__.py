@@ -13,7 +13,7 @@ from collections.abc import Sequence
 
 import typer
 
-import momantu_bt.cli.threads  # noqa: F401 - before numpy, which the next imports load
+import momantu_bt.threads  # noqa: F401 - before numpy, which the next imports load
 from momantu_bt import __version__
 from momantu_bt.cli.notices import notice
 from momantu_bt.cli.subverbs import add_command, with_subverbs

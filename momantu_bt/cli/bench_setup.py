@@ -51,8 +51,8 @@ def plan_of(tree: str, seeds: Sequence[int], how: HowToRun) -> tuple[Plan, Docum
     from momantu_bt.bench.made_of import made_of
     from momantu_bt.bench.plan import Plan, Wanted
     from momantu_bt.engine.build import skills_in
-    from momantu_bt.engine.launch import check_world
     from momantu_bt.robots.plugins import ROBOTS
+    from momantu_bt.running.launch import check_world
     from momantu_bt.tree.check.named_world import world_of
     from momantu_bt.tree.files.lookup import find
     from momantu_bt.tree.load import load

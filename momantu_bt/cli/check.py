@@ -96,10 +96,10 @@ def _checked(tree: str, world: str | None, robot: str | None, *, quiet: bool) ->
             return _FileChecked(tree, False, error.problems)
         return _FileChecked(tree, False, unread=str(error))
     if not quiet:
-        if checked.notes:
-            typer.echo(report(checked.notes, checked.document.source), err=True)
+        if checked.problems:
+            typer.echo(report(checked.problems, checked.document.source), err=True)
         typer.echo(_fine(tree, checked))
-    return _FileChecked(tree, True, checked.notes)
+    return _FileChecked(tree, True, checked.problems)
 
 
 def _checked_faults(file: Path, *, quiet: bool) -> _FileChecked:

@@ -3,26 +3,37 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated
 
 import typer
 
+from momantu_bt.cli.breakpoints import Breakpoints
+from momantu_bt.cli.given import given_values
 from momantu_bt.cli.notices import notice
 from momantu_bt.cli.options import Robot
+from momantu_bt.cli.terminal import Terminal, is_interactive
+from momantu_bt.engine.executor import Executor, Observer
+from momantu_bt.engine.person import Scripted
 from momantu_bt.errors import ExitCode, InputError, MomantuError
+from momantu_bt.faults.spec import parse_fault
+from momantu_bt.formats.files import check_writable
+from momantu_bt.lazy import lazily
+from momantu_bt.record.changes import ChangeLines
+from momantu_bt.record.ending import ending_text
+from momantu_bt.record.film import FilmObserver, ViewObserver
+from momantu_bt.record.report import Report
+from momantu_bt.running.launch import launch
+from momantu_bt.running.options import RunOptions
+from momantu_bt.running.prepare import Prepared, prepare
 
-if TYPE_CHECKING:
-    from momantu_bt.cli.breakpoints import Breakpoints
-    from momantu_bt.cli.terminal import Terminal
-    from momantu_bt.engine.executor import Executor, Observer
-    from momantu_bt.fault import Fault
-    from momantu_bt.record.report import Report
-    from momantu_bt.tree.model import Document
-    from momantu_bt.tree.substitute.substitution import Substitution
+with lazily():
+    from rich import console
+
+    from momantu_bt.cli import live
 
 VIEW_PORT = 8080
 
@@ -87,22 +98,27 @@ def run(
       momantu-bt run bring_object --robot my_robot/robot.yaml
       momantu-bt run bring_object --fault camera.dead@navigate:for=10s
     """
-    from momantu_bt.cli.terminal import Terminal, is_interactive
-
     terminal = Terminal() if is_interactive() and not unattended else None
-    wanted = _Outputs(video, view, view_port, record, report, quiet, terminal, break_ or [])
+    options = RunOptions(
+        world=world,
+        robot=robot,
+        seed=seed,
+        values=given_values(set_ or [], values),
+        substitute=substitute,
+        faults=tuple(parse_fault(text) for text in fault or []),
+        max_time=max_time,
+        realtime=realtime,
+        referee=referee,
+        patience=patience,
+        record=record,
+        person=terminal or Scripted(),
+        remark=notice,
+    )
+    shown = _Shown(video, view_port if view else None, report, quiet, terminal, break_ or [])
     try:
-        start = _run(tree, world, robot, seed, set_ or [], values, substitute, wanted)
-        result = start(
-            max_time=max_time,
-            realtime=realtime,
-            referee=referee,
-            patience=patience,
-            faults=_faults(fault or []),
-        )
+        return _run(tree, options, shown).exit_code
     except KeyboardInterrupt:
         raise NotStarted("interrupted before the first tick; nothing was started") from None
-    return result.exit_code
 
 
 class NotStarted(MomantuError):
@@ -112,95 +128,46 @@ class NotStarted(MomantuError):
 
 
 @dataclass(frozen=True, slots=True)
-class _Outputs:
+class _Shown:
+    """What a person sees of the run, meanwhile and afterwards.
+
+    view_port: of the view in a browser; None without one. terminal: where somebody answers.
+    breaks: nodes to stop before.
+    """
+
     video: Path | None
-    view: bool
-    view_port: int
-    record: Path | None
+    view_port: int | None
     report: Path | None
     quiet: bool
     terminal: Terminal | None
     breaks: Sequence[str]
 
 
-def _faults(texts: Sequence[str]) -> tuple[Fault, ...]:
-    from momantu_bt.faults.spec import parse_fault
-
-    return tuple(parse_fault(text) for text in texts)
-
-
-def _run(
-    tree: str,
-    world: str | None,
-    robot: str | None,
-    seed: int,
-    settings: Sequence[str],
-    values: Path | None,
-    substitute: Path | None,
-    wanted: _Outputs,
-) -> Callable[..., Report]:
-    """Check what was asked for; the result starts the run and says how it ended."""
-    from momantu_bt.cli.given import given_values
-    from momantu_bt.engine.launch import Options, launch
-    from momantu_bt.tree.load import load
-    from momantu_bt.tree.registry import Registry
-    from momantu_bt.tree.substitute.substitution import Substitution, load_substitution
-
-    registry = Registry.installed()
-    board = given_values(settings, values)
-    checked = load(tree, registry, world=world, robot=robot, values=board)
-    replacing = Substitution()
-    if substitute is not None:
-        replacing = load_substitution(substitute, checked.document, registry, world)
-    stops = _breakpoints(wanted, checked.document, replacing)
-    _check_outputs(wanted)
-
-    def start(**how: Any) -> Report:
-        if wanted.terminal is not None:
-            how["person"] = wanted.terminal
-        options = Options(
-            world=world,
-            robot=robot,
-            seed=seed,
-            remark=notice,
-            substitution=replacing,
-            record=wanted.record,
-            **how,
-        )
-        result = launch(checked.document, options, registry, lambda run: _watch(run, wanted, stops))
-        if wanted.report is not None:
-            result.write(wanted.report)
-        _say_end(result, wanted)
-        return result
-
-    return start
-
-
-def _breakpoints(
-    wanted: _Outputs, document: Document, replacing: Substitution
-) -> Breakpoints | None:
-    """Where a person wants to stop, who must be there for it."""
-    from momantu_bt.cli.breakpoints import Breakpoints
-
-    if not wanted.breaks:
-        return None
-    if wanted.terminal is None:
-        raise InputError("--break needs a person at a terminal, and no --unattended")
-    return Breakpoints(wanted.breaks, document, wanted.terminal, replacing)
-
-
-def _check_outputs(wanted: _Outputs) -> None:
-    from momantu_bt.formats.files import check_writable
-
-    for path in (wanted.report, wanted.video):
+def _run(tree: str, options: RunOptions, shown: _Shown) -> Report:
+    """Check what was asked for, run, and say how it ended."""
+    prepared = prepare(tree, options)
+    stops = _breakpoints(shown, prepared)
+    for path in (shown.report, shown.video):
         if path is not None:
             check_writable(path)
+    result = launch(prepared, lambda run: _watch(run, shown, stops))
+    if shown.report is not None:
+        result.write(shown.report)
+    _say_end(result, options, shown)
+    return result
 
 
-def _watch(run: Executor, wanted: _Outputs, stops: Breakpoints | None) -> list[Observer]:
+def _breakpoints(shown: _Shown, prepared: Prepared) -> Breakpoints | None:
+    """Where a person wants to stop, who must be there for it."""
+    if not shown.breaks:
+        return None
+    if shown.terminal is None:
+        raise InputError("--break needs a person at a terminal, and no --unattended")
+    return Breakpoints(shown.breaks, prepared.document, shown.terminal, prepared.substitution)
+
+
+def _watch(run: Executor, shown: _Shown, stops: Breakpoints | None) -> list[Observer]:
     """Observers of what the user asked to see; those opened are closed when one cannot be."""
-    from momantu_bt.record.film import FilmObserver, ViewObserver
-
     observers: list[Observer] = []
     with ExitStack() as stack:
 
@@ -208,16 +175,16 @@ def _watch(run: Executor, wanted: _Outputs, stops: Breakpoints | None) -> list[O
             stack.callback(observer.close)
             observers.append(observer)
 
-        if (wanted.video is not None or wanted.view) and run.world is None:
+        if (shown.video is not None or shown.view_port is not None) and run.world is None:
             raise InputError("--video and --view need a world; this run has none")
-        if wanted.video is not None and run.world is not None:
-            add(FilmObserver(run.world.open_video(wanted.video, run.built.root.model.place.file)))
-        if wanted.view and run.world is not None:
-            scene = run.world.open_view(wanted.view_port)
+        if shown.video is not None and run.world is not None:
+            add(FilmObserver(run.world.open_video(shown.video, run.built.root.model.place.file)))
+        if shown.view_port is not None and run.world is not None:
+            scene = run.world.open_view(shown.view_port)
             add(ViewObserver(scene))
             typer.echo(f"view: {scene.url}")
-        if not wanted.quiet:
-            add(_display(wanted.terminal))
+        if not shown.quiet:
+            add(_display(shown.terminal))
         if stops is not None:
             stops.attach(run)
         stack.pop_all()
@@ -226,25 +193,17 @@ def _watch(run: Executor, wanted: _Outputs, stops: Breakpoints | None) -> list[O
 
 def _display(terminal: Terminal | None) -> Observer:
     """A live tree on a terminal, plain lines elsewhere."""
-    from momantu_bt.record.changes import ChangeLines
-
     if not sys.stdout.isatty():
         return ChangeLines(typer.echo)
-    from rich.console import Console
-
-    from momantu_bt.cli.live import LiveTree
-
-    live = LiveTree(Console())
+    display = live.LiveTree(console.Console())
     if terminal is not None:
-        terminal.display = live
-    return live
+        terminal.display = display
+    return display
 
 
-def _say_end(result: Report, wanted: _Outputs) -> None:
-    from momantu_bt.record.ending import ending_text
-
+def _say_end(result: Report, options: RunOptions, shown: _Shown) -> None:
     if result.error is not None:
         typer.echo(result.error, err=True)
-    named = (("report", wanted.report), ("video", wanted.video), ("record", wanted.record))
+    named = (("report", shown.report), ("video", shown.video), ("record", options.record))
     places = [f"{what}: {path}" for what, path in named if path is not None]
     typer.echo("; ".join([ending_text(result), *places]))

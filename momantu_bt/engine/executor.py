@@ -5,12 +5,14 @@ from __future__ import annotations
 import time
 import traceback
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
+from momantu_bt.engine import ending
 from momantu_bt.engine.build import Built
 from momantu_bt.engine.causes import running_as_cause
 from momantu_bt.engine.context import RunContext
+from momantu_bt.engine.ending import Ending
+from momantu_bt.engine.fingerprint import Fingerprint
 from momantu_bt.engine.interrupts import Interrupts
 from momantu_bt.engine.node import TreeNode
 from momantu_bt.engine.services import Services
@@ -18,12 +20,7 @@ from momantu_bt.engine.session import CLOCK_SLACK
 from momantu_bt.engine.status import FAILURE, RUNNING, Status
 from momantu_bt.failure import TIMEOUT, FailureValue
 from momantu_bt.messages import RobotState
-from momantu_bt.record import report as outcome
-from momantu_bt.record.fingerprint import Fingerprint
 from momantu_bt.world import Verdict, World
-
-if TYPE_CHECKING:
-    from momantu_bt.faults.director import Director
 
 SETTLE = 1.5
 """Simulated seconds after the end in which everything stops: the referee wants 1 s of stillness."""
@@ -41,6 +38,14 @@ class Stepper(Protocol):
         ...
 
 
+class Director(Protocol):
+    """Begins and ends faults between two ticks."""
+
+    def act(self, context: RunContext, settling: bool) -> None:
+        """Before the world steps on. settling: the tree has ended, and nothing begins any more."""
+        ...
+
+
 class Observer(Protocol):
     """Sees each tick and changes nothing."""
 
@@ -51,19 +56,6 @@ class Observer(Protocol):
     def close(self) -> None:
         """The run is over."""
         ...
-
-
-@dataclass(frozen=True, slots=True)
-class Ending:
-    """How a run ended. status: as in `Report`. error: a traceback."""
-
-    status: str
-    failure: FailureValue | None
-    verdict: Verdict | None
-    sim_time: float
-    wall_time: float
-    ticks: int
-    error: str | None
 
 
 class Executor:
@@ -109,15 +101,15 @@ class Executor:
         try:
             status = self._until_end(interrupts, started)
         except KeyboardInterrupt:
-            status = outcome.INTERRUPTED
+            status = ending.INTERRUPTED
         except Exception:
             self._error = traceback.format_exc()
-            status = outcome.ERROR
+            status = ending.ERROR
         sim_time, ticks = self.context.now, self.context.tick
         verdict = self._come_to_rest(status)
         wall_time = time.perf_counter() - started
         if self._error is not None:
-            status = outcome.ERROR
+            status = ending.ERROR
         return Ending(status, self._failure, verdict, sim_time, wall_time, ticks, self._error)
 
     def _until_end(self, interrupts: Interrupts, started: float) -> str:
@@ -128,14 +120,14 @@ class Executor:
             self.services.start(body.site, body.frames, self._stepper, self.context.seed)
         while True:
             if interrupts.requested:
-                return outcome.INTERRUPTED
+                return ending.INTERRUPTED
             status = self._tick()
             if status is not RUNNING:
                 self._failure = self.built.root.failure if status is FAILURE else None
-                return outcome.FAILURE if status is FAILURE else outcome.SUCCESS
+                return ending.FAILURE if status is FAILURE else ending.SUCCESS
             if self.context.now >= self._max_time - CLOCK_SLACK:
                 self._failure = self._timed_out()
-                return outcome.FAILURE
+                return ending.FAILURE
             if self._realtime:
                 due = started + self.context.waited + self.context.now
                 time.sleep(max(0.0, due - time.perf_counter()))
@@ -191,7 +183,7 @@ class Executor:
         self.context.writes.clear()
         try:
             self._halt_and_stop()
-            if status == outcome.ERROR:
+            if status == ending.ERROR:
                 self._settle_unseen()
                 return None
             self.settling = True

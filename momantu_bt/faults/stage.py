@@ -24,6 +24,7 @@ from momantu_bt.faults.skills.victim import SkillFault
 from momantu_bt.faults.tree_file import TreeFaults, tree_faults
 from momantu_bt.faults.watch import PhaseWatch
 from momantu_bt.formats.names import valid_names
+from momantu_bt.record.report import FaultReport
 from momantu_bt.robot import Robot
 from momantu_bt.skill import Skill
 from momantu_bt.tree.model import Document
@@ -89,6 +90,7 @@ class Stage:
         self.world = world
         self._planned = planned
         self._effects: list[Effect | None] = []
+        self._director: Director | None = None
         self.robot: Robot | None = None if world is None else world.robot
         self.site: Site | None = None if world is None else world.site
         for one in planned:
@@ -109,7 +111,12 @@ class Stage:
             Staged(one.fault, PhaseWatch(one.phase, built.nodes, document), effect)
             for one, effect in zip(self._planned, self._effects, strict=True)
         ]
-        return Director(staged, built.nodes, context.remark)
+        self._director = Director(staged, built.nodes, context.remark)
+        return self._director
+
+    def reports(self) -> tuple[FaultReport, ...]:
+        """What became of each fault, in the order in which they were given."""
+        return () if self._director is None else self._director.reports()
 
     def _effect(
         self, one: Planned, world: World | None, seed: int, stack: ExitStack

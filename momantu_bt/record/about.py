@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Mapping
-from dataclasses import fields
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from momantu_bt.engine.executor import Executor
 from momantu_bt.engine.node import TreeNode
@@ -15,41 +14,40 @@ from momantu_bt.tree.files.settings import SET
 from momantu_bt.tree.model import Document
 from momantu_bt.world import WorldTexts
 
-if TYPE_CHECKING:
-    from momantu_bt.engine.launch import Options
-
 FORMAT = 1
 """Counts up when records change so that older readers would be wrong."""
 SITE = "site.json"
-_NOT_OPTIONS = frozenset(("seed", "remark", "person", "substitution", "record", "keep_world"))
-"""Fields of `Options` that the user does not choose, or that are recorded elsewhere."""
 
 
-def run_data(document: Document, options: Options, run: Executor) -> dict[str, Any]:
-    """`/run`."""
+def run_data(document: Document, options: Mapping[str, Any], run: Executor) -> dict[str, Any]:
+    """`/run`. options: what was chosen for the run, beside its seed and its files."""
     world = run.world
-    chosen = [f.name for f in fields(options) if f.name not in _NOT_OPTIONS]
     return {
         "format": FORMAT,
         "tree": document.file,
         "main": document.main,
         "world": None if world is None else world.name,
         "robot": None if world is None else world.robot.description.name,
-        "seed": options.seed,
-        "options": {name: to_json(getattr(options, name)) for name in chosen},
+        "seed": run.context.seed,
+        "options": {name: to_json(value) for name, value in options.items()},
         "values": {key: to_json(value.value) for key, value in document.values.items()},
         "versions": versions(),
         "unix_time": time.time(),
     }
 
 
-def files_of(document: Document, options: Options, run: Executor) -> Iterator[dict[str, str]]:
-    """`/files`, one by one: the tree's with what it includes, then all others."""
+def files_of(
+    document: Document, substitution: Mapping[str, str], run: Executor
+) -> Iterator[dict[str, str]]:
+    """`/files`, one by one: the tree's with what it includes, then all others.
+
+    substitution: texts of files that say what nodes do instead of themselves, by name.
+    """
     given = {place.file for place in document.value_places.values()} - {document.file}
     for name, text in document.source.items():
         if name != SET or text:
             yield {"name": name, "kind": "values" if name in given else "tree", "text": text}
-    for name, text in options.substitution.source.items():
+    for name, text in substitution.items():
         yield {"name": name, "kind": "substitution", "text": text}
     if run.context.body is not None:
         site = dumps(to_json(run.context.body.site))

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from pathlib import PurePath
 
+from momantu_bt.engine.ending import ERROR, FAILURE, INTERRUPTED
 from momantu_bt.record.failure_text import failure_line
-from momantu_bt.record.report import ERROR, FAILURE, INTERRUPTED, Report
+from momantu_bt.record.report import Report
 
 
 def ending_text(report: Report) -> str:

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from momantu_bt.engine.context import RunContext
 from momantu_bt.engine.executor import Executor
@@ -35,10 +35,6 @@ from momantu_bt.record.ticks import Ticks
 from momantu_bt.record.viewer_schemas import GRID
 from momantu_bt.robot import Robot
 from momantu_bt.tree.model import Document
-
-if TYPE_CHECKING:
-    from momantu_bt.engine.launch import Options
-
 
 MOST_TICKS, MOST_SECONDS = 10, 0.1
 """Ticks in which nothing changed, and seconds of wall time, that a crash may take away."""
@@ -83,9 +79,18 @@ class Recorder:
 
     # while it lasts
 
-    def begin(self, document: Document, options: Options, run: Executor) -> None:
-        """Write what is known before the first tick, the board's first values included."""
-        self._guarded(self._open, document, options, run)
+    def begin(
+        self,
+        document: Document,
+        run: Executor,
+        options: Mapping[str, Any],
+        substitution: Mapping[str, str],
+    ) -> None:
+        """Write what is known before the first tick, the board's first values included.
+
+        options, substitution: as in `run_data` and `files_of`.
+        """
+        self._guarded(self._open, document, run, options, substitution)
 
     def ticked(self, run: Executor) -> None:
         """Write the tick; hand it to the operating system when anything changed or it is time."""
@@ -123,10 +128,16 @@ class Recorder:
             if self._file is not None:
                 self._file.abandon()
 
-    def _open(self, document: Document, options: Options, run: Executor) -> None:
+    def _open(
+        self,
+        document: Document,
+        run: Executor,
+        options: Mapping[str, Any],
+        substitution: Mapping[str, str],
+    ) -> None:
         file = self._file = McapFile(self._folder / LOG)
         _add(file, "/run", "momantu.Run", RUN, run_data(document, options, run))
-        for text in files_of(document, options, run):
+        for text in files_of(document, substitution, run):
             _add(file, "/files", "momantu.File", FILE, text)
         _add(file, "/nodes", "momantu.Nodes", NODES, nodes_data(run))
         self._ticks = Ticks(file, self._heard, run)

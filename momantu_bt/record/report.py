@@ -9,13 +9,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from momantu_bt.engine.ending import ERROR, INTERRUPTED, SUCCESS
 from momantu_bt.errors import ExitCode
 from momantu_bt.failure import FailureValue
 from momantu_bt.formats.files import write_whole
 from momantu_bt.messages import plain
 from momantu_bt.world import Incident
-
-SUCCESS, FAILURE, INTERRUPTED, ERROR = "SUCCESS", "FAILURE", "INTERRUPTED", "ERROR"
 
 
 @dataclass(frozen=True, slots=True)

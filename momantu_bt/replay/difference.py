@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from itertools import zip_longest
 from typing import Any
 
+from momantu_bt.engine.encode import encode
 from momantu_bt.failure import FailureValue
 from momantu_bt.messages import plain
 from momantu_bt.record.codec import dumps, from_json, to_json
-from momantu_bt.record.encode import encode
 from momantu_bt.record.recording import ChangeRecord, NodeInfo, TickRecord
 from momantu_bt.skill import MISSING
 

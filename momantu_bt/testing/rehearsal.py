@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from momantu_bt.engine.encode import encode
 from momantu_bt.engine.services import ServiceCycleError, in_order
 from momantu_bt.engine.session import Session
 from momantu_bt.engine.status import RUNNING
@@ -14,7 +15,6 @@ from momantu_bt.formats.places import NOWHERE, Place
 from momantu_bt.formats.problems import Problem
 from momantu_bt.messages import plain
 from momantu_bt.plugins import PluginError
-from momantu_bt.record.encode import encode
 from momantu_bt.robot import Robot
 from momantu_bt.skill import Skill
 from momantu_bt.testing.example_inputs import NoExample, example_inputs

@@ -8,7 +8,7 @@ from enum import StrEnum
 from pathlib import Path
 
 from momantu_bt.formats.problems import errors
-from momantu_bt.tree.check.nodes import name_first_inputs
+from momantu_bt.tree.check.nodes import with_named_inputs
 from momantu_bt.tree.check.signatures import Context
 from momantu_bt.tree.files.resolve import resolve
 from momantu_bt.tree.files.text import is_xml
@@ -74,12 +74,10 @@ def read_right(path: Path, registry: Registry) -> Document:
 def write(document: Document, to: Spelling, registry: Registry) -> str:
     """A document that is right in form, as text that reads back as the same document.
 
-    Names the ports of bare values (`reset_pose: home`) on the way, where the skill is known.
-
     Raises:
         CannotWrite: something in it has no words in that spelling.
     """
-    _name(document, registry)
+    document = _named(document, registry)
     writing = yaml_writer.write if to is Spelling.YAML else xml_writer.write
     text = writing(document, registry)
     again, problems = _read_again(text, to, document, registry)
@@ -87,14 +85,14 @@ def write(document: Document, to: Spelling, registry: Registry) -> str:
     if again is None or wrong:
         said = f": {wrong[0].message}" if wrong else ""
         raise CannotWrite(f"{to.upper()} has no room for this tree{said}")
-    _name(again, registry)
-    if meaning(again) != meaning(document):
+    if meaning(_named(again, registry)) != meaning(document):
         raise CannotWrite(f"{to.upper()} would say something else than this tree")
     return text
 
 
-def _name(document: Document, registry: Registry) -> None:
-    name_first_inputs(Context(document, registry, Problems()))
+def _named(document: Document, registry: Registry) -> Document:
+    """The document with the ports of bare values named, where the skill is known."""
+    return with_named_inputs(Context(document, registry, Problems()))
 
 
 def _read_again(

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.places import Place
-from momantu_bt.formats.problems import Problem, errors
-from momantu_bt.tree.check.checker import check
+from momantu_bt.formats.problems import errors
+from momantu_bt.tree.check.checker import Checked, check
 from momantu_bt.tree.files.includes import read_project
 from momantu_bt.tree.files.lookup import TreeNotFound, find
 from momantu_bt.tree.files.settings import Given
@@ -24,14 +23,6 @@ WORD = re.compile(r"[^\W\d]\w*")
 """What can be a key in a script."""
 
 __all__ = ["Checked", "TreeError", "TreeNotFound", "load", "read_file", "read_values"]
-
-
-@dataclass(frozen=True, slots=True)
-class Checked:
-    """A document without errors. notes: its warnings and hints."""
-
-    document: Document
-    notes: list[Problem]
 
 
 def load(
@@ -55,16 +46,10 @@ def load(
     having = registry if registry is not None else Registry.installed()
     document, problems = read_file(find(tree), having)
     _override(document, values or {}, problems)
-    found = check(
-        document,
-        having,
-        world=world,
-        robot=robot,
-        reading=problems,
-    )
-    if errors(found):
-        raise TreeError(found, document.source)
-    return Checked(document, found)
+    checked = check(document, having, world=world, robot=robot, reading=problems)
+    if errors(checked.problems):
+        raise TreeError(checked.problems, document.source)
+    return checked
 
 
 def read_file(path: Path, registry: Registry | None = None) -> tuple[Document, Problems]:

@@ -109,7 +109,7 @@ def said(report: Report, code: str) -> str:
 
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_the_checker_has_nothing_to_say(name: str) -> None:
-    assert load(name, INSTALLED).notes == []
+    assert load(name, INSTALLED).problems == []
 
 
 @pytest.mark.parametrize("name", EXAMPLES)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from momantu_bt.formats.places import Place
 from momantu_bt.formats.problems import Problem
@@ -13,7 +13,7 @@ from momantu_bt.tree.catalogue.known import Key, literal_type
 from momantu_bt.tree.check.guards import check_guards
 from momantu_bt.tree.check.handlers import check_handlers
 from momantu_bt.tree.check.keys.flow_check import check_keys
-from momantu_bt.tree.check.nodes import check_node, check_tree_ports
+from momantu_bt.tree.check.nodes import check_node, check_tree_ports, with_named_inputs
 from momantu_bt.tree.check.signatures import Context
 from momantu_bt.tree.check.surroundings import look_up_surroundings
 from momantu_bt.tree.check.trees import (
@@ -34,6 +34,17 @@ ROBOT_KEY = "robot"
 """`$@robot.…`: what every run publishes of its robot."""
 
 
+@dataclass(frozen=True, slots=True)
+class Checked:
+    """A checked document. problems: errors, warnings and hints in the order of the file.
+
+    document: as it runs: the ports of bare values (`reset_pose: home`) have their names.
+    """
+
+    document: Document
+    problems: list[Problem]
+
+
 def check(
     document: Document,
     registry: Registry,
@@ -41,18 +52,19 @@ def check(
     world: str | None = None,
     robot: str | None = None,
     reading: Problems | None = None,
-) -> list[Problem]:
-    """Check a document; on the way names the ports of bare values (`reset_pose: home`).
+) -> Checked:
+    """Check a document, which stays as it is.
 
     world, robot: named on the command line, instead of the file's and the world's own.
     reading: problems that reading the file has found; they come back with the rest.
-
-    Returns: errors, warnings and hints in the order of the file.
     """
     problems = reading if reading is not None else Problems()
+    context = Context(_concerned(document), registry, problems)
+    context.document = with_named_inputs(context)
     with suppress(TooManyProblems):  # the last of them says that there are more
-        _check(Context(_concerned(document), registry, problems), world, robot)
-    return problems.sorted()
+        _check(context, world, robot)
+    named = replace(document, trees={**document.trees, **context.document.trees})
+    return Checked(named, problems.sorted())
 
 
 def _concerned(document: Document) -> Document:
@@ -135,4 +147,4 @@ def _written_by(context: Context, node: Node) -> Iterator[tuple[Scope, str, bool
             yield scope, variable.key.removeprefix("@"), variable.key not in needed
 
 
-__all__ = ["ROBOT_KEY", "check"]
+__all__ = ["ROBOT_KEY", "Checked", "check"]

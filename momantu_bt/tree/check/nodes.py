@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import replace
+
 from momantu_bt.failure import CODE
 from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.places import Place
@@ -11,6 +14,7 @@ from momantu_bt.tree.catalogue import AUTOREMAP, MODIFIERS
 from momantu_bt.tree.check.signatures import Context, Signature, known_type, report_unknown_node
 from momantu_bt.tree.model import (
     FIRST_INPUT,
+    Document,
     Literal,
     Node,
     PortDeclaration,
@@ -52,17 +56,21 @@ def _type_names() -> list[str]:
 
 
 def check_node(context: Context, node: Node) -> None:
-    """One node: name, children, ports. Names the port of a bare value on the way."""
+    """One node: name, children, ports."""
     signature = context.signature(node)
     if signature is None:
         if node.type:
             report_unknown_node(context, node)
         return
-    _name_first_input(context, node, signature)
     _check_children(context, node, signature)
     _check_switch(context, node, signature)
-    for name in list(node.ports):
-        _check_port(context, node, name, signature)
+    for name in node.ports:
+        if name == FIRST_INPUT:
+            message = f"{signature.said} has no input"
+            place = node.port_places[name]
+            context.problems.error("unknown-port", place, message, "remove the value")
+        else:
+            _check_port(context, node, name, signature)
     _check_one_of(context, node, signature)
     _check_values(context, node, signature)
     for name, port in signature.ports.items():
@@ -82,28 +90,46 @@ def autoremaps(node: Node) -> bool:
     return node.ports.get(AUTOREMAP) == Literal(True)
 
 
-def name_first_inputs(context: Context) -> None:
-    """Name the ports of bare values, for the nodes that are known."""
-    for tree in context.document.trees.values():
-        for node in tree.root.walk():
-            signature = context.signature(node) if FIRST_INPUT in node.ports else None
-            if signature is not None and signature.first is not None:
-                _name_first_input(context, node, signature)
+def with_named_inputs(context: Context) -> Document:
+    """The document with the ports of bare values named (`reset_pose: home`), where it is known.
+
+    The given document stays as it is; trees without bare values are shared.
+    """
+    document = context.document
+    trees = {name: _with_named_inputs(context, tree) for name, tree in document.trees.items()}
+    return replace(document, trees=trees)
 
 
-def _name_first_input(context: Context, node: Node, signature: Signature) -> None:
-    if FIRST_INPUT not in node.ports:
-        return
-    value = node.ports.pop(FIRST_INPUT)
-    place = node.port_places.pop(FIRST_INPUT)
-    node.port_name_places.pop(FIRST_INPUT, None)
-    if signature.first is None:
-        message = f"{signature.said} has no input"
-        context.problems.error("unknown-port", place, message, "remove the value")
-        return
-    node.ports[signature.first] = value
-    node.port_places[signature.first] = place
-    node.port_name_places[signature.first] = place
+def _with_named_inputs(context: Context, tree: Tree) -> Tree:
+    """Nodes are copied from the innermost outwards, for trees may be deep."""
+    nodes = list(tree.root.walk())
+    if not any(FIRST_INPUT in node.ports for node in nodes):
+        return tree
+    copies: dict[int, Node] = {}
+    for node in reversed(nodes):
+        copy = copies[id(node)] = replace(node)
+        copy.children = [copies[id(child)] for child in node.children]
+        copy.handlers = [
+            each if each.node is None else replace(each, node=copies[id(each.node)])
+            for each in node.handlers
+        ]
+        signature = context.signature(node) if FIRST_INPUT in node.ports else None
+        if signature is not None and signature.first is not None:
+            _name_first_input(copy, signature.first)
+    return replace(tree, root=copies[id(tree.root)])
+
+
+def _name_first_input(node: Node, first: str) -> None:
+    """Put the bare value of a new node where the port of this name has its value."""
+    ports, place = dict(node.ports), node.port_places[FIRST_INPUT]
+    value = ports.pop(FIRST_INPUT)
+    node.ports = {**ports, first: value}
+    node.port_places = {**_without_first(node.port_places), first: place}
+    node.port_name_places = {**_without_first(node.port_name_places), first: place}
+
+
+def _without_first(places: Mapping[str, Place]) -> dict[str, Place]:
+    return {name: place for name, place in places.items() if name != FIRST_INPUT}
 
 
 def _check_children(context: Context, node: Node, signature: Signature) -> None:

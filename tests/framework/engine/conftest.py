@@ -5,12 +5,12 @@ from typing import Any
 
 import pytest
 
-from momantu_bt.engine.api import run
 from momantu_bt.engine.blackboard import Board, Cell
 from momantu_bt.engine.context import RunContext
 from momantu_bt.engine.node import Parts, TreeNode
 from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Status
 from momantu_bt.formats.places import Place
+from momantu_bt.running.api import run
 from momantu_bt.skill import Skill
 from momantu_bt.testing import ManualClock, ScriptedWorld
 from momantu_bt.tree.catalogue import NODES

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from momantu_bt.engine.launch import Options
 from momantu_bt.engine.person import Interrupted, Question, Scripted, answer
+from momantu_bt.running.options import RunOptions
 
 TEXT = """
 trees:
@@ -113,7 +113,7 @@ def test_whoever_interrupts_instead_leaves_the_node_running(bench):
 
 
 def test_nobody_is_there_unless_somebody_is_given():
-    assert answer(Options().person, Question("Well?")) is None
+    assert answer(RunOptions().person, Question("Well?")) is None
 
 
 WORDS = st.text(st.characters(codec="ascii", categories=("L", "N")), min_size=1, max_size=4)

@@ -12,11 +12,11 @@ import time
 import pytest
 
 from momantu_bt.engine.executor import SETTLE
-from momantu_bt.engine.launch import LaunchError
 from momantu_bt.failure import Failure
 from momantu_bt.geometry import Transform
 from momantu_bt.messages import BaseVelocity
 from momantu_bt.record.film import FilmObserver
+from momantu_bt.running.launch import LaunchError
 from momantu_bt.service import Service
 from momantu_bt.skill import In, Needs, Out, Run, Skill
 from momantu_bt.testing import ScriptedRobot, ScriptedWorld

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from momantu_bt.engine.api import run
 from momantu_bt.failure import Failure
 from momantu_bt.messages import BaseVelocity
+from momantu_bt.running.api import run
 from momantu_bt.skill import In, Out, Run, Skill
 from momantu_bt.testing import ScriptedRobot, ScriptedWorld
 from momantu_bt.tree.registry import Registry

@@ -7,10 +7,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from momantu_bt.engine.actuators import Actuators
-from momantu_bt.engine.launch import LaunchError
 from momantu_bt.engine.services import ServiceCycleError, Services, in_order
 from momantu_bt.frames import FrameBuffer
 from momantu_bt.messages import BaseVelocity
+from momantu_bt.running.launch import LaunchError
 from momantu_bt.service import Service
 from momantu_bt.skill import Needs, Run, Skill
 from momantu_bt.testing import ManualClock, ScriptedRobot, ScriptedWorld, scripted_site

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from momantu_bt.cli import main
-from momantu_bt.engine.launch import LaunchError
 from momantu_bt.messages import BaseVelocity
+from momantu_bt.running.launch import LaunchError
 from momantu_bt.skill import In, Out, Run, Skill
 from momantu_bt.testing import ScriptedWorld
 

@@ -11,8 +11,8 @@ import time
 
 import pytest
 
-from momantu_bt.engine.launch import LaunchError
 from momantu_bt.engine.watchdog import Hung, Watchdog
+from momantu_bt.running.launch import LaunchError
 from momantu_bt.skill import Run, Skill
 
 
@@ -121,7 +121,7 @@ def test_without_an_end_of_patience_and_in_other_threads_it_does_nothing():
 
 
 NATIVE = """
-import momantu_bt.engine.api as api
+import momantu_bt.running.api as api
 from momantu_bt.skill import Run, Skill
 from momantu_bt.testing import ScriptedWorld
 from momantu_bt.tree.registry import Registry

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from momantu_bt.engine.encode import encode
 from momantu_bt.failure import Failure
 from momantu_bt.fault import FaultError
 from momantu_bt.faults.robot import LAYERS, layer
@@ -20,7 +21,6 @@ from momantu_bt.messages import (
     JointTrajectory,
     LaserScan,
 )
-from momantu_bt.record.encode import encode
 from momantu_bt.robot import CameraSensor
 from momantu_bt.testing import ExampleWorld, ScriptedRobot, small_robot
 from momantu_bt.world import TICK, seeded

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from momantu_bt.engine.api import run
 from momantu_bt.messages import CameraImage, LaserScan
 from momantu_bt.record.reader import read_record
+from momantu_bt.running.api import run
 from momantu_bt.testing import ScriptedRobot, ScriptedWorld
 from momantu_bt.tree.registry import Registry
 

@@ -14,12 +14,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
+from momantu_bt.engine.encode import encode
 from momantu_bt.failure import FailureValue
 from momantu_bt.geometry import Pose, Pose2D, Transform
 from momantu_bt.messages import BaseVelocity, DetectedObject
 from momantu_bt.record.codec import CodecError, Opaque, dumps, from_json, to_json, to_text
 from momantu_bt.record.codec_types import find_type
-from momantu_bt.record.encode import encode
 from momantu_bt.skill import MISSING
 
 

@@ -7,11 +7,11 @@ import sys
 
 import pytest
 
-from momantu_bt.engine.api import run
-from momantu_bt.engine.launch import LaunchError
 from momantu_bt.formats.files import OutputError
 from momantu_bt.record.reader import RecordError, read_record
 from momantu_bt.record.recorder import MOST_TICKS
+from momantu_bt.running.api import run
+from momantu_bt.running.launch import LaunchError
 from momantu_bt.skill import Run, Skill
 from momantu_bt.tree.registry import Registry
 
@@ -26,7 +26,7 @@ trees:
 TELLING = """
 import os, sys
 from pathlib import Path
-from momantu_bt.engine.api import run
+from momantu_bt.running.api import run
 
 class Telling:
     def ticked(self, run):

@@ -12,14 +12,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from momantu_bt.engine.actuators import Issued
+from momantu_bt.engine.encode import encode
+from momantu_bt.engine.fingerprint import Fingerprint
 from momantu_bt.failure import FailureValue
 from momantu_bt.formats.files import OutputError, check_writable, write_whole
 from momantu_bt.geometry import Pose2D
 from momantu_bt.messages import BaseVelocity
-from momantu_bt.record.encode import encode
 from momantu_bt.record.ending import ending_text
 from momantu_bt.record.failure_text import failure_line
-from momantu_bt.record.fingerprint import Fingerprint
 from momantu_bt.record.folder import prepare_folder
 from momantu_bt.record.report import Report
 from momantu_bt.world import Incident

@@ -11,12 +11,12 @@ import pytest
 from mcap.reader import make_reader
 from PIL import Image
 
-from momantu_bt.engine.api import run
 from momantu_bt.frames import MAP, ODOM
 from momantu_bt.geometry import Pose, Pose2D, Transform
 from momantu_bt.messages import BaseVelocity, DetectedObject, JointTrajectory
 from momantu_bt.record.codec import from_json
 from momantu_bt.record.reader import ChangeRecord
+from momantu_bt.running.api import run
 from momantu_bt.service import HeldObject, Service
 from momantu_bt.skill import Failure, In, Needs, Out, Run, Skill
 from momantu_bt.testing import ScriptedRobot, ScriptedWorld

@@ -6,9 +6,9 @@ from itertools import count
 
 import pytest
 
-from momantu_bt.engine.api import run
 from momantu_bt.messages import BaseVelocity
 from momantu_bt.record.reader import read_record
+from momantu_bt.running.api import run
 from momantu_bt.service import Service
 from momantu_bt.skill import Failure, In, Needs, Out, Run, Skill
 from momantu_bt.testing import ScriptedWorld

@@ -136,7 +136,7 @@ def check(registry: Registry) -> Check:
                 document, found = read(text, "t.yaml")
         except TreeError as error:
             return error.problems
-        return check_document(document, registry, reading=found)
+        return check_document(document, registry, reading=found).problems
 
     return problems
 

@@ -31,7 +31,7 @@ def problems(text: str, registry: Registry | None = None, **asked: Any) -> list[
         document, reading = reader(text, "example")
     except TreeError as error:
         return error.problems
-    return check(document, registry or Registry.installed(), reading=reading, **asked)
+    return check(document, registry or Registry.installed(), reading=reading, **asked).problems
 
 
 def examples(kind: str) -> Mapping[str, str]:

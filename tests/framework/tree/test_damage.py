@@ -50,7 +50,7 @@ def assert_told_well(text: str, registry: Registry) -> None:
     """Whatever is wrong is told, at places that the text has."""
     try:
         document, found = read(text, "t.yaml")
-        problems = check_document(document, registry, reading=found)
+        problems = check_document(document, registry, reading=found).problems
     except TreeError as error:
         problems = error.problems
         assert problems

@@ -96,7 +96,7 @@ def test_good_trees_are_good(fuzzing: SimpleNamespace, tmp_path: Path) -> None:
 def test_many_problems_end_the_search(registry: Registry) -> None:
     text = HEAD + "".join(f"    - nonesuch{number}\n" for number in range(3 * MOST_PROBLEMS))
     document, found = read_yaml(text, "t.yaml")
-    problems = check_document(document, registry, reading=found)
+    problems = check_document(document, registry, reading=found).problems
     assert len(problems) == MOST_PROBLEMS + 1
     assert [p.code for p in problems if p.code != "unknown-node"] == ["too-large"]
     assert problems[-1].place.line == 4 + MOST_PROBLEMS + 1
@@ -128,7 +128,7 @@ def test_warnings_never_end_the_search() -> None:
 def test_each_child_that_overlaps_is_reported_once(registry: Registry) -> None:
     text = f"{HEAD}    parallel:\n{'      - relocalize' + chr(10)}" + "      - relocalize\n" * 3
     document, found = read_yaml(text, "t.yaml")
-    problems: list[Problem] = check_document(document, registry, reading=found)
+    problems: list[Problem] = check_document(document, registry, reading=found).problems
     assert [(p.code, p.place.line) for p in problems] == [
         ("overlapping-uses", line) for line in (7, 8, 9)
     ]
@@ -139,14 +139,14 @@ def test_what_a_disabled_node_would_use_does_not_overlap(registry: Registry) -> 
     disabled = "      - sequence: [relocalize]\n        disabled: true\n"
     text = f"{HEAD}    parallel:\n      - relocalize\n{disabled}"
     document, found = read_yaml(text, "t.yaml")
-    assert check_document(document, registry, reading=found) == []
+    assert check_document(document, registry, reading=found).problems == []
 
 
 @pytest.mark.parametrize("keys", [1000, 1001])
 def test_keys_of_a_tree_are_bounded(keys: int, registry: Registry) -> None:
     scripts = "".join(f"    - script: $k{number} := 1\n" for number in range(keys))
     document, found = read_yaml(HEAD + scripts, "t.yaml")
-    problems = check_document(document, registry, reading=found)
+    problems = check_document(document, registry, reading=found).problems
     assert ([p.code for p in problems if p.code == "too-large"] == []) is (keys <= 1000)
 
 
@@ -159,7 +159,7 @@ def test_keys_that_calls_share_are_bounded(registry: Registry) -> None:
         f'<BehaviorTree ID="Sub"><Sequence>{scripts}</Sequence></BehaviorTree></root>'
     )
     document, found = read_xml(text, "t.xml", registry)
-    problems = check_document(document, registry, reading=found)
+    problems = check_document(document, registry, reading=found).problems
     assert [p.code for p in problems] == ["too-large"]
 
 

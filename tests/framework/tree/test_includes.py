@@ -69,7 +69,7 @@ def test_each_spelling_includes_the_other(write: Write, tmp_path: Path) -> None:
     assert [i.path for i in document.includes] == ["parts/b.xml"]
     assert document.trees["D"].place.file == str(tmp_path / "parts/d.xml")
     assert set(document.source) == {tree.place.file for tree in document.trees.values()}
-    assert check(document, Registry()) == []
+    assert check(document, Registry()).problems == []
 
 
 def test_a_tree_below_runs_one_of_the_file_above(write: Write) -> None:
@@ -98,7 +98,7 @@ def test_what_nothing_here_runs_is_checked_with_its_own_file(write: Write) -> No
         b_yaml=yaml(RUN_BY_ITSELF),
         c_yaml=yaml("trees: {Main: [Look]}", "b.yaml"),
     )
-    assert load(str(path), Registry()).notes == []
+    assert load(str(path), Registry()).problems == []
     with pytest.raises(TreeError) as caught:
         load(str(path.with_name("b.yaml")), Registry())
     found = codes(caught.value.problems)

@@ -6,9 +6,11 @@ import pytest
 
 from momantu_bt.descriptions.reading import DescriptionError, KeyProblem
 from momantu_bt.formats.places import Place
+from momantu_bt.tree.check.checker import check
 from momantu_bt.tree.files.lookup import bundled, find
+from momantu_bt.tree.files.yaml.format import read
 from momantu_bt.tree.load import TreeError, TreeNotFound, load, read_values
-from momantu_bt.tree.model import Literal
+from momantu_bt.tree.model import FIRST_INPUT, Literal
 from momantu_bt.tree.registry import Registry
 from momantu_bt.world import WorldError
 
@@ -27,7 +29,7 @@ def test_a_file_by_path(folder: Path, registry: Registry) -> None:
     checked = load("fetch_it.yaml", registry)
     assert checked.document.file == "fetch_it.yaml"
     assert checked.document.trees["Main"].root.children[0].ports.keys() == {"in_front_of"}
-    assert checked.notes == []
+    assert checked.problems == []
 
 
 def test_bundled_trees_by_name() -> None:
@@ -152,7 +154,7 @@ def test_a_robot_whose_files_are_missing_is_a_warning(folder: Path, registry: Re
         raise WorldError("the extra [worlds] is not installed")
 
     bare = Registry(registry.skills, registry.worlds, {"toy": missing})
-    notes = load("fetch_it.yaml", bare).notes
+    notes = load("fetch_it.yaml", bare).problems
     assert [note.code for note in notes] == ["robot-not-installed"]
 
 
@@ -164,3 +166,14 @@ def test_a_file_of_values(folder: Path) -> None:
         read_values(folder / "w.yaml")
     with pytest.raises(TreeNotFound, match="cannot be read"):
         read_values(folder / "x.yaml")
+
+
+def test_a_document_stays_as_it_was_read(registry: Registry) -> None:
+    document, problems = read(GOOD, "tree.yaml")
+    checked = check(document, registry, reading=problems)
+    assert checked.problems == []
+    *_, before = document.trees["Main"].root.walk()
+    *_, after = checked.document.trees["Main"].root.walk()
+    assert list(before.ports) == [FIRST_INPUT]
+    assert FIRST_INPUT not in after.ports
+    assert list(after.ports.values()) == list(before.ports.values())

@@ -159,7 +159,7 @@ class Maker:
 
 def problems(text: str) -> list[Problem]:
     document, found = read(text, "t.xml", Registry())
-    return check(document, Registry(), reading=found)
+    return check(document, Registry(), reading=found).problems
 
 
 @pytest.mark.parametrize("block", range(20))

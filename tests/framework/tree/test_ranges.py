@@ -121,7 +121,7 @@ class Turn(Skill):
 
 def problems(node: str) -> list[Problem]:
     document, found = read(f"momantu_bt: 1\nvalues: {{a: 1}}\ntrees:\n  Main: [{node}]\n", "t.yaml")
-    return check_document(document, Registry({"turn": Turn}), reading=found)
+    return check_document(document, Registry({"turn": Turn}), reading=found).problems
 
 
 @pytest.mark.parametrize("node", ["{turn: 1}", "{turn: $a}", "{turn: {angle: null, to: door}}"])

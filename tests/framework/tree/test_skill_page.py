@@ -62,7 +62,7 @@ def checked(name: str, kind: type[Skill], example: str) -> list[object]:
     text += f"    inputs:\n{''.join(inputs)}" if inputs else ""
     text += f"    sequence:\n      - {body}\n"
     document, reading = read(text, "t.yaml")
-    found = check(document, Registry(skills={name: kind}), reading=reading)
+    found = check(document, Registry(skills={name: kind}), reading=reading).problems
     return [problem for problem in errors(found) if problem.code != "read-before-write"]
 
 
@@ -86,8 +86,8 @@ def test_the_xml_example_says_the_same(name: str) -> None:
         read(yaml, "t.yaml"),
     ):
         assert errors(reading.sorted()) == []
-        check(document, registry, reading=reading)
-        trees.append(document.trees["Main"].root)
+        checked = check(document, registry, reading=reading)
+        trees.append(checked.document.trees["Main"].root)
     assert trees[0] == (trees[1].children[0] if trees[1].type == "Sequence" else trees[1])
 
 

@@ -6,42 +6,39 @@ import time
 import traceback
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, field, replace
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from dataclasses import replace
+from typing import Any, TypeAlias
 
 from momantu_bt.engine.actuators import Actuators
-from momantu_bt.engine.audit import Auditor
 from momantu_bt.engine.blackboard import Board, ReadOnlyCell
 from momantu_bt.engine.body import Body
 from momantu_bt.engine.build import build, skills_in
 from momantu_bt.engine.context import RunContext
+from momantu_bt.engine.ending import ERROR
 from momantu_bt.engine.executor import Executor, Observer
 from momantu_bt.engine.interrupts import Interrupts
 from momantu_bt.engine.no_world import NoWorld
-from momantu_bt.engine.person import Person, Scripted
-from momantu_bt.engine.reporting import report_of
 from momantu_bt.engine.services import Services, in_order
-from momantu_bt.engine.watchdog import PATIENCE, Watchdog
+from momantu_bt.engine.watchdog import Watchdog
 from momantu_bt.errors import MomantuError
-from momantu_bt.fault import Fault
 from momantu_bt.faults.stage import Planned, Stage, plan
 from momantu_bt.formats.names import valid_names
 from momantu_bt.frames import FrameBuffer
-from momantu_bt.record.report import ERROR, Report
+from momantu_bt.record.recorder import Recorder
+from momantu_bt.record.report import Report
 from momantu_bt.robot import Robot, RobotDescription
+from momantu_bt.running.audit import Auditor
+from momantu_bt.running.options import RunOptions
+from momantu_bt.running.prepare import Prepared
+from momantu_bt.running.reporting import report_of
 from momantu_bt.service import Service
 from momantu_bt.skill import Skill
 from momantu_bt.tree.check.checker import ROBOT_KEY
 from momantu_bt.tree.check.named_world import world_of
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.substitute.substitution import Substitution
 from momantu_bt.values.convert import natural
 from momantu_bt.world import World
-
-if TYPE_CHECKING:
-    from momantu_bt.record.recorder import Recorder
 
 Watch: TypeAlias = Callable[[Executor], Sequence[Observer]]
 
@@ -50,41 +47,8 @@ class LaunchError(MomantuError):
     """The run cannot begin as it was asked for; nothing was started."""
 
 
-@dataclass(frozen=True, slots=True)
-class Options:
-    """How to run.
-
-    world: a name, `"none"`, or None for the tree's own. robot: a name, or None for the world's
-    default. keep_world: it was open before and stays so. max_time: simulated seconds after
-    which the run fails with TIMEOUT.
-    referee: False takes it out, which changes nothing else. audit: judge by ground truth what
-    skills claim, which changes nothing else. person: who answers `ask` and
-    `confirm`; nobody unless given. substitution: what nodes do instead of themselves.
-    faults: what is broken on purpose. patience: seconds of wall time that a skill's step may
-    take before it fails with HUNG; half as much more, and the process ends. inf: for ever.
-    record: a new folder for the run's record.
-    """
-
-    world: str | None = None
-    robot: str | None = None
-    seed: int = 0
-    max_time: float = 600.0
-    realtime: bool = False
-    referee: bool = True
-    audit: bool = False
-    keep_world: bool = False
-    remark: Callable[[str], None] = field(default=lambda text: None)
-    person: Person = field(default_factory=Scripted)
-    substitution: Substitution = field(default_factory=Substitution)
-    faults: tuple[Fault, ...] = ()
-    patience: float = PATIENCE
-    record: Path | None = None
-
-
-def launch(
-    document: Document, options: Options, registry: Registry, watch: Watch | None = None
-) -> Report:
-    """Run a checked document to its end.
+def launch(prepared: Prepared, watch: Watch | None = None) -> Report:
+    """Run a checked tree to its end.
 
     watch: makes the observers once the world is open; they are closed at the end.
 
@@ -97,24 +61,25 @@ def launch(
         KeyboardInterrupt: Ctrl-C before the first tick.
     """
     begun = time.perf_counter()
+    document, options, registry = prepared.document, prepared.options, prepared.registry
     if not options.patience > 0.0:
         raise LaunchError(f"a patience of {options.patience} s; expected more than 0, or inf")
-    kinds = {name: registry.skills[name] for name in skills_in(document, options.substitution)}
+    kinds = {name: registry.skills[name] for name in skills_in(document, prepared.substitution)}
     with ExitStack() as stack:
         interrupts = stack.enter_context(Interrupts())
         needed = _services(kinds, registry)
-        planned = _planned(document, options, kinds)
+        planned = _planned(prepared, kinds)
         recorder = _recorder(options, stack)
-        world = _open(document, options, registry, kinds, needed)
-        if world is not None and not options.keep_world:
+        world = _open(prepared, kinds, needed)
+        if world is not None and world is not options.world:
             stack.callback(world.close)
         stage = Stage(planned, world, options.seed, stack)
-        executor = _assemble(document, options, kinds, needed, stage, recorder)
+        executor = _assemble(prepared, kinds, needed, stage, recorder)
         auditor = Auditor(executor.context, world) if options.audit else None
         if watch is not None:
             executor.observers = list(watch(executor))
         if recorder is not None:
-            recorder.begin(document, options, executor)
+            recorder.begin(document, executor, options.recorded(), prepared.substitution.source)
             executor.observers.insert(0, recorder)
         started = time.perf_counter() - begun
         try:
@@ -124,7 +89,7 @@ def launch(
             trouble = _close(executor.observers)
         if trouble is not None:
             ending = replace(ending, status=ERROR, error=ending.error or trouble)
-        report = report_of(document.file, executor, ending, started)
+        report = report_of(document.file, executor, ending, started, stage.reports())
         if auditor is not None:
             report = replace(report, claims=auditor.claims())
         if recorder is not None:
@@ -132,21 +97,18 @@ def launch(
         return report
 
 
-def _recorder(options: Options, stack: ExitStack) -> Recorder | None:
+def _recorder(options: RunOptions, stack: ExitStack) -> Recorder | None:
     if options.record is None:
         return None
-    from momantu_bt.record.recorder import Recorder
-
     recorder = Recorder(options.record, options.remark)
     stack.callback(recorder.release)
     return recorder
 
 
-def _planned(
-    document: Document, options: Options, kinds: Mapping[str, type[Skill]]
-) -> tuple[Planned, ...]:
-    with_world = world_of(document, options.world) is not None
-    return plan(options.faults, document, kinds, options.substitution, with_world=with_world)
+def _planned(prepared: Prepared, kinds: Mapping[str, type[Skill]]) -> tuple[Planned, ...]:
+    document, options = prepared.document, prepared.options
+    with_world = world_of(document, options.world_name) is not None
+    return plan(options.faults, document, kinds, prepared.substitution, with_world=with_world)
 
 
 def _close(observers: Sequence[Observer]) -> str | None:
@@ -161,14 +123,13 @@ def _close(observers: Sequence[Observer]) -> str | None:
 
 
 def _open(
-    document: Document,
-    options: Options,
-    registry: Registry,
+    prepared: Prepared,
     kinds: Mapping[str, type[Skill]],
     needed: Mapping[str, type[Service]],
 ) -> World | None:
-    check_world(document, options.world, kinds, registry)
-    name = world_of(document, options.world)
+    options, registry = prepared.options, prepared.registry
+    check_world(prepared.document, options.world_name, kinds, registry)
+    name = world_of(prepared.document, options.world_name)
     if name is None:
         return None
     entry = registry.worlds[name]
@@ -231,13 +192,13 @@ def _services(kinds: Mapping[str, type[Skill]], registry: Registry) -> dict[str,
 
 
 def _assemble(
-    document: Document,
-    options: Options,
+    prepared: Prepared,
     kinds: Mapping[str, type[Skill]],
     needed: Mapping[str, type[Service]],
     stage: Stage,
     recorder: Recorder | None,
 ) -> Executor:
+    document, options, substitution = prepared.document, prepared.options, prepared.substitution
     stepper = stage.world if stage.world is not None else NoWorld()
     context = RunContext(
         stepper,
@@ -256,10 +217,10 @@ def _assemble(
         frames = FrameBuffer(stage.robot.description.kinematics())
         context.body = Body(actuators, frames, stage.site, services.running)
     board = _board(context, document, services, stage.robot)
-    for key, value in options.substitution.values.items():
+    for key, value in substitution.values.items():
         board.set(key, natural(value))
     skills = {name: stage.skill(kind) for name, kind in kinds.items()}
-    built = build(document, context, skills.__getitem__, board, options.substitution)
+    built = build(document, context, skills.__getitem__, board, substitution)
     return Executor(
         built,
         context,

@@ -11,6 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from momantu_bt.engine.actuators import Issued
+from momantu_bt.engine.encode import encode
+from momantu_bt.engine.fingerprint import Fingerprint
 from momantu_bt.failure import FailureValue
 from momantu_bt.geometry import Pose2D, Transform
 from momantu_bt.messages import (
@@ -21,8 +23,6 @@ from momantu_bt.messages import (
     RobotState,
     frozen,
 )
-from momantu_bt.record.encode import encode
-from momantu_bt.record.fingerprint import Fingerprint
 from momantu_bt.testing import ScriptedRobot
 
 

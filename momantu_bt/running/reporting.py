@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
-from momantu_bt.engine.executor import Ending, Executor
+from momantu_bt.engine.ending import Ending
+from momantu_bt.engine.executor import Executor
 from momantu_bt.engine.node import TreeNode
 from momantu_bt.engine.skill_leaf import SkillLeaf
-from momantu_bt.record.report import NodeReport, Report
+from momantu_bt.record.report import FaultReport, NodeReport, Report
 from momantu_bt.record.versions import versions
 
 
-def report_of(tree: str, executor: Executor, ending: Ending, started: float) -> Report:
+def report_of(
+    tree: str,
+    executor: Executor,
+    ending: Ending,
+    started: float,
+    faults: tuple[FaultReport, ...] = (),
+) -> Report:
     """The report of a run that has ended.
 
     tree: its file. started: seconds of wall time until the first tick.
@@ -35,7 +42,7 @@ def report_of(tree: str, executor: Executor, ending: Ending, started: float) -> 
         versions=versions(),
         error=ending.error,
         incidents=() if verdict is None else verdict.incidents,
-        faults=() if executor.director is None else executor.director.reports(),
+        faults=faults,
     )
 
 

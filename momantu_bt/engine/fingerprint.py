@@ -8,8 +8,8 @@ from collections.abc import Iterable
 from typing import Any
 
 from momantu_bt.engine.actuators import Issued
+from momantu_bt.engine.encode import encode
 from momantu_bt.messages import ActuatorGoal, RobotState
-from momantu_bt.record.encode import encode
 
 
 class Fingerprint:

@@ -1,0 +1,24 @@
+"""How a run ended."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from momantu_bt.failure import FailureValue
+from momantu_bt.world import Verdict
+
+SUCCESS, FAILURE, INTERRUPTED, ERROR = "SUCCESS", "FAILURE", "INTERRUPTED", "ERROR"
+"""Of the tree; somebody ended it; an internal error did."""
+
+
+@dataclass(frozen=True, slots=True)
+class Ending:
+    """How a run ended. status: one of the four. error: a traceback."""
+
+    status: str
+    failure: FailureValue | None
+    verdict: Verdict | None
+    sim_time: float
+    wall_time: float
+    ticks: int
+    error: str | None
