@@ -19,6 +19,7 @@ PACKAGES = {
     "momantu_worlds": ROOT / "worlds" / "momantu_worlds",
 }
 TOPS = ("benchmarks/", "docs/", "momantu_bt/", "setup/", "skills/", "tests/", "trees/", "worlds/")
+IN_PROSE = rf"(?<![\w./])(?:{'|'.join(TOPS)})[\w./-]+"
 OF_THE_READER = {
     "test_look_round.py",
     "turn/src/turn_skill/turn.py",
@@ -44,18 +45,16 @@ def files() -> frozenset[str]:
     return frozenset(found | {str(folder) for path in found for folder in Path(path).parents})
 
 
-def spans(page: Path) -> list[str]:
-    """The code spans of a page's prose."""
-    prose = re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.M | re.S)
-    return [" ".join(span.split()) for span in re.findall(r"`([^`]+)`", prose)]
+def prose(page: Path) -> str:
+    """A page without its fenced blocks."""
+    return re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.M | re.S)
 
 
 def is_there(named: str) -> bool:
     """Whether a file or folder has the name; `*` stands for anything, a path may begin anywhere."""
     named = PLACEHOLDER.sub("*", named)
-    return any(
-        path == named or fnmatch(path, named) or fnmatch(path, f"*/{named}") for path in files()
-    )
+    patterns = (named, f"*/{named}", f"{named}.py")
+    return any(fnmatch(path, pattern) for path in files() for pattern in patterns)
 
 
 def missing_part(dotted: str) -> str | None:
@@ -76,11 +75,13 @@ def missing_part(dotted: str) -> str | None:
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 def test_files_and_folders_exist(page: Path) -> None:
-    named = [span for span in spans(page) if re.fullmatch(r"[\w./*-]+", span)]
-    told = [span for span in named if span.startswith(TOPS) or span.endswith((".py", "/"))]
-    beside = {span for span in told if (page.parent / span).exists()}
-    absent = [span for span in told if not is_there(span.rstrip("/"))]
-    assert set(absent) - beside - OF_THE_READER - GENERATED == set()
+    spans = [" ".join(span.split()) for span in re.findall(r"`([^`]+)`", prose(page))]
+    named = {span for span in spans if re.fullmatch(r"[\w./*-]+", span)}
+    told = {span for span in named if span.startswith(TOPS) or span.endswith((".py", "/"))}
+    told |= {path.rstrip(".") for path in re.findall(IN_PROSE, prose(page))}
+    beside = {path for path in told if (page.parent / path).exists()}
+    absent = {path for path in told if not is_there(path.rstrip("/"))}
+    assert absent - beside - OF_THE_READER - GENERATED == set()
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
@@ -99,9 +100,8 @@ def tests() -> str:
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 def test_tests_exist(page: Path) -> None:
-    prose = re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.M | re.S)
     absent = []
-    for name, cut in re.findall(r"(?<!\w)((?:\w+/)*test_\w+)(…|\*)?", prose):
+    for name, cut in re.findall(r"(?<!\w)((?:\w+/)*test_\w+)(…|\*)?", prose(page)):
         is_file = is_there(f"{name}.py")
         if not is_file and not re.search(rf"def {name}{'' if cut else '[(]'}", tests()):
             absent.append(name)
