@@ -1,4 +1,4 @@
-"""What a skill does, so that a fault can begin while something does what it disturbs.
+"""What a skill does, in a few words that faults use to choose their usual phase.
 
 A skill says what it does (`Skill.activities`), and a kind of fault which activities it disturbs
 (`FaultKind.begins`). So a fault begins at the right moment with skills that it does not know.

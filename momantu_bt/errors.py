@@ -1,4 +1,4 @@
-"""Exit codes, and the base of every error that a person is told.
+"""Exit codes, and the base class of all errors that a user sees.
 
 The command line prints such an error without a stack trace and ends with its exit code; only `main`
 does so. Anything else that is raised is a mistake in the program: exit code INTERNAL.

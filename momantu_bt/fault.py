@@ -1,4 +1,4 @@
-"""Faults on purpose: what a fault is, and what a world offers that can make some happen.
+"""Injected faults: what a fault is, and the protocol of worlds that implement some.
 
 A fault is written `COMPONENT.MODE[@PHASE][:name=value,…]`, such as `camera.dead@navigate:for=5 s`.
 Those of sensors and actuators happen at the robot's boundary and those of skills in the engine,

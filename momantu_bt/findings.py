@@ -1,4 +1,4 @@
-"""What a check of a description finds: worlds and robots, each finding at its place in the file."""
+"""Findings of the checks of world files and robot files, each at its place in the file."""
 
 from __future__ import annotations
 

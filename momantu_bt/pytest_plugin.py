@@ -1,4 +1,4 @@
-"""The fixture `run_tree` for pytest; it is there wherever momantu-bt is installed."""
+"""The fixture `run_tree` for pytest, available wherever momantu-bt is installed."""
 
 from __future__ import annotations
 

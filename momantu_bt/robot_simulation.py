@@ -1,4 +1,4 @@
-"""What a simulator must know of a robot beyond what skills may know."""
+"""What a simulator needs to know about a robot, and skills must not know."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What never stops: services, and the two interfaces that skills rely on."""
+"""Services, which run all the time, and the interfaces of the two that skills rely on."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Shared libraries that an installed package expects of the machine, also where there are none."""
+"""Shared libraries that a package needs and the machine may lack: taken from another wheel."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a skill is: typed ports and one generator.
+"""Skills: typed ports and one generator.
 
 class Nod(Skill):
     \"\"\"Tilt the camera down and up again.\"\"\"

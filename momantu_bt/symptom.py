@@ -1,4 +1,4 @@
-"""What a failure tells of the world: the words in which skills and faults meet.
+"""Symptoms: the words that link a skill's failure codes with the faults that explain them.
 
 A skill says of each of its failure codes what it is a symptom of (`Skill.symptoms`), and a kind of
 fault which symptoms it has (`FaultKind.symptoms`). A code is a true reason to give up because of

@@ -1,4 +1,4 @@
-"""Sites and worlds: what the robot is told, where it happens, and who judges."""
+"""Sites, worlds and verdicts: what the robot is told, where it acts, and who judges."""
 
 from __future__ import annotations
 

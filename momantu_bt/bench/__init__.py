@@ -1,1 +1,1 @@
-"""How often it works: many episodes of a tree, each a process, their rows, and what these say."""
+"""Benches: many episodes of a tree, each in a process, their rows, and statistics of them."""

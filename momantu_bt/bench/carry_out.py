@@ -1,4 +1,4 @@
-"""From wanted episodes to rows on disk: what is there already is not run again."""
+"""Running the missing episodes of a plan, and writing their rows to disk."""
 
 from __future__ import annotations
 

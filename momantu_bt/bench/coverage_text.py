@@ -1,4 +1,4 @@
-"""Coverage as the tree's own text, with how often each line ran beside it."""
+"""Coverage as text: the tree file with the number of runs beside each line."""
 
 from __future__ import annotations
 

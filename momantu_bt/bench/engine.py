@@ -1,4 +1,4 @@
-"""What runs episodes: processes of this machine, or of many."""
+"""The interface of whatever runs episodes: processes of this machine, or of a cluster."""
 
 from __future__ import annotations
 

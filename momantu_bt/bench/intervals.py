@@ -1,4 +1,4 @@
-"""How sure a rate is: intervals of one proportion, and of the difference of two paired ones."""
+"""Confidence intervals of a proportion, and of the difference of two paired proportions."""
 
 from __future__ import annotations
 

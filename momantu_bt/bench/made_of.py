@@ -1,4 +1,4 @@
-"""What an episode is made of: versions, tree files, code, values. Another one is another episode.
+"""The inputs of an episode (versions, tree files, code, values) and the key made of them.
 
 A digest of the code is among it, since the version of a package that is being worked on stays the
 same from one edit to the next.

@@ -1,4 +1,4 @@
-"""The matrix of faults: what became of each, over seeds."""
+"""The matrix of faults: the outcome of each fault, over seeds."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Folders of results as one: what several machines ran of the same bench."""
+"""Merging folders of results of one bench that several machines ran."""
 
 from __future__ import annotations
 

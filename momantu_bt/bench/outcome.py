@@ -1,4 +1,4 @@
-"""What a row came to: whether it worked, and what became of a fault."""
+"""The outcome of a row: success or failure, and the result of a fault."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Two trees on the same seeds: which of them works where, and whether that is chance."""
+"""Comparing two trees on the same seeds, with McNemar's test."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A tree's files as data, so that an episode can run where they do not lie."""
+"""A tree's files as data, to send them to the machine that runs an episode."""
 
 from __future__ import annotations
 

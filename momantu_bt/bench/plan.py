@@ -1,4 +1,4 @@
-"""Which episodes of a tree are wanted, which are there, and which are missing."""
+"""The plan of a bench: which episodes are wanted, done and missing."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One episode as a process of its own, with a watchdog outside of it.
+"""Running one episode in a process of its own, with a watchdog outside it.
 
 `python -m momantu_bt.bench.episode SPEC ROW PARENT` runs in a session of its own, so that a hang
 in native code and whatever it started are killed together.

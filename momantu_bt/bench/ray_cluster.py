@@ -1,4 +1,4 @@
-"""A Ray cluster to work on: one of this machine alone, or one that runs already."""
+"""Connecting to a Ray cluster: a private one on this machine, or a running one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a Ray worker does: one episode in a process of its own, wherever it is."""
+"""The task of a Ray worker: one episode in a process of its own."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A bench as one JSON file: its figures, its tables, and a row for each episode."""
+"""The report of a bench as JSON: its figures, its tables, and a row for each episode."""
 
 from __future__ import annotations
 

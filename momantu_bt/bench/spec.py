@@ -1,4 +1,4 @@
-"""One episode as it is asked for, and one as it went: plain data that travels between machines."""
+"""The specification and the result of one episode, as plain data to send between machines."""
 
 from __future__ import annotations
 

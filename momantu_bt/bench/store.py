@@ -1,4 +1,4 @@
-"""The rows of a bench on disk: a folder with `results.jsonl`, to which rows are only added.
+"""The rows of a bench on disk: a folder with an append-only `results.jsonl`.
 
 Each row is one write and is on the disk before the next episode counts as done. A line that was
 cut by a crash is dropped when the folder is opened the next time; all others stay.

@@ -1,4 +1,4 @@
-"""What many rows of one tree come to, as figures."""
+"""Statistics of many rows of one tree."""
 
 from __future__ import annotations
 

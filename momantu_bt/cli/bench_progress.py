@@ -1,4 +1,4 @@
-"""How a bench shows what it is at: one live line on a terminal, a line per episode elsewhere."""
+"""Progress of a bench: one live line on a terminal, a line per episode elsewhere."""
 
 from __future__ import annotations
 

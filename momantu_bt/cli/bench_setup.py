@@ -1,4 +1,4 @@
-"""What `bench` and `compare` share: from arguments to a plan, an engine, an exit code."""
+"""What `bench` and `compare` share: arguments to a plan, an engine and an exit code."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`run --break NODE`: stop before a node starts, and let a person look round.
+"""`run --break NODE`: stop before a node starts, and let a person inspect the run.
 
 The nodes are wrapped when a run begins; a run without breakpoints has nothing of this.
 """

@@ -1,4 +1,4 @@
-"""`momantu-bt check`: everything that is wrong with tree files, without running them."""
+"""`momantu-bt check`: report all mistakes in tree files, without running them."""
 
 from __future__ import annotations
 

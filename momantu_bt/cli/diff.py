@@ -1,4 +1,4 @@
-"""`momantu-bt diff`: what two recorded runs differ in."""
+"""`momantu-bt diff`: the differences between two recorded runs."""
 
 from __future__ import annotations
 

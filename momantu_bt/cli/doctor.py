@@ -1,4 +1,4 @@
-"""`momantu-bt doctor`: looks at everything a run needs, and names the cure for what is wrong."""
+"""`momantu-bt doctor`: checks what a run needs, and names the cure for each problem."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`momantu-bt faults`: what can be broken on purpose, and how."""
+"""`momantu-bt faults`: the kinds of faults, and how to write them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What `--values` and `--set` give, the latter winning."""
+"""Values from `--values` and `--set`; `--set` wins."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Listing the plug-ins of one kind, each with one line about it."""
+"""Lists of the plug-ins of one kind, with one line about each."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The live tree in a terminal: statuses, the simulated clock, reasons, and what is done."""
+"""The live tree in a terminal: statuses, the simulated clock, failures and reactions."""
 
 from __future__ import annotations
 

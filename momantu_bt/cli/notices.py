@@ -1,4 +1,4 @@
-"""What is said on standard error: why a verb refused, and remarks that a result does not hold."""
+"""Notices on standard error: remarks that are not part of a result."""
 
 from __future__ import annotations
 

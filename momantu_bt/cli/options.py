@@ -1,4 +1,4 @@
-"""Options that `bench` and `compare` have in common, spelled once."""
+"""Options that `bench` and `compare` share."""
 
 from __future__ import annotations
 

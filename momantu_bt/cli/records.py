@@ -1,4 +1,4 @@
-"""A record that a person names on the command line."""
+"""Opening a record that is named on the command line."""
 
 from __future__ import annotations
 

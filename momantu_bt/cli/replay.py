@@ -1,4 +1,4 @@
-"""`momantu-bt replay`: a recorded run in the terminal, or its tree once more without the world."""
+"""`momantu-bt replay`: step through a recorded run, or tick its tree again without the world."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a person sees of a record in the terminal, and the loop that takes keys."""
+"""The terminal screen of `replay`, and its keyboard loop."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`momantu-bt robots`: what is installed, and what a tree can name of each robot."""
+"""`momantu-bt robots`: the installed robots, and the names that trees can use of each."""
 
 from __future__ import annotations
 

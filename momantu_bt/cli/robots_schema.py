@@ -1,4 +1,4 @@
-"""`momantu-bt robots schema`: what an editor completes in robot files."""
+"""`momantu-bt robots schema`: a JSON Schema of robot files, for editors."""
 
 from __future__ import annotations
 

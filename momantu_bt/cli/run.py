@@ -1,4 +1,4 @@
-"""`momantu-bt run`: a tree, in a world, to its end."""
+"""`momantu-bt run`: run a tree in a world."""
 
 from __future__ import annotations
 

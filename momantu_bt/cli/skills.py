@@ -1,4 +1,4 @@
-"""`momantu-bt skills`: what is installed, and how each skill is used."""
+"""`momantu-bt skills`: the installed skills, and how to use each one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`momantu-bt skills new`: a package for a skill of one's own."""
+"""`momantu-bt skills new`: make a package for a new skill."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`momantu-bt skills schema`: what an editor completes in tree files."""
+"""`momantu-bt skills schema`: a JSON Schema of tree files, for editors."""
 
 from __future__ import annotations
 

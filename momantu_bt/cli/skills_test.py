@@ -1,4 +1,4 @@
-"""`momantu-bt skills test`: do installed skills keep what every skill promises."""
+"""`momantu-bt skills test`: test the rules for all skills on the installed ones."""
 
 from __future__ import annotations
 

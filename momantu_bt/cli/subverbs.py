@@ -1,4 +1,4 @@
-"""Sub-verbs that other packages bring: `worlds import` is an entry point of that name.
+"""Sub-verbs of other packages: `worlds import` is an entry point of that name.
 
 Only the one that is asked for is imported. The others are names with a line of help, which is
 read from their source, so that neither a heavy module nor a broken one is in anybody's way.

@@ -1,4 +1,4 @@
-"""A person at the terminal: questions of the tree, and whatever else is read from the keyboard."""
+"""A person at the terminal, who answers the tree's questions and uses the keyboard."""
 
 from __future__ import annotations
 

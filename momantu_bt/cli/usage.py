@@ -1,4 +1,4 @@
-"""What is said of a command line that cannot be understood: what is wrong, what would be right."""
+"""Messages about a wrong command line: what is wrong, and what would be right."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Verbs of the command line: built-in ones, and those that other packages bring."""
+"""The verbs of the command line: built-in ones, and those of other packages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`momantu-bt worlds`: what is installed, and what a tree can name in each world."""
+"""`momantu-bt worlds`: the installed worlds, and the names that trees can use in each."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`momantu-bt worlds check`: all that makes a world unusable, told before a run."""
+"""`momantu-bt worlds check`: report what makes a world unusable, before a run."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`momantu-bt worlds preview`: a picture of a world, before anything is run in it."""
+"""`momantu-bt worlds preview`: draw a world before anything runs in it."""
 
 from __future__ import annotations
 

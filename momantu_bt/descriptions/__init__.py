@@ -1,1 +1,1 @@
-"""Files that describe a robot or a world: YAML with quantities, every mistake told at its place."""
+"""Files that describe robots and worlds: YAML with quantities, mistakes reported at their place."""

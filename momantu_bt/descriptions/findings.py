@@ -1,4 +1,4 @@
-"""What a model objects to in a file, in words that say what would have been right."""
+"""Validation errors of a description file, in words that say what would be right."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""YAML 1.2 as plain values, and where each of them stood."""
+"""Reading YAML 1.2 as plain values, with the place of each."""
 
 from __future__ import annotations
 

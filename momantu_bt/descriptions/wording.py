@@ -1,4 +1,4 @@
-"""pydantic's findings in the words of whoever writes a file by hand: what is expected, what is."""
+"""Pydantic's errors in plain words: what is expected and what is written."""
 
 from __future__ import annotations
 

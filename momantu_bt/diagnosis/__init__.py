@@ -1,4 +1,4 @@
-"""What `momantu-bt doctor` collects: one value per thing looked at, from every plug-in too.
+"""Diagnoses for `momantu-bt doctor`: one value for each check, also from plug-ins.
 
 A plug-in takes part by a function `diagnose() -> Iterable[Diagnosis]`: an attribute of what its
 entry point names, or a function of the module or of the package that declares it. One function

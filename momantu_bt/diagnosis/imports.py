@@ -1,4 +1,4 @@
-"""Tries imports in a process of their own: a library that crashes does not take doctor along."""
+"""Checks imports, each in a process of its own: a library that crashes does not end `doctor`."""
 
 from __future__ import annotations
 

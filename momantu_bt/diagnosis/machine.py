@@ -1,4 +1,4 @@
-"""Looks at the machine: Python, memory, and the folders that are written to."""
+"""Checks the machine: Python, memory, and the folders that are written to."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Looks at installed packages by their metadata alone: presence, bounds, tested versions."""
+"""Checks installed packages by their metadata: presence, bounds, tested versions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Asks every installed plug-in, and says which of them cannot even be loaded."""
+"""Asks every installed plug-in for its diagnoses; one that cannot be loaded is reported."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The difference of two documents, as a tree with + - ~ marks."""
+"""The difference between two documents, as a tree with + - ~ marks."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where everything of a picture goes: an outline, one row for each box, wires in lanes beside it.
+"""The layout of a picture: an outline, one row for each box, wires in lanes beside it.
 
 A box stands right of its parent and below it, so that no line from a box to the lanes on the right
 crosses another box. Lengths in pixels, y downwards.

@@ -1,4 +1,4 @@
-"""Who writes what each key reads: the wires of a document."""
+"""The wires of a document: which node writes what another one reads."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Model to nodes to ticks."""
+"""Running a tree: from its checked model to nodes and ticks."""

@@ -1,4 +1,8 @@
+<<<<<<< HEAD:momantu_bt/engine/causes.py
 """Failures on their way up: how often something was tried, and what was behind or beside it."""
+=======
+"""Failures on their way up: the number of tries, and earlier causes."""
+>>>>>>> 8e62d15 (First lines of files say plainly what the file does):momantu_bt/engine/tries.py
 
 from __future__ import annotations
 

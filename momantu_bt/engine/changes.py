@@ -1,4 +1,4 @@
-"""The journal of statuses: which nodes changed in a tick, and what others may see of a node."""
+"""The journal of statuses: which nodes changed in a tick, and what others see of a node."""
 
 from __future__ import annotations
 

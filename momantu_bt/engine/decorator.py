@@ -1,4 +1,4 @@
-"""The node that every node around one child is."""
+"""The base class of decorators."""
 
 from __future__ import annotations
 

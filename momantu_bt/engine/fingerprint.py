@@ -1,4 +1,4 @@
-"""SHA-256 over every tick of a run: two runs are the same when theirs are."""
+"""The fingerprint of a run: a SHA-256 over every tick."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A clock and nothing else: where a tree without skills runs."""
+"""The world `none`: a clock and nothing else."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The node that every other node is: status, conditions, halting and bookkeeping.
+"""The base class of all nodes: status, conditions, halting and bookkeeping.
 
 Nodes tick and stop as in BehaviorTree.CPP 4: `execute` asks the conditions, then `step`, then runs
 the scripts that follow an end. `state` is what a parent decides by (IDLE, RUNNING, or an end not

@@ -1,4 +1,4 @@
-"""What a node is to a person who watches a run."""
+"""The role of a node for a person who watches a run."""
 
 from __future__ import annotations
 

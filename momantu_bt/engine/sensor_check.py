@@ -1,4 +1,4 @@
-"""Noticing a sensor that answers, but with nothing to rely on.
+"""Noticing sensors that answer with unreliable readings.
 
 A real reading is never the same twice: it has noise, and a robot that moves sees something else.
 A driver that goes on giving its last reading under new stamps looks healthy to everyone else. So

@@ -1,4 +1,4 @@
-"""Ends what hangs, by the wall's clock; a run in which nothing hangs does not notice.
+"""The watchdog: ends what hangs, by wall time.
 
 A skill's step in Python that takes longer than the run's patience is left by an exception that a
 signal raises. What hangs elsewhere, or in native code, where no handler of a signal ever runs,

@@ -1,4 +1,4 @@
-"""When a kind of fault usually begins, with the skills that there are."""
+"""The usual phases of a kind of fault, given the installed skills."""
 
 from __future__ import annotations
 

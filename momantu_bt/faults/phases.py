@@ -1,4 +1,4 @@
-"""Phases and tree files: whether a phase's names occur, and which is a kind's usual one."""
+"""Phases in a tree: whether their names occur, and the usual phase of a kind of fault."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A process that ends as it would without power."""
+"""Killing the process."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which failure codes are a true reason to give up because of a fault."""
+"""The failure codes that count as true reasons of a fault."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Faults in what the robot is told: the world is as ever, the site says otherwise."""
+"""Faults in what the robot is told; the world does not change."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Sites that tell the robot something wrong; the world stays as it is."""
+"""Wrong sites: the robot is told something false; the world does not change."""
 
 from __future__ import annotations
 

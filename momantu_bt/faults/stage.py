@@ -1,4 +1,4 @@
-"""From the faults that are asked for to a run in which they can happen."""
+"""Preparing a run for the requested faults."""
 
 from __future__ import annotations
 

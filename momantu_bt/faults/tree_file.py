@@ -1,4 +1,4 @@
-"""What a file beside a tree says of faults in it: `my_tree.faults.yaml` beside `my_tree.yaml`.
+"""Fault rows of one tree: `my_tree.faults.yaml` beside `my_tree.yaml`.
 
 momantu_bt: 1
 begins:                        # when a fault begins in this tree, unless @PHASE says otherwise

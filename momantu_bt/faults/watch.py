@@ -1,4 +1,4 @@
-"""Seeing from outside when a phase of a running tree begins."""
+"""Watching a running tree for the beginning of a phase."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where what is worked out once and kept lies: the user's cache folder."""
+"""The user's cache folder."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Writing a file so that it is never half there."""
+"""Writing files whole or not at all."""
 
 from __future__ import annotations
 

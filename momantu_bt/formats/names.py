@@ -1,4 +1,4 @@
-"""What was probably meant by a name that is unknown."""
+"""Nearest names: "did you mean" for unknown ones."""
 
 from __future__ import annotations
 

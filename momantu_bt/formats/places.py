@@ -1,4 +1,4 @@
-"""A place in a file, and how a person is shown it: its line, with a caret under it."""
+"""A place in a file, and its line with a caret under it."""
 
 from __future__ import annotations
 

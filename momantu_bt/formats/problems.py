@@ -1,4 +1,4 @@
-"""Something that is wrong with a file: where, what was expected, and what would have been valid."""
+"""A problem of a file: where, what was expected, and what would have been valid."""
 
 from __future__ import annotations
 

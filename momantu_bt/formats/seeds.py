@@ -1,4 +1,4 @@
-"""Seeds as people write them: `0:500`, `3,5,7`, `0:10,20:30`; and as they are told again."""
+"""Seeds as people write them: `0:500`, `3,5,7`, `0:10,20:30`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The page's head: what ran, with what, and how it ended."""
+"""The head of the page: what ran, with what, and how it ended."""
 
 from __future__ import annotations
 

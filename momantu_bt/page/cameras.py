@@ -1,4 +1,4 @@
-"""Pictures that the run took, as data in the page."""
+"""The camera's pictures, as data in the page."""
 
 from __future__ import annotations
 

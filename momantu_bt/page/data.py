@@ -1,4 +1,4 @@
-"""Everything that the page shows, as plain data; `assets/record.js` and its fellows read it."""
+"""All data of the page; `assets/record.js` reads it."""
 
 from __future__ import annotations
 

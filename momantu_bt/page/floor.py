@@ -1,4 +1,4 @@
-"""The map of the page: floor plan, places, the robot's way, and objects as it believed them."""
+"""The map of the page: floor plan, places, the robot's path, and objects as it believed them."""
 
 from __future__ import annotations
 

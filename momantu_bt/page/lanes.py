@@ -1,4 +1,4 @@
-"""The timeline's lanes: what skills did from when to when, and what went wrong."""
+"""The lanes of the timeline: what skills did when, and what went wrong."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What each node shows, as the changes of it, tick by tick."""
+"""The status of each node as changes, tick by tick."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""A run on paper: its fingerprint, its report, its record, written and read back."""
+"""What remains of a run: its fingerprint, its report and its record, written and read back."""

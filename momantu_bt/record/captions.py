@@ -1,4 +1,4 @@
-"""What is said beside nodes: values in their lines, and notes that change while they run.
+"""The texts beside nodes: values in their lines, and notes that change while they run.
 
 The journal of changes has neither: a line gets its values at a start, and a skill's phase or a
 count of tries goes on without a change of status.

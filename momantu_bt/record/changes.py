@@ -1,4 +1,4 @@
-"""A run as plain lines: one for each change that a person would tell."""
+"""A run as plain lines: one for each change that matters to a reader."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the parts of a record share: a part writes messages of its own when they are due."""
+"""The base of the parts of a record: each writes its own messages when they are due."""
 
 from __future__ import annotations
 

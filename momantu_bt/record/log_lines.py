@@ -1,4 +1,4 @@
-"""What a person would want to read: failures and remarks, as `/log`."""
+"""Failures and remarks for a reader: `/log`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Things as the robot believes them: `/objects`, from the board and from the planning scene."""
+"""Objects as the robot believes them: `/objects`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where the robot and its links are, as it believes: `/tf` and `/pose`."""
+"""The believed poses of the robot and its links: `/tf` and `/pose`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a run came to, as a value and as a JSON file."""
+"""The report of a run, as a value and as a JSON file."""
 
 from __future__ import annotations
 

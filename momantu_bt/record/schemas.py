@@ -1,4 +1,4 @@
-"""JSON Schemas of the messages that are our own."""
+"""JSON Schemas of our own messages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether a record that was read hangs together: a damaged file may still be JSON."""
+"""Whether a record is consistent: a damaged file may still be JSON."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Ticks as messages: what changed, was written, read and commanded, each thing encoded once."""
+"""Ticks as messages: what changed, was written, read and commanded, each value encoded once."""
 
 from __future__ import annotations
 

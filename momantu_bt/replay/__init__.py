@@ -1,1 +1,1 @@
-"""A recorded run again: its moments, its tree without a world, and what two runs differ in."""
+"""Replaying recorded runs: their moments, their tree without a world, and their differences."""

@@ -1,4 +1,4 @@
-"""Two recorded runs beside each other: where they part, and how they differ as a whole."""
+"""Comparing two recorded runs: where they part, and how they differ as a whole."""
 
 from __future__ import annotations
 

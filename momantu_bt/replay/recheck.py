@@ -1,4 +1,4 @@
-"""A recorded run once more without its world: the tree is ticked, and must do what it did.
+"""Ticking the tree of a recorded run again without its world: it must do the same.
 
 Skills, services, odometry and people say what the record says they said; every other node is
 really executed, by the recorded clock. Each tick's changes and writes are compared.

@@ -1,4 +1,4 @@
-"""Going through a record by keys: where one is, and where each key leads. It draws nothing."""
+"""Stepping through a record by keys: the position, and where each key leads. It draws nothing."""
 
 from __future__ import annotations
 

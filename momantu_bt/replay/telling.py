@@ -1,4 +1,4 @@
-"""A record told as lines: what its run said while it lasted, and how it ended."""
+"""A record as lines: what its run printed, and how it ended."""
 
 from __future__ import annotations
 

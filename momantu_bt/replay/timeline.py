@@ -1,4 +1,4 @@
-"""A record as a row of moments, any of which is quickly found."""
+"""A record as a sequence of moments, with quick access to each."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Joining the parts of a robot into one URDF; where there is nothing to join, its own serves."""
+"""Joining the parts of a robot into one URDF; a single part's own URDF is used unchanged."""
 
 from __future__ import annotations
 

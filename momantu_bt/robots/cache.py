@@ -1,4 +1,4 @@
-"""Where assembled URDFs are kept: in the user's cache, or in a folder that goes away."""
+"""The cache of assembled URDFs."""
 
 from __future__ import annotations
 

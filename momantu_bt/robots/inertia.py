@@ -1,4 +1,4 @@
-"""Masses and inertias of a URDF: whether a body can have them."""
+"""Whether the masses and inertias of a URDF are physically possible."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Limits that a URDF leaves out, from the robot file: parsers and physics ask for all of them."""
+"""Adding joint limits from the robot file that a URDF leaves out."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where the meshes of a part lie, and a user's own meshes in their place."""
+"""Finding the meshes of a part, and replacing them with a user's own."""
 
 from __future__ import annotations
 

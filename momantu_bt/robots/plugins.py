@@ -1,4 +1,4 @@
-"""Robots by name: installed ones, and files in the place of a name."""
+"""Robots by name: installed ones, and files in place of a name."""
 
 from __future__ import annotations
 

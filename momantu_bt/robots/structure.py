@@ -1,4 +1,4 @@
-"""Whether a part's URDF is what it should be: one tree of links, with numbers that can be read."""
+"""Whether a part's URDF is one tree of links with valid numbers."""
 
 from __future__ import annotations
 

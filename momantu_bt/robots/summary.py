@@ -1,4 +1,4 @@
-"""What there is to know of a robot at a glance: parts, masses, reach, heights of sensors."""
+"""A robot's summary: parts, masses, reach, heights of sensors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Claims against truth: what skills said at their ends, and how often the world denies it."""
+"""The audit: what skills claim when they end, against the truth."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a run came to, gathered from everything that took part in it."""
+"""Collecting the report of a run from everything that took part in it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""For tests of skills: a robot that does what the test scripts, `run_skill` and `check_skill`.
+"""The test kit for skills and trees: `run_skill`, `check_skill`, scripted robots and worlds.
 
 result = run_skill(Nod, robot=ScriptedRobot(), inputs={"angle": 0.2})
 assert result.status == "SUCCESS" and result.phases == ("down", "up")

@@ -1,4 +1,4 @@
-"""Does a skill keep what every skill promises: found without a simulator, rule by rule."""
+"""Checking a skill against the rules for all skills, without a simulator."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Clocks and random numbers that are not the run's own: found in the source, and at work."""
+"""Use of clocks and random numbers other than the run's: found in the source and at run time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A small robot of a few joints, for tests that need one and care little which."""
+"""A small robot of a few joints, for tests that need any robot."""
 
 from __future__ import annotations
 

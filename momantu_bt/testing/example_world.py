@@ -1,4 +1,4 @@
-"""A room for skills that nobody wrote a world for: two tables, a can, four walls, and its map.
+"""A room to test skills in: two tables, a can, four walls, and its map.
 
 What is in it is what camera and laser see; the site tells the same.
 """

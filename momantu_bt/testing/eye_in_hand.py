@@ -1,4 +1,4 @@
-"""A robot that looks by moving its arm, for tests of skills that must not rely on a head."""
+"""A robot with its camera on the hand, for tests of skills that must not rely on a head."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Runs of one skill, whole, halted, restarted and blind, and what each of them shows."""
+"""Test runs of one skill: whole, halted, restarted and without sensors."""
 
 from __future__ import annotations
 

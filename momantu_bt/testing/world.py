@@ -1,4 +1,4 @@
-"""A world without physics: it lets a scripted robot's time pass, and has a site."""
+"""A world without physics: it advances a scripted robot's clock, and has a site."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From one spelling to the other, and the proof that nothing was lost on the way."""
+"""Converting a tree from one spelling to the other, with a check that nothing was lost."""
 
 from __future__ import annotations
 

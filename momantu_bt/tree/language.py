@@ -1,4 +1,4 @@
-"""What YAML and XML share: the language's version, names of trees, and what handlers are for."""
+"""What YAML and XML share: the language's version, names of trees, and the words of handlers."""
 
 from __future__ import annotations
 

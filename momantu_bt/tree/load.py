@@ -1,4 +1,4 @@
-"""From the name of a tree to a document that is ready to run."""
+"""Loading a tree: from its name to a checked document."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Skills, services and worlds by name: what trees can name, and what each has to be."""
+"""Skills, services and worlds by name: the plug-ins that trees can name."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a tree can name: skills, worlds, robots and services; installed ones, or a test's own."""
+"""The registry: the skills, worlds, robots and services that a tree can name."""
 
 from __future__ import annotations
 

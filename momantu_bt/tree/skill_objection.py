@@ -1,4 +1,4 @@
-"""What a skill has to be, so that trees can use it: asked once it has been imported."""
+"""The rules that a skill class must keep; checked after it has been imported."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Values at ports: the kinds of types there are, and text, numbers and Python values as each."""
+"""Values at ports: types, conversion from text and YAML, and admission of skills' outputs."""

@@ -1,4 +1,4 @@
-"""Values that a skill gives: whether they fit their port's type, and how they become immutable."""
+"""Admitting a skill's outputs: whether they fit their ports' types, made immutable."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a value holds, whatever its type: made immutable, and searched for a NaN."""
+"""Walking through a value of any type: to make it immutable, or to search it for NaN."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Values as tree files write them, turned into what ports take.
+"""Converting values of tree files to the types of ports.
 
 Used twice: by the checker on every literal, and by the engine on everything that reaches an
 input, so `convert` leaves alone what is of the right type already.

@@ -1,4 +1,4 @@
-"""Single values as what a port takes: choices, truth values, numbers and texts.
+"""Converting single values: choices, booleans, numbers and texts.
 
 All raise ConversionError where a value does not fit.
 """

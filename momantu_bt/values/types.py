@@ -1,4 +1,4 @@
-"""Port types by the names that trees use, and which value may flow into which port."""
+"""Port types by the names that trees use, and which type may flow into which."""
 
 from __future__ import annotations
 

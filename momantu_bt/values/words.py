@@ -1,4 +1,4 @@
-"""Values in the words of messages, and the error of those that fit no port."""
+"""Values in messages, and the error of a value that does not fit its port."""
 
 from __future__ import annotations
 

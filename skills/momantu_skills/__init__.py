@@ -1,4 +1,4 @@
-"""What a robot can do: skills, services, and the libraries they stand on."""
+"""What a robot can do: skills, services, and the code below them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""detect_object: find the asked thing on a surface, or say that it is not there."""
+"""detect_object: find the requested object on a surface, or say that it is not there."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What `momantu-bt doctor` looks at for skills: do libraries load, and which cv2 is there."""
+"""Checks of `momantu-bt doctor` for skills: whether libraries load, and which cv2 is installed."""
 
 from __future__ import annotations
 

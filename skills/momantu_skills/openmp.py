@@ -1,4 +1,4 @@
-"""The OpenMP runtime that Pinocchio's wheel expects of the machine."""
+"""The OpenMP runtime, which Pinocchio's wheel needs and a machine may lack."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""place: set down what is held on a free spot, and make sure that it stands there."""
+"""place: set down the held object on a free spot, and make sure that it stands there."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""release: open the hand, and get it clear of what it held."""
+"""release: open the hand, and move it clear of what it held."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Compile every kernel once, so that no run waits for them: half a minute on one core.
+"""Compiling every kernel once, so that no run waits for them: half a minute on one core.
 
 `python -m momantu_skills.warm_up` is quick where the compiled kernels are there already.
 """

@@ -1,4 +1,4 @@
-"""What `momantu-bt doctor` looks at for worlds: rendering, libraries, and Fetch's files."""
+"""Checks of `momantu-bt doctor` for worlds: rendering, libraries, and Fetch's files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A small scene to try things in: a floor, a table, a wall, a picture and a can."""
+"""A small scene for tests: a floor, a table, a wall, a picture and a can."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Arms that do not go as they are told, or are not where they say."""
+"""Faulty arms: they do not move as commanded, or are not where they report."""
 
 from __future__ import annotations
 

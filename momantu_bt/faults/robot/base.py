@@ -1,4 +1,4 @@
-"""Bases that do not go as they are told."""
+"""Faulty bases: they do not move as commanded."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Cameras whose pictures are wrong: dark, off in depth, noisy, or taken askew."""
+"""Faulty cameras: dark, wrong in depth, noisy, or turned on their mount."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Grippers that press too little, do not move, or let go."""
+"""Faulty grippers: they press too little, do not move, or let go."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A laser with something on its lens."""
+"""A laser with part of its lens covered."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A robot around a robot, that passes on everything while it is not active."""
+"""A layer around a robot that passes everything on until its fault begins."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Wheels that count a way that the base does not go.
+"""Faulty odometry: it counts motion that the base does not make.
 
 Odometry never jumps: what went wrong while the fault lasted stays in it.
 """

@@ -1,4 +1,4 @@
-"""Sensors that do not answer, and sensors that repeat themselves."""
+"""Faulty sensors: they do not answer, or repeat their last reading."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What can happen to a skill."""
+"""The modes in which a skill can fail."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Values whose numbers are lost."""
+"""Replacing all numbers in a value with NaN."""
 
 from __future__ import annotations
 

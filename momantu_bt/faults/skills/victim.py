@@ -1,4 +1,4 @@
-"""Which start of which skill a fault hits, and how it gets in there."""
+"""Which start of which skill a fault hits, and how the skill's class is wrapped."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is known of the keys of a board at one point of a tree."""
+"""What is known about the keys of a blackboard at one point of a tree."""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
+<<<<<<< HEAD
 """What a kind of node says of itself: names, ports, children, how it is checked and shown."""
+=======
+"""The specification of a node: its canonical type, spelling in YAML, ports and children."""
+>>>>>>> 8e62d15 (First lines of files say plainly what the file does)
 
 from __future__ import annotations
 

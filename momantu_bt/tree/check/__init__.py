@@ -1,1 +1,1 @@
-"""The checker: everything that is wrong with a tree file, before the first tick."""
+"""The checker: finds all mistakes of a tree file before the first tick."""

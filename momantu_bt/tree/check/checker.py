@@ -1,4 +1,4 @@
-"""The checker: everything that is wrong with a document, at once, before the first tick."""
+"""The checker: runs all checks on a document."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Guards that nobody watches: asked before something long, never again while it runs."""
+"""Checks of guards that are asked once before something long, and not while it runs."""
 
 from __future__ import annotations
 

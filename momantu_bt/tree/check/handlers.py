@@ -1,4 +1,4 @@
-"""Handlers against what can fail below them: a handler that can never run is an error."""
+"""Checks of handlers: one that can never run is an error."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The world that a run of a tree takes place in: the one asked for, or the tree's own."""
+"""The world of a run: the requested one, or the tree's own."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Each node by itself: is it known, has it the right children, do its ports fit."""
+"""Checks of single nodes: is it known, are its children right, do its ports fit."""
 
 from __future__ import annotations
 

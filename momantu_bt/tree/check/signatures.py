@@ -1,4 +1,4 @@
-"""What each node of a document takes, gives, commands and fails with."""
+"""The signature of each node: what it reads, writes, commands and fails with."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The world and the robot with which a tree is checked."""
+"""The world and the robot that a tree is checked with."""
 
 from __future__ import annotations
 

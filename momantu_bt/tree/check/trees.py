@@ -1,4 +1,4 @@
-"""How trees call each other, what runs side by side, and names that stand twice."""
+"""Checks of trees: how they call each other, what runs in parallel, and duplicate names."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where a node goes once it is read: nodes wait in a queue, and know their place in the tree."""
+"""The queue of nodes to read, each with its place in the tree."""
 
 from __future__ import annotations
 

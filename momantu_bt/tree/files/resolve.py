@@ -1,4 +1,4 @@
-"""Names of trees, once all trees of a document are known."""
+"""Resolving the names of trees, once all trees of a document are known."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tree files as text, and which of the two spellings a text is in."""
+"""Reading tree files as text, and telling YAML from XML."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a script is once it is read: expressions that evaluate themselves on a board.
+"""The expressions of a script, which evaluate themselves on a blackboard.
 
 The meaning is BehaviorTree.CPP 4's: both sides of `&&` and `||` are evaluated, comparisons
 chain (`1 < n < 3`), numbers are equal within `EPSILON`, types are never mixed silently.

@@ -1,4 +1,4 @@
-"""What a script makes of its operands' types: numbers and texts are never mixed silently.
+"""The types in a script: numbers and texts are never mixed silently.
 
 Only what is sure to fail when it is evaluated is told; a variable whose type is not known fits
 everywhere.

@@ -1,1 +1,1 @@
-"""A tree or a skill as people and other programs see it: lines, pages, schemas, SARIF."""
+"""Output of trees and skills: lines, pages, schemas, SARIF."""

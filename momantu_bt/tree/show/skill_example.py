@@ -1,4 +1,4 @@
-"""How a skill is written in a tree: an example in YAML and in XML, made from its ports."""
+"""Examples of a skill in a tree, in YAML and in XML, made from its ports."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""All that is known of a skill, for the terminal, for programs and as a page of the docs."""
+"""A skill's description: for the terminal, for programs and as a page of the docs."""
 
 from __future__ import annotations
 

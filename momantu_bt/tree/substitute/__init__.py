@@ -1,1 +1,1 @@
-"""Files that say what nodes do instead of themselves, for tests of trees."""
+"""Substitutions: rules that replace nodes, for tests of trees."""

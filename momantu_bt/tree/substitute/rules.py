@@ -1,4 +1,4 @@
-"""A file of rules that say what nodes do instead of themselves, for tests of trees.
+"""A file of rules that replace nodes, for tests of trees.
 
 momantu_bt: 1
 substitute:

@@ -1,4 +1,4 @@
-"""Which nodes of a document the rules of a file replace, and whether they can do what they say."""
+"""Applying a file's rules to a document: the nodes they replace, and whether they are valid."""
 
 from __future__ import annotations
 

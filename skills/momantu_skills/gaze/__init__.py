@@ -1,1 +1,1 @@
-"""Pointing the camera, by head or by arm: at one place, over a surface, along a way of the hand."""
+"""Pointing the camera, by head or by arm: at a place, over a surface, along a path of the hand."""

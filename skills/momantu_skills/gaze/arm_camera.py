@@ -1,4 +1,4 @@
-"""Where an arm goes for the camera that it carries to see a point."""
+"""Planning where an arm moves so that its camera sees a point."""
 
 from __future__ import annotations
 

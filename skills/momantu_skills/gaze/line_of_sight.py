@@ -1,4 +1,4 @@
-"""What a camera on the arm sees of the hand that it looks past, and where it sees past it."""
+"""The line of sight of a camera on the hand, past the hand and what it holds."""
 
 from __future__ import annotations
 

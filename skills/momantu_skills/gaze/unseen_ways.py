@@ -1,4 +1,4 @@
-"""Ways of the hand where no picture has shown what there is: they are looked at first.
+"""Looking first where a path of the hand leads through space that no picture has shown.
 
 The scene holds for free what it has not seen. That is wrong often enough where the map knows of
 furniture: a narrow view leaves out what stands at a table's end, and the cupboard beside it.

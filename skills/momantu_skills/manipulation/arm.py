@@ -1,4 +1,4 @@
-"""One arm in one run of a skill: where it is, what it may meet, how it gets somewhere."""
+"""One arm in one run of a skill: its state, its surroundings, its motions."""
 
 from __future__ import annotations
 

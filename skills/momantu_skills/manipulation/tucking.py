@@ -1,4 +1,4 @@
-"""Taking in an arm that was stretched out to look, before the base drives."""
+"""Folding an arm that was stretched out to look, before the base drives."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""What a robot sees: looking, clouds, planes, things on them, tags."""
+"""Perception: points, planes, objects on them, tags."""

@@ -1,4 +1,4 @@
-"""Setting a robot up: what can be found out from its URDF, and what is wrong with its file."""
+"""Setting a robot up: what its URDF contains, and what is wrong with its file."""
 
 from momantu_skills.openmp import ensure_openmp
 

@@ -1,4 +1,4 @@
-"""`momantu-bt robots check`: everything that makes a robot unusable or worth a second look."""
+"""`momantu-bt robots check`: report what makes a robot unusable, or is worth a look."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`momantu-bt robots setup`: a robot file from a URDF, as far as a URDF tells."""
+"""`momantu-bt robots setup`: write a robot file from a URDF."""
 
 from __future__ import annotations
 

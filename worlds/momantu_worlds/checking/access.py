@@ -1,4 +1,4 @@
-"""Whether the robot can stand where it starts, and get to what matters."""
+"""Checks of access: whether the robot can stand where it starts, and get to its goals."""
 
 from __future__ import annotations
 

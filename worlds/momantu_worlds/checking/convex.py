@@ -1,4 +1,4 @@
-"""Colliding parts of bodies as convex solids: how deep two overlap, and where rays meet them.
+"""Convex solids of bodies: how deep two overlap, and where rays meet them.
 
 Two convex polyhedra overlap when no axis separates them, and the axes that matter are the normals
 of both and the cross products of their edges (Gottschalk, Lin and Manocha, OBBTree, SIGGRAPH 1996);

@@ -1,4 +1,4 @@
-"""Whether what the referee demands is still to be done, and can be."""
+"""Checks of the goal: it is not met at the start, and it can be met."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The floor of an episode as a robot's base meets it: how far from everything each spot is."""
+"""The floor of an episode: how far each point is from all obstacles."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What of a robot decides whether it can work in a world."""
+"""The measures of a robot that decide whether it can work in a world."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Bodies that overlap each other or the floor."""
+"""Checks of bodies that overlap each other or the floor."""
 
 from __future__ import annotations
 

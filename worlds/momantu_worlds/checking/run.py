@@ -1,4 +1,4 @@
-"""All checks of a world, in the episodes of some seeds, put together."""
+"""All checks of a world, in the episodes of some seeds."""
 
 from __future__ import annotations
 

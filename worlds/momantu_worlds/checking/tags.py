@@ -1,4 +1,4 @@
-"""Whether every tag can be seen from somewhere that the robot gets to."""
+"""Checks of tags: whether each is visible from a place that the robot can reach."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether what is loose stands on something."""
+"""Checks of loose objects: whether they stand on something."""
 
 from __future__ import annotations
 

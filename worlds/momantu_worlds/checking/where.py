@@ -1,4 +1,4 @@
-"""Where in a world file something of an episode comes from."""
+"""Finding the place in a world file that a part of an episode comes from."""
 
 from __future__ import annotations
 

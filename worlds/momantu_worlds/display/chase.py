@@ -1,4 +1,4 @@
-"""Where the camera of a film stands: above and beside the robot, where no wall hides it."""
+"""The camera of a film: above and beside the robot, where no wall hides it."""
 
 from __future__ import annotations
 

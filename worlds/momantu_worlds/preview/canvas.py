@@ -1,4 +1,4 @@
-"""Drawing in metres of the map: polygons, lines and words on a picture."""
+"""Drawing polygons, lines and words on a picture, in metres of the map."""
 
 from __future__ import annotations
 

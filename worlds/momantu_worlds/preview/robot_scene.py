@@ -1,4 +1,4 @@
-"""A robot before a table with a can on it: what a sheet of pictures of a robot shows."""
+"""The scene of `robots preview`: a robot before a table with a can on it."""
 
 from __future__ import annotations
 

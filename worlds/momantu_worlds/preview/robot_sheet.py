@@ -1,4 +1,4 @@
-"""A sheet of pictures of a robot: every named pose, its frames, and what its camera sees."""
+"""The pictures of `robots preview`: every named pose, its frames, and what its camera sees."""
 
 from __future__ import annotations
 

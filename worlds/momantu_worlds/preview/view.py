@@ -1,4 +1,4 @@
-"""A view of an episode from above a corner of its rooms; there is no roof to look through."""
+"""A view of an episode from above a corner of its rooms."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""SAPIEN's poses and ours."""
+"""Converting between SAPIEN's poses and ours."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The robot's driver in simulation: what a real robot's driver would offer, and no more."""
+"""The simulated robot's driver, which offers what a real robot's driver would."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""World files, the episodes drawn from them, what the robot is told, the referee; no simulator."""
+"""World files, their episodes, sites and referee; no simulator."""

@@ -1,4 +1,4 @@
-"""What an import could not carry over as it was: the list that the user is shown."""
+"""Deviations of an import: what it left out or changed, as a list for the user."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What makes an import impossible, told at its place."""
+"""Errors that make an import impossible, each at its place."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Sub-verbs of `momantu-bt worlds` that this package brings; nothing heavy is imported here."""
+"""Verbs of this package; heavy imports are lazy."""

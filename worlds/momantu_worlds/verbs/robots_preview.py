@@ -1,4 +1,4 @@
-"""`momantu-bt robots preview`: a robot in its named poses, before it is run anywhere."""
+"""`momantu-bt robots preview`: draw a robot in its named poses."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an editor shows beside each key of a world file; units come from the schema itself.
+"""Descriptions of a world file's keys for editors; units come from the schema.
 
 A key that several parts share is described once, under `*`, unless a part means something else by
 it. `tests/worlds/verbs/test_schema.py` holds the words to the models.

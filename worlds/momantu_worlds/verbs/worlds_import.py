@@ -1,4 +1,4 @@
-"""`momantu-bt worlds import`: Gazebo's worlds as world files."""
+"""`momantu-bt worlds import`: import a Gazebo world as a world file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`momantu-bt worlds new`: a small world to begin with."""
+"""`momantu-bt worlds new`: write a small world to start from."""
 
 from __future__ import annotations
 

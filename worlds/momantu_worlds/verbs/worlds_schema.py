@@ -1,4 +1,4 @@
-"""`momantu-bt worlds schema`: what an editor completes in world files."""
+"""`momantu-bt worlds schema`: a JSON Schema of world files, for editors."""
 
 from __future__ import annotations
 

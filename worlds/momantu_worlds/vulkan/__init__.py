@@ -1,4 +1,4 @@
-"""A Vulkan driver for SAPIEN, also on machines that have none: call `ensure_vulkan()` first.
+"""A Vulkan driver for SAPIEN, also on machines without one: call `ensure_vulkan()` first.
 
 Without a GPU SAPIEN needs a software driver of Mesa 24.3 or newer and, even for physics alone,
 libX11. Where a machine lacks them, `momantu_worlds.vulkan.install` unpacks both into the user's

@@ -1,4 +1,4 @@
-"""A private copy of apt's world: the machine's own package sources, used without root.
+"""A private apt state: downloads from the machine's package sources without root.
 
 Everything is asked of the machine (where its packages come from, how it reaches them, which keys
 it trusts); lists, cache and state live in a scratch folder, and the system is only read.

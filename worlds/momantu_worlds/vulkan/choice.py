@@ -1,4 +1,4 @@
-"""Which driver this machine renders with: probed once, then remembered."""
+"""The choice of a driver on this machine: probed once, then remembered."""
 
 from __future__ import annotations
 

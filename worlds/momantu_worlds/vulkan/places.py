@@ -1,4 +1,4 @@
-"""Where the private driver and what is known about drivers are kept."""
+"""Folders of the private driver and of what is known about drivers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The private software driver: what was unpacked, and how a process takes it into use."""
+"""The private software driver: what was unpacked, and how a process uses it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Taking a driver into use in this process: environment and preloaded libraries."""
+"""Using a driver in this process: environment and preloaded libraries."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Keys and wires: nothing is read before it is written, and what flows fits where it flows.
+"""Checks of keys and wires: nothing is read before it is written, and every value fits.
 
 Each tree is walked once, with what is surely known before each node; the result is what is
 known after its success and after its failure.

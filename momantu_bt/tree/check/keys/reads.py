@@ -1,4 +1,4 @@
-"""Every read of a key, against what is known where it is read: value, type, part and name."""
+"""Checks of each read of a key: value, type, part and name."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What XML text says: elements and attributes, each with its place."""
+"""The elements and attributes of an XML text, each with its place."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An XML tree file as a Document: the header, what it includes, values, models, and trees."""
+"""An XML tree file as a Document: the header, includes, values, models and trees."""
 
 from __future__ import annotations
 

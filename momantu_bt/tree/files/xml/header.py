@@ -1,4 +1,4 @@
-"""What stands on the `<root>` of an XML tree file, and which parts it may have."""
+"""The `<root>` of an XML tree file: its attributes, and the parts it may have."""
 
 from __future__ import annotations
 

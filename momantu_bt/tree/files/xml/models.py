@@ -1,4 +1,4 @@
-"""TreeNodesModel: ports of the file's trees, and what it says of leaves, which is kept."""
+"""TreeNodesModel: the ports of the file's trees, and models of leaves, which are kept."""
 
 from __future__ import annotations
 

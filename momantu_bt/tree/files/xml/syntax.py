@@ -1,4 +1,4 @@
-"""What is wrong with a text that is not XML, in our words and at its place."""
+"""XML syntax errors in plain words, each at its place."""
 
 from __future__ import annotations
 

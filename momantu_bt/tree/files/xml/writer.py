@@ -1,4 +1,4 @@
-"""A Document as BehaviorTree.CPP's XML; what only we have stands in our namespace."""
+"""A Document as BehaviorTree.CPP's XML; our additions are in our namespace."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Nodes whose children stand beside their key: `if` with `then`, `switch` with `cases`."""
+"""Nodes whose children are beside their key: `if` with `then`, `switch` with `cases`."""
 
 from __future__ import annotations
 

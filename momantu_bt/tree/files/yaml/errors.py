@@ -1,4 +1,4 @@
-"""What ruamel says of a text that is not YAML, in words that help the one who wrote it."""
+"""YAML syntax errors in plain words."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A YAML tree file as a Document: what stands on top, the values, and the trees."""
+"""A YAML tree file as a Document: the header, the values and the trees."""
 
 from __future__ import annotations
 

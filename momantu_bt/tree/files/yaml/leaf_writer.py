@@ -1,4 +1,4 @@
-"""What stands on a leaf's line in YAML: its name and its ports, which other nodes have as well."""
+"""Writing a leaf's line in YAML: its name and its ports, which other nodes have as well."""
 
 from __future__ import annotations
 

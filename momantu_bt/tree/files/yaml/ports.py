@@ -1,4 +1,4 @@
-"""What YAML values give the ports of a node."""
+"""The ports of a node from YAML values."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What YAML text says, each value with its place: scalars, lists and mappings."""
+"""The scalars, lists and mappings of a YAML text, each with its place."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is known while the nodes of a YAML file are read, and what still waits to be read."""
+"""The state of reading a YAML file: what is known, and what waits to be read."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Comments of a YAML text, which its parser passes over."""
+"""The comments of a YAML text, which its parser skips."""
 
 from __future__ import annotations
 

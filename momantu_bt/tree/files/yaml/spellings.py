@@ -1,4 +1,4 @@
-"""Which of the spellings that YAML has a node can be written in."""
+"""The YAML spellings in which a node can be written."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Keys of YAML tree files that are neither nodes nor ports nor modifiers."""
+"""Words of YAML tree files that are neither nodes nor ports nor modifiers."""
 
 from __future__ import annotations
 

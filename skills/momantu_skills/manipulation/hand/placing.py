@@ -1,4 +1,4 @@
-"""Choosing where and how to set down what is held, and the motions for it."""
+"""Choosing where and how to set down the held object, and the motions for it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a depth picture says about a place where something stands, stood, or should stand."""
+"""Checking in a depth picture whether an object stands, stood, or should stand at a place."""
 
 from __future__ import annotations
 

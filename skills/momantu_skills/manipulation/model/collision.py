@@ -1,4 +1,4 @@
-"""Whether the robot, and what it holds, would meet itself or its surroundings."""
+"""Collision checks of the robot, and what it holds, with itself and its surroundings."""
 
 from __future__ import annotations
 

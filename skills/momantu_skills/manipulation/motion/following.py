@@ -1,4 +1,4 @@
-"""Following a trajectory tick by tick, and noticing when the arm does not come along."""
+"""Following a trajectory tick by tick, and noticing when the arm lags behind."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What skills that move the arm need of the planning scene, beyond the contract's."""
+"""The planning scene as skills that move the arm need it: more than the contract."""
 
 from __future__ import annotations
 

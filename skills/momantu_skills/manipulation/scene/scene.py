@@ -1,4 +1,4 @@
-"""The scene's knowledge, with everything heavy: body, surroundings, masks, collision worlds."""
+"""The planning scene's content: body, surroundings, masks, collision worlds."""
 
 from __future__ import annotations
 

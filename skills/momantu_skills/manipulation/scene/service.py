@@ -1,4 +1,4 @@
-"""The planning scene: the robot, its surroundings and what it holds, as believed."""
+"""The planning-scene service: the robot, its surroundings and what it holds, as believed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the site knows of: distances to walls and furniture, and what hangs over surfaces."""
+"""Obstacles that the site knows: distances to walls and furniture, and what hangs over surfaces."""
 
 from __future__ import annotations
 

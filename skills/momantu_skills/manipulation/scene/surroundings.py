@@ -1,4 +1,4 @@
-"""What stands around the robot, as the depth camera saw it: cells, support tops, seen space."""
+"""The robot's surroundings as the depth camera saw them: cells, support tops, seen space."""
 
 from __future__ import annotations
 

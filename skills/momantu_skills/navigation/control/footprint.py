@@ -1,4 +1,4 @@
-"""A footprint as a few discs, so that one look into a distance field per disc tells its room."""
+"""The footprint as a few discs, so that one look-up per disc gives its clearance."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The last word on every command: it must be possible to stop before what the laser sees now."""
+"""The collision guard: limits every command so that the base can stop before obstacles."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reach the goal pose within its tolerance, and correct what was missed."""
+"""Arriving: reach the goal pose within its tolerance, and correct what was missed."""
 
 from __future__ import annotations
 

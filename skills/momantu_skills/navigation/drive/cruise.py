@@ -1,4 +1,4 @@
-"""From where the base is to where the last metre begins."""
+"""Cruising: drive from where the base is to where arriving begins."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Getting into a pose nearby: the approach itself, or what must be done before it."""
+"""Manoeuvres into a nearby pose: the approach itself, or what must be done before it."""
 
 from __future__ import annotations
 

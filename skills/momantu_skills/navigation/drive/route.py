@@ -1,4 +1,4 @@
-"""Choosing where to stand among candidates, and keeping a plan that leads there."""
+"""Choosing a stand among candidates, and keeping a path that leads there."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A whole trip: be sure where one is, choose where to stand, go there, recover, give up."""
+"""A whole trip: localize, choose where to stand, drive there, recover, or give up."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The base on its way: what it senses, and the only place that commands it."""
+"""The vehicle: what the base senses, and the only place that commands it."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Where the robot is: Monte Carlo localization and how far to trust it."""
+"""Localization: Monte Carlo localization, and how far to trust it."""

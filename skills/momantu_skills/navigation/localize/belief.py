@@ -1,4 +1,4 @@
-"""What a weighted cloud of planar poses says: its main cluster and its whole spread."""
+"""The estimate of a weighted cloud of planar poses: its main cluster and its whole spread."""
 
 from __future__ import annotations
 

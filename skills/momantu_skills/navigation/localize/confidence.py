@@ -1,4 +1,4 @@
-"""When a robot may believe where it is."""
+"""When the robot counts as localized."""
 
 from __future__ import annotations
 

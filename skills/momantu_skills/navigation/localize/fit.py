@@ -1,4 +1,4 @@
-"""How well one scan fits the map, whatever furniture the map does not know."""
+"""How well one scan fits the map, apart from furniture that the map does not know."""
 
 from __future__ import annotations
 

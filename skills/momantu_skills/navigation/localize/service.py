@@ -1,4 +1,4 @@
-"""The localization service: says at each scan where odometry's frame lies in the map."""
+"""The localization service: publishes at each scan where odometry's frame is in the map."""
 
 from __future__ import annotations
 

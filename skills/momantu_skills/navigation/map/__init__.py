@@ -1,1 +1,1 @@
-"""What is known of the floor: map files, distance fields, what sensors see, the costmap."""
+"""Maps of the floor: map files, distance fields, what sensors see, the costmap."""

@@ -1,4 +1,4 @@
-"""The layered costmap: what stands where, and how much room there is."""
+"""The layered costmap: obstacles, and the clearance around them."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Where to stand, and the way there."""
+"""Where to stand, and the path there."""

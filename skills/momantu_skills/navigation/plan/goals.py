@@ -1,4 +1,4 @@
-"""Where to stand: before a surface, within reach of a pose, or where one is told."""
+"""Stands: before a surface, within reach of a pose, or at a given pose."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The points of a picture that matter: in the region asked, without the robot itself."""
+"""The points of a picture in a region, without those of the robot itself."""
 
 from __future__ import annotations
 

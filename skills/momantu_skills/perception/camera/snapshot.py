@@ -1,4 +1,4 @@
-"""Taking a picture, with where it was taken from."""
+"""Taking a picture, with the pose of its camera."""
 
 from __future__ import annotations
 

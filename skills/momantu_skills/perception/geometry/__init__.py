@@ -1,1 +1,1 @@
-"""Plane geometry that perception stands on: regions, grids, rectangles, revolution."""
+"""Geometry for perception: regions, grids, rectangles, bodies of revolution."""

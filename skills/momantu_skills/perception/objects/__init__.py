@@ -1,1 +1,1 @@
-"""Things on a surface: told apart, measured, compared with what is asked."""
+"""Objects on a surface: separated, measured, compared with the requested object."""

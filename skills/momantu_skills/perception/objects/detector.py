@@ -1,4 +1,4 @@
-"""From views of a surface to the things on it, scored against what is asked."""
+"""The detector: from views of a surface to the objects on it, scored against a request."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How well a measured shape is the thing that was asked for."""
+"""How well a measured shape matches the requested object."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a thing is like: round or boxy, how large, how its radius runs with height."""
+"""The shape of an object: round or boxy, its size, its radius over its height."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Things that touch, taken apart: upright round bodies first, then whatever remains."""
+"""Separating objects that touch: upright round bodies first, then the rest."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""The surface that things stand on: its plane, the things above it, free spots."""
+"""The surface that objects stand on: its plane, the objects above it, free spots."""

@@ -1,4 +1,4 @@
-"""The level surface that things stand on, measured in a view.
+"""Measuring the level surface that objects stand on, in one view.
 
 Gravity leaves one unknown, the height, so every height is tried instead of sampling triples of
 points; the height whose level slice covers most of the surface wins, and least squares does the

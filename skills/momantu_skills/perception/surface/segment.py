@@ -1,4 +1,4 @@
-"""What stands on a surface: its points taken apart into things."""
+"""Segmenting the points above a surface into objects."""
 
 from __future__ import annotations
 

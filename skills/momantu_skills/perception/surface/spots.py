@@ -1,4 +1,4 @@
-"""Free spots on a surface for something that is to stand there."""
+"""Free spots on a surface."""
 
 from __future__ import annotations
 

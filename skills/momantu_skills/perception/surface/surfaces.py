@@ -1,4 +1,4 @@
-"""A surface as it is handed on: its plane, what stands on it, where there is room."""
+"""A measured surface: its plane, what stands on it, and its free spots."""
 
 from __future__ import annotations
 

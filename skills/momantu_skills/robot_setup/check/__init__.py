@@ -1,1 +1,1 @@
-"""What is wrong with a robot's file."""
+"""Checks of a robot's file."""

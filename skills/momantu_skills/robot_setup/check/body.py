@@ -1,4 +1,4 @@
-"""What is wrong with poses, footprint, height and joints of a robot."""
+"""Checks of the poses, footprint, height and joints of a robot."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A grasp frame that points elsewhere, and openings that do not fit the fingers."""
+"""Checks of the hand: its grasp frame, its fingers, its table of openings."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Everything that can be found wrong with a robot, in order."""
+"""All checks of a robot, in order."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Sensors that see the robot itself, or look where nobody wants them to."""
+"""Checks of sensors: those that see the robot itself, or are tilted."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""What can be found out about a robot from its URDF."""
+"""Finding a robot's properties in its URDF."""

@@ -1,4 +1,4 @@
-"""Which joints move together: arms that end in a hand, heads that carry a camera, the rest."""
+"""Planning groups: arms that end in a hand, heads that carry a camera, the rest."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What stands on the floor: base frame, virtual joints above it, wheels, footprint."""
+"""The base: its frame, virtual joints above it, wheels, footprint."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Everything that can be found out about a robot from its URDF, in the order it needs."""
+"""The proposal: everything found in a robot's URDF, in the order it needs."""
 
 from __future__ import annotations
 

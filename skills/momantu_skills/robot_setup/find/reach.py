@@ -1,4 +1,4 @@
-"""How far from its base an arm reaches things on tables."""
+"""How far from its base an arm reaches objects on tables."""
 
 from __future__ import annotations
 

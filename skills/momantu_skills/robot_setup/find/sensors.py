@@ -1,4 +1,4 @@
-"""Cameras, lasers and lidars: from `<sensor>` elements, or from what links are called."""
+"""Cameras, lasers and lidars: from `<sensor>` elements, or from the names of links."""
 
 from __future__ import annotations
 

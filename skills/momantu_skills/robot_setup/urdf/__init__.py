@@ -1,1 +1,1 @@
-"""A URDF as it is: its links and joints, its shapes, rays and kinematics on them."""
+"""A URDF alone: its links and joints, its shapes, rays and kinematics on them."""

@@ -1,4 +1,4 @@
-"""Inverse kinematics of a limb of which only the URDF is known."""
+"""Inverse kinematics of a limb, from the URDF alone."""
 
 from __future__ import annotations
 

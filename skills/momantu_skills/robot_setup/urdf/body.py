@@ -1,4 +1,4 @@
-"""A robot of which only the URDF is known: where its links are, and which of them meet."""
+"""A robot from its URDF alone: where its links are, and which of them meet."""
 
 from __future__ import annotations
 

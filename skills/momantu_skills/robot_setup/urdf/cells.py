@@ -1,4 +1,4 @@
-"""Long meshes that arms are folded into the hulls of: where a simulator has to cut them.
+"""Cutting long meshes whose hulls would swallow other links.
 
 A simulator takes every mesh for its convex hull. The hull around a torso with shoulders and neck
 swallows the arm folded before it, and pushes it out; cut into cells it does not.

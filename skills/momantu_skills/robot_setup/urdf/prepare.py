@@ -1,4 +1,4 @@
-"""Making a URDF of anybody's readable: meshes found, what nobody can use left out and told."""
+"""Preparing any URDF: its meshes are found, unusable parts are left out and reported."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A URDF as a tree of links and joints, with what setting up asks of it."""
+"""A URDF as a tree of links and joints."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""A robot file from what was found."""
+"""Writing a robot file from a proposal."""

@@ -1,4 +1,4 @@
-"""Arms, hands and poses of a robot file from a proposal."""
+"""Writing the arms, hands and poses of a robot file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The sensors of a robot file from a proposal."""
+"""Writing the sensors of a robot file."""
 
 from __future__ import annotations
 

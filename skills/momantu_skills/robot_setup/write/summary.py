@@ -1,4 +1,4 @@
-"""What setting up found, for a terminal and for programs."""
+"""The summary of what `setup` found, for a terminal and for programs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A robot file from a proposal, with comments that say what to trust."""
+"""Writing a robot file from a proposal, with comments that say how reliable each value is."""
 
 from __future__ import annotations
 

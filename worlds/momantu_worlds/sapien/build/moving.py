@@ -1,4 +1,4 @@
-"""Bodies that can move, as the laser meets them."""
+"""Bodies that can move, as the laser sees them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What parts look like: SAPIEN's render shapes."""
+"""The visual shapes of parts, in SAPIEN."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where boxes go so that beside a marker no spot is left for a thing, but for those kept."""
+"""Placing boxes so that only the wanted number of free spots is left beside a marker."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reading the parameters of a fault; what is wrong with them is said with what would be valid."""
+"""Reading the parameters of a fault."""
 
 from __future__ import annotations
 

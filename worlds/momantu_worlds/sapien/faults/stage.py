@@ -1,4 +1,4 @@
-"""What effects work on: the simulator, the episode and its goal, and the referee to be told."""
+"""What effects work on: the simulator, the episode, its goal and the referee."""
 
 from __future__ import annotations
 

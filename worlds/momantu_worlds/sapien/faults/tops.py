@@ -1,4 +1,4 @@
-"""Table tops as they are now: what stands on them, and where there is room for one thing more."""
+"""Table tops as they are now: what stands on them, and where there is room."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Leaving out of a picture what lies outside its view anyway: the picture stays the same."""
+"""Leaving out of a picture what is outside its view; the picture stays the same."""
 
 from __future__ import annotations
 

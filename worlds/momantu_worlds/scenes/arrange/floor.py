@@ -1,4 +1,4 @@
-"""What stands on the floor of an episode: tables, furniture, the robot's start.
+"""Arranging the floor of an episode: tables, furniture, the robot's start.
 
 Every choice is drawn from the seed and kept only when the robot can still do its work: doorways
 and the tables' preferred sides stay free, and a disc of the world's `passage` radius still gets

@@ -1,4 +1,4 @@
-"""Where everything stands in one episode: what `reset` decides, before bodies are made of it."""
+"""The layout of one episode: where everything stands, before bodies are made of it."""
 
 from __future__ import annotations
 

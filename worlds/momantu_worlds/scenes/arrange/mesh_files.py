@@ -1,4 +1,4 @@
-"""Mesh files as parts of bodies: what is seen of them, and what is touched."""
+"""Mesh files as parts of bodies: their visual and collision shapes."""
 
 from __future__ import annotations
 

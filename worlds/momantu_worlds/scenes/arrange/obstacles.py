@@ -1,4 +1,4 @@
-"""What stands on the floor of a world by its file: walls, doors, furniture, bodies, the slab."""
+"""The fixed obstacles of a world file: walls, doors, furniture, bodies, the slab."""
 
 from __future__ import annotations
 

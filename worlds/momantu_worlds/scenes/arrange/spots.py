@@ -1,4 +1,4 @@
-"""Upright cylinders on a top: ways for a hand, lines of sight, spots that are free."""
+"""Upright cylinders on a top: paths for a hand, lines of sight, free spots."""
 
 from __future__ import annotations
 

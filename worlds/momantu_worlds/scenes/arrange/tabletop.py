@@ -1,4 +1,4 @@
-"""What stands on the tables of an episode: the item, the tag, and what is in their way.
+"""Arranging the tables of an episode: the item, the tag and distractors.
 
 The job stays possible by rule. Around the item nothing is nearer than `gap_to_item`, a lane as
 wide as a hand leads to it from somewhere before the table's preferred side, and from where the

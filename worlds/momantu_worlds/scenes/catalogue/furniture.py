@@ -1,4 +1,4 @@
-"""The furniture catalogue: what each kind is made of, from its sizes.
+"""The furniture catalogue: the parts of each kind, from its sizes.
 
 Every kind stands on z = 0 around its own origin and shows its front to +x. `size` is
 (depth along x, width along y, height), m.

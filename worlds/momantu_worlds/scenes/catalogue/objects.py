@@ -1,4 +1,4 @@
-"""Loose things for tables: can, bottle, box, mug, bowl. Each stands on z = 0 around its origin.
+"""Loose objects for tables: can, bottle, box, mug, bowl. Each stands on z = 0 around its origin.
 
 What is looked at is a lathe surface; what collides are cylinders, boxes and convex pieces of the
 same shape, hollow where the thing is hollow, nowhere 2 mm from what is seen.

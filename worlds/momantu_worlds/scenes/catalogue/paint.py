@@ -1,4 +1,4 @@
-"""How loose things are painted: bands around them, labels on one side, and parts of their own.
+"""The paint of loose objects: bands around them, labels on one side, painted parts.
 
 Paint is looked at and never touched: a label is half a millimetre thick.
 """

@@ -1,4 +1,4 @@
-"""Loose things of random sizes, weights and looks.
+"""Loose objects of random sizes, weights and paint.
 
 Two streams of chance: one draws what a thing is, the other how it is painted, so that another
 paint never changes what physics does.

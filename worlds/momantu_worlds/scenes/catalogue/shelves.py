@@ -1,4 +1,4 @@
-"""Shelves and racks: frames with boards, at heights of their own or where a world file wants them.
+"""Shelves and racks: frames with boards, at usual heights or those of a world file.
 
 `size` is (depth along x, width along y, height), m; the front is +x.
 """

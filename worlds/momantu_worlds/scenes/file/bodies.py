@@ -1,4 +1,4 @@
-"""Bodies of a world file, part by part: whatever no catalogue has."""
+"""Bodies of a world file, part by part."""
 
 from __future__ import annotations
 

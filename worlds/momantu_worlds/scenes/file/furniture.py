@@ -1,4 +1,4 @@
-"""Furniture of a world file: pieces of the catalogue or meshes, and those whose tops matter."""
+"""Furniture of a world file: pieces of the catalogue or meshes, and tables."""
 
 from __future__ import annotations
 

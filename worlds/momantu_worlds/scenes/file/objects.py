@@ -1,4 +1,4 @@
-"""Objects and tags of a world file: what is brought, what stands about, what is looked for."""
+"""Objects and tags of a world file."""
 
 from __future__ import annotations
 

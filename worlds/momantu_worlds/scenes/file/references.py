@@ -1,4 +1,4 @@
-"""Names in a world file that point at nothing, or at two things, and files that are not there."""
+"""Checks of a world file's references: unknown and duplicate names, missing files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a world file asks of the robot, and what it tells it."""
+"""The goal and the site of a world file."""
 
 from __future__ import annotations
 

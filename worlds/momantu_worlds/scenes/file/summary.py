@@ -1,4 +1,4 @@
-"""What `momantu-bt worlds show` tells of a world file beside its site, in the file's own words."""
+"""The summary of a world file for `momantu-bt worlds show`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Values that all parts of a world file are written with."""
+"""Types of values that all sections of a world file use."""
 
 from __future__ import annotations
 

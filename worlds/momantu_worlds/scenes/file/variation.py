@@ -1,4 +1,4 @@
-"""What a world file lets episodes vary beside tables and objects: start, light, the unknown."""
+"""What episodes vary beside tables and objects: start, light, unknown furniture."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Walls that follow from rooms: each stands once, however many rooms share it, cut by doors."""
+"""Walls from rooms: each is built once, however many rooms share it, and cut by doors."""
 
 from __future__ import annotations
 

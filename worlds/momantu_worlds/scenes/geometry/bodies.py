@@ -1,4 +1,4 @@
-"""What a simulator is asked to build: bodies made of parts, lights, and the whole episode.
+"""What a simulator builds: bodies made of parts, lights, and the whole episode.
 
 Plain values without a simulator in them. Lengths in m, masses in kg, colours linear-looking sRGB
 in 0..1. Every transform is named `target_from_source`.

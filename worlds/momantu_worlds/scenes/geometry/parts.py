@@ -1,4 +1,4 @@
-"""Short hands for the parts that furniture and objects are made of."""
+"""Shorthands for the parts that furniture and objects are made of."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The room that bodies take up: upright prisms over rectangles, for keeping things apart."""
+"""Upright prisms around bodies, for keeping them apart."""
 
 from __future__ import annotations
 

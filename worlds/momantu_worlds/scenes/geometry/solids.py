@@ -1,4 +1,4 @@
-"""Bodies as they stand in the world: extent, what lies inside, what is below, how far beside.
+"""Bodies in the world: their extent, and what is inside, below and beside them.
 
 Parts that do not collide are air here. The box around a small hull stands for it: those of hollow
 objects are thin.

@@ -1,4 +1,4 @@
-"""The measures by which it is told whether a thing stands on a table: its cylinder, the top."""
+"""The measures of an object and a table top that decide whether it stands there."""
 
 from __future__ import annotations
 

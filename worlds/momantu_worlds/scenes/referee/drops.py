@@ -1,4 +1,4 @@
-"""Drops: what was held leaves the hand with nothing close below it."""
+"""Drops: a held object leaves the hand with nothing close below it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a simulator tells a referee."""
+"""Ground truth: what a simulator tells a referee."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which parts of a robot are dangerous in which way, as the referee needs to know them."""
+"""The parts of a robot as the referee distinguishes them: fingers, links, base."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Blows: contacts of the robot with a force that hurts."""
+"""Impacts: contacts of the robot with a dangerous force."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Incidents: what a robot did that was dangerous, whether or not a goal forbids it."""
+"""Incidents: dangerous events, whether or not a goal forbids them."""
 
 from __future__ import annotations
 

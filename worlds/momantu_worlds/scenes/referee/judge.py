@@ -1,4 +1,4 @@
-"""What skills say, judged by ground truth of the same instant."""
+"""The judge: claims of skills against ground truth at the same moment."""
 
 from __future__ import annotations
 

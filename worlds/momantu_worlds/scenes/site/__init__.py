@@ -1,1 +1,1 @@
-"""What the robot is told: places, surfaces and what hangs over them, and maps."""
+"""The site: places, surfaces and what hangs over them, and maps."""

@@ -1,4 +1,4 @@
-"""Which cells of a floor plan the parts of bodies cover, between two heights."""
+"""The cells of a floor plan that bodies cover between two heights."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The maps that a robot is given in a world: drawn for its laser and its height, once."""
+"""The maps of a robot in a world: drawn once for its laser and its height."""
 
 from __future__ import annotations
 

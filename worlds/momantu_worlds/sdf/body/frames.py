@@ -1,4 +1,4 @@
-"""Where everything is: the frames of models and worlds, followed to their scope's own frame.
+"""Resolving the frames of models and worlds.
 
 Each model is a scope with the frame `__model__`, the world one with the frame `world`. In a scope
 links, joints, frames and models are frames too, and `model::link` names one within a model.

@@ -1,4 +1,4 @@
-"""Every link of a world in the world's frame, with what a saved state says instead."""
+"""Placing every link in the world's frame, with the poses of a saved state."""
 
 from __future__ import annotations
 

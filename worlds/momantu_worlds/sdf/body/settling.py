@@ -1,4 +1,4 @@
-"""Bodies on the floor: lowered to it, and what lies flat on it out of a robot's way."""
+"""Bodies on the floor: lowered to it; flat ones become visual only."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a COLLADA file says beside its triangles: which way is up, its unit, names of its nodes.
+"""The metadata of a COLLADA file: its up axis, its unit, the names of its nodes.
 
 The library that reads the triangles trusts its input; so what would not end is refused here.
 """

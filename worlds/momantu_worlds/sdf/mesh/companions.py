@@ -1,4 +1,4 @@
-"""Files that a mesh file names: pictures and materials, found where Gazebo finds them."""
+"""Files that a mesh file names: pictures and materials, searched where Gazebo searches them."""
 
 from __future__ import annotations
 

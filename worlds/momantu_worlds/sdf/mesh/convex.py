@@ -1,4 +1,4 @@
-"""Convex pieces that stand for a mesh when it is touched.
+"""Convex pieces as the collision shape of a mesh.
 
 A mesh falls apart into what hangs together; each part is its convex hull. A hull that would fill
 space in which the robot stands or puts things (a room, the space below a table) is no good: of

@@ -1,4 +1,4 @@
-"""Whether the hull of a part would fill air: a room, the space below a table, between boards."""
+"""Whether a part's hull would fill free space: a room, the space below a table."""
 
 from __future__ import annotations
 

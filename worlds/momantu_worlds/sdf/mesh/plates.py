@@ -1,4 +1,4 @@
-"""Thin convex plates in the place of a hollow mesh's faces, so that its inside stays free."""
+"""Thin convex plates in place of a hollow mesh's faces, so that its inside stays free."""
 
 from __future__ import annotations
 

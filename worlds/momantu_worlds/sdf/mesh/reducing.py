@@ -1,4 +1,4 @@
-"""Fewer triangles for meshes that have too many: vertices that lie close become one."""
+"""Simplifying meshes: vertices that lie close become one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an SDF world says, as typed values: before frames are resolved and anything is converted."""
+"""An SDF world as typed values, before frames are resolved and anything is converted."""
 
 from __future__ import annotations
 

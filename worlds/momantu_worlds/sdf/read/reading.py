@@ -1,4 +1,4 @@
-"""What all readers of one import share: folders, files read so far, deviations, and its bounds."""
+"""What all readers of one import share: folders, files read so far, deviations, limits."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an element says beyond what is read of it: each such thing is listed, with its fate."""
+"""Elements and attributes that no reader uses: each is listed as a deviation."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where the files lie that an SDF file names: `model://`, `file://`, relative, Fuel's addresses."""
+"""Finding the files that an SDF file names: `model://`, `file://`, relative, Fuel's addresses."""
 
 from __future__ import annotations
 

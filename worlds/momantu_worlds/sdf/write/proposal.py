@@ -1,4 +1,4 @@
-"""What an imported world says of its site: surfaces, a start, places, things that can be brought.
+"""A proposed site of an imported world: surfaces, a start, places, objects to bring.
 
 All of it is a guess from shapes, to be corrected by a person.
 """

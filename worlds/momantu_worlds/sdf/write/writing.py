@@ -1,4 +1,4 @@
-"""An import as the text of a world file, with comments for who goes on from there."""
+"""An import as the text of a world file, with comments for its next editor."""
 
 from __future__ import annotations
 
