@@ -18,11 +18,13 @@ import momantu_bt
 
 PUBLIC = (
     "momantu_bt",
+    "momantu_bt.activity",
     "momantu_bt.claim",
     "momantu_bt.diagnosis",
     "momantu_bt.errors",
     "momantu_bt.failure",
     "momantu_bt.fault",
+    "momantu_bt.fault_kind",
     "momantu_bt.frames",
     "momantu_bt.geometry",
     "momantu_bt.lazy",
@@ -35,6 +37,7 @@ PUBLIC = (
     "momantu_bt.robots",
     "momantu_bt.service",
     "momantu_bt.skill",
+    "momantu_bt.symptom",
     "momantu_bt.testing",
     "momantu_bt.world",
 )

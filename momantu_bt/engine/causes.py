@@ -1,8 +1,4 @@
-<<<<<<< HEAD:momantu_bt/engine/causes.py
-"""Failures on their way up: how often something was tried, and what was behind or beside it."""
-=======
-"""Failures on their way up: the number of tries, and earlier causes."""
->>>>>>> 8e62d15 (First lines of files say plainly what the file does):momantu_bt/engine/tries.py
+"""Failures on their way up: the number of tries, and the causes behind or beside one."""
 
 from __future__ import annotations
 

@@ -75,7 +75,8 @@ def test_every_public_name_is_explained(name: str) -> None:
 def test_the_page_lists_the_public_modules() -> None:
     page = (ROOT / "docs" / "api.md").read_text(encoding="utf-8")
     table = page.partition("## Public modules")[2].partition("\n## ")[0]
-    assert sorted(re.findall(r"^\| `([\w.]+)` \|", table, re.MULTILINE)) == sorted(PUBLIC)
+    cells = re.findall(r"^\| (`[^|]+`) \|", table, re.MULTILINE)
+    assert sorted(re.findall(r"`([\w.]+)`", " ".join(cells))) == sorted(PUBLIC)
 
 
 def test_the_page_lists_the_groups_of_entry_points() -> None:

@@ -1,8 +1,4 @@
-<<<<<<< HEAD
-"""What a kind of node says of itself: names, ports, children, how it is checked and shown."""
-=======
-"""The specification of a node: its canonical type, spelling in YAML, ports and children."""
->>>>>>> 8e62d15 (First lines of files say plainly what the file does)
+"""What a kind of node declares: its names, ports and children, how it is checked and shown."""
 
 from __future__ import annotations
 
