@@ -16,7 +16,7 @@ class Activity(StrEnum):
     """drives somewhere"""
     LOCALIZE = "localize"
     """finds out where the robot is"""
-    LOOK = "look"
+    LOOK = "see"
     """judges pictures, of whatever"""
     FIND_OBJECT = "find object"
     """looks for an object"""

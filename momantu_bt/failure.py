@@ -111,13 +111,13 @@ class FailureValue:
 
 
 class Failure(Exception):
-    """Raised by a skill to fail: `raise Failure("OBJECT_NOT_FOUND", "no can here", seen=3)`."""
+    """Raised by a skill to fail: `raise Failure("NOT_FOUND", "no can here", seen=3)`."""
 
     def __init__(self, code: str, message: str = "", /, **data: Any) -> None:
         if not CODE.fullmatch(code):
             raise ValueError(
                 f"failure code {code!r} is not upper-case words joined by underscores, "
-                "such as 'OBJECT_NOT_FOUND'"
+                "such as 'NOT_FOUND'"
             )
         super().__init__(f"{code}, {message}" if message else code)
         self.value = FailureValue(code, message, MappingProxyType(dict(data)))

@@ -1,6 +1,6 @@
 """Injected faults: what a fault is, and the protocol of worlds that implement some.
 
-A fault is written `COMPONENT.MODE[@PHASE][:name=value,…]`, such as `camera.dead@navigate:for=5 s`.
+A fault is written `COMPONENT.MODE[@PHASE][:name=value,…]`, such as `camera.dead@12 s:for=5 s`.
 Those of sensors and actuators happen at the robot's boundary and those of skills in the engine,
 whatever the robot and the world. Those of the surroundings are made by the world.
 """

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from inspect import getattr_static
 from typing import Any, ClassVar, Protocol
 
 import numpy as np
@@ -106,13 +107,17 @@ class Snapshot:
     state: RobotState
 
 
-class PlanningScene(Protocol):
-    """The robot, its surroundings and what it holds, as believed."""
+class KnowsHeld(Protocol):
+    """What the robot holds, as believed."""
 
     @property
     def held(self) -> HeldObject | None:
         """What is held, judged anew at each update from gripper width and effort."""
         ...
+
+
+class PlanningScene(KnowsHeld, Protocol):
+    """The robot, its surroundings and what it holds, as believed."""
 
     @property
     def last_contact(self) -> float:
@@ -137,3 +142,10 @@ class PlanningScene(Protocol):
     def is_robot(self, points: Array, state: RobotState) -> Any:
         """(n,) bool: which points (n, 3) in base frame lie on the robot or on what it holds."""
         ...
+
+
+def offers(service: object, interface: type) -> bool:
+    """Whether a service has all that a Protocol names; none of it is evaluated."""
+    wanted = [name for name in dir(interface) if not name.startswith("_")]
+    missing = object()
+    return all(getattr_static(service, name, missing) is not missing for name in wanted)

@@ -44,7 +44,7 @@ def check(
 
     Examples:
       momantu-bt check trees/bring_object.yaml
-      momantu-bt check bring_object --world four_rooms --robot fetch
+      momantu-bt check bring_object --world my_flat.yaml --robot my_robot/
       momantu-bt check --json my_tree.yaml
       momantu-bt check --explain read-before-write
     """

@@ -15,7 +15,7 @@ from momantu_bt.robots.plugins import ROBOTS, Describe, load_robot
 robots = typer.Typer(rich_markup_mode=None, invoke_without_command=True)
 
 
-@robots.callback(help="List the installed robots. `momantu-bt robots show fetch` shows one.")
+@robots.callback(help="List the installed robots. `momantu-bt robots show NAME` shows one.")
 def every(
     context: typer.Context,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,

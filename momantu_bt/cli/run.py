@@ -96,7 +96,7 @@ def run(
       momantu-bt run trees/bring_object.yaml --seed 3 --video run.mp4 --report run.json
       momantu-bt run bring_object --set "tag_edge=150 mm" --view
       momantu-bt run bring_object --robot my_robot/robot.yaml
-      momantu-bt run bring_object --fault camera.dead@navigate:for=10s
+      momantu-bt run bring_object --fault "camera.dead@12 s:for=10 s"
     """
     terminal = Terminal() if is_interactive() and not unattended else None
     options = RunOptions(

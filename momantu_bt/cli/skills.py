@@ -20,7 +20,7 @@ from momantu_bt.tree.show.skill_page import as_data, as_text
 skills = typer.Typer(rich_markup_mode=None, invoke_without_command=True)
 
 
-@skills.callback(help="List the installed skills. `momantu-bt skills show pick` shows one.")
+@skills.callback(help="List the installed skills. `momantu-bt skills show NAME` shows one.")
 def every(
     context: typer.Context,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,

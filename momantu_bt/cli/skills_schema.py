@@ -31,7 +31,7 @@ def schema(
 
     Examples:
       momantu-bt skills schema -o trees/schema.json
-      momantu-bt skills schema --world four_rooms --robot fetch -o trees/schema.json
+      momantu-bt skills schema --world my_flat.yaml --robot my_robot/ -o trees/schema.json
     """
     registry = Registry.installed()
     return put_schema(tree_schema(_skills(registry), _names(world, robot)), out, "a tree")

@@ -30,7 +30,7 @@ def promises(
 
     Examples:
       momantu-bt skills test
-      momantu-bt skills test pick place
+      momantu-bt skills test turn_round
     """
     from momantu_bt.testing import check_skill
 

@@ -27,7 +27,7 @@ def usage_message(error: Any) -> str | None:
 
 
 def _instead(path: str, known: list[str], unknown: re.Match[str]) -> str:
-    """`momantu-bt worlds four_rooms` wants to see a world, `worlds chek …` to check one."""
+    """`momantu-bt worlds my_flat` wants to see a world, `worlds chek …` to check one."""
     can = f" {path} knows {', '.join(known)}."
     if "show" not in known or unknown["nearest"]:
         return can

@@ -18,7 +18,7 @@ from momantu_bt.world import AboutWorld, WorldEntry
 worlds = typer.Typer(rich_markup_mode=None, invoke_without_command=True)
 
 
-@worlds.callback(help="List the installed worlds. `momantu-bt worlds show four_rooms` shows one.")
+@worlds.callback(help="List the installed worlds. `momantu-bt worlds show NAME` shows one.")
 def every(
     context: typer.Context,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,

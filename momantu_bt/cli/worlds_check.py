@@ -36,8 +36,8 @@ def check(
     the seeds and a cure; 2: the world file or the arguments are wrong.
 
     Examples:
-      momantu-bt worlds check four_rooms
-      momantu-bt worlds check my_flat.yaml --robot fetch --seeds 0:50
+      momantu-bt worlds check my_flat.yaml
+      momantu-bt worlds check my_flat.yaml --robot my_robot/ --seeds 0:50
       momantu-bt worlds check my_flat.yaml --json
     """
     episodes = parse_seeds(seeds)

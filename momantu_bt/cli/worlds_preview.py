@@ -33,8 +33,8 @@ def preview(
     on this machine renders the view (the plan alone needs no such thing: --plan).
 
     Examples:
-      momantu-bt worlds preview four_rooms -o four_rooms.png
-      momantu-bt worlds preview my_flat.yaml --seed 3 --robot fetch -o flat.png
+      momantu-bt worlds preview my_flat.yaml -o flat.png
+      momantu-bt worlds preview my_flat.yaml --seed 3 --robot my_robot/ -o flat.png
       momantu-bt worlds preview my_flat.yaml --plan -o plan.png
     """
     check_writable(out)

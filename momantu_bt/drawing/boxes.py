@@ -41,7 +41,7 @@ class Box:
     """One node of a tree with what is around it.
 
     number: unique in the picture. kind: control, decorator, leaf, skill or subtree. parent: the
-    number of the box above it; role: what it is to that ("then", "on SLIPPED"), or "".
+    number of the box above it; role: what it is to that ("then", "on TOO_FAR"), or "".
     nodes: the node, and its decorators, outermost first.
     """
 

@@ -159,7 +159,7 @@ def _spelled(reference: Reference) -> str:
 
 
 def wire_lines(document: Document, found: list[Wire], tree: str) -> Iterator[str]:
-    """The wires of one tree in words: `$seen  from detect_object (12)  to pick (14, 17)`.
+    """The wires of one tree in words: `$seen  from scan (12)  to grip (14, 17)`.
 
     Numbers are lines of the file that the tree is in; of another they come after its name.
     """

@@ -45,7 +45,7 @@ class Cell:
 
 
 class ReadOnlyCell(Cell):
-    """A key that the engine publishes, such as `@localization`: its value is asked when read.
+    """A key that the engine publishes, such as `@battery`: its value is asked when read.
 
     It counts as written whenever it is found to be another object than the last time.
     """

@@ -14,7 +14,7 @@ _SHORT = (str, int, float, bool)
 
 
 def label(model: Node, values: Mapping[str, Any]) -> str:
-    """`navigate in_front_of table_a` where the file says `navigate: {in_front_of: $at}`."""
+    """`dock at bay_a` where the file says `dock: {at: $bay}`."""
     ports: dict[str, PortValue] = {}
     for name, written in model.ports.items():
         value = values.get(name)

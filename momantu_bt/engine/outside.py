@@ -108,7 +108,7 @@ class Outside:
         """A leaf's skill has made a step; what it gave is not on the blackboard yet."""
 
     def ask(self, key: str, ask: Callable[[], T]) -> T:
-        """What `ask` answers. key: names what is asked, such as `localization`."""
+        """What `ask` answers. key: names what is asked, such as `battery`."""
         return ask()
 
 

@@ -1,8 +1,8 @@
 """When a fault begins, as it is written.
 
-`start`; a time, `12 s`; names such as `Put/navigate`, for the first tick at which a node called
-navigate is RUNNING inside of one called Put; `after-pick`, for the tick after one ended in
-SUCCESS; behind it `#2` for the second such time and `+3 s` for that much later.
+`start`; a time, `12 s`; names such as `Serve/dock`, for the first tick at which a node called dock
+is RUNNING inside of one called Serve; `after-dock`, for the tick after one ended in SUCCESS;
+behind it `#2` for the second such time and `+3 s` for that much later.
 """
 
 from __future__ import annotations

@@ -2,9 +2,9 @@
 
 momantu_bt: 1
 begins:                        # when a fault begins in this tree, unless @PHASE says otherwise
-  gripper.slips: Deliver/drive+2 s
+  gripper.slips: Serve/dock+2 s
 rows:                          # what `bench --faults` runs besides
-  - camera.dead@Inspect/measure:for=inf
+  - camera.dead@Serve/scan:for=inf
 """
 
 from __future__ import annotations
@@ -118,7 +118,7 @@ def _begins(raw: Raw | None, document: Document, problems: Problems) -> Mapping[
     if raw is None:
         return {}
     if not isinstance(raw, Entries):
-        hint = "such as `camera.dead: Inspect/measure`"
+        hint = "such as `camera.dead: Serve/scan`"
         problems.error("wrong-value", raw.place, "`begins` is a mapping of faults to phases", hint)
         return {}
     drop_duplicates(raw, problems)

@@ -43,7 +43,7 @@ class Catch:
     node: TreeNode | None
 
     def names(self, failure: FailureValue) -> bool:
-        """Whether one of the codes is the failure's; `pick.SLIPPED` asks for the node as well."""
+        """Whether one of the codes is the failure's; `grip.TOO_FAR` asks for the node as well."""
         for code in self.codes:
             kind, dot, narrowed = code.rpartition(".")
             if code == failure.code:

@@ -40,7 +40,7 @@ def board(recording: Recording) -> dict[str, Any]:
 
 
 def _rank(name: str) -> tuple[bool, list[int], str]:
-    """`0.1.3/GoTo/side` is a key of the subtree GoTo, which is at 0.1.3 in the tree."""
+    """`0.1.3/Dock/side` is a key of the subtree Dock, which is at 0.1.3 in the tree."""
     path, _, _ = name.rpartition("/")
     numbers = [int(part) for part in path.partition("/")[0].split(".") if part.isdigit()]
     return name.startswith("@"), numbers, name

@@ -1,7 +1,7 @@
 """A failure in one line, outermost first.
 
-`bring_object failed: PATH_BLOCKED, a chair in the doorway <- Put (bring_object.yaml:22) <-
-navigate (:41), 3 of 3 tries`
+`my_tree failed: TOO_FAR, a chair in the doorway <- Serve (my_tree.yaml:22) <- dock (:41), 3 of 3
+tries`
 """
 
 from __future__ import annotations

@@ -14,12 +14,12 @@ from momantu_bt.record.codec import dumps
 from momantu_bt.record.mcap_file import McapFile
 from momantu_bt.record.poses import pose_text
 from momantu_bt.record.viewer_schemas import SCENE
-from momantu_bt.service import HeldObject
+from momantu_bt.service import HeldObject, KnowsHeld, offers
 
 HELD = "held"
 """Identifier of what is between the fingers; the others are called as their cell of the board."""
 RATE = 5.0
-"""Hz at which the planning scene is asked what is held."""
+"""Hz at which it is asked what is held."""
 _SEEN = '{"r":0.2,"g":0.6,"b":0.9,"a":0.7}'
 _IN_HAND = '{"r":0.9,"g":0.6,"b":0.1,"a":0.9}'
 _UNUSED = (
@@ -53,8 +53,7 @@ class Objects:
                 entities += [_seen(*each, time) for each in zip(names, objects, strict=True)]
                 self._shown[name] = names
         if due:
-            held = getattr(run.services.running.get("planning_scene"), "held", None)
-            held = held if isinstance(held, HeldObject) and _drawable(held.object) else None
+            held = _believed(run)
             if held is not self._held:
                 entities += [] if held is None else [_in_hand(run, held, time)]
                 gone += [HELD] if held is None else []
@@ -63,6 +62,13 @@ class Objects:
             deletions = [f'{{"timestamp":{time},"type":0,"id":{dumps(name)}}}' for name in gone]
             text = f'{{"deletions":[{",".join(deletions)}],"entities":[{",".join(entities)}]}}'
             file.add(self._channel, stamp_of(run.context.now), text)
+
+
+def _believed(run: Executor) -> HeldObject | None:
+    """What the first service that knows of it believes to be held, where that can be drawn."""
+    knowing = (each for each in run.services.running.values() if offers(each, KnowsHeld))
+    held = getattr(next(knowing, None), "held", None)
+    return held if isinstance(held, HeldObject) and _drawable(held.object) else None
 
 
 def _objects(value: Any) -> list[DetectedObject]:

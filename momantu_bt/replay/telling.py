@@ -16,7 +16,7 @@ from momantu_bt.replay.moment import ShownNode
 
 
 def headline(recording: Recording) -> str:
-    """`bring_object, seed 3, world four_rooms, robot fetch; momantu-bt 0.1.0`."""
+    """`my_tree, seed 3, world my_flat, robot my_robot; momantu-bt 0.1.0`."""
     about = recording.about
     words = [PurePath(about["tree"]).stem, f"seed {about['seed']}"]
     words += [f"{what} {about[what]}" for what in ("world", "robot") if about[what] is not None]

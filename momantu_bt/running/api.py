@@ -43,7 +43,7 @@ def run(
 
     report: where to write it as JSON. registry: what trees can name; everything installed
     unless given. watch: makes observers of the run. answers: what `ask` and `confirm` are told,
-    in turn; afterwards nobody answers. faults: such as `camera.dead@navigate`.
+    in turn; afterwards nobody answers. faults: such as `camera.dead@12 s`.
     patience: seconds of wall time that a skill's step may take; what hangs longer in native code
     ends the process, which is yours: so there is no limit unless one is given.
 

@@ -15,7 +15,7 @@ from momantu_bt.failure import Failure, FailureValue
 from momantu_bt.frames import FrameBuffer
 from momantu_bt.geometry import Transform
 from momantu_bt.robot import Robot
-from momantu_bt.service import Service
+from momantu_bt.service import Localization, Service, offers
 from momantu_bt.skill import Skill
 from momantu_bt.testing.robot import ScriptedRobot
 from momantu_bt.testing.world import ScriptedWorld
@@ -81,9 +81,9 @@ def run_skill(
     which has both and is stepped. services: by name; those that subclass `Service` are started
     and updated at their rate (unless `frames` is given, in which case they were started with it),
     others are used as they are. map_from_odom: told to the frame buffer at the start; the
-    identity when no service called localization runs. frames: the buffer of an earlier run on
-    the same world, so that skills can be run one after the other. on_tick: called after each
-    step of the skill, to script events. After `max_time` simulated seconds the skill is halted.
+    identity when no service is a Localization. frames: the buffer of an earlier run on the same
+    world, so that skills can be run one after the other. on_tick: called after each step of the
+    skill, to script events. After `max_time` simulated seconds the skill is halted.
     """
     place = world if world is not None else ScriptedWorld(robot, site)
     try:
@@ -91,7 +91,8 @@ def run_skill(
     except Failure as failure:
         return SkillResult("FAILURE", {}, failure.value, (), 0.0, 0, None, place.robot)
     running = _Services(place, dict(services or {}), frames, seed)
-    if map_from_odom is not None or (frames is None and "localization" not in running.services):
+    localized = any(offers(each, Localization) for each in running.services.values())
+    if map_from_odom is not None or (frames is None and not localized):
         running.frames.set_map_from_odom(map_from_odom or Transform(), place.now())
     context = SkillContext(
         clock=place,

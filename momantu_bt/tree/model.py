@@ -57,7 +57,7 @@ class Beside(str):
 
 
 FIRST_INPUT = ""
-"""Key of a port value written without a name (`reset_pose: home`); the checker names it."""
+"""Key of a port value written without a name (`dock: bay_a`); the checker names it."""
 
 BROKEN = ""
 """Type of a node that could not be read; the problem is reported, the place kept."""
@@ -65,7 +65,7 @@ BROKEN = ""
 
 @dataclass(slots=True)
 class Handler:
-    """One entry of `catch:`. codes: `("any",)` is the rest; a code may read `pick.SLIPPED`.
+    """One entry of `catch:`. codes: `("any",)` is the rest; a code may read `grip.TOO_FAR`.
 
     node: what to do, None for `again`.
     """

@@ -100,7 +100,7 @@ def to_text(value: Any, type_: type[str]) -> Any:
     if isinstance(value, str):
         return value
     if type_ is CodeText:
-        raise ConversionError(f"{shown(value)} is not a failure code, such as OBJECT_NOT_FOUND")
+        raise ConversionError(f"{shown(value)} is not a failure code, such as NOT_FOUND")
     if isinstance(value, bool | int | float):
         said = in_words(value)
         raise ConversionError(f'{said} is no text; write "{said}" in quotes if it is meant as one')

@@ -1,6 +1,6 @@
 // The blackboard at the instant; what this tick wrote is marked.
 
-/** `GoTo/side`, then where in the tree this GoTo is; it may break behind slashes and dots. */
+/** `Dock/side`, then where in the tree this Dock is; it may break behind slashes and dots. */
 function keyName(key) {
   const [, where, name] = /^(\d[\d.]*)\/(.*)$/.exec(key) ?? [null, "", key];
   const parts = name.split(/(?<=[./_])/).flatMap((part) => [part, make("wbr")]);

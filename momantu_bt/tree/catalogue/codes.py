@@ -10,7 +10,7 @@ from momantu_bt.failure import FAILED, INPUT_MISSING, SCRIPT_ERROR, WRONG_TYPE
 from momantu_bt.tree.model import Node
 
 Codes: TypeAlias = frozenset[str]
-"""Codes, bare and as `pick.SLIPPED`. UNKNOWN stands for any."""
+"""Codes, bare and as `grip.TOO_FAR`. UNKNOWN stands for any."""
 UNKNOWN = "?"
 NO_CODES: Codes = frozenset()
 

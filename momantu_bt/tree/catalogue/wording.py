@@ -68,7 +68,7 @@ def duration_text(node: Node) -> str:
 
 
 def _is_bare(node: Node, port: str) -> bool:
-    """Whether the value was written without the port's name (`reset_pose: home`)."""
+    """Whether the value was written without the port's name (`dock: bay_a`)."""
     place = node.port_places.get(port)
     return place is None or node.port_name_places.get(port) == place
 

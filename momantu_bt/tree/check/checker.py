@@ -38,7 +38,7 @@ ROBOT_KEY = "robot"
 class Checked:
     """A checked document. problems: errors, warnings and hints in the order of the file.
 
-    document: as it runs: the ports of bare values (`reset_pose: home`) have their names.
+    document: as it runs: the ports of bare values (`dock: bay_a`) have their names.
     """
 
     document: Document

@@ -91,7 +91,7 @@ def autoremaps(node: Node) -> bool:
 
 
 def with_named_inputs(context: Context) -> Document:
-    """The document with the ports of bare values named (`reset_pose: home`), where it is known.
+    """The document with the ports of bare values named (`dock: bay_a`), where it is known.
 
     The given document stays as it is; trees without bare values are shared.
     """
@@ -250,7 +250,7 @@ def check_literal(context: Context, value: Literal, place: Place, port: Port) ->
         context.problems.error("wrong-value", place, message)
         return
     if port.type is CodeText and not CODE.fullmatch(found):
-        hint = "upper-case words joined by underscores, such as OBJECT_NOT_FOUND"
+        hint = "upper-case words joined by underscores, such as NOT_FOUND"
         context.problems.error("bad-code", place, f"{found!r} is no failure code", hint)
     if port.names is not None and isinstance(found, str):
         check_name(context, found, place, port.names)

@@ -212,7 +212,7 @@ def _modifiers(names: Names) -> Schema:
 
 
 def _catch(skills: Mapping[str, type[Skill]]) -> Schema:
-    """Handlers: every code of every skill completes, alone; `A | B` and `pick.CODE` are allowed."""
+    """Handlers: every code of every skill completes, alone; `A | B` and `SKILL.CODE` are valid."""
     answer: Schema = {"anyOf": [{"const": AGAIN, "description": "just try again"}, _NODE]}
     said: dict[str, str] = dict(ENGINE_CODES)
     for name, skill in skills.items():

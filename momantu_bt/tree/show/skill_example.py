@@ -53,7 +53,7 @@ def example_ports(skill: type[Skill]) -> dict[str, Any]:
 
 
 def yaml_example(name: str, skill: type[Skill]) -> str:
-    """`reset_pose: home`, `pick: {object: $object}`, or a port per line where that is too long."""
+    """`dock: bay_a`, `grip: {thing: $seen}`, or a port per line where that is too long."""
     values = {port: _in_yaml(value) for port, value in example_ports(skill).items()}
     inputs = [port.name for port in skill.ports.values() if port.direction == "in"]
     if not values:

@@ -2,10 +2,10 @@
 
 momantu_bt: 1
 substitute:
-  - {node: pick, status: FAILURE, code: SLIPPED, delay: 2 s, times: 1}
+  - {node: grip, status: FAILURE, code: TOO_FAR, delay: 2 s, times: 1}
   - {node: "detect_*", status: SUCCESS, outputs: {found: {…}}}
 values:
-  localization: {quality: 0.9}
+  battery: {charge: 0.9}
 """
 
 from __future__ import annotations
@@ -92,7 +92,7 @@ def read_rules(raw: Raw, problems: Problems) -> RuleFile:
     _version(having.get("momantu_bt"), raw.place, problems)
     listed = having.get("substitute")
     if not isinstance(listed, Items):
-        hint = "write `substitute:` and under it rules such as `- {node: pick, status: SUCCESS}`"
+        hint = "write `substitute:` and under it rules such as `- {node: grip, status: SUCCESS}`"
         place = raw.place if listed is None else listed.place
         problems.error("missing-input", place, "`substitute` is a list of rules", hint)
         return found
@@ -127,7 +127,7 @@ def _values(raw: Raw | None, found: RuleFile, problems: Problems) -> None:
 
 def _rule(raw: Raw, problems: Problems) -> Rule | None:
     if not isinstance(raw, Entries):
-        hint = "such as {node: pick, status: FAILURE, code: SLIPPED}"
+        hint = "such as {node: grip, status: FAILURE, code: TOO_FAR}"
         problems.error("wrong-value", raw.place, "a rule is a mapping", hint)
         return None
     drop_duplicates(raw, problems)
@@ -181,7 +181,7 @@ def _is_consistent(rule: Rule, problems: Problems) -> bool:
     for key, message, hint in said:
         problems.error("wrong-value", rule.place_of(key), message, hint)
     if not CODE.fullmatch(rule.code):
-        hint = "upper-case words joined by underscores, such as OBJECT_NOT_FOUND"
+        hint = "upper-case words joined by underscores, such as NOT_FOUND"
         message = f"{rule.code!r} is no failure code"
         problems.error("bad-code", rule.place_of("code"), message, hint)
         return False

@@ -166,7 +166,7 @@ def test_a_default_that_is_no_choice(fine: Fine, expect: Expect) -> None:
 
 
 def test_a_bad_code(expect: Expect) -> None:
-    expect("bad-code", main("- fail: «notFound»"), hint="OBJECT_NOT_FOUND")
+    expect("bad-code", main("- fail: «notFound»"), hint="such as NOT_FOUND")
 
 
 def test_text_for_a_number(expect: Expect) -> None:

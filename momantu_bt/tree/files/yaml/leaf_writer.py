@@ -74,7 +74,7 @@ class LeafWriter:
         return port_text(value, flow=flow)
 
     def _is_bare(self, node: Node) -> bool:
-        """Whether its one value stands without the port's name: `reset_pose: home`."""
+        """Whether its one value stands without the port's name: `dock: bay_a`."""
         if len(node.ports) != 1:
             return False
         ((name, value),) = node.ports.items()
