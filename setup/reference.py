@@ -29,6 +29,7 @@ PUBLIC = (
     "momantu_bt.geometry",
     "momantu_bt.lazy",
     "momantu_bt.messages",
+    "momantu_bt.nodes",
     "momantu_bt.record.codec",
     "momantu_bt.record.reader",
     "momantu_bt.robot",

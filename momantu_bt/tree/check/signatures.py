@@ -12,6 +12,8 @@ from momantu_bt.plugins import PluginError
 from momantu_bt.robot import RobotDescription
 from momantu_bt.skill import Port, Skill
 from momantu_bt.tree.catalogue import AUTOREMAP, NODES, SUBTREE, NodeSpec
+from momantu_bt.tree.catalogue.nodes import PLUGINS
+from momantu_bt.tree.catalogue.objection import type_of
 from momantu_bt.tree.model import BROKEN, Document, Node, Tree
 from momantu_bt.tree.problems import Problems
 from momantu_bt.tree.registry import Registry
@@ -132,17 +134,28 @@ def _first(ports: Mapping[str, Port]) -> str | None:
 def report_unknown_node(context: Context, node: Node) -> None:
     """Say that no node has this name, or why the skill of this name cannot be used."""
     name = node.type
-    if name in context.registry.skills:
-        try:
-            context.registry.skills[name]
-        except PluginError as error:
-            context.problems.error("broken-plugin", node.place, str(error), "run momantu-bt doctor")
+    broken = _why_broken(context, name)
+    if broken is not None:
+        context.problems.error("broken-plugin", node.place, broken, "run momantu-bt doctor")
         return
     spellings = [spec.yaml[0] for spec in NODES.values()]
     skills = [*context.document.trees, *context.registry.skills]
     near = nearest(name, [*skills, *spellings])
     hint = f"did you mean {near}?" if near else valid_names(name, skills, "trees and skills")
     context.problems.error("unknown-node", node.place, f"no node is called {name!r}", hint)
+
+
+def _why_broken(context: Context, name: str) -> str | None:
+    """Why the plug-in of this name cannot be used; None where there is none."""
+    spelled = {type_of(spelling): spelling for spelling in PLUGINS}
+    try:
+        if name in PLUGINS or name in spelled:
+            PLUGINS.load(spelled.get(name, name))
+        elif name in context.registry.skills:
+            context.registry.skills[name]
+    except PluginError as error:
+        return str(error)
+    return None
 
 
 def known_type(text: str) -> Any:

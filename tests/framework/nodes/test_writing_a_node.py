@@ -1,0 +1,174 @@
+"""Nodes of other packages: the page's example works, and is told of like built-in nodes."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import re
+import sys
+from importlib.metadata import EntryPoint
+from pathlib import Path
+
+import py_trees
+import pytest
+
+import momantu_bt
+from momantu_bt import plugins
+from momantu_bt.cli import main
+from momantu_bt.engine.build import build
+from momantu_bt.engine.context import RunContext
+from momantu_bt.py_trees_bridge.view import view
+from momantu_bt.testing import ManualClock
+from momantu_bt.tree.catalogue import NODES, SPELLED
+from momantu_bt.tree.load import load
+
+PAGE = Path(__file__).resolve().parents[3] / "docs" / "writing_a_node.md"
+FILE = re.compile(r"Save as `([\w/.]+)`:\n\n```\w+\n(.*?)```", re.DOTALL)
+GROUP = "momantu_bt.nodes"
+
+
+@pytest.fixture
+def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    """The page's files, in the working folder; its nodes are installed."""
+    files = dict(FILE.findall(PAGE.read_text(encoding="utf-8")))
+    for name, text in files.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(tmp_path / "src")
+    declared = re.findall(r'^(\w+) = "(pace_nodes[\w.:]+)"$', files["pyproject.toml"], re.MULTILINE)
+    install(monkeypatch, *(EntryPoint(name, value, GROUP) for name, value in declared))
+    yield files
+    for name in [name for name in sys.modules if name.startswith("pace_nodes")]:
+        del sys.modules[name]
+
+
+def install(monkeypatch: pytest.MonkeyPatch, *entries: EntryPoint) -> None:
+    find = plugins.entry_points
+
+    def found(group: str) -> list[EntryPoint]:
+        return [*find(group=group), *(entry for entry in entries if entry.group == group)]
+
+    monkeypatch.setattr(plugins, "entry_points", found)
+
+
+def test_the_pages_own_test_passes(package, capsys):
+    page = {}
+    exec(package["tests/test_pace.py"], page)
+    tests = [value for name, value in page.items() if name.startswith("test_")]
+    assert len(tests) == 1
+    for test in tests:
+        test()
+
+
+def test_it_is_checked_shown_and_converted_both_ways(package, capsys):
+    assert main(["check", "tree.yaml"]) == 0
+    capsys.readouterr()
+    assert main(["show", "tree.yaml"]) == 0
+    shown = capsys.readouterr().out
+    assert "(then not for 0.4 s)" in shown
+    assert "race" in shown
+    assert main(["convert", "tree.yaml", "-o", "tree.xml"]) == 0
+    xml = Path("tree.xml").read_text(encoding="utf-8")
+    assert '<Cooldown pause="0.4 s">' in xml
+    assert "<Race>" in xml
+    assert main(["convert", "tree.xml", "-o", "back.yaml"]) == 0
+    assert load("back.yaml").document.trees == load("tree.yaml").document.trees
+
+
+def test_it_is_recorded_and_replays_the_same(package, tmp_path, capsys):
+    record = tmp_path / "record"
+    report = momantu_bt.run("tree.yaml", world="none", record=record)
+    assert {"cooldown", "race"} <= {node.name for node in report.nodes}
+    capsys.readouterr()
+    assert main(["replay", str(record), "--check"]) == 0
+
+
+def test_editors_know_it(package, capsys):
+    assert main(["skills", "schema"]) == 0
+    schema = json.loads(capsys.readouterr().out)
+    assert {"cooldown", "race"} <= set(schema["$defs"]["mapping"]["properties"])
+    assert main(["skills", "--xml-model"]) == 0
+    assert 'ID="Cooldown"' in capsys.readouterr().out
+
+
+def test_py_trees_displays_draw_it(package):
+    document = load("tree.yaml").document
+    built = build(document, RunContext(ManualClock()), {}.__getitem__)
+    assert "race" in py_trees.display.ascii_tree(view(built.root))
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "said"),
+    [
+        ("cooldown: 0.4 s", "cooldown: 0.4 m", "expected a time"),
+        ("cooldown: 0.4 s", "cooldown: -1 s", "at least 0"),
+        ("    - race:\n        - wait: 10 s\n", "    - race: []\n    - race:\n", "race"),
+    ],
+)
+def test_its_ports_and_children_are_checked(package, capsys, before, after, said):
+    text = package["tree.yaml"]
+    assert before in text
+    Path("tree.yaml").write_text(text.replace(before, after), encoding="utf-8")
+    assert main(["check", "tree.yaml"]) != 0
+    assert said in "".join(capsys.readouterr())
+
+
+def test_what_a_node_without_a_flow_leaves_is_not_counted_on(package, capsys):
+    Path("tree.yaml").write_text(
+        "momantu_bt: 1\nmain: Main\ntrees:\n  Main:\n"
+        "    - race:\n        - set: {key: $a, value: 1}\n"
+        "    - set: {key: $b, value: $a}\n    - condition: $b == 1\n",
+        encoding="utf-8",
+    )
+    assert main(["check", "tree.yaml"]) != 0
+    assert "$a may have no value here" in "".join(capsys.readouterr())
+
+
+BROKEN = {
+    "from momantu_bt.nodes import x": "cannot be loaded: ImportError",
+    "Calm = 5": "is broken: int is not a class",
+    "class Calm: pass": "is not a subclass of",
+    "class Calm(TreeNode): pass": "has no `spec`",
+    "class Calm(TreeNode): spec = control('Calm', 'quiet', 'Waits.')": "is spelled quiet",
+    "class Calm(TreeNode): spec = control('Quiet', 'calm', 'Waits.')": "it is 'Calm'",
+    "class Calm(TreeNode): spec = leaf('Calm', 'calm', 'Waits.', keys=('k',))": "port 'k'",
+    "class Calm(TreeNode): spec = leaf('Calm', 'calm', ' ')": "has no doc",
+    "class Calm(TreeNode): spec = leaf('Calm', 'calm', 'W.', input_port('child', int, 'c'))": "hi",
+}
+
+
+@pytest.mark.parametrize("text", BROKEN)
+def test_a_broken_node_is_told_by_who_uses_it_and_by_the_doctor(
+    tmp_path, monkeypatch, capsys, text
+):
+    module = f"calm_{abs(hash(text))}"
+    imports = "from momantu_bt.nodes import TreeNode, control, input_port, leaf\n"
+    (tmp_path / f"{module}.py").write_text(f"{imports}{text}\n", encoding="utf-8")
+    monkeypatch.syspath_prepend(tmp_path)
+    importlib.invalidate_caches()
+    install(monkeypatch, EntryPoint("calm", f"{module}:Calm", GROUP))
+    tree = tmp_path / "tree.yaml"
+    tree.write_text("momantu_bt: 1\nmain: Main\ntrees:\n  Main: {calm: }\n", encoding="utf-8")
+    assert main(["check", str(tree)]) != 0
+    said = "".join(capsys.readouterr())
+    assert "the node 'calm'" in said
+    assert BROKEN[text] in said.replace("\n", " ")
+    assert "Sequence" in NODES
+
+
+def test_two_packages_with_one_name_are_told(tmp_path, monkeypatch, capsys):
+    install(
+        monkeypatch, EntryPoint("calm", "one:Calm", GROUP), EntryPoint("calm", "two:Calm", GROUP)
+    )
+    tree = tmp_path / "tree.yaml"
+    tree.write_text("momantu_bt: 1\nmain: Main\ntrees:\n  Main: {calm: }\n", encoding="utf-8")
+    assert main(["check", str(tree)]) != 0
+    assert "two plug-ins are called 'calm'" in "".join(capsys.readouterr())
+
+
+def test_a_node_does_not_replace_a_built_in_one(package, monkeypatch, capsys):
+    install(monkeypatch, EntryPoint("retry", "pace_nodes.pace:Race", GROUP))
+    assert SPELLED["retry"].type == "RetryUntilSuccessful"
+    main(["doctor"])
+    assert "'retry' is a built-in node" in "".join(capsys.readouterr())
