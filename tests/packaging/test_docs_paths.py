@@ -21,6 +21,10 @@ PACKAGES = {
 TOPS = ("benchmarks/", "docs/", "momantu_bt/", "setup/", "skills/", "tests/", "trees/", "worlds/")
 IN_PROSE = rf"(?<![\w./])(?:{'|'.join(TOPS)})[\w./-]+"
 OF_THE_READER = {
+    "src/pace_nodes/pace.py",
+    "tests/test_pace.py",
+    "src/door/door.py",
+    "tests/test_door.py",
     "test_look_round.py",
     "turn/src/turn_skill/turn.py",
     "turn/tests/test_speed.py",

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import NamedTuple, TypeAlias
+from typing import TypeAlias
 
 from momantu_bt.tree.catalogue.known import NEVER, Key, Known, meet
 from momantu_bt.tree.model import Node
 
 
-class After(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class After:
     """What is known after success, after failure, and where the node was skipped."""
 
     success: Known

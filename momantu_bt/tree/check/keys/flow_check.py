@@ -135,7 +135,8 @@ class _KeyCheck:
         for name in PRE_CONDITIONS:
             if name in node.conditions:
                 self.condition(node, name, anytime if name == "while" else before)
-        success, failure, skipped = self.inside(node, before)
+        after = self.inside(node, before)
+        success, failure, skipped = after.success, after.failure, after.skipped
         if not node.conditions.keys().isdisjoint(PRE_CONDITIONS):
             # a condition may fail the node by its value, or because it cannot be evaluated
             failure = meet(failure, before)
@@ -152,7 +153,7 @@ class _KeyCheck:
         return self.script(node.conditions[name], known, place)
 
     def post_scripts(self, node: Node, after: After) -> After:
-        success, failure, skipped = after
+        success, failure, skipped = after.success, after.failure, after.skipped
         for name in ("on_success", "after"):
             if name in node.conditions:
                 failure = meet(failure, success)
