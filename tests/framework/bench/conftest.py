@@ -7,11 +7,14 @@ from __future__ import annotations
 
 import os
 import sys
+import tomllib
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from momantu_bt import plugins
+from momantu_bt.cli import main
 
 SMALL = """
 momantu_bt: 1
@@ -178,3 +181,34 @@ def stalling(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     find = plugins.entry_points
     monkeypatch.setattr(plugins, "entry_points", lambda group: find(group=group))
     return _write(tmp_path / "stalling.yaml", STALLING)
+
+
+TURNING = """
+momantu_bt: 1
+main: Main
+world: by_seed
+trees:
+  Main: [Once, Again]
+  Once: {turn_round: {angle: 0.5}}
+  Again: {turn_round: {angle: -0.5}}
+"""
+
+
+@pytest.fixture
+def turning(stalling: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
+    """A tree that turns to and fro with a skill of a package that `skills new` makes."""
+    assert main(["skills", "new", "turn_round", "--into", str(tmp_path)]) == 0
+    source = tmp_path / "turn_round" / "src"
+    project = (tmp_path / "turn_round" / "pyproject.toml").read_text(encoding="utf-8")
+    (entry,) = tomllib.loads(project)["project"]["entry-points"]["momantu_bt.skills"].items()
+    facts = source / "turn_round-1.0.dist-info"
+    facts.mkdir()
+    _write(facts / "METADATA", "Metadata-Version: 2.1\nName: turn-round\nVersion: 1.0\n")
+    _write(facts / "entry_points.txt", "[momantu_bt.skills]\n{} = {}\n".format(*entry))
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(source), os.environ["PYTHONPATH"]]))
+    monkeypatch.syspath_prepend(source)
+    find = plugins.entry_points
+    monkeypatch.setattr(plugins, "entry_points", lambda group: find(group=group))
+    yield _write(tmp_path / "turning.yaml", TURNING)
+    for module in [each for each in sys.modules if each.startswith("turn_round_skill")]:
+        del sys.modules[module]

@@ -97,6 +97,34 @@ def test_what_skills_claim_is_judged_and_added_up(
     assert line.split() == ["4", "3", "3", "1", "1", "1", "1", "seed", "0"]
 
 
+def test_faults_hit_a_strangers_tree_with_a_strangers_skill(
+    turning: str, tmp_path: Path, capsys: Out
+) -> None:
+    """The skill declares its `uses` and failures alone; the tree's file adds a row."""
+    own = "base.stuck@Again/turn_round:for=inf"
+    Path(turning).with_suffix(".faults.yaml").write_text(
+        f"momantu_bt: 1\nbegins: {{base.slow: Again/turn_round}}\nrows: ['{own}']\n"
+    )
+    out = tmp_path / "out"
+    words = ("--faults", "base.stuck,base.slow,skill.exception,arm.slow")
+    assert bench(turning, "--seeds", "7", *words, "--out", out) == 0
+    rows = {row["fault"]: row for row in read_rows(out)}
+    assert {fault: row["outcome"] for fault, row in rows.items()} == {
+        "base.stuck": "safe",
+        "base.stuck:for=inf": "safe",
+        own: "safe",
+        "base.slow": "recovered",
+        "skill.exception": "safe",
+        "arm.slow": "recovered",
+    }
+    assert rows["base.stuck"]["failure"]["code"] == "STUCK"
+    begun = {fault: row["faults"][0]["fault"] for fault, row in rows.items()}
+    assert begun["base.stuck"] == "base.stuck@turn_round"
+    assert begun["base.slow"] == "base.slow@Again/turn_round"
+    assert rows[own]["faults"][0]["began"] > rows["base.stuck"]["faults"][0]["began"]
+    assert "turning.yaml, with faults" in capsys.readouterr().out
+
+
 def test_faults_give_a_matrix(stalling: str, tmp_path: Path, capsys: Out) -> None:
     """A broken skill fails the tree with the true reason; this world has nothing to remove."""
     out, report = tmp_path / "out", tmp_path / "report.json"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from momantu_worlds.fault_kinds import KINDS
 from momantu_worlds.robots import fetch
 from momantu_worlds.sapien.faults.rows import ROWS, possible, prepare
 from momantu_worlds.sapien.faults.stage import Stage
@@ -11,6 +12,7 @@ from momantu_worlds.simulated_world import SapienWorld
 from momantu_worlds.testing import plain_episode
 
 from momantu_bt.fault import FaultError, FaultyWorld
+from momantu_bt.fault_kind import Where
 
 BLIND = {
     "robot.kidnapped": {"distance": 1.0, "turn": 1.0},
@@ -30,6 +32,10 @@ OTHERS = {"camera.misses_object", "camera.phantom", "object.lost"}
 def keeps_the_contract(world: SapienWorld) -> FaultyWorld:
     """Typed: the type checker proves that the protocol is kept."""
     return world
+
+
+def test_the_listed_kinds_are_those_that_can_be_made():
+    assert {kind.name: kind.place for kind in KINDS} == dict.fromkeys(ROWS, Where.WORLD)
 
 
 def test_every_fault_is_possible_in_the_rooms_and_tested_here(blind):
