@@ -45,7 +45,7 @@ class Surface:
     map_from_surface: centre of its top on the floor plan. size: (x, y) extent of the top, m.
     height: of the top above the floor, m. sides: the directions, as angles in the surface's own
     frame (rad), from which it can be approached; the first is preferred. over: what hangs over it
-    and is no surface itself.
+    and is not a surface itself.
     """
 
     map_from_surface: Pose2D

@@ -38,9 +38,9 @@ def built_in(verb: str) -> Any:
 
 def _objection(name: str, plugin: Any) -> str | None:
     if not callable(plugin):
-        return f"{plugin!r} is no function and no typer app"
+        return f"{plugin!r} is neither a function nor a typer app"
     if not all(_WORD.fullmatch(word) for word in name.split(" ")) or name.count(" ") > 1:
-        return f"{name!r} is no verb, and no verb, one blank and a sub-verb"
+        return f"{name!r} is not a verb; write a verb, or a verb, one space and a sub-verb"
     verb, blank, _ = name.partition(" ")
     if blank and not _takes_subverbs(verb):
         return f"the verb {verb!r} takes no sub-verbs"

@@ -39,7 +39,7 @@ def preview(
     """
     check_writable(out)
     if out.suffix.lower() != ".png":
-        raise OutputError(f"{out} is no .png file; the picture is a PNG")
+        raise OutputError(f"{out} is not a .png file; the picture is a PNG")
     entry = WORLDS.load(world)
     if not isinstance(entry, PreviewableWorld):
         raise InputError(f"the world {world!r} cannot draw itself")

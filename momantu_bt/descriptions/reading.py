@@ -80,7 +80,7 @@ class Reading:
         """Read a text; `path` is for the messages.
 
         Raises:
-            DescriptionError: it is no YAML, is empty, has a key twice or nests too deep; of the
+            DescriptionError: it is not YAML, is empty, has a key twice or nests too deep; of the
                 class `error`.
         """
         self.path, self.text, self._error = path, text, error

@@ -10,7 +10,7 @@ class Disabled(TreeNode):
     """Always SKIPPED, and never started; what is below it in the file is not built."""
 
     def execute(self) -> Status:
-        """SKIPPED, which is no run."""
+        """SKIPPED; this does not count as a run."""
         status = super().execute()
         self.runs = 0
         return status

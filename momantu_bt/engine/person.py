@@ -31,10 +31,10 @@ class Question:
         return near[0] if len(near) == 1 else None
 
     def complaint(self, said: str) -> str:
-        """Why something said is no answer."""
+        """Why something said is not an answer."""
         if not self.choices:
             return "an answer is needed"
-        return f"{said.strip()!r} is none of: {', '.join(self.choices)}"
+        return f"{said.strip()!r} is not one of: {', '.join(self.choices)}"
 
 
 class Interrupted(Exception):
@@ -47,7 +47,7 @@ class Person(Protocol):
     def ask(self, question: Question, complaint: str) -> str | None:
         """What the person says, or None when nobody answers.
 
-        complaint: why what was said before is no answer, empty at first.
+        complaint: why the previous answer was refused, empty at first.
 
         Raises:
             Interrupted: instead of answering, the person ended the run.

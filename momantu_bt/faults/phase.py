@@ -52,7 +52,7 @@ def parse_phase(text: str) -> Phase:
     after = names.startswith(_AFTER)
     parts = tuple(part.strip() for part in names.removeprefix(_AFTER).split("/"))
     if not all(parts):
-        raise ValueError(f"{text!r} is no phase; expected {FORMS}")
+        raise ValueError(f"{text!r} is not a phase; expected {FORMS}")
     return Phase(parts, after, _counted(count), later)
 
 
@@ -65,7 +65,7 @@ def _counted(text: str | None) -> int:
 
 
 def _seconds(text: str) -> float | None:
-    """A time of 0 s or more; None when it is none."""
+    """A time of 0 s or more; None when it is not a time."""
     try:
         found = in_unit(text, "s")
     except UnitError as error:

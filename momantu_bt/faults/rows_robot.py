@@ -168,7 +168,7 @@ ODOMETRY = (
     _kind(
         "odometry.bias",
         "Odometry turns by itself while the base moves.",
-        number("rate", 0.05, "rad/s", "of the turn that is none", -1.0, 1.0),
+        number("rate", 0.05, "rad/s", "of the false turn", -1.0, 1.0),
         lasting(20.0),
         begins=DRIVING,
         notice=30.0,

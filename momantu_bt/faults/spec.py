@@ -24,7 +24,7 @@ _SIGN = re.compile(r"[@:]")
 
 
 class FaultSyntaxError(FaultError):
-    """A text that is no fault; the message shows it with a caret under what is wrong.
+    """A text is not a fault; the message shows it with a caret under what is wrong.
 
     begin, end: the wrong part of the text. reason: why, and what would be valid.
     """
@@ -42,7 +42,7 @@ def parse_fault(text: str) -> Fault:
     """A fault as it is written, its defaults filled in.
 
     Raises:
-        FaultSyntaxError: it is none; the message shows where it is wrong and what is valid.
+        FaultSyntaxError: it is not a fault; the message shows where it is wrong and what is valid.
     """
     sign = _SIGN.search(text)
     end = len(text) if sign is None else sign.start()

@@ -79,7 +79,7 @@ def tree_beside(path: Path) -> Path:
     """The tree file that a file of faults belongs to.
 
     Raises:
-        TreeNotFound: there is none.
+        TreeNotFound: there is no such tree.
     """
     stem = path.name.removesuffix(FAULTS_SUFFIX)
     beside = [path.with_name(f"{stem}{suffix}") for suffix in SUFFIXES]

@@ -132,7 +132,7 @@ def _read_yaml(path: Path) -> dict[str, Any]:
         raise MapError(f"{path} is not YAML: {error}") from None
     if not isinstance(entry, dict) or "image" not in entry:
         raise MapError(
-            f"{path} is no map_server file; expected keys image, resolution, origin, negate, "
+            f"{path} is not a map_server file; expected keys image, resolution, origin, negate, "
             "occupied_thresh, free_thresh"
         )
     return entry

@@ -66,7 +66,7 @@ class PathLongerOnApproach(Decorator):
 
 
 def length(path: Sequence[Any]) -> float:
-    """The length of a path of poses, m; Failure WRONG_TYPE when they are none."""
+    """The length of a path of poses, m; Failure WRONG_TYPE when they are not poses."""
     points = [_point(pose) for pose in path]
     return math.fsum(math.dist(a, b) for a, b in itertools.pairwise(points))
 

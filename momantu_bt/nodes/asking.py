@@ -30,7 +30,7 @@ def _wrong_default(node: Node) -> Objection | None:
     if not isinstance(known, list) or not known or default.value in [*known, None]:
         return None
     hint = valid_names(str(default.value), map(str, known), "choices")
-    return Objection("default", f"{default.value!r} is none of the choices", hint)
+    return Objection("default", f"{default.value!r} is not among the choices", hint)
 
 
 class _Asking(TreeNode):

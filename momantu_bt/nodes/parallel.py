@@ -3,7 +3,7 @@
 Parallel ends as soon as `success_count` children have succeeded, or `failure_count` have failed,
 or success has become impossible; what still runs is halted. ParallelAll lets all of them end,
 then fails when `max_failures` or more have failed. A count of -1 means all of them, -2 all but
-one. SKIPPED when all children were skipped; where all must succeed a skipped one is no obstacle.
+one. SKIPPED when all children were skipped; where all must succeed, a skipped one does not count.
 """
 
 from __future__ import annotations

@@ -131,7 +131,7 @@ class Switch6(Switch):
 def is_case(value: Any, case: Any) -> bool:
     """Whether a value is the one that a case names: equal as it is, as text or as a number.
 
-    A text that reads as a number is one; numbers are equal within `EPSILON`; `true` is no number.
+    A text that reads as a number is one. Numbers are equal within `EPSILON`; `true` is not one.
     """
     value, case = (_bare(value), _bare(case))
     if type(value) is type(case) and value == case:

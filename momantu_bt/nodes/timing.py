@@ -29,7 +29,7 @@ def seconds(inputs: Inputs) -> float:
 class Timeout(Decorator):
     """Halts a child that runs too long and fails with TIMEOUT; what was running is its cause.
 
-    The time runs from this node's start; 0 or less is no limit. Otherwise the child's status.
+    The time runs from this node's start; 0 or less means no limit. Otherwise the child's status.
     """
 
     spec = decorator(

@@ -20,20 +20,20 @@ def load_robot(name: str) -> RobotDescription:
     """The robot of a name, or of a path.
 
     Raises:
-        PluginError: there is none, with the nearest ones.
+        PluginError: no robot has this name; the message names the nearest ones.
         RobotFileError: its file is wrong.
     """
     return ROBOTS.load(name)()
 
 
 def _objection(name: str, plugin: Any) -> str | None:
-    return None if callable(plugin) else f"{plugin!r} is no function that gives a description"
+    return None if callable(plugin) else f"{plugin!r} is not a function that gives a description"
 
 
 def _read(path: Path) -> Describe:
     if path.suffix in GEOMETRY:
         setup = f"momantu-bt robots setup {path}"
-        raise PluginError(f"{path} is no robot file, but a URDF; `{setup}` makes one of it")
+        raise PluginError(f"{path} is not a robot file, but a URDF; `{setup}` makes one of it")
     return lambda: read_robot(path)
 
 

@@ -18,7 +18,7 @@ class Auditor:
     """Hears of each skill that ends, asks it what it claims, and the world whether that is so.
 
     It listens to `context.skill_ended`. Nothing in the run depends on it: what goes wrong here is
-    remarked on, and counts as no claim. A world that is no `Judge` leaves everything unjudged.
+    remarked on, and does not count as a claim. Without a `Judge`, nothing is judged.
     """
 
     def __init__(self, context: RunContext, world: World | None) -> None:

@@ -31,5 +31,5 @@ def handler_codes(text: str, place: Place, problems: Problems) -> tuple[str, ...
     wrong = dict.fromkeys(code for code in codes if not _HANDLER_CODE.fullmatch(code))
     for code in wrong:
         hint = "codes are upper-case words, `A | B` several, `any` the rest"
-        problems.error("bad-code", place, f"{code!r} is no failure code", hint)
+        problems.error("bad-code", place, f"{code!r} is not a failure code", hint)
     return tuple(code for code in codes if code not in wrong)

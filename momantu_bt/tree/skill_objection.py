@@ -21,7 +21,7 @@ _NAME = re.compile(r"[a-z][a-z0-9_]*")
 def bad_skill_name(name: str) -> str | None:
     """Why no skill can be called so; None when one can."""
     if not _NAME.fullmatch(name):
-        return f"{name!r} is no name for a skill: lower-case letters, digits and underscores"
+        return f"{name!r} is not a name for a skill: lower-case letters, digits and underscores"
     if name in SPELLED or name in NODES:
         return f"{name!r} is a node of the language; give the entry point another name"
     if name in MODIFIERS:
@@ -61,16 +61,16 @@ def _port(kind: type[Skill], port: Port) -> str | None:
     if not isinstance(port.doc, str) or not port.doc.strip():
         return f"{said} has no doc: write {'In' if port.direction == 'in' else 'Out'}(doc=…)"
     if port.type is None or not is_type(port.type):
-        return f"{said} has no type: {port.type!r} is none"
+        return f"{said} has no type: {port.type!r} is not a type"
     return None
 
 
 def _failures(kind: type[Skill]) -> str | None:
     if not isinstance(kind.failures, Mapping):
-        return f"{kind.__name__}.failures is no mapping of codes to sentences"
+        return f"{kind.__name__}.failures is not a mapping of codes to sentences"
     for code, sentence in kind.failures.items():
         if not isinstance(code, str) or not CODE.fullmatch(code):
-            return f"{kind.__name__}.failures: {code!r} is no code: UPPER_CASE words"
+            return f"{kind.__name__}.failures: {code!r} is not a code: UPPER_CASE words"
         if not isinstance(sentence, str) or not sentence.strip():
             return f"{kind.__name__}.failures: no sentence explains {code}"
     return None
@@ -78,7 +78,7 @@ def _failures(kind: type[Skill]) -> str | None:
 
 def _uses(kind: type[Skill]) -> str | None:
     named = isinstance(kind.uses, set | frozenset) and all(isinstance(u, str) for u in kind.uses)
-    return None if named else f"{kind.__name__}.uses is no set of actuators' names"
+    return None if named else f"{kind.__name__}.uses is not a set of actuators' names"
 
 
 def _activities(kind: type[Skill]) -> str | None:

@@ -42,7 +42,7 @@ def convert(value: Any, port: Port) -> Any:
 
 
 def _check_bounds(value: Any, found: Any, port: Port) -> None:
-    """Each number of a list by itself; what is no number has no bounds."""
+    """Each number of a list by itself; an item that is not a number has no bounds."""
     for number in found if isinstance(found, tuple) else (found,):
         if isinstance(number, int | float) and not port.allows(number):
             said = value if isinstance(value, str) else shown(number)

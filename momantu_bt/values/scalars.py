@@ -103,5 +103,5 @@ def to_text(value: Any, type_: type[str]) -> Any:
         raise ConversionError(f"{shown(value)} is not a failure code, such as NOT_FOUND")
     if isinstance(value, bool | int | float):
         said = in_words(value)
-        raise ConversionError(f'{said} is no text; write "{said}" in quotes if it is meant as one')
+        raise ConversionError(f'{said} is not a text; write "{said}" in quotes if you mean a text')
     raise unfit(value, type_, None)

@@ -98,11 +98,11 @@ BROKEN = {
     "Good.angle has no doc": GOOD.replace('doc="how far"', 'doc=" "'),
     "Good.angle has no type": GOOD.replace("angle: float", "angle"),
     "its type must be imported at run time": GOOD.replace("angle: float", 'angle: "Angle"'),
-    "3 is none": GOOD.replace("angle: float", "angle: 3"),
+    "3 is not a type": GOOD.replace("angle: float", "angle: 3"),
     "not UPPER_CASE words": GOOD.replace("TOO_FAR", "too far"),
     "no sentence explains TOO_FAR": GOOD.replace("it does not go that far", ""),
-    "no mapping of codes": GOOD.replace('{"TOO_FAR": "it does not go that far"}', "set()"),
-    "uses is no set": GOOD.replace("    failures", '    uses = "base"\n    failures'),
+    "not a mapping of codes": GOOD.replace('{"TOO_FAR": "it does not go that far"}', "set()"),
+    "uses is not a set": GOOD.replace("    failures", '    uses = "base"\n    failures'),
     "has no run": GOOD.replace("def run", "def walk"),
 }
 """Part of the reason, and a module `Good` of which is broken in that way."""
@@ -124,7 +124,7 @@ def test_a_broken_skill_is_named_with_the_reason(
     ("group", "value", "reason"),
     [
         (SERVICES, "momantu_bt.skill:Skill", "not a subclass of momantu_bt.Service"),
-        (ROBOTS, "momantu_bt.skill:NAMES", "no function"),
+        (ROBOTS, "momantu_bt.skill:NAMES", "not a function"),
         (WORLDS, "momantu_bt.skill:Skill", "has no name and no default_robot and no site"),
     ],
 )

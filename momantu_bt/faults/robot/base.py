@@ -23,7 +23,7 @@ class Slow(GoalLayer):
         return base_of(self.description)
 
     def changed(self, goal: ActuatorGoal) -> ActuatorGoal:
-        """The slower goal; what is no speed is left for the driver to refuse."""
+        """The slower goal; the driver refuses a goal that is not a speed."""
         if not isinstance(goal, BaseVelocity):
             return goal
         factor = self.number("factor")
@@ -38,7 +38,7 @@ class Offset(GoalLayer):
         return base_of(self.description)
 
     def changed(self, goal: ActuatorGoal) -> ActuatorGoal:
-        """The goal with the turn on top; what is no speed is left for the driver to refuse."""
+        """The goal with the turn added; the driver refuses a goal that is not a speed."""
         if not isinstance(goal, BaseVelocity):
             return goal
         limit = max(self.description.base.angular, abs(goal.angular))

@@ -83,7 +83,7 @@ class Slip(OdometryLayer):
 
 
 class Bias(OdometryLayer):
-    """`odometry.bias`: a turn that is none is counted while the base moves."""
+    """`odometry.bias`: while the base moves, a turn is counted that does not happen."""
 
     def moved(self, moved: Pose2D, seconds: float, moving: bool) -> Pose2D:
         """Turned by the rate."""

@@ -1,4 +1,4 @@
-"""Words of the language that are no node's: subtrees, conditions, keys beside a node."""
+"""Words of the language that do not belong to a node: subtrees, conditions, keys beside a node."""
 
 from __future__ import annotations
 

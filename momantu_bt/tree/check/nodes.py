@@ -218,7 +218,7 @@ def _check_port(context: Context, node: Node, name: str, signature: Signature) -
     elif isinstance(value, Literal):
         check_literal(context, value, place, port)
     elif isinstance(value, Template) and not assignable(str, port.type):
-        message = f"{name!r} of {signature.said} is no text: {label(port.type)}"
+        message = f"{name!r} of {signature.said} is not a text: {label(port.type)}"
         context.problems.error("wrong-type", place, message, "write $key alone")
 
 
@@ -251,7 +251,7 @@ def check_literal(context: Context, value: Literal, place: Place, port: Port) ->
         return
     if port.type is CodeText and not CODE.fullmatch(found):
         hint = "upper-case words joined by underscores, such as NOT_FOUND"
-        context.problems.error("bad-code", place, f"{found!r} is no failure code", hint)
+        context.problems.error("bad-code", place, f"{found!r} is not a failure code", hint)
     if port.names is not None and isinstance(found, str):
         check_name(context, found, place, port.names)
 

@@ -69,7 +69,7 @@ class Given(Mapping[str, Any]):
         """Settings `key=value`, each as `setting` reads it.
 
         Raises:
-            ValueError: one is none; the message names it.
+            ValueError: one is not KEY=VALUE; the message names it.
         """
         self.source[SET] = "\n".join(" ".join(lines_of(text)) for text in texts)
         for number, text in enumerate(texts, 1):
@@ -89,14 +89,14 @@ def setting(text: str) -> tuple[str, Any]:
     """A key and its value, raw as in a file: `height=66 mm` gives `("height", "66 mm")`.
 
     Raises:
-        ValueError: there is no `=`, the key is no key, or the value is not YAML.
+        ValueError: there is no `=`, the key is not a key, or the value is not YAML.
     """
     key, equals, value = text.partition("=")
     key = key.strip()
     if not equals:
         raise ValueError("expected key=value, such as from=table_b")
     if not KEY.fullmatch(key):
-        raise ValueError(f"{key!r} is no key; a key is a word such as tag_id")
+        raise ValueError(f"{key!r} is not a key; a key is a word such as tag_id")
     try:
         return key, plain_value(compose(value.strip() or '""', SET))
     except YamlSyntaxError as error:

@@ -69,7 +69,7 @@ class Unary:
     operand: Expression
 
     def evaluate(self, board: Board) -> Any:
-        """The result; ScriptError when the operand is no number."""
+        """The result; ScriptError when the operand is not a number."""
         value = _number(self.operand.evaluate(board), self.operator)
         if self.operator == "!":
             return not value

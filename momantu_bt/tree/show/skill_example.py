@@ -67,7 +67,7 @@ def yaml_example(name: str, skill: type[Skill]) -> str:
 
 
 def xml_example(name: str, skill: type[Skill]) -> str:
-    """The same for BehaviorTree.CPP: `{key}` is a key; what is no plain text is YAML, prefixed."""
+    """The same in XML: `{key}` is a key, plain text is text, the rest is prefixed YAML."""
     attributes = [
         port_attribute(port, _in_model(value), skill.ports[port].type).lstrip()
         for port, value in example_ports(skill).items()

@@ -182,7 +182,7 @@ def _is_consistent(rule: Rule, problems: Problems) -> bool:
         problems.error("wrong-value", rule.place_of(key), message, hint)
     if not CODE.fullmatch(rule.code):
         hint = "upper-case words joined by underscores, such as NOT_FOUND"
-        message = f"{rule.code!r} is no failure code"
+        message = f"{rule.code!r} is not a failure code"
         problems.error("bad-code", rule.place_of("code"), message, hint)
         return False
     return not said

@@ -25,7 +25,7 @@ TALL = 0.3
 """m above a surface up to which things stand on it that the hand could knock over."""
 BESIDE = 0.15
 """m along the floor to what the map knows within which the hand may meet it: half a hand's width,
-and what furniture stands beside its place. How high it is no map tells; high above a surface, so
+and what furniture stands beside its place. No map tells how high it is; high above a surface, so
 far within its edges, the hand meets nothing, but a wall may stand at an edge."""
 BEHIND = (0.0, 0.08)
 """m behind the place between the pads: the points of the hand that are asked about."""

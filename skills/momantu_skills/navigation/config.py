@@ -59,7 +59,7 @@ class NavigationConfig:
     nearness. near_speed: speed allowed where only `margin` is left; full speed at `far_clearance`.
     laser_reach, depth_reach: how far hits are kept. known_reach: hits this near to the map's own
     obstacles are the map's. depth_every: metres of driving between two looks at the depth picture.
-    lowest_obstacle: height above the floor that stands in the base's way and is no floor; all
+    lowest_obstacle: height above the floor of what counts as an obstacle and not as floor; all
     between it and the robot's own height does.
     patience: time without getting nearer before recovery. blocked_patience: time that something
     may stand in the way. attempts: recoveries and approaches before giving up.

@@ -119,10 +119,10 @@ def test_help_imports_none_of_them_and_a_broken_one_is_told(bring: Bring, capsys
 @pytest.mark.parametrize(
     ("name", "attribute", "words"),
     [
-        ("worlds greet twice", "greet", "no verb"),
-        ("worlds  greet", "greet", "no verb"),
+        ("worlds greet twice", "greet", "not a verb"),
+        ("worlds  greet", "greet", "not a verb"),
         ("run greet", "greet", "'run' takes no sub-verbs"),
-        ("worlds greet", "__doc__", "no function"),
+        ("worlds greet", "__doc__", "neither a function"),
     ],
 )
 def test_what_can_be_no_sub_verb(bring: Bring, name: str, attribute: str, words: str) -> None:

@@ -90,7 +90,7 @@ def test_a_person_answers_and_is_asked_again(typist, tmp_path, quiet):
     report = tmp_path / "report.json"
     there = typist(QUESTIONS, "--report", report, *quiet)
     there.wait_for("? Which table?  (table_a, table_b): ").type("floor")
-    there.wait_for("'floor' is none of: table_a, table_b").type("table_b")
+    there.wait_for("'floor' is not one of: table_a, table_b").type("table_b")
     there.wait_for("? Really?  (yes, no; Enter for yes): ").type("")
     assert there.end() == 0
     assert "tree succeeded after 0.2 s simulated" in there.seen.replace("\r\n", " ")

@@ -61,7 +61,7 @@ def test_a_default_that_comes_by_wire_is_checked_when_it_comes(run_yaml):
     text = "values: {d: floor}\n" + tree("$d")
     failure = asked(run_yaml, text, "table_a", True).failure
     assert failure.code == "WRONG_TYPE"
-    assert "none of: table_a, table_b" in failure.message
+    assert "not one of: table_a, table_b" in failure.message
 
 
 def test_a_question_takes_no_simulated_time_and_answers_are_in_the_fingerprint(run_yaml):

@@ -162,7 +162,7 @@ def test_a_default_that_is_no_choice(fine: Fine, expect: Expect) -> None:
     )
     body += "    - {condition: $x == 'a'}\n"
     fine(body % "a")
-    expect("wrong-value", body % "«c»", message="none of the choices", hint="a, b")
+    expect("wrong-value", body % "«c»", message="not among the choices", hint="a, b")
 
 
 def test_a_bad_code(expect: Expect) -> None:
@@ -172,7 +172,7 @@ def test_a_bad_code(expect: Expect) -> None:
 def test_text_for_a_number(expect: Expect) -> None:
     values = "values: {n: 3}\n"
     body = values + main('- navigate: {side: «"${n}"»}')
-    expect("wrong-type", body, message="is no text")
+    expect("wrong-type", body, message="is not a text")
 
 
 def test_again_outside_of_recover(expect: Expect) -> None:

@@ -176,5 +176,5 @@ def test_a_mesh_that_is_not_there_is_told_at_its_place(write):
     with pytest.raises(WorldFileError, match=r"world.yaml:\d+:\d+: there is no file 'none.glb'"):
         load_world(path)
     path = write(furniture={"thing": {"mesh": "chair.fbx", "at": [4, 3, 0]}})
-    with pytest.raises(WorldFileError, match=r"no mesh file; endings: .glb"):
+    with pytest.raises(WorldFileError, match=r"not a mesh file; endings: .glb"):
         load_world(path)

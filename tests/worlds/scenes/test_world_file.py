@@ -173,7 +173,7 @@ SECTIONS = [
     ("[{sphere: 10 cm}]", "[{sphere: 10 cm}], mass: 1", "a static body has no mass"),
     ("[{sphere: 10 cm}]", "[{sphere: 10 cm}], static: false", "needs a mass"),
     ("start: {", "light: {ambient: [1, 0]}\nstart: {", "the least, 1, is more than the most, 0"),
-    ("start: {", "light: {suns: [{direction: [0, 0, 0]}]}\nstart: {", "is no direction"),
+    ("start: {", "light: {suns: [{direction: [0, 0, 0]}]}\nstart: {", "is not a direction"),
     ("start: {", "floor: {center: [0, 0]}\nstart: {", "both center and size"),
     ("start: {", "floor: {center: [0, 0], size: [9000, 1]}\nstart: {", "at most 500 m wide"),
     ("start: {", "site: {resolution: 1 mm}\nstart: {", "greater than or equal to 0.01"),

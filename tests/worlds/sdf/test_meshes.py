@@ -151,7 +151,7 @@ def test_scenes_that_use_themselves_or_multiply_are_refused(tmp_path):
     [
         ("a.stl", b"solid nothing", "cannot be read|no triangles"),
         ("a.obj", b"v 0 0 0\n", "cannot be read|no triangles"),
-        ("a.obj", b"v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "no numbers"),
+        ("a.obj", b"v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "not numbers"),
         ("a.obj", b"v 1e9 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "farther than"),
         ("a.dae", b"<COLLADA>", "not XML"),
         ("a.dae", b"<COLLADA/>", "cannot be read|no triangles"),

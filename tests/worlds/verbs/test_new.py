@@ -49,8 +49,8 @@ def test_a_line_for_the_editor(tmp_path: Path) -> None:
         ("new.yaml", ["--size", "8"], "write 8x5"),
         ("new.yaml", ["--size", "3x3"], "between 6x4 and 40x40 m"),
         ("new.yaml", ["--size", "50x50"], "between 6x4 and 40x40 m"),
-        ("new.txt", [], "is no .yaml file"),
-        ("My-Flat.yaml", [], "is no name for a world"),
+        ("new.txt", [], "is not a .yaml file"),
+        ("My-Flat.yaml", [], "is not a name for a world"),
         ("none/new.yaml", [], "cannot be written"),
     ],
 )

@@ -54,7 +54,7 @@ def _depth(scenario: Scenario, first: str, second: str) -> float:
 
 
 def _overlap(scenario: Scenario, first: Body, second: Body, depth: float) -> FindingAtKeys:
-    """The blame is on what is loose, else on what is no wall, else on the later one."""
+    """The blame is on what is loose, else on the one that is not a wall, else on the later one."""
     blamed, other = (first, second) if second.category == WALL else (second, first)
     if blamed.static and not other.static:
         blamed, other = other, blamed

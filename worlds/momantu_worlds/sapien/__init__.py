@@ -15,6 +15,6 @@ except VulkanMissingError as error:
     raise WorldError(str(error)) from None
 
 with warnings.catch_warnings():
-    # it brings a loader of its own where the system has none, which is no reason to warn
+    # it brings a loader of its own where the system has none, which is not a reason to warn
     warnings.filterwarnings("ignore", message="Failed to find system libvulkan")
     import sapien as _sapien  # noqa: F401

@@ -35,7 +35,7 @@ def preview(
       momantu-bt robots preview robots/my_robot/robot.yaml -o my_robot.png
     """
     if out is not None and out.suffix.lower() != ".png":
-        raise OutputError(f"{out} is no .png file; the picture is a PNG")
+        raise OutputError(f"{out} is not a .png file; the picture is a PNG")
     if out is not None and not out.absolute().parent.is_dir():
         raise OutputError(f"there is no folder {out.absolute().parent}")
     description = load_robot(robot)

@@ -23,14 +23,14 @@ def two_rooms(file: Path, size: str, schema: Path | None) -> str:
     size: `WxD`, m. schema: what an editor completes it by.
 
     Raises:
-        CannotMake: the size is none, or too small or too great, or the file's name names no world.
+        CannotMake: the size is invalid, too small or too large, or the file's name is invalid.
     """
     width, depth = _extent(size)
     if file.suffix not in (".yaml", ".yml"):
-        raise CannotMake(f"{file} is no .yaml file; worlds are YAML")
+        raise CannotMake(f"{file} is not a .yaml file; worlds are YAML")
     if not _NAME.fullmatch(file.stem):
         raise CannotMake(
-            f"{file.stem!r} is no name for a world: lower-case letters, digits and underscores, "
+            f"{file.stem!r} is not a name for a world: lower-case letters, digits and underscores, "
             "a letter first"
         )
     head = "" if schema is None else f"# yaml-language-server: $schema={schema}\n"
@@ -40,7 +40,7 @@ def two_rooms(file: Path, size: str, schema: Path | None) -> str:
 def _extent(size: str) -> tuple[float, float]:
     match = _SIZE.fullmatch(size.strip())
     if match is None:
-        raise CannotMake(f"{size!r} is no size; write 8x5 for 8 m along x and 5 m along y")
+        raise CannotMake(f"{size!r} is not a size; write 8x5 for 8 m along x and 5 m along y")
     width, depth = float(match[1]), float(match[2])
     if not (LEAST[0] <= width <= MOST[0] and LEAST[1] <= depth <= MOST[1]):
         raise CannotMake(

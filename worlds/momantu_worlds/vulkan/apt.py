@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 APT_SECONDS = 900.0
-"""One apt command at most; a mirror that trickles for longer is no use."""
+"""One apt command at most; a mirror that takes longer is useless."""
 
 _KEYRINGS = "/usr/share/keyrings"
 _STATUS = "/var/lib/dpkg/status"
@@ -37,7 +37,7 @@ def this_system() -> System:
     """The distribution this machine runs.
 
     Raises:
-        AptError: it is none that gets its packages with apt.
+        AptError: it does not get its packages with apt.
     """
     missing = [tool for tool in _TOOLS if shutil.which(tool) is None]
     if missing:

@@ -39,7 +39,7 @@ def _key(document: Document, element: Element, problems: Problems) -> str | None
     key = element.get("key")
     if element.name != "Value" or element.space != OURS or key is None:
         hint = 'write <momantu:Value key="name">value</momantu:Value>'
-        message = f"<{element.said}> is no value of the board"
+        message = f"<{element.said}> is not a value of the board"
         problems.error("unknown-key", element.place, message, hint)
         return None
     if not KEY.fullmatch(key.value):

@@ -59,7 +59,7 @@ def _read_model(element: Element, models: Models, problems: Problems) -> None:
     identity = element.get("ID")
     if element.name not in (SUBTREE, *EXPLICIT) or element.space:
         hint = valid_names(element.name, (*EXPLICIT, SUBTREE), "models")
-        message = f"a model is no <{element.said}>"
+        message = f"a model is not <{element.said}>"
         problems.error("unknown-key", element.place, message, hint)
         return
     if identity is None or not identity.value:
@@ -121,7 +121,7 @@ def _port(element: Element, problems: Problems) -> PortDeclaration | None:
     name = element.get("name")
     if element.name not in PORTS or name is None:
         hint = 'write <input_port name="…"/>, or output_port or inout_port'
-        problems.error("unknown-key", element.place, f"<{element.said}> is no port", hint)
+        problems.error("unknown-key", element.place, f"<{element.said}> is not a port", hint)
         return None
     type_, default = element.get("type"), element.get("default")
     doc = element.get("doc", OURS)

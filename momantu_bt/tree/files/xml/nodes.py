@@ -22,7 +22,7 @@ from momantu_bt.tree.problems import Problems
 from momantu_bt.tree.registry import Registry
 
 PORT = "Port"
-"""Our element inside a node that is none itself: a port that no attribute can be named after."""
+"""Our element inside a node that is not a node itself: a port whose name no attribute can have."""
 ONCE = {"SubTreePlus": SUBTREE, "Subtree": SUBTREE, "SequenceStar": "SequenceWithMemory"}
 """Tags of BehaviorTree.CPP 3, and what they became."""
 
@@ -92,7 +92,7 @@ class NodeReader:
         if element.space == OURS:
             return self._own_type(element)
         if element.space:
-            message = f"<{element.name}> of the namespace {element.space!r} is no node"
+            message = f"<{element.name}> of the namespace {element.space!r} is not a node"
             self.problems.error("unknown-node", element.place, message)
             return None
         name = element.name

@@ -74,7 +74,7 @@ def _refuse_half_a_wire(text: str) -> None:
     slipped = _HALF_A_WIRE.fullmatch(text)
     if slipped is not None:
         key = next(filter(None, slipped.groups()))
-        raise WireError(f"{text!r} is no wire: did you mean {{{key}}}?")
+        raise WireError(f"{text!r} is not a wire: did you mean {{{key}}}?")
 
 
 def takes_text(type_: ValueType) -> bool:

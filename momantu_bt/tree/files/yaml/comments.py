@@ -148,7 +148,7 @@ class _Attacher:
             self.document.comments += (remark.text,)
 
     def is_deeper(self, remark: Remark) -> bool:
-        """Whether a comment is indented further than the next line that is none."""
+        """Whether a comment is indented further than the next other line."""
         following = bisect_right(self.written, remark.line)
         if following == len(self.written):
             return True

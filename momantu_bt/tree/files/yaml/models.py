@@ -39,7 +39,7 @@ def _model(raw: Raw, problems: Problems) -> NodeModel | None:
     listed = ports.items if isinstance(ports, Items) else []
     declared = tuple(port for each in listed if (port := _port(each, problems)) is not None)
     if not _is_right(editable, metadata) or not isinstance(ports, Items | None):
-        problems.error("wrong-value", raw.place, "this is no model of a node", _HINT)
+        problems.error("wrong-value", raw.place, "this is not a model of a node", _HINT)
         return None
     pairs = tuple((str(name), str(value)) for name, value in metadata)
     return NodeModel(_text(having[kind]), kind, declared, editable, pairs)

@@ -49,7 +49,7 @@ def _within(value: Scalar, error: ScriptSyntaxError) -> Place:
     place = value.place
     quotes = 1 if value.quoted else 0
     if place.length != len(value.text) + 2 * quotes:
-        return place  # several lines, or escapes: an offset in the text is none in the file
+        return place  # several lines, or escapes: an offset in the text is not one in the file
     offset = error.offset + quotes
     if offset >= place.length:
         return place

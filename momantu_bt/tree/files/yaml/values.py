@@ -92,7 +92,7 @@ def _parts(text: str, place: Place, problems: Problems) -> list[str | Reference]
             plain = ""
         else:
             hint = "write ${key} inside text, $$ for a dollar"
-            problems.error("dollar", place, "`$` here is no wire", hint)
+            problems.error("dollar", place, "`$` here is not a wire", hint)
             return None
     plain += text[position:]
     return [*parts, plain] if plain else parts

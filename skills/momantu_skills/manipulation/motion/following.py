@@ -26,7 +26,7 @@ ARRIVED = 0.02
 """rad or m from the end at which the joints have arrived."""
 STILL = 2e-3
 """rad or m a joint may move between two ticks and still stand: measurement noise and creep.
-Speeds are no good for this: a clamped joint may report one while its position stays."""
+Speeds do not work for this: a clamped joint may report one while its position stays."""
 CODE = "ARM_STUCK"
 
 Watch = Callable[[Robot], bool]

@@ -17,7 +17,7 @@ from momantu_skills.manipulation.model.arm_model import Group
 PER_WAYPOINT = 10
 """Grid points between two waypoints: fewer miss the spline's curvature at corners."""
 SHORTEST = 1e-4
-"""rad or m; a path shorter than this is no motion."""
+"""rad or m; a path shorter than this is not a motion."""
 
 logging.getLogger("toppra").setLevel(logging.ERROR)
 toppra.setup_logging("ERROR")

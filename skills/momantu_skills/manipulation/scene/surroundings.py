@@ -34,7 +34,7 @@ BOARD_DEPTH = 0.06
 BOARDS_APART = 0.2
 """m of height from which on two surfaces one above the other are two boards, not one badly seen."""
 LEAST_CELLS = 6
-"""Raster cells below which a patch of points is no surface."""
+"""Raster cells below which a patch of points is not a surface."""
 
 
 KEPT = 12

@@ -32,7 +32,7 @@ def score(shape: Shape, asked: ObjectClass, config: MatchConfig | None = None) -
     """0..1; 0 when a size is out of tolerance.
 
     1 minus half the root mean square of the sizes' differences in units of their tolerance, times
-    `category_weight` when the form is another. An unknown asked category is no objection.
+    `category_weight` when the form is another. An unknown asked category is fine.
     """
     config = config or MatchConfig()
     squares: list[float] = []

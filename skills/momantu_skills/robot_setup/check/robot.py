@@ -29,7 +29,7 @@ def check_robot(description: RobotDescription) -> list[Finding]:
     """All findings about a robot, each at its line of the robot file.
 
     Raises:
-        SetupError: the URDF is no mechanism, or has a collision shape without volume.
+        SetupError: the URDF is not a mechanism, or has a collision shape without volume.
     """
     body = Body(read_skeleton(read_urdf(description)), description)
     stand = find_stand(body)

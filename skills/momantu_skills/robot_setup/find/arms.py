@@ -8,7 +8,7 @@ from momantu_skills.robot_setup.find.fingers import Hand
 from momantu_skills.robot_setup.urdf.body import Body
 
 LEAST_JOINTS = 4
-"""A chain with fewer joints is no arm: it cannot bring a hand to a place and choose its way in."""
+"""A chain with fewer joints is not an arm: it cannot choose from where a hand gets to a place."""
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,7 @@ def _arms(body: Body, hands: tuple[Hand, ...], draft: _Draft) -> list[Limb]:
 
 
 def _bare_arm(body: Body, wheels: tuple[str, ...], draft: _Draft) -> list[Limb]:
-    """The longest chain that ends in no hand, where there is none that does."""
+    """The longest chain without a hand, if no chain ends in a hand."""
     ends = [name for name in body.hulls if name not in wheels]
     chains = {end: own_chain(body, end) for end in ends}
     tip = max(ends, key=lambda end: len(chains[end]), default=None)

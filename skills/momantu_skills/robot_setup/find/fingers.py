@@ -12,9 +12,9 @@ from momantu_skills.robot_setup.urdf.body import Body, placed
 from momantu_skills.robot_setup.urdf.skeleton import SetupJoint
 
 FINGER_JOINTS = 5
-"""A branch with more moving joints is no finger."""
+"""A branch with more moving joints is not a finger."""
 FINGER_REACH = 0.25
-"""m from its joint to its farthest point; what is longer is no finger."""
+"""m from its joint to its farthest point; what is longer is not a finger."""
 NEAR = 0.03
 """m; fingers that stay farther apart do not close."""
 TRAVEL = 0.008

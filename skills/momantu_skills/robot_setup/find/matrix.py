@@ -39,7 +39,7 @@ class CollisionMatrix:
     """Every pair of links that have shapes, in the order of the URDF.
 
     why: of each pair. share: of the random postures in which it met, 0 for adjacent pairs.
-    samples: how many postures were tried. overlapping: adjacent pairs that are no parent and child
+    samples: how many postures were tried. overlapping: adjacent pairs that are not parent and child
     and whose hulls meet; planning never checks them, and a simulator would push them apart.
     """
 

@@ -61,7 +61,7 @@ def propose(source: Path, *, samples: int = SAMPLES, seed: int = 0) -> Proposal:
     """Find out all there is about a URDF or xacro file.
 
     Raises:
-        SetupError: it is no URDF of one robot, or no mechanism.
+        SetupError: it is not a URDF of one robot, or no mechanism.
     """
     with tempfile.TemporaryDirectory() as folder:
         prepared = prepare(source, Path(folder))

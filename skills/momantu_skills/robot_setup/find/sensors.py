@@ -33,7 +33,7 @@ NAMES = (
 )
 """What links with a sensor are called, the surer name first."""
 NO_FRAME = re.compile(r"screw|mount|bracket|cable|laser_?pointer|projector|button|imu", re.I)
-"""Links that are called after a sensor and are none."""
+"""Links that are named after a sensor, but are not sensors."""
 PREFERRED = re.compile(r"rgb|color", re.IGNORECASE)
 """Of a camera's several optical frames, the one in which a registered picture is given."""
 
@@ -49,7 +49,7 @@ STEEP = (-math.pi / 2, math.pi / 2)
 NEAR, FAR = (0.0, 5.0), (0.6, 10_000.0)
 """m; at which lasers begin and end to measure."""
 SECTOR = 0.01
-"""rad; a laser that sweeps less is none."""
+"""rad; a sensor that sweeps less is not a laser."""
 
 
 @dataclass(frozen=True)
@@ -188,7 +188,7 @@ def _laser(element: etree._Element, link: str) -> FoundSensor:
 def _number(
     element: etree._Element, path: str, least: float = -math.inf, most: float = math.inf
 ) -> float | None:
-    """A number at a path; None where there is none, or one that no such sensor has."""
+    """A number at a path; None where there is none, or not a value that such a sensor can have."""
     found = element.find(path)
     try:
         value = float(found.text or "") if found is not None else math.nan

@@ -25,7 +25,7 @@ class Body:
     """
 
     def __init__(self, skeleton: Skeleton, source: UrdfSource) -> None:
-        """Raises SetupError: the URDF is no mechanism, or a shape has no volume."""
+        """Raises SetupError: the URDF is not a mechanism, or a shape has no volume."""
         self.skeleton, self.base_frame = skeleton, source.base_frame
         self.urdf = base_urdf(source)
         try:

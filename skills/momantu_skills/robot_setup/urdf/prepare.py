@@ -200,7 +200,7 @@ def _unusable(part: CollisionPart) -> str | None:
     try:
         points = part_points(part)
         if not np.isfinite(points).all():
-            return "has coordinates that are no numbers"
+            return "has coordinates that are not numbers"
         hull_points(points)
     except (QhullError, ValueError):
         return "has no volume"

@@ -165,7 +165,7 @@ def read_skeleton(root: etree._Element) -> Skeleton:
     """Links and joints of a parsed URDF.
 
     Raises:
-        SetupError: a number that is none, or no tree.
+        SetupError: an invalid number, or not a tree.
     """
     try:
         links = [_link(element) for element in root.findall("link")]

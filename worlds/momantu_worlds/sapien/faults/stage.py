@@ -70,7 +70,7 @@ class Stage:
             raise FaultError(f"the goal of {self.episode.name!r} names no marker")
         body = self.episode.body(self.goal.marker)
         if not any(isinstance(part.geometry, Picture) for part in body.parts):
-            raise FaultError(f"the goal's marker {body.name!r} is no picture that could be covered")
+            raise FaultError(f"the goal's marker {body.name!r} is not a picture to cover")
         return body
 
     @property

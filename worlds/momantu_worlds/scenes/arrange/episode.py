@@ -120,7 +120,7 @@ def table_bodies(world: WorldFile, layout: Layout) -> Iterator[Body]:
 
 
 def table_parts(world: WorldFile, table: Table, size: Size3) -> tuple[Part, ...]:
-    """The parts of a table that is no board, in its own frame."""
+    """The parts of a table that is not a board, in its own frame."""
     if table.mesh is None:
         return furniture(table.kind, size, table.color)
     use = table.mesh.model_copy(update={"size": size})

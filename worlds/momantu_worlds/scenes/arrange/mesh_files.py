@@ -179,7 +179,7 @@ def _pieces(scene: Any) -> list[MeshPiece]:
             continue
         vertices = np.asarray(mesh.vertices) @ matrix[:3, :3].T + matrix[:3, 3]
         if not np.isfinite(vertices).all():
-            raise ValueError("it has vertices that are no numbers")
+            raise ValueError("it has vertices that are not numbers")
         mirrored = np.linalg.det(matrix[:3, :3]) < 0
         triangles = np.asarray(faces[:, ::-1] if mirrored else faces, dtype=np.int32)
         color, uv, texture = _look(mesh)

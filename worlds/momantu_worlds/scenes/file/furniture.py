@@ -65,7 +65,9 @@ class MeshUse(Part):
     @model_validator(mode="after")
     def _known(self) -> Self:
         if not self.file.lower().endswith(MESH_ENDINGS):
-            raise ValueError(f"{self.file!r} is no mesh file; endings: {', '.join(MESH_ENDINGS)}")
+            raise ValueError(
+                f"{self.file!r} is not a mesh file; endings: {', '.join(MESH_ENDINGS)}"
+            )
         if self.size is not None and self.scale != 1.0:
             raise ValueError("write size or scale, not both")
         return self

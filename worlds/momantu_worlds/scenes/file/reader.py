@@ -27,7 +27,7 @@ def read_world(path: Path) -> WorldFile:
     """The world that a file describes.
 
     Raises:
-        WorldFileError: the file cannot be read, is no YAML, or describes no possible world; all
+        WorldFileError: the file cannot be read, is not YAML, or describes no possible world; all
             problems are listed with line and column.
     """
     return parse_world(world_text(path), path)

@@ -28,7 +28,7 @@ _Finite: TypeAlias = Annotated[float, Field(allow_inf_nan=False)]
 
 def _somewhere(value: tuple[float, float, float]) -> tuple[float, float, float]:
     if not any(value):
-        raise ValueError("[0, 0, 0] is no direction")
+        raise ValueError("[0, 0, 0] is not a direction")
     return value
 
 

@@ -21,7 +21,7 @@ ON_WALL = 0.05
 LEAF = 0.04
 """m; thickness of a closed door."""
 LINTEL = 0.02
-"""m; what is lower is no wall above a door."""
+"""m; what is lower is not a wall above a door."""
 
 
 @dataclass(frozen=True, slots=True)

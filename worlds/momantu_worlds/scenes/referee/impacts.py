@@ -26,7 +26,7 @@ class _Blow:
 class Blows:
     """One incident for each blow of a link on a thing: since when, and the largest force.
 
-    What two fingers squeeze between them is no blow.
+    What two fingers squeeze between them is not a blow.
     """
 
     def __init__(self, truth: GroundTruth, hand: Hand) -> None:

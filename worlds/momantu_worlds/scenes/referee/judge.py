@@ -105,7 +105,7 @@ class ClaimJudge:
                 return all(abs(self._joint_off(n, p)) <= tolerance for n, p in pairs)
 
     def _known(self, surface: str | None) -> bool | None:
-        """True, or None for a surface that is no body here."""
+        """True, or None for a surface that is not a body here."""
         return True if surface is None or surface in self._bodies else None
 
     # things

@@ -76,7 +76,7 @@ def _short(number: float) -> float:
 
 
 def known_parts(world: WorldFile) -> Iterator[Standing]:
-    """Every colliding part of what stands still and is no wall, where the file has it."""
+    """Every colliding part of what stands still and is not a wall, where the file has it."""
     for table in world.tables.values():
         if table.board_of is None and table.at is not None and table.size is not None:
             parts = table_parts(world, table, table.size)

@@ -141,7 +141,7 @@ class Shaping:
     def _pieces(
         self, geometry: Geometry, scale: Vector, shape: Shape, subject: str
     ) -> tuple[Piece, ...]:
-        """Triangles of what is no simple shape; none, and a deviation, when they cannot be had."""
+        """Triangles of a shape that is not simple; none, and a deviation, if there are none."""
         if not isinstance(geometry, MeshFile):
             return (_rounded(geometry, scale),)
         mesh = replace(geometry, scale=_product(geometry.scale, scale))
@@ -230,7 +230,7 @@ def _rounded(geometry: Geometry, scale: Vector) -> Piece:
         mesh = make.icosphere(subdivisions=3)
         mesh.apply_scale(geometry.radii)
     else:
-        raise TypeError(f"a {type(geometry).__name__} is no round shape")
+        raise TypeError(f"a {type(geometry).__name__} is not a round shape")
     return Piece(np.asarray(mesh.vertices) * scale, np.asarray(mesh.faces, dtype=np.int64))
 
 

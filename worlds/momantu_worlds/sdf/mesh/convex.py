@@ -1,7 +1,7 @@
 """Convex pieces as the collision shape of a mesh.
 
 A mesh falls apart into what hangs together; each part is its convex hull. A hull that would fill
-space in which the robot stands or puts things (a room, the space below a table) is no good: of
+space in which the robot stands or puts things (a room, the space below a table) is useless: of
 what stands still and is hollow, faces become thin plates instead.
 """
 

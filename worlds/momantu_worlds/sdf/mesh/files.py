@@ -110,7 +110,7 @@ def _piece(mesh: Any, matrix: Array) -> Piece:
     if np.linalg.det(matrix[:3, :3]) < 0.0:
         triangles = triangles[:, ::-1]
     if not np.isfinite(vertices).all():
-        raise ValueError("it has vertices that are no numbers")
+        raise ValueError("it has vertices that are not numbers")
     visual = mesh.visual
     material, uv = getattr(visual, "material", None), getattr(visual, "uv", None)
     picture = getattr(material, "baseColorTexture", None) or getattr(material, "image", None)

@@ -21,7 +21,7 @@ ONE_PLANE = 0.002
 MOST_PLATES = 600
 """Of one part; with more, its hull stands for it."""
 CELL = 0.02
-"""m; finer shapes than this are no matter for a plate."""
+"""m; finer shapes than this do not matter for a plate."""
 MOST_TRIANGLES = 4000
 """Of a part whose faces become plates; with more it is clustered first."""
 THIN = 1e-9

@@ -42,7 +42,7 @@ themselves.
 NOTHING_AT_ZERO = ("emissive", "specular", "velocity_decay", "wind")
 """What says nothing when its numbers are zero."""
 COLORS = 3
-"""Of a colour's numbers, the fourth is no colour."""
+"""Of a colour's numbers, the fourth is not a colour."""
 
 INSTEAD: Mapping[str, str] = {
     "actor": "left out; people who walk are the fault `person_walks`",

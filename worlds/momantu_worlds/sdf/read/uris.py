@@ -50,7 +50,7 @@ class Library:
         """The existing file or folder that a URI means, as written in `place`.
 
         Raises:
-            MissingFile: there is none.
+            MissingFile: there is no such file.
             SdfError: the URI is empty, or leads out of the folders.
         """
         if not uri:
@@ -124,7 +124,7 @@ def model_file(folder: Path, place: Place) -> Path:
     """The SDF file of a model's folder: the newest readable one that its model.config names.
 
     Raises:
-        MissingFile: there is none.
+        MissingFile: there is no such file.
         SdfError: model.config is broken, or leads out of the folder.
     """
     config = folder / "model.config"
@@ -153,11 +153,11 @@ def version_of(root: Element) -> tuple[int, int]:
     """The version of an SDF file.
 
     Raises:
-        SdfError: it is no SDF file, or of a version that is not read.
+        SdfError: it is not an SDF file, or of a version that is not read.
     """
     oldest, newest = (".".join(map(str, version)) for version in (OLDEST, NEWEST))
     if root.tag != "sdf":
-        hint = " (URDF is no SDF: `gz sdf -p FILE` converts it)" if root.tag == "robot" else ""
+        hint = " (URDF is not SDF: `gz sdf -p FILE` converts it)" if root.tag == "robot" else ""
         raise root.error(f"the file begins with <{root.tag}>; expected <sdf version='1.6'>{hint}")
     version = _version_of(root)
     if version < OLDEST or version > NEWEST:
