@@ -38,7 +38,11 @@ class Cell:
         self._journal = journal
 
     def write(self, value: Any) -> None:
-        """Replace the value by an immutable one (see `freeze`); MISSING clears it."""
+        """Replace the value, made immutable; MISSING clears it."""
+        self.store(freeze(value))
+
+    def store(self, value: Any) -> None:
+        """The same with a value that is immutable already."""
         self._journal.append((self, self.value))
         self.value = value
         self.writes += 1
@@ -79,7 +83,7 @@ class ReadOnlyCell(Cell):
     def writes(self, count: int) -> None:
         raise AttributeError("the engine counts the writes of a key that it publishes")
 
-    def write(self, value: Any) -> None:
+    def store(self, value: Any) -> None:
         """Never possible: raises Failure SCRIPT_ERROR."""
         self.value = value
 
@@ -136,7 +140,7 @@ class Board:
 
     def set(self, key: str, value: Any) -> None:
         """Write a key, the value made immutable; Failure SCRIPT_ERROR for one that is read-only."""
-        self.cell(key).write(freeze(value))
+        self.cell(key).write(value)
 
     def has(self, key: str) -> bool:
         """Whether a key has a value."""
@@ -178,4 +182,4 @@ def rollback(before: Iterable[tuple[Cell, Any]]) -> None:
     """Give cells back the values they had; MISSING clears them."""
     for cell, value in before:
         if cell.value is not value:
-            cell.write(value)
+            cell.store(value)

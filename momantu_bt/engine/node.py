@@ -16,7 +16,7 @@ from momantu_bt.engine.blackboard import Board, Cell
 from momantu_bt.engine.changes import Change
 from momantu_bt.engine.conditions import Conditions
 from momantu_bt.engine.context import RunContext
-from momantu_bt.engine.ports import Inputs, cell_of, inputs_of, outputs_of
+from momantu_bt.engine.ports import Inputs, Output, cell_of, inputs_of, outputs_of
 from momantu_bt.engine.role import Role
 from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Status
 from momantu_bt.errors import MomantuError
@@ -67,8 +67,8 @@ class Parts:
         defaults = {name: Reference(name) for name in keys}
         return inputs_of(self.ports, {**defaults, **self.model.ports}, self.board)
 
-    def outputs(self) -> dict[str, Cell]:
-        """The cells of its outputs that are wired, by port."""
+    def outputs(self) -> dict[str, Output]:
+        """Its outputs that are wired, by port."""
         return outputs_of(self.ports, self.model.ports, self.board)
 
     def key(self, port: str) -> Cell:

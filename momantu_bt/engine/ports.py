@@ -147,12 +147,24 @@ def _default_reader(port: Port) -> Reader:
     return lambda: default
 
 
+class Output:
+    """An output of a node that is wired. cell: what it is wired to."""
+
+    def __init__(self, port: Port, cell: Cell) -> None:
+        self.port = port
+        self.cell = cell
+
+    def write(self, value: Any) -> None:
+        """Write a value; Failure WRONG_TYPE where it is not of the port's type."""
+        self.cell.store(admit(value, self.port))
+
+
 def outputs_of(
     ports: Mapping[str, Port], values: Mapping[str, PortValue], board: Board
-) -> dict[str, Cell]:
-    """The cells that outputs are wired to, by port name."""
+) -> dict[str, Output]:
+    """The outputs that are wired, by port name."""
     return {
-        name: cell_of(value, board)
+        name: Output(ports[name], cell_of(value, board))
         for name, value in values.items()
         if name in ports and ports[name].direction == "out" and isinstance(value, Reference)
     }

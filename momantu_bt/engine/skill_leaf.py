@@ -102,12 +102,12 @@ class SkillLeaf(TreeNode):
             return
         values = session.outputs
         for name in names:
-            cell = self.outputs.get(name)
-            if cell is None or name not in values:
+            output = self.outputs.get(name)
+            if output is None or name not in values:
                 continue
             if self._written.get(name) is not values[name]:
                 self._written[name] = values[name]
-                cell.write(values[name])
+                output.cell.store(values[name])
 
     def _note_time(self, session: SkillSession) -> None:
         if session.took > SLOW_STEP:

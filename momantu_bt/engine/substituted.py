@@ -72,7 +72,7 @@ class Substituted(TreeNode):
             return self.fail(result.code, result.message or "a rule of the test says so")
         for name, value in result.outputs.items():
             if name in self.outputs:
-                self.outputs[name].write(value)
+                self.outputs[name].store(value)
         return SUCCESS
 
     def _itself(self) -> Status:

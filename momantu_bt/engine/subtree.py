@@ -44,7 +44,7 @@ class SubTree(Decorator):
         """Tick the tree inside."""
         if self.state is IDLE:
             for cell, read in self.given.values():
-                cell.write(read())
+                cell.store(read())
             values = {name: cell.value for name, (cell, _) in self.given.items()}
             values |= {name: cell.value for name, cell in self.wires.items()}
             self.label = label(self.model, values)

@@ -147,10 +147,10 @@ class GoalUpdater(Decorator):
 
     def step(self) -> Status:
         """Hand on what there is, and tick the child."""
-        for name, cell in self.outputs.items():
+        for name, output in self.outputs.items():
             value = peek(self.inputs, _SOURCES[name])
             if value is not None and value is not MISSING:
-                cell.write(value)
+                output.write(value)
         status = self.child.execute()
         if status is not RUNNING:
             self.child.reset()

@@ -44,7 +44,7 @@ def _spec(type_: str, yaml: str, item: type) -> NodeSpec:
 
 
 class QueueLoop(Decorator):
-    """value: the cell that holds the item of the round, None where nothing is wired."""
+    """value: the output for the item of the round, None where nothing is wired."""
 
     def __init__(self, parts: Parts) -> None:
         super().__init__(parts)

@@ -8,9 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from momantu_bt.engine.blackboard import Board, Cell, ReadOnlyCell, rollback
+from momantu_bt.engine.ports import outputs_of
 from momantu_bt.failure import Failure
 from momantu_bt.nodes.updates import WasEntryUpdated
-from momantu_bt.skill import MISSING
+from momantu_bt.skill import MISSING, Port
 from momantu_bt.tree.model import Reference
 
 VALUES = st.recursive(
@@ -36,6 +37,17 @@ def test_arrays_are_copied_and_read_only():
     assert board.get("key")[0] == 0.0
     with pytest.raises(ValueError, match="read-only"):
         board.get("key")[0] = 2.0
+
+
+def test_an_output_of_a_node_takes_its_type_alone_and_makes_it_immutable():
+    board = Board([])
+    ports = {"sizes": Port("sizes", "out", tuple[float, ...], "")}
+    outputs = outputs_of(ports, {"sizes": Reference("sizes")}, board)
+    outputs["sizes"].write([1, 2.5])
+    assert board.get("sizes") == (1.0, 2.5)
+    with pytest.raises(Failure, match="port sizes got 'large' of type str, expected tuple"):
+        outputs["sizes"].write("large")
+    assert board.get("sizes") == (1.0, 2.5)
 
 
 def test_a_subtree_sees_only_what_is_wired():
