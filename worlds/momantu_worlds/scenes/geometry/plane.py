@@ -34,7 +34,7 @@ class Rectangle:
 
     def polygon(self) -> shapely.Polygon:
         """As Shapely's polygon, for distances from other shapes."""
-        return shapely.Polygon(self.corners())
+        return shapely.polygons(self.corners())
 
     def distance(self, points: Array) -> Array:
         """Distance of points (..., 2) from the rectangle, 0 inside, m.
