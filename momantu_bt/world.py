@@ -17,7 +17,6 @@ from momantu_bt.geometry import Pose2D
 from momantu_bt.messages import ObjectClass
 
 if TYPE_CHECKING:
-    from momantu_bt.findings import Finding
     from momantu_bt.robot import Robot, RobotDescription
 
 TICK = 0.05
@@ -205,32 +204,6 @@ class AboutWorld(Protocol):
 
     def about(self) -> Mapping[str, Mapping[str, str]]:
         """Sections (tags, goal, what varies …), in each a line of words by what it is about."""
-        ...
-
-
-@runtime_checkable
-class CheckableWorld(Protocol):
-    """An entry of a world that can look for what makes it unusable; needs no simulator."""
-
-    def check(self, description: RobotDescription, seeds: Sequence[int]) -> Sequence[Finding]:
-        """All that is wrong for this robot in the episodes of these seeds.
-
-        Raises:
-            WorldError: the world cannot be read.
-        """
-        ...
-
-
-@runtime_checkable
-class PreviewableWorld(Protocol):
-    """An entry of a world that can draw itself."""
-
-    def preview(self, description: RobotDescription, seed: int, *, view: bool = True) -> bytes:
-        """A PNG of an episode: a plan, and beside it a view from above unless `view` is false.
-
-        Raises:
-            WorldError: the world cannot be read, or nothing renders the view.
-        """
         ...
 
 

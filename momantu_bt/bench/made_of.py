@@ -29,8 +29,9 @@ from momantu_bt.robots.plugins import ROBOTS
 from momantu_bt.tree.check.named_world import NO_WORLD, world_of
 from momantu_bt.tree.files.settings import Given
 from momantu_bt.tree.model import Document
-from momantu_bt.tree.plugins import SERVICES, SKILLS, WORLDS
+from momantu_bt.tree.plugins import SERVICES, SKILLS
 from momantu_bt.tree.registry import Registry
+from momantu_bt.world_plugins import WORLDS
 
 DIGITS = 16
 _CODE = "the code of "

@@ -56,8 +56,8 @@ def plan_of(tree: str, seeds: Sequence[int], how: HowToRun) -> tuple[Plan, Docum
     from momantu_bt.tree.check.named_world import world_of
     from momantu_bt.tree.files.lookup import find
     from momantu_bt.tree.load import load
-    from momantu_bt.tree.plugins import WORLDS
     from momantu_bt.tree.registry import Registry
+    from momantu_bt.world_plugins import WORLDS
 
     registry = Registry.installed()
     place = str(find(tree))

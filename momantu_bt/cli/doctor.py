@@ -18,7 +18,8 @@ from momantu_bt.errors import ExitCode
 from momantu_bt.faults.catalogue import FAULTS
 from momantu_bt.robots.plugins import ROBOTS
 from momantu_bt.tree.catalogue.nodes import PLUGINS as NODES
-from momantu_bt.tree.plugins import SERVICES, SKILLS, WORLDS
+from momantu_bt.tree.plugins import SERVICES, SKILLS
+from momantu_bt.world_plugins import WORLDS
 
 
 def doctor(

@@ -12,10 +12,10 @@ from momantu_bt.errors import ExitCode
 from momantu_bt.plugins import PluginError
 from momantu_bt.robots.plugins import load_robot
 from momantu_bt.skill import Skill
-from momantu_bt.tree.plugins import WORLDS
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.show.schema import tree_schema
 from momantu_bt.tree.show.schema_values import Names
+from momantu_bt.world_plugins import WORLDS
 
 
 def schema(

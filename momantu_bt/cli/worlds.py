@@ -7,13 +7,10 @@ from typing import Annotated
 
 import typer
 
-from momantu_bt.cli.help import help_of
 from momantu_bt.cli.listing import listing
-from momantu_bt.cli.worlds_check import check
-from momantu_bt.cli.worlds_preview import preview
 from momantu_bt.messages import plain
-from momantu_bt.tree.plugins import WORLDS
 from momantu_bt.world import AboutWorld, WorldEntry
+from momantu_bt.world_plugins import WORLDS
 
 worlds = typer.Typer(rich_markup_mode=None, invoke_without_command=True)
 
@@ -72,10 +69,6 @@ def show_one(
         typer.echo(f"\n{section}")
         for what, words in lines.items():
             typer.echo(f"  {what}: {words}")
-
-
-worlds.command("check", help=help_of(check))(check)
-worlds.command("preview", help=help_of(preview))(preview)
 
 
 def _about(entry: WorldEntry) -> str:

@@ -9,8 +9,9 @@ from typing import Any
 from momantu_bt.robot import RobotDescription
 from momantu_bt.robots.plugins import ROBOTS
 from momantu_bt.skill import Skill
-from momantu_bt.tree.plugins import SERVICES, SKILLS, WORLDS
+from momantu_bt.tree.plugins import SERVICES, SKILLS
 from momantu_bt.world import Site, WorldEntry
+from momantu_bt.world_plugins import WORLDS
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,8 +18,8 @@ from momantu_bt.skill import MISSING, Run, Skill
 from momantu_bt.testing import ScriptedWorld
 from momantu_bt.tree.files.lookup import bundled
 from momantu_bt.tree.load import load
-from momantu_bt.tree.plugins import WORLDS
 from momantu_bt.tree.registry import Registry
+from momantu_bt.world_plugins import WORLDS
 
 INSTALLED = Registry.installed()
 EXAMPLES = sorted(name for name in bundled() if name.startswith("examples/"))

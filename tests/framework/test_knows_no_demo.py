@@ -30,8 +30,9 @@ from momantu_bt.failure import ENGINE_CODES
 from momantu_bt.robots.plugins import ROBOTS
 from momantu_bt.tree.files.lookup import bundled
 from momantu_bt.tree.load import load
-from momantu_bt.tree.plugins import SERVICES, SKILLS, WORLDS
+from momantu_bt.tree.plugins import SERVICES, SKILLS
 from momantu_bt.tree.registry import Registry
+from momantu_bt.world_plugins import WORLDS
 
 FOLDER = Path(momantu_bt.__file__).parent
 OWN = {

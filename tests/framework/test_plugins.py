@@ -13,9 +13,10 @@ from momantu_bt.diagnosis.plugins import plugins as diagnosed
 from momantu_bt.plugins import Group, PluginClash, PluginError
 from momantu_bt.robots.plugins import ROBOTS
 from momantu_bt.tree.catalogue import MODIFIERS, NODES, SPELLED
-from momantu_bt.tree.plugins import SERVICES, SKILLS, WORLDS
+from momantu_bt.tree.plugins import SERVICES, SKILLS
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.skill_objection import bad_skill_name
+from momantu_bt.world_plugins import WORLDS
 
 GOOD = '''
 from momantu_bt import In, Robot, Run, Skill

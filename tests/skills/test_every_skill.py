@@ -7,8 +7,8 @@ import pytest
 
 from momantu_bt.robots.plugins import ROBOTS
 from momantu_bt.skill import Skill
-from momantu_bt.tree.plugins import WORLDS
 from momantu_bt.tree.registry import Registry
+from momantu_bt.world_plugins import WORLDS
 
 INSTALLED = Registry.installed()
 BUNDLED = {

@@ -11,8 +11,8 @@ from momantu_bt.bench.made_of import difference, made_of
 from momantu_bt.cli import main
 from momantu_bt.tree.check.named_world import world_of
 from momantu_bt.tree.load import load
-from momantu_bt.tree.plugins import WORLDS
 from momantu_bt.tree.registry import Registry
+from momantu_bt.world_plugins import WORLDS
 
 TREE = "momantu_bt: 1\n{world}trees:\n  Main:\n    - navigate: home\n"
 WORLD = {

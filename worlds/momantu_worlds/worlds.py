@@ -2,27 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from momantu_bt.errors import InputError
 from momantu_bt.lazy import lazily
 from momantu_bt.robot import laser_band
 from momantu_bt.world import Site
+from momantu_bt.world_plugins import WORLDS
 
 with lazily():
     from momantu_worlds import simulated_world
-    from momantu_worlds.checking import run
-    from momantu_worlds.preview import page
     from momantu_worlds.scenes import loading
     from momantu_worlds.scenes.file import summary
     from momantu_worlds.scenes.site import maps
 
 if TYPE_CHECKING:
-    from momantu_bt.findings import Finding
     from momantu_bt.robot import RobotDescription
     from momantu_bt.world import World
+    from momantu_worlds.scenes.geometry.bodies import Episode
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +61,7 @@ class WorldOfFile:
         Raises:
             WorldError: the world file is wrong, the robot cannot be simulated, or nothing renders.
         """
-        world, episode = loading.load_world(self.path), loading.draw_episode(self.path, seed)
+        world, episode = loading.load_world(self.path), self.draw(seed)
         site = maps.with_maps(episode.site, world, laser_band(description), description.height)
         episode = replace(episode, site=site)
         return simulated_world.SapienWorld(self.path, description, episode, seed, referee=referee)
@@ -70,20 +70,30 @@ class WorldOfFile:
         """Tags, loose things, what varies and the goal, in words."""
         return summary.about(self.path)
 
-    def check(self, description: RobotDescription, seeds: Sequence[int]) -> Sequence[Finding]:
-        """All that is wrong for this robot in the episodes of these seeds; raises WorldError."""
-        return run.check_world(
-            self.path, lambda seed: loading.draw_episode(self.path, seed), description, seeds
-        )
-
-    def preview(self, description: RobotDescription, seed: int, *, view: bool = True) -> bytes:
-        """A PNG of an episode; raises WorldError."""
-        return page.page(loading.draw_episode(self.path, seed), description, view=view)
+    def draw(self, seed: int) -> Episode:
+        """The episode of a seed; raises WorldError."""
+        return loading.draw_episode(self.path, seed)
 
 
 def world_from_file(path: Path) -> WorldOfFile:
     """The world that a file describes; nothing is read yet."""
     return WorldOfFile(path)
+
+
+def load_world_file(name: str) -> WorldOfFile:
+    """A world by its name or path, for commands that read its file.
+
+    Raises:
+        PluginError: there is no such world.
+        InputError: it is not described by a world file.
+    """
+    entry = WORLDS.load(name)
+    if not isinstance(entry, WorldOfFile):
+        raise InputError(
+            f"the world {name!r} is not described by a world file, which this command reads; "
+            "see whether its package has a command of its own: `momantu-bt worlds --help`"
+        )
+    return entry
 
 
 def _bundled(name: str) -> WorldOfFile:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from momantu_bt.tree.model import Document
-from momantu_bt.tree.plugins import WORLDS
+from momantu_bt.world_plugins import WORLDS
 
 NO_WORLD = "none"
 """As a world's name: run without one."""

@@ -9,8 +9,8 @@ from momantu_bt.plugins import PluginError
 from momantu_bt.robots.plugins import ROBOTS
 from momantu_bt.tree.check.named_world import world_of
 from momantu_bt.tree.check.signatures import Context
-from momantu_bt.tree.plugins import WORLDS
 from momantu_bt.world import WorldError
+from momantu_bt.world_plugins import WORLDS
 
 WORLD_OPTION, ROBOT_OPTION = "--world", "--robot"
 """What stands for a file's name in problems with what the command line names."""

@@ -12,8 +12,9 @@ from momantu_bt.cli import main
 from momantu_bt.plugins import PluginError
 from momantu_bt.robots.plugins import ROBOTS
 from momantu_bt.tree.files.lookup import bundled
-from momantu_bt.tree.plugins import SKILLS, WORLDS
+from momantu_bt.tree.plugins import SKILLS
 from momantu_bt.values.types import label
+from momantu_bt.world_plugins import WORLDS
 
 Out = pytest.CaptureFixture[str]
 TREE = "momantu_bt: 1\nvalues: {n: 66 mm}\ntrees:\n  Main: [{wait: 1 s, timeout: 3 s}]\n"

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from momantu_worlds.checking.run import check_world
 from momantu_worlds.robots import fetch
 from momantu_worlds.scenes.loading import load_world
 from momantu_worlds.worlds import world_from_file
@@ -31,7 +32,7 @@ def test_what_it_writes_is_a_world_of_that_size_and_name(
 def test_nothing_is_wrong_with_it(tmp_path: Path, size: str) -> None:
     file = tmp_path / "my_flat.yaml"
     assert main(["worlds", "new", str(file), "--size", size]) == 0
-    assert world_from_file(file).check(fetch(), range(4)) == []
+    assert check_world(file, world_from_file(file).draw, fetch(), range(4)) == []
 
 
 def test_a_line_for_the_editor(tmp_path: Path) -> None:

@@ -9,9 +9,13 @@ import typer
 
 from momantu_bt.errors import ExitCode, InputError
 from momantu_bt.formats.files import OutputError, check_writable, write_whole
+from momantu_bt.lazy import lazily
 from momantu_bt.robots.plugins import load_robot
-from momantu_bt.tree.plugins import WORLDS
-from momantu_bt.world import PreviewableWorld, WorldError
+from momantu_bt.world import WorldError
+from momantu_worlds.worlds import load_world_file
+
+with lazily():
+    from momantu_worlds.preview import page
 
 
 def preview(
@@ -40,14 +44,12 @@ def preview(
     check_writable(out)
     if out.suffix.lower() != ".png":
         raise OutputError(f"{out} is not a .png file; the picture is a PNG")
-    entry = WORLDS.load(world)
-    if not isinstance(entry, PreviewableWorld):
-        raise InputError(f"the world {world!r} cannot draw itself")
+    entry = load_world_file(world)
     try:
         entry.site()  # a file that is wrong is told before anything starts
         description = load_robot(robot or entry.default_robot)
     except WorldError as error:
         raise InputError(str(error)) from None
-    write_whole(out, entry.preview(description, seed, view=not plan))
+    write_whole(out, page.page(entry.draw(seed), description, view=not plan))
     typer.echo(f"{out}: {world}, seed {seed}")
     return ExitCode.SUCCESS

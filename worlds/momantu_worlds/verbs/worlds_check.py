@@ -10,9 +10,13 @@ import typer
 from momantu_bt.errors import ExitCode, InputError
 from momantu_bt.findings import findings_json, findings_text
 from momantu_bt.formats.seeds import SeedsError, parse_seeds
+from momantu_bt.lazy import lazily
 from momantu_bt.robots.plugins import load_robot
-from momantu_bt.tree.plugins import WORLDS
-from momantu_bt.world import CheckableWorld, WorldError
+from momantu_bt.world import WorldError
+from momantu_worlds.worlds import load_world_file
+
+with lazily():
+    from momantu_worlds.checking import run
 
 MOST_SEEDS = 1000
 """Episodes of one check; more of them find nothing new."""
@@ -43,11 +47,10 @@ def check(
     episodes = parse_seeds(seeds)
     if len(episodes) > MOST_SEEDS:
         raise SeedsError(f"--seeds {seeds} are more than {MOST_SEEDS} seeds")
-    entry = WORLDS.load(world)
-    if not isinstance(entry, CheckableWorld):
-        raise InputError(f"the world {world!r} cannot check itself")
+    entry = load_world_file(world)
     try:
-        findings = entry.check(load_robot(robot or entry.default_robot), episodes)
+        description = load_robot(robot or entry.default_robot)
+        findings = run.check_world(entry.path, entry.draw, description, episodes)
     except WorldError as error:
         raise InputError(str(error)) from None
     if as_json:
