@@ -7,21 +7,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar, TypeAlias
 
-from ruamel.yaml import YAML
-from ruamel.yaml.error import MarkedYAMLError, YAMLError
-from ruamel.yaml.nodes import MappingNode, Node, SequenceNode
-
 from momantu_bt.errors import MomantuError
 from momantu_bt.formats.places import KeyPath, Place, excerpt
 from momantu_bt.formats.problems import Problem
+from momantu_bt.formats.yaml.errors import YamlRules
+from momantu_bt.formats.yaml.reader import YamlSyntaxError, compose
+from momantu_bt.formats.yaml.values import Entries, Items, Raw, Scalar
 
 MOST_BYTES = 1_000_000
 """A description is written by hand; a longer one is a mistake, or an attack on the reader."""
-MOST_DEPTH = 20
-MOST_VALUES = 100_000
-"""Values after aliases are followed: a few lines of aliases of aliases stand for billions."""
 MOST_ERRORS = 30
-
 
 KeyMessage: TypeAlias = tuple[KeyPath, str]
 """Keys, and what is wrong there."""
@@ -71,10 +66,7 @@ def read_text(path: Path, error: type[DescriptionError]) -> str:
 
 
 class Reading:
-    """A file's values, and where they stood.
-
-    plain: mappings, lists and scalars. problems: what is wrong with the YAML itself.
-    """
+    """A file's values, and where they stood. plain: mappings, lists and scalars."""
 
     def __init__(self, path: Path, text: str, error: type[DescriptionError]) -> None:
         """Read a text; `path` is for the messages.
@@ -84,13 +76,12 @@ class Reading:
                 class `error`.
         """
         self.path, self.text, self._error = path, text, error
-        self._problems: list[KeyProblem] = []
-        self._places: dict[KeyPath, Node] = {}
-        self._keys: dict[KeyPath, Node] = {}
-        self._values = 0
-        self.plain: Any = self._plain(self._compose(), (), 0)
-        if self._problems:
-            raise error(path, text, self._problems)
+        self._values: dict[KeyPath, Place] = {}
+        self._keys: dict[KeyPath, Place] = {}
+        self._twice: list[KeyProblem] = []
+        self.plain: Any = self._plain(self._composed(), ())
+        if self._twice:
+            raise error(path, text, self._twice)
 
     def refuse(self, wrong: Iterable[KeyMessage]) -> None:
         """Raise a DescriptionError for what is wrong at these keys, if anything is."""
@@ -108,14 +99,11 @@ class Reading:
         key: the place of the last key itself.
         """
         while keys:
-            node = (self._keys if key else self._places).get(keys) or self._places.get(keys)
-            if node is not None:
-                return self._place(node)
+            place = (self._keys if key else self._values).get(keys) or self._values.get(keys)
+            if place is not None:
+                return place
             keys = keys[:-1]
         return Place(str(self.path))
-
-    def _place(self, node: Node) -> Place:
-        return Place(str(self.path), node.start_mark.line + 1, node.start_mark.column + 1)
 
     def value(self, keys: KeyPath) -> Any:
         """The plain value at some keys; KeyError or IndexError when there is none."""
@@ -124,72 +112,37 @@ class Reading:
             here = here[part]
         return here
 
-    def _compose(self) -> Node:
+    def _composed(self) -> Raw:
+        rules = YamlRules(
+            f"{self._error.what} file", most_bytes=MOST_BYTES, most_depth=20, most_values=100_000
+        )
         try:
-            root: Node | None = YAML(typ="safe", pure=True).compose(self.text)
-        except MarkedYAMLError as error:
-            mark = error.problem_mark or error.context_mark
-            at = (mark.line + 1, mark.column + 1) if mark else (1, 1)
-            message = f"this is not YAML: {error.problem or error.context}"
-            raise self._error(
-                self.path, self.text, [KeyProblem("", message, Place(str(self.path), *at))]
-            ) from None
-        except (YAMLError, RecursionError) as error:
-            message = f"this is not YAML: {str(error) or 'it nests too deep'}".splitlines()[0]
-            raise self._error(
-                self.path, self.text, [KeyProblem("", message, Place(str(self.path)))]
-            ) from None
-        if root is None:
-            message = f"the file is empty; expected a {self._error.what}"
-            raise self._error(
-                self.path, self.text, [KeyProblem("", message, Place(str(self.path)))]
-            )
-        return root
+            return compose(self.text, str(self.path), rules)
+        except YamlSyntaxError as error:
+            found = error.problem
+            problem = KeyProblem(found.code, found.message, found.place, found.hint)
+            raise self._error(self.path, self.text, [problem]) from None
 
-    def _plain(self, node: Node, place: KeyPath, depth: int) -> Any:
-        self._places.setdefault(place, node)
-        self._values += 1
-        if self._values > MOST_VALUES:
-            message = f"more than {MOST_VALUES} values, counted where aliases repeat them"
-            raise self._error(self.path, self.text, [KeyProblem("", message, self._place(node))])
-        if depth > MOST_DEPTH:
-            self._complain(node, f"more than {MOST_DEPTH} levels deep")
-            return None
-        if isinstance(node, MappingNode):
-            return self._mapping(node, place, depth)
-        if isinstance(node, SequenceNode):
-            return [self._plain(n, (*place, i), depth + 1) for i, n in enumerate(node.value)]
-        return self._scalar(node)
+    def _plain(self, raw: Raw, keys: KeyPath) -> Any:
+        # as deep as the file, whose depth has a bound
+        self._values.setdefault(keys, raw.place)
+        if isinstance(raw, Entries):
+            return self._mapping(raw, keys)
+        if isinstance(raw, Items):
+            return [self._plain(item, (*keys, i)) for i, item in enumerate(raw.items)]
+        return raw.value
 
-    def _mapping(self, node: MappingNode, place: KeyPath, depth: int) -> dict[str, Any]:
+    def _mapping(self, raw: Entries, keys: KeyPath) -> dict[str, Any]:
         found: dict[str, Any] = {}
-        for key_node, value_node in node.value:
-            key = str(key_node.value)
-            if key in found:
-                first = self._keys[(*place, key)].start_mark.line + 1
-                self._complain(key_node, f"{key!r} is here twice; first in line {first}")
+        for key, value in raw.entries:
+            here = (*keys, key.text)
+            if key.text in found:
+                message = f"{key.text!r} is here twice; first in line {self._keys[here].line}"
+                self._twice.append(KeyProblem("", message, key.place))
                 continue
-            self._keys[(*place, key)] = key_node
-            if value_node.start_mark.index == value_node.end_mark.index:
-                # what is not there stands where the next thing does: its key tells more
-                self._places[(*place, key)] = key_node
-            found[key] = self._plain(value_node, (*place, key), depth + 1)
+            self._keys[here] = key.place
+            if isinstance(value, Scalar) and value.text == "" and not value.quoted:
+                # what is not there has no place of its own: its key tells more
+                self._values[here] = key.place
+            found[key.text] = self._plain(value, here)
         return found
-
-    def _scalar(self, node: Node) -> Any:
-        tag = str(node.tag).rsplit(":", 1)[-1]
-        text = str(node.value)
-        try:
-            if tag == "int":
-                return int(text)
-            if tag == "float":
-                return float(text)
-        except ValueError:
-            self._complain(node, f"{text!r} is not a number that can be read; write it in decimals")
-            return None
-        if tag == "bool":
-            return text.lower() == "true"
-        return None if tag == "null" else text
-
-    def _complain(self, node: Node, message: str) -> None:
-        self._problems.append(KeyProblem("", message, self._place(node)))

@@ -23,11 +23,12 @@ from momantu_bt.faults.spec import FaultSyntaxError, parse_fault
 from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.places import Place
 from momantu_bt.formats.problems import errors
+from momantu_bt.formats.yaml.reader import YamlSyntaxError
+from momantu_bt.formats.yaml.values import Entries, Items, Raw, Scalar
 from momantu_bt.tree.files.lookup import FAULTS_SUFFIX, SUFFIXES, TreeNotFound, faults_file
+from momantu_bt.tree.files.port_values import drop_duplicates
+from momantu_bt.tree.files.syntax import compose
 from momantu_bt.tree.files.text import read_text
-from momantu_bt.tree.files.yaml.raw import Entries, Items, Raw, Scalar
-from momantu_bt.tree.files.yaml.source import YamlSyntaxError, compose
-from momantu_bt.tree.files.yaml.values import drop_duplicates
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.problems import Problems, TreeError
 from momantu_bt.tree.substitute.substitution import Substitution

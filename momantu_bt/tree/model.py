@@ -52,10 +52,6 @@ class Template:
 PortValue: TypeAlias = Literal | Reference | Template
 
 
-class Beside(str):
-    """A comment at the end of the line of what it belongs to; a plain text stands above it."""
-
-
 FIRST_INPUT = ""
 """Key of a port value written without a name (`dock: bay_a`); the checker names it."""
 

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping, Sequence
 
 from momantu_bt.errors import MomantuError
 from momantu_bt.formats.places import Place
 from momantu_bt.formats.problems import Problem, Severity, in_order, show
 
-NOT_TEXT = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-"""Control characters and the like, which stand in values alone: XML cannot hold them."""
 MOST_PROBLEMS = 500
 """Problems of one file that are kept."""
 

@@ -7,9 +7,10 @@ from typing import Any
 
 from momantu_bt.formats.places import Place, lines_of
 from momantu_bt.formats.problems import Problem
-from momantu_bt.tree.files.yaml.raw import Entries, plain_value
-from momantu_bt.tree.files.yaml.source import YamlSyntaxError, compose
-from momantu_bt.tree.files.yaml.values import KEY
+from momantu_bt.formats.yaml.reader import YamlSyntaxError
+from momantu_bt.formats.yaml.values import Entries, plain_value
+from momantu_bt.tree.files.port_values import KEY
+from momantu_bt.tree.files.syntax import compose
 from momantu_bt.tree.problems import TreeError
 
 SET = "--set"

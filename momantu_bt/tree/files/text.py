@@ -7,7 +7,7 @@ from pathlib import Path
 from momantu_bt.formats.places import Place
 from momantu_bt.formats.problems import Problem
 from momantu_bt.tree.files.lookup import TreeNotFound
-from momantu_bt.tree.files.yaml.source import MAX_BYTES
+from momantu_bt.tree.files.syntax import MAX_BYTES
 from momantu_bt.tree.problems import TreeError
 
 

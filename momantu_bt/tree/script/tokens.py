@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from momantu_bt.tree.problems import NOT_TEXT
+from momantu_bt.formats.text import NOT_TEXT
 
 MAX_LENGTH = 4000
 """Characters of one script; more than a person writes, less than hurts."""

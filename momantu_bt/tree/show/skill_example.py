@@ -7,8 +7,8 @@ from typing import Any
 from momantu_bt.messages import ObjectClass
 from momantu_bt.skill import Port, Skill
 from momantu_bt.tree import model
+from momantu_bt.tree.files.scalars import literal
 from momantu_bt.tree.files.xml.attributes import port_attribute
-from momantu_bt.tree.files.yaml.scalars import literal
 from momantu_bt.tree.model import PortValue
 from momantu_bt.values.kinds import (
     Choice,

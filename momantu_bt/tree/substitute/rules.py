@@ -17,10 +17,10 @@ from typing import Any, Literal
 from momantu_bt.failure import CODE, FAILED
 from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.places import Place
+from momantu_bt.formats.yaml.values import Entries, Items, Raw, Scalar, plain_value
 from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue.spec import by_name, input_port
-from momantu_bt.tree.files.yaml.raw import Entries, Items, Raw, Scalar, plain_value
-from momantu_bt.tree.files.yaml.values import drop_duplicates
+from momantu_bt.tree.files.port_values import drop_duplicates
 from momantu_bt.tree.problems import Problems
 from momantu_bt.values.convert import convert
 from momantu_bt.values.kinds import CodeText

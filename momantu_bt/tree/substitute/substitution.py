@@ -11,13 +11,14 @@ from typing import Any
 from momantu_bt.failure import ENGINE_CODES
 from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.problems import errors
+from momantu_bt.formats.yaml.reader import YamlSyntaxError
 from momantu_bt.tree.catalogue import NODES, SUBTREE
 from momantu_bt.tree.check.checker import ROBOT_KEY
 from momantu_bt.tree.check.keys.reads import references
 from momantu_bt.tree.check.named_world import world_of
 from momantu_bt.tree.check.signatures import Context
+from momantu_bt.tree.files.syntax import compose
 from momantu_bt.tree.files.text import read_text
-from momantu_bt.tree.files.yaml.source import YamlSyntaxError, compose
 from momantu_bt.tree.model import Document, Literal, Node, Reference, Scope
 from momantu_bt.tree.problems import Problems, TreeError
 from momantu_bt.tree.registry import Registry

@@ -47,7 +47,7 @@ def cart(text: str) -> Cart:
         ("wheels: [", "1:10", "not YAML"),
         ("", "1:1", "the file is empty"),
         ("spare: {radius: 1}\nspare: {radius: 1}", "2:1", "here twice; first in line 1"),
-        ("wheels: " + "[" * 30 + "]" * 30, "1:29", "levels deep"),
+        ("wheels: " + "[" * 30 + "]" * 30, "1:28", "levels deep"),
     ],
 )
 def test_a_mistake_is_told_at_its_place(text: str, place: str, words: str) -> None:

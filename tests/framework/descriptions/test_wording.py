@@ -68,7 +68,7 @@ MISTAKES = [
     ("count:", "1:1", "count: expected a whole number; found nothing"),
     ("loud: 7", "1:7", "loud: expected true or false; found 7"),
     ("weight: heavy", "1:9", "weight: expected a number; found 'heavy'"),
-    ("weight: .inf", "1:9", "'.inf' is not a number that can be read; write it in decimals"),
+    ("weight: .inf", "1:9", "weight: expected a number; found '.inf'"),
     ("name: 3", "1:7", "name: expected a text; found 3"),
     ("name: Big Bear", "1:7", "name: expected a name: lower-case letters"),
     ("note: ''", "1:7", "note: expected a text; found ''"),
@@ -90,7 +90,6 @@ MISTAKES = [
     ("shapes: [{kind: ball, size: 1, radius: 2}]", "1:23", "unknown key 'size' in shapes.0; keys"),
     ("- a", "1:1", "the description: expected a mapping with the keys name, note, count"),
     ("colr: red", "1:1", "unknown key 'colr' in the description; did you mean 'colour'? Keys"),
-    ("count: 0x1f", "1:8", "'0x1f' is not a number that can be read; write it in decimals"),
     (f"mood: {'m' * 99}", "1:7", f"'{'m' * 59}… is not possible here"),
 ]  # fmt: skip
 
@@ -153,13 +152,13 @@ def test_files_that_cannot_be_read_are_told(tmp_path: Path) -> None:
 def test_what_is_wrong_elsewhere_is_told_at_the_nearest_place() -> None:
     reading = Reading(FILE, "shape:\n  kind: ball\n", DescriptionError)
     assert reading.value(("shape", "kind")) == "ball"
-    assert reading.at(("shape", "kind", "no", "such")) == Place("thing.yaml", 2, 9)
-    assert reading.at(("shape", "kind"), key=True) == Place("thing.yaml", 2, 3)
+    assert reading.at(("shape", "kind", "no", "such")) == Place("thing.yaml", 2, 9, 4)
+    assert reading.at(("shape", "kind"), key=True) == Place("thing.yaml", 2, 3, 4)
     assert reading.at(("nothing",)) == Place("thing.yaml", 1, 1)
     reading.refuse([])
     with pytest.raises(DescriptionError) as told:
         reading.refuse([(("shape", "kind"), "too round"), (("shape",), "too small")])
     assert [(p.place, p.message, p.keys) for p in told.value.problems] == [
         (Place("thing.yaml", 2, 3), "too small", ("shape",)),
-        (Place("thing.yaml", 2, 9), "too round", ("shape", "kind")),
+        (Place("thing.yaml", 2, 9, 4), "too round", ("shape", "kind")),
     ]

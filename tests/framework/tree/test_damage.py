@@ -10,10 +10,11 @@ from hypothesis import strategies as st
 
 from momantu_bt.formats.places import lines_of
 from momantu_bt.formats.problems import Problem, show
+from momantu_bt.formats.yaml.reader import YamlSyntaxError
 from momantu_bt.tree.check.checker import check as check_document
 from momantu_bt.tree.files.settings import Given, setting
+from momantu_bt.tree.files.syntax import compose
 from momantu_bt.tree.files.yaml.format import read
-from momantu_bt.tree.files.yaml.source import YamlSyntaxError, compose
 from momantu_bt.tree.load import TreeError, TreeNotFound, load, read_values
 from momantu_bt.tree.model import Literal
 from momantu_bt.tree.registry import Registry

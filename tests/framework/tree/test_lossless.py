@@ -13,11 +13,11 @@ import momantu_bt
 from momantu_bt.record.report import Report
 from momantu_bt.tree.convert import meaning
 from momantu_bt.tree.files.lookup import bundled
+from momantu_bt.tree.files.syntax import compose_with_comments
 from momantu_bt.tree.files.xml import format as xml_format
 from momantu_bt.tree.files.xml import writer as xml_writer
 from momantu_bt.tree.files.yaml import format as yaml_format
 from momantu_bt.tree.files.yaml import writer as yaml_writer
-from momantu_bt.tree.files.yaml.source import compose_with_remarks
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.registry import Registry
 
@@ -69,8 +69,8 @@ def test_a_bundled_tree_survives_with_its_comments(path: Path) -> None:
     through = _through_xml(document)
     assert meaning(through) == meaning(document)
     written = yaml_writer.write(through)
-    texts = [remark.text for remark in compose_with_remarks(text, "t.yaml")[1]]
-    assert [remark.text for remark in compose_with_remarks(written, "t.yaml")[1]] == texts
+    texts = [remark.text for remark in compose_with_comments(text, "t.yaml")[1]]
+    assert [remark.text for remark in compose_with_comments(written, "t.yaml")[1]] == texts
     again, _ = yaml_format.read(written, "t.yaml")
     assert _commented(again) == _commented(document)
 

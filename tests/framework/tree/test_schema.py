@@ -8,13 +8,14 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from momantu_bt.formats.problems import Problem, errors
+from momantu_bt.formats.yaml.reader import YamlSyntaxError
+from momantu_bt.formats.yaml.values import plain_value
 from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue import MODIFIERS, SPELLED
 from momantu_bt.tree.check.checker import check as check_document
 from momantu_bt.tree.files.lookup import bundled
+from momantu_bt.tree.files.syntax import compose
 from momantu_bt.tree.files.yaml.format import read
-from momantu_bt.tree.files.yaml.raw import plain_value
-from momantu_bt.tree.files.yaml.source import YamlSyntaxError, compose
 from momantu_bt.tree.problems import TreeError
 from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.show.problem_pages import codes, explanation

@@ -3,11 +3,11 @@
 import pytest
 
 from momantu_bt.tree.convert import Spelling, meaning, write
+from momantu_bt.tree.files.scalars import CannotWrite
 from momantu_bt.tree.files.xml import format as xml_format
 from momantu_bt.tree.files.xml import writer as xml_writer
 from momantu_bt.tree.files.yaml import format as yaml_format
 from momantu_bt.tree.files.yaml import writer as yaml_writer
-from momantu_bt.tree.files.yaml.scalars import CannotWrite
 from momantu_bt.tree.registry import Registry
 
 

@@ -6,11 +6,12 @@ from pathlib import Path
 
 import pytest
 
+from momantu_bt.formats.text import Beside
 from momantu_bt.tree.files.lookup import bundled
+from momantu_bt.tree.files.syntax import compose_with_comments
 from momantu_bt.tree.files.yaml.format import read
-from momantu_bt.tree.files.yaml.source import compose_with_remarks
 from momantu_bt.tree.files.yaml.writer import write
-from momantu_bt.tree.model import Beside, Document
+from momantu_bt.tree.model import Document
 
 BUNDLED = sorted(bundled().values())
 
@@ -67,7 +68,7 @@ trees:
 
 
 def _texts(text: str) -> list[str]:
-    return [remark.text for remark in compose_with_remarks(text, "t.yaml")[1]]
+    return [remark.text for remark in compose_with_comments(text, "t.yaml")[1]]
 
 
 def _everywhere(document: Document) -> dict[str, list[str]]:

@@ -1,6 +1,7 @@
 """YAML files as documents: every form a node can have, and the header's own mistakes."""
 
 from collections.abc import Callable
+from typing import Any
 
 import pytest
 
@@ -227,3 +228,12 @@ def test_every_node_knows_its_place() -> None:
 )
 def test_what_is_refused(expect: Expect, text: str, code: str, hint: str) -> None:
     expect(code, text, hint=hint, whole=True)
+
+
+def test_every_duplicate_key_is_reported(check: Any) -> None:
+    text = (
+        "momantu_bt: 1\nmain: M\nmain: M\ntrees:\n  M:\n    - {wait: 1, wait: 2}\n"
+        "    - say: {text: a, text: b, pace: 1, pace: 2}\n  M: [{wait: 1}]\n"
+    )
+    found = [(p.code, p.place.line) for p in check(text)]
+    assert found == [("duplicate-key", line) for line in (3, 6, 7, 7, 8)]

@@ -7,12 +7,14 @@ from pathlib import Path
 import pytest
 
 from momantu_bt.formats.places import Place
+from momantu_bt.formats.yaml.reader import YamlSyntaxError
+from momantu_bt.formats.yaml.values import plain_value
 from momantu_bt.tree.convert import meaning
 from momantu_bt.tree.files.lookup import bundled
+from momantu_bt.tree.files.scalars import CannotWrite, literal
+from momantu_bt.tree.files.syntax import compose
 from momantu_bt.tree.files.yaml.format import read
-from momantu_bt.tree.files.yaml.raw import plain_value
-from momantu_bt.tree.files.yaml.scalars import CannotWrite, literal, script_spelling
-from momantu_bt.tree.files.yaml.source import YamlSyntaxError, compose
+from momantu_bt.tree.files.yaml.scripts import script_spelling
 from momantu_bt.tree.files.yaml.writer import write
 from momantu_bt.tree.model import Document, Literal, Node
 from momantu_bt.tree.script import canonical

@@ -10,10 +10,10 @@ from momantu_bt.formats.units import UnitError, in_unit
 from momantu_bt.plugins import PluginError
 from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue import AUTOREMAP, NODES, SUBTREE, XML_CONDITIONS, NodeSpec
+from momantu_bt.tree.files.scalars import CannotWrite, port_text
 from momantu_bt.tree.files.xml.ports import DESCRIPTION, DISABLED, NOTE, PREFIX, RESERVED
 from momantu_bt.tree.files.xml.text import attribute, is_xml
 from momantu_bt.tree.files.xml.values import WireError, attribute_value
-from momantu_bt.tree.files.yaml.scalars import CannotWrite, port_text
 from momantu_bt.tree.model import (
     Document,
     Literal,

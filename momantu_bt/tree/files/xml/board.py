@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from momantu_bt.formats.places import Place
-from momantu_bt.tree.files.xml.elements import OURS, Element
+from momantu_bt.formats.xml.elements import Element
+from momantu_bt.tree.files.port_values import KEY
+from momantu_bt.tree.files.syntax import OURS
 from momantu_bt.tree.files.xml.values import flow_value
-from momantu_bt.tree.files.yaml.values import KEY
 from momantu_bt.tree.model import Document, Literal
 from momantu_bt.tree.problems import Problems
 

@@ -6,9 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from momantu_bt.formats.problems import errors
+from momantu_bt.formats.xml.elements import Attribute, Element, Parsed
+from momantu_bt.formats.xml.reader import XmlSyntaxError
 from momantu_bt.tree.files.resolve import resolve
+from momantu_bt.tree.files.syntax import OURS, parse
 from momantu_bt.tree.files.xml.board import read_values
-from momantu_bt.tree.files.xml.elements import OURS, Attribute, Element, Parsed
 from momantu_bt.tree.files.xml.header import (
     check_header,
     is_root,
@@ -16,7 +18,6 @@ from momantu_bt.tree.files.xml.header import (
     report_unknown_attribute,
 )
 from momantu_bt.tree.files.xml.models import read_models
-from momantu_bt.tree.files.xml.source import XmlSyntaxError, parse
 from momantu_bt.tree.files.xml.trees import TreesReader
 from momantu_bt.tree.model import Document, Include, Tree
 from momantu_bt.tree.problems import Problems, TooManyProblems, TreeError

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from momantu_bt.formats.names import valid_names
-from momantu_bt.tree.files.xml.elements import OURS, Attribute, Element
+from momantu_bt.formats.xml.elements import Attribute, Element
+from momantu_bt.tree.files.syntax import OURS
 from momantu_bt.tree.language import VERSION
 from momantu_bt.tree.model import Tree
 from momantu_bt.tree.problems import Problems

@@ -8,11 +8,12 @@ from dataclasses import dataclass, field
 from momantu_bt.formats.names import nearest, valid_names
 from momantu_bt.formats.places import Place
 from momantu_bt.formats.units import UnitError, in_unit
+from momantu_bt.formats.xml.elements import Attribute, Element
 from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue import AUTOREMAP, MODIFIERS, SUBTREE, XML_CONDITIONS, NodeSpec
-from momantu_bt.tree.files.xml.elements import OURS, Attribute, Element
+from momantu_bt.tree.files.port_values import KEY
+from momantu_bt.tree.files.syntax import OURS
 from momantu_bt.tree.files.xml.values import WireError, attribute_value, flow_value
-from momantu_bt.tree.files.yaml.values import KEY
 from momantu_bt.tree.model import (
     BROKEN,
     FIRST_INPUT,

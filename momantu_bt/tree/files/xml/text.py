@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from momantu_bt.tree.files.xml.comments import hide_dashes
-from momantu_bt.tree.files.yaml.scalars import CannotWrite
-from momantu_bt.tree.model import Beside
-from momantu_bt.tree.problems import NOT_TEXT
+from momantu_bt.formats.text import NOT_TEXT, Beside
+from momantu_bt.formats.xml.comments import hide_dashes
+from momantu_bt.tree.files.scalars import CannotWrite
 
 _ESCAPES = {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;"}
 _ESCAPES |= {"\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}

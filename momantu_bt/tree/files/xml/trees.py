@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 from momantu_bt.formats.names import nearest, valid_names
 from momantu_bt.formats.places import Place
+from momantu_bt.formats.xml.elements import Element
 from momantu_bt.tree.files.queue import into_tree
-from momantu_bt.tree.files.xml.elements import OURS, Element
+from momantu_bt.tree.files.syntax import OURS
 from momantu_bt.tree.files.xml.header import report_unknown_attribute
 from momantu_bt.tree.files.xml.models import Models
 from momantu_bt.tree.files.xml.nodes import NodeReader

@@ -10,10 +10,11 @@ import re
 from typing import Any
 
 from momantu_bt.formats.places import Place
-from momantu_bt.tree.files.yaml.core import resolve
-from momantu_bt.tree.files.yaml.raw import Entries, Items, Raw
-from momantu_bt.tree.files.yaml.source import YamlSyntaxError, compose
-from momantu_bt.tree.files.yaml.values import KEY, port_value
+from momantu_bt.formats.yaml.core import resolve
+from momantu_bt.formats.yaml.reader import YamlSyntaxError
+from momantu_bt.formats.yaml.values import Entries, Items, Raw
+from momantu_bt.tree.files.port_values import KEY, port_value
+from momantu_bt.tree.files.syntax import compose
 from momantu_bt.tree.model import Literal, PortValue, Reference, Scope
 from momantu_bt.tree.problems import Problems
 from momantu_bt.values.kinds import (

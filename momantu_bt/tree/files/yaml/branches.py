@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from momantu_bt.formats.yaml.values import Entries, Items, Raw, Scalar
 from momantu_bt.tree.catalogue import NODES, SWITCHES
+from momantu_bt.tree.files.port_values import drop_duplicates
 from momantu_bt.tree.files.yaml.children import read_control
 from momantu_bt.tree.files.yaml.ports import read_port
-from momantu_bt.tree.files.yaml.raw import Entries, Items, Raw, Scalar
 from momantu_bt.tree.files.yaml.reading import Reading, said
 from momantu_bt.tree.files.yaml.scripts import as_condition
-from momantu_bt.tree.files.yaml.values import drop_duplicates
 from momantu_bt.tree.files.yaml.words import COMPANIONS, SWITCH
 from momantu_bt.tree.model import BROKEN, Node
 

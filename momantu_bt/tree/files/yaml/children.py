@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from momantu_bt.formats.yaml.values import Entries, Items, Raw, Scalar
 from momantu_bt.tree.catalogue import NodeSpec
+from momantu_bt.tree.files.port_values import drop_duplicates
 from momantu_bt.tree.files.queue import into_handler
 from momantu_bt.tree.files.yaml.ports import read_port
-from momantu_bt.tree.files.yaml.raw import Entries, Items, Raw, Scalar
 from momantu_bt.tree.files.yaml.reading import Reading, said
-from momantu_bt.tree.files.yaml.values import drop_duplicates
 from momantu_bt.tree.language import AGAIN, handler_codes
 from momantu_bt.tree.model import Handler, Node
 

@@ -11,9 +11,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 from momantu_bt.formats.places import Place, lines_of
-from momantu_bt.tree.files.yaml.raw import Entries, Raw
-from momantu_bt.tree.files.yaml.remarks import Remark
-from momantu_bt.tree.model import Beside, Document, Node, PortDeclaration, Tree
+from momantu_bt.formats.text import Beside
+from momantu_bt.formats.yaml.comments import Comment
+from momantu_bt.formats.yaml.values import Entries, Raw
+from momantu_bt.tree.model import Document, Node, PortDeclaration, Tree
 
 _FIRST_KEYS = ("momantu_bt", "world", "main", "include")
 _PORT_KEYS = ("inputs:", "outputs:", "inouts:", "doc:", "open:")
@@ -119,7 +120,7 @@ class _Attacher:
 
     # giving
 
-    def give(self, remark: Remark) -> None:
+    def give(self, remark: Comment) -> None:
         index = bisect_left(self.anchors, remark.line, key=lambda anchor: anchor.line)
         following = index
         while following < len(self.anchors) and self.anchors[following].line == remark.line:
@@ -131,11 +132,11 @@ class _Attacher:
         else:
             self.above(remark, index)
 
-    def opens(self, remark: Remark) -> bool:
+    def opens(self, remark: Comment) -> bool:
         """Whether what the comment stands beside only begins something: `catch:`."""
         return self.lines[remark.line - 1][: remark.column - 1].rstrip().endswith((":", "-"))
 
-    def above(self, remark: Remark, following: int) -> None:
+    def above(self, remark: Comment, following: int) -> None:
         ahead = self.anchors[following] if following < len(self.anchors) else None
         if not remark.beside and following and self.is_deeper(remark):
             end = self.ended(self.anchors[following - 1].node, remark.column)
@@ -147,7 +148,7 @@ class _Attacher:
         else:
             self.document.comments += (remark.text,)
 
-    def is_deeper(self, remark: Remark) -> bool:
+    def is_deeper(self, remark: Comment) -> bool:
         """Whether a comment is indented further than the next other line."""
         following = bisect_right(self.written, remark.line)
         if following == len(self.written):
@@ -166,7 +167,7 @@ class _Attacher:
         return None
 
 
-def attach(document: Document, raw: Raw, text: str, remarks: Sequence[Remark]) -> None:
+def attach(document: Document, raw: Raw, text: str, remarks: Sequence[Comment]) -> None:
     """Give each comment of a file to a part of its document. raw: the file's mapping."""
     lines = lines_of(text)
     written = [number for number, line in enumerate(lines, 1) if line.split("#")[0].strip()]

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from momantu_bt.formats.names import nearest
-from momantu_bt.tree.files.yaml.raw import Entries, Items, Raw, Scalar
-from momantu_bt.tree.files.yaml.values import drop_duplicates, is_key, mapping, port_value, words
+from momantu_bt.formats.yaml.values import Entries, Items, Raw, Scalar
+from momantu_bt.tree.files.port_values import drop_duplicates, is_key, mapping, port_value, words
 from momantu_bt.tree.files.yaml.words import PORTS
 from momantu_bt.tree.model import Literal, PortDeclaration, Reference, Template, Tree
 from momantu_bt.tree.problems import Problems

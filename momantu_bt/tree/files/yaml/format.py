@@ -8,13 +8,14 @@ from dataclasses import dataclass
 from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.places import Place
 from momantu_bt.formats.problems import errors
+from momantu_bt.formats.yaml.comments import Comment
+from momantu_bt.formats.yaml.reader import YamlSyntaxError
+from momantu_bt.formats.yaml.values import Entries, Items, Raw, Scalar
+from momantu_bt.tree.files.port_values import drop_duplicates, is_key, mapping, port_value
+from momantu_bt.tree.files.syntax import compose_with_comments
 from momantu_bt.tree.files.yaml.comments import attach
 from momantu_bt.tree.files.yaml.models import read_models
-from momantu_bt.tree.files.yaml.raw import Entries, Items, Raw, Scalar
-from momantu_bt.tree.files.yaml.remarks import Remark
-from momantu_bt.tree.files.yaml.source import YamlSyntaxError, compose_with_remarks
 from momantu_bt.tree.files.yaml.trees import read_trees
-from momantu_bt.tree.files.yaml.values import drop_duplicates, is_key, mapping, port_value
 from momantu_bt.tree.language import VERSION
 from momantu_bt.tree.model import Document, Include, Literal, Tree
 from momantu_bt.tree.problems import Problems, TooManyProblems, TreeError
@@ -48,14 +49,14 @@ class YamlSource:
     text: str
     file: str
     raw: Raw
-    remarks: list[Remark]
+    remarks: list[Comment]
     problems: Problems
 
     @classmethod
     def of(cls, text: str, file: str, problems: Problems) -> YamlSource:
         """Parse a text; TreeError when it is not YAML."""
         try:
-            return cls(text, file, *compose_with_remarks(text, file), problems)
+            return cls(text, file, *compose_with_comments(text, file), problems)
         except YamlSyntaxError as error:
             raise TreeError([error.problem], {file: text}) from None
 

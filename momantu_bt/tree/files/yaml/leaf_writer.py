@@ -7,14 +7,9 @@ from dataclasses import dataclass
 
 from momantu_bt.plugins import PluginError
 from momantu_bt.tree.catalogue import MODIFIERS, NODES, SPELLED, SUBTREE
+from momantu_bt.tree.files.scalars import CannotWrite, port_text, scalar
 from momantu_bt.tree.files.yaml.lines import STEP, WIDTH, above, beside, is_nested, signed, spread
-from momantu_bt.tree.files.yaml.scalars import (
-    CannotWrite,
-    port_text,
-    scalar,
-    script_spelling,
-    script_text,
-)
+from momantu_bt.tree.files.yaml.scripts import script_spelling, script_text
 from momantu_bt.tree.language import AGAIN
 from momantu_bt.tree.model import FIRST_INPUT, Literal, Node, PortValue
 from momantu_bt.tree.registry import Registry

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from momantu_bt.tree.files.yaml.scalars import literal, scalar
-from momantu_bt.tree.model import Beside, Literal, PortValue
+from momantu_bt.formats.text import Beside
+from momantu_bt.tree.files.scalars import literal, scalar
+from momantu_bt.tree.model import Literal, PortValue
 
 WIDTH = 100
 """Columns of a line, where ports can be moved to lines of their own."""

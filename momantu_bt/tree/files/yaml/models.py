@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from typing import Any
 
 from momantu_bt.formats.names import valid_names
+from momantu_bt.formats.yaml.values import Entries, Items, Raw, Scalar, plain_value
+from momantu_bt.tree.files.scalars import scalar
 from momantu_bt.tree.files.yaml.lines import above
-from momantu_bt.tree.files.yaml.raw import Entries, Items, Raw, Scalar, plain_value
-from momantu_bt.tree.files.yaml.scalars import scalar
 from momantu_bt.tree.model import Literal, NodeModel, PortDeclaration
 from momantu_bt.tree.problems import Problems
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from momantu_bt.formats.names import nearest
+from momantu_bt.formats.yaml.values import Entries, Raw, Scalar
 from momantu_bt.tree.catalogue import FORCED, MODIFIERS, NODES, SPELLED, NodeSpec
+from momantu_bt.tree.files.port_values import words
 from momantu_bt.tree.files.yaml.ports import is_empty, read_port, read_ports
-from momantu_bt.tree.files.yaml.raw import Entries, Raw, Scalar
 from momantu_bt.tree.files.yaml.reading import Reading, said
 from momantu_bt.tree.files.yaml.scripts import read_script
-from momantu_bt.tree.files.yaml.values import words
 from momantu_bt.tree.model import BROKEN, Node
 from momantu_bt.tree.problems import Problems
 

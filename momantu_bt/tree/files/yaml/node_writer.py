@@ -9,15 +9,12 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from momantu_bt.formats.text import Beside
 from momantu_bt.tree.catalogue import NODES, Kind
+from momantu_bt.tree.files.scalars import CannotWrite, port_text, scalar
 from momantu_bt.tree.files.yaml.leaf_writer import LeafWriter
 from momantu_bt.tree.files.yaml.lines import STEP, WIDTH, above, beside
-from momantu_bt.tree.files.yaml.scalars import (
-    CannotWrite,
-    port_text,
-    scalar,
-    script_text,
-)
+from momantu_bt.tree.files.yaml.scripts import script_text
 from momantu_bt.tree.files.yaml.spellings import (
     FORCE,
     bare_condition,
@@ -28,7 +25,7 @@ from momantu_bt.tree.files.yaml.spellings import (
 )
 from momantu_bt.tree.files.yaml.words import COMPANIONS, SWITCH
 from momantu_bt.tree.language import AGAIN
-from momantu_bt.tree.model import Beside, Handler, Node
+from momantu_bt.tree.model import Handler, Node
 
 
 @dataclass(frozen=True, slots=True)

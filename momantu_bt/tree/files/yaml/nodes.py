@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from momantu_bt.formats.yaml.values import Entries, Items, Raw, Scalar
 from momantu_bt.tree.catalogue import MODIFIERS, NODES, SPELLED, SUBTREE, Kind, NodeSpec
+from momantu_bt.tree.files.port_values import drop_duplicates
 from momantu_bt.tree.files.queue import Put
 from momantu_bt.tree.files.yaml.branches import read_branches, read_switch
 from momantu_bt.tree.files.yaml.children import read_control, read_decorator, read_handlers, split
 from momantu_bt.tree.files.yaml.modifiers import modified, near_modifier
 from momantu_bt.tree.files.yaml.ports import read_leaf
-from momantu_bt.tree.files.yaml.raw import Entries, Items, Raw, Scalar
 from momantu_bt.tree.files.yaml.reading import Reading
-from momantu_bt.tree.files.yaml.values import drop_duplicates
 from momantu_bt.tree.files.yaml.words import COMPANIONS, SWITCH
 from momantu_bt.tree.language import AGAIN
 from momantu_bt.tree.model import Node

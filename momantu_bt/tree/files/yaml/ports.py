@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from momantu_bt.formats.names import nearest
 from momantu_bt.formats.places import Place
+from momantu_bt.formats.yaml.values import Entries, Items, Raw, Scalar
 from momantu_bt.tree.catalogue import NODES, SPELLED, SUBTREE, Kind, NodeSpec
-from momantu_bt.tree.files.yaml.raw import Entries, Items, Raw, Scalar
+from momantu_bt.tree.files.port_values import drop_duplicates, port_value, reported_braces
 from momantu_bt.tree.files.yaml.reading import Reading, said
 from momantu_bt.tree.files.yaml.scripts import read_script
-from momantu_bt.tree.files.yaml.values import drop_duplicates, port_value, reported_braces
 from momantu_bt.tree.model import BROKEN, FIRST_INPUT, Literal, Node, Reference
 from momantu_bt.tree.problems import Problems
 from momantu_bt.values.kinds import ScriptText

@@ -7,9 +7,9 @@ from collections.abc import Collection
 from dataclasses import dataclass, field
 
 from momantu_bt.formats.places import Place
+from momantu_bt.formats.yaml.values import Items, Raw
 from momantu_bt.tree.catalogue import NODES, SPELLED
 from momantu_bt.tree.files.queue import Put
-from momantu_bt.tree.files.yaml.raw import Items, Raw
 from momantu_bt.tree.model import BROKEN, Node
 from momantu_bt.tree.problems import Problems
 

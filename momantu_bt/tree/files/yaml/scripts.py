@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from momantu_bt.formats.places import Place
-from momantu_bt.tree.files.yaml.raw import Entries, Raw, Scalar
+from momantu_bt.formats.yaml.values import Entries, Raw, Scalar
+from momantu_bt.tree.files.scalars import scalar
 from momantu_bt.tree.files.yaml.words import BTCPP
 from momantu_bt.tree.problems import Problems
-from momantu_bt.tree.script import ScriptSyntaxError, canonical, parse
+from momantu_bt.tree.script import ScriptSyntaxError, canonical, parse, yaml_spelling
 
 
 def read_script(value: Raw, problems: Problems) -> str | None:
@@ -54,3 +55,26 @@ def _within(value: Scalar, error: ScriptSyntaxError) -> Place:
     if offset >= place.length:
         return place
     return Place(place.file, place.line, place.column + offset, error.length)
+
+
+def script_spelling(text: str) -> str | None:
+    """A canonical script in our spelling, with words or else with signs.
+
+    None where neither comes back as the same script, as with `a && b || c`.
+    """
+    for words in (True, False):
+        try:
+            spelled = yaml_spelling(text, words=words)
+            if canonical(spelled) == text:
+                return spelled
+        except ScriptSyntaxError:
+            continue
+    return None
+
+
+def script_text(text: str, *, flow: bool = False) -> str:
+    """A canonical script as a YAML value; `{btcpp: …}` keeps one that our spelling cannot say."""
+    spelled = script_spelling(text)
+    if spelled is not None:
+        return scalar(spelled, flow=flow, typed=False)
+    return f"{{{BTCPP}: {scalar(text, flow=True, typed=False)}}}"

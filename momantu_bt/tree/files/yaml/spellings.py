@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from momantu_bt.tree.catalogue import FORCED, NODES, Kind
+from momantu_bt.tree.files.scalars import port_text, scalar
 from momantu_bt.tree.files.yaml.lines import above, is_nested
-from momantu_bt.tree.files.yaml.scalars import port_text, scalar, script_spelling
+from momantu_bt.tree.files.yaml.scripts import script_spelling
 from momantu_bt.tree.model import Literal, Node, PortValue
 
 FORCE = {type_: f"force: {word}" for word, type_ in FORCED.items()}

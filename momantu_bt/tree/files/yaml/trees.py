@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from momantu_bt.formats.places import Place
+from momantu_bt.formats.yaml.values import Entries, Raw, Scalar
 from momantu_bt.tree.catalogue import MODIFIERS, SPELLED
+from momantu_bt.tree.files.port_values import drop_duplicates, mapping, words
 from momantu_bt.tree.files.queue import into_tree
 from momantu_bt.tree.files.yaml.declarations import read_declarations
 from momantu_bt.tree.files.yaml.nodes import NodeReader
-from momantu_bt.tree.files.yaml.raw import Entries, Raw, Scalar
 from momantu_bt.tree.files.yaml.reading import Reading
-from momantu_bt.tree.files.yaml.values import drop_duplicates, mapping, words
 from momantu_bt.tree.files.yaml.words import HEADER, PORTS
 from momantu_bt.tree.language import AGAIN, TREE_NAME, TREE_NAME_HINT
 from momantu_bt.tree.model import Node, Tree

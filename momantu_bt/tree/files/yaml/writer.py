@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from momantu_bt.tree.files.scalars import CannotWrite, literal, port_text, scalar
 from momantu_bt.tree.files.yaml.leaf_writer import LeafWriter
 from momantu_bt.tree.files.yaml.lines import WIDTH, above, beside, spread
 from momantu_bt.tree.files.yaml.models import write_models
 from momantu_bt.tree.files.yaml.node_writer import NodeWriter
-from momantu_bt.tree.files.yaml.scalars import CannotWrite, literal, port_text, scalar
 from momantu_bt.tree.files.yaml.words import HEADER, PORTS
 from momantu_bt.tree.language import VERSION
 from momantu_bt.tree.model import Document, PortDeclaration, Tree

@@ -8,16 +8,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from momantu_bt.formats.problems import show
+from momantu_bt.formats.yaml.reader import YamlSyntaxError
+from momantu_bt.formats.yaml.values import plain_value
+from momantu_bt.tree.files.syntax import MAX_BYTES, YAML_RULES, compose
 from momantu_bt.tree.files.yaml.format import read
-from momantu_bt.tree.files.yaml.raw import plain_value
-from momantu_bt.tree.files.yaml.source import (
-    MAX_BYTES,
-    MAX_DEPTH,
-    MAX_NODES,
-    YamlSyntaxError,
-    compose,
-)
 from momantu_bt.tree.problems import TreeError
+
+MAX_DEPTH, MAX_NODES = YAML_RULES.most_depth, YAML_RULES.most_values
 
 
 def values(text: str) -> Any:
@@ -125,15 +122,6 @@ def test_bounds(text: str) -> None:
     with pytest.raises(YamlSyntaxError) as caught:
         compose(text, "t.yaml")
     assert caught.value.problem.code == "too-large"
-
-
-def test_every_duplicate_key_is_reported(check: Any) -> None:
-    text = (
-        "momantu_bt: 1\nmain: M\nmain: M\ntrees:\n  M:\n    - {wait: 1, wait: 2}\n"
-        "    - say: {text: a, text: b, pace: 1, pace: 2}\n  M: [{wait: 1}]\n"
-    )
-    found = [(p.code, p.place.line) for p in check(text)]
-    assert found == [("duplicate-key", line) for line in (3, 6, 7, 7, 8)]
 
 
 TREES = Path(__file__).parents[3] / "trees"

@@ -17,16 +17,10 @@ from ruamel.yaml.reader import ReaderError
 
 from momantu_bt.formats.places import Place, lines_of
 from momantu_bt.formats.problems import Problem
-from momantu_bt.tree.files.yaml.core import resolve
-from momantu_bt.tree.files.yaml.errors import in_our_words
-from momantu_bt.tree.files.yaml.raw import Entries, Items, Raw, Scalar
-from momantu_bt.tree.files.yaml.remarks import Remark, remarks, span
-
-MAX_BYTES = 500_000
-MAX_DEPTH = 100
-MAX_NODES = 10_000
-"""Values in a file, those behind aliases counted each time they are used; and comments."""
-MAX_ALIASES = 500
+from momantu_bt.formats.yaml.comments import Comment, comments, span
+from momantu_bt.formats.yaml.core import resolve
+from momantu_bt.formats.yaml.errors import YamlRules, in_our_words
+from momantu_bt.formats.yaml.values import Entries, Items, Raw, Scalar
 
 _SURROGATE = re.compile("[\ud800-\udfff]")
 
@@ -39,47 +33,49 @@ class YamlSyntaxError(Exception):
         self.problem = problem
 
 
-def compose(text: str, file: str) -> Raw:
+def compose(text: str, file: str, rules: YamlRules) -> Raw:
     """Read a text.
 
     Raises:
         YamlSyntaxError: with the one problem, in our words.
     """
-    return compose_with_remarks(text, file)[0]
+    return compose_with_comments(text, file, rules)[0]
 
 
-def compose_with_remarks(text: str, file: str) -> tuple[Raw, list[Remark]]:
+def compose_with_comments(text: str, file: str, rules: YamlRules) -> tuple[Raw, list[Comment]]:
     """Read a text and its comments.
 
     Raises:
         YamlSyntaxError: with the one problem, in our words.
     """
     size = len(text.encode("utf-8", "surrogatepass"))
-    if size > MAX_BYTES:
-        raise _bound(Place(file, 1, 1), f"{size} bytes; a tree file has at most {MAX_BYTES}")
-    builder = _Builder(file)
+    if size > rules.most_bytes:
+        message = f"{size} bytes; a {rules.what} has at most {rules.most_bytes}"
+        raise _bound(Place(file, 1, 1), message)
+    builder = _Builder(file, rules)
     reader = YAML(typ="safe", pure=True)
     try:
         for event in reader.parse(text):
             builder.take(event)
     except MarkedYAMLError as error:
-        raise YamlSyntaxError(in_our_words(error, text, file)) from None
+        raise YamlSyntaxError(in_our_words(error, text, file, rules)) from None
     except ReaderError as error:
         before = lines_of(text[: error.position])
         line, column = len(before), len(before[-1]) + 1
-        message = f"the character U+{ord(text[error.position]):04X} cannot stand in a tree file"
+        message = f"the character U+{ord(text[error.position]):04X} cannot stand in a {rules.what}"
         raise YamlSyntaxError(
             Problem("syntax", message, Place(file, line, column), "remove it")
         ) from None
     if builder.root is None:
         place = Place(file, 1, 1)
         raise YamlSyntaxError(
-            Problem("syntax", "the file is empty", place, "begin with `momantu_bt: 1`")
+            Problem("syntax", f"the file is empty; expected a {rules.what}", place, rules.beginning)
         )
-    found = remarks(text, builder.spans) if "#" in text else []
-    if len(found) > MAX_NODES:
-        place = Place(file, found[MAX_NODES].line, found[MAX_NODES].column)
-        raise _bound(place, f"more than {MAX_NODES} comments")
+    found = comments(text, builder.spans) if "#" in text else []
+    if len(found) > rules.most_values:
+        first = found[rules.most_values]
+        place = Place(file, first.line, first.column)
+        raise _bound(place, f"more than {rules.most_values} comments")
     return builder.root, found
 
 
@@ -95,6 +91,7 @@ class _Open:
 @dataclass(slots=True)
 class _Builder:
     file: str
+    rules: YamlRules
     root: Raw | None = None
     stack: list[_Open] = field(default_factory=list)
     anchors: dict[str, Raw] = field(default_factory=dict)
@@ -107,7 +104,7 @@ class _Builder:
         if isinstance(event, yaml_events.DocumentStartEvent):
             self.documents += 1
             if self.documents > 1:
-                message = "a second document; a tree file is one"
+                message = f"a second document; a {self.rules.what} is one"
                 raise self.error("syntax", event, message, "remove the line `---`")
         elif isinstance(event, yaml_events.ScalarEvent):
             self.refuse_tag(event)
@@ -143,9 +140,8 @@ class _Builder:
     def refuse_tag(self, event: Any) -> None:
         tag = getattr(event, "tag", None)
         if tag:
-            message = "`!` begins a YAML tag, which tree files do not use"
-            hint = 'write `not`, or put the whole value in quotes: "!$key"'
-            raise self.error("syntax", event, message, hint)
+            message = f"`!` begins a YAML tag, which a {self.rules.what} does not use"
+            raise self.error("syntax", event, message, self.rules.tag_hint)
 
     def scalar(self, event: Any) -> Scalar:
         if _SURROGATE.search(event.value):
@@ -164,14 +160,14 @@ class _Builder:
         return key.place if key is not None and missing and key.place.line != place.line else place
 
     def open(self, raw: Items | Entries, event: Any) -> None:
-        if len(self.stack) >= MAX_DEPTH:
-            raise _bound(self.place(event), f"nested more than {MAX_DEPTH} levels deep")
+        if len(self.stack) >= self.rules.most_depth:
+            raise _bound(self.place(event), f"nested more than {self.rules.most_depth} levels deep")
         self.stack.append(_Open(raw, event.anchor))
 
     def put_alias(self, event: Any) -> None:
         self.aliases += 1
-        if self.aliases > MAX_ALIASES:
-            raise _bound(self.place(event), f"more than {MAX_ALIASES} aliases")
+        if self.aliases > self.rules.most_aliases:
+            raise _bound(self.place(event), f"more than {self.rules.most_aliases} aliases")
         if event.anchor not in self.anchors:
             inside = any(opened.anchor == event.anchor for opened in self.stack)
             message = f"`*{event.anchor}` stands for nothing"
@@ -191,10 +187,7 @@ class _Builder:
         top = self.stack[-1]
         top.raw.size += raw.size
         top.raw.depth = max(top.raw.depth, raw.depth + 1)
-        if top.raw.depth > MAX_DEPTH:
-            raise _bound(raw.place, f"nested more than {MAX_DEPTH} levels deep, aliases included")
-        if top.raw.size > MAX_NODES or self.nodes > MAX_NODES:
-            raise _bound(raw.place, f"more than {MAX_NODES} values, aliases included")
+        self.bound(top.raw, raw.place)
         if isinstance(top.raw, Items):
             top.raw.items.append(raw)
         elif top.key is None:
@@ -203,10 +196,18 @@ class _Builder:
             top.raw.entries.append((top.key, raw))
             top.key = None
 
+    def bound(self, whole: Items | Entries, place: Place) -> None:
+        rules = self.rules
+        if whole.depth > rules.most_depth:
+            message = f"nested more than {rules.most_depth} levels deep, aliases included"
+            raise _bound(place, message)
+        if max(whole.size, self.nodes) > rules.most_values:
+            raise _bound(place, f"more than {rules.most_values} values, aliases included")
+
     def key(self, raw: Raw) -> Scalar:
         if isinstance(raw, Scalar):
             return raw
-        hint = "did you mean $key?" if isinstance(raw, Entries) else ""
+        hint = self.rules.braces_hint if isinstance(raw, Entries) else ""
         raise YamlSyntaxError(
             Problem("syntax", "a list or mapping cannot be a key", raw.place, hint)
         )

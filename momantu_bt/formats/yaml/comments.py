@@ -7,11 +7,11 @@ from bisect import bisect_right
 from dataclasses import dataclass
 from typing import Any
 
-_REMARK = re.compile(r"(?<!\S)#([^\r\n]*)")
+_COMMENT = re.compile(r"(?<!\S)#([^\r\n]*)")
 
 
 @dataclass(frozen=True, slots=True)
-class Remark:
+class Comment:
     """A comment in the file, without its `#`. beside: something stands before it on its line."""
 
     line: int
@@ -29,16 +29,16 @@ def span(event: Any) -> list[tuple[int, int]]:
     return [] if below is None else [(below.start(), end)]
 
 
-def remarks(text: str, spans: list[tuple[int, int]]) -> list[Remark]:
+def comments(text: str, spans: list[tuple[int, int]]) -> list[Comment]:
     """The comments of a text. spans: of its scalars, within which `#` begins none."""
-    found: list[Remark] = []
+    found: list[Comment] = []
     starts = [0, *(match.end() for match in re.finditer(r"\r\n|\r|\n", text))]
     position = 0
     for start, end in [*spans, (len(text), len(text))]:
-        for match in _REMARK.finditer(text, position, start):
+        for match in _COMMENT.finditer(text, position, start):
             line = bisect_right(starts, match.start())
             before = text[starts[line - 1] : match.start()]
             words = match[1].removeprefix(" ").rstrip()
-            found.append(Remark(line, len(before) + 1, words, bool(before.strip())))
+            found.append(Comment(line, len(before) + 1, words, bool(before.strip())))
         position = end
     return found

@@ -6,9 +6,6 @@ from dataclasses import dataclass, field
 
 from momantu_bt.formats.places import Place
 
-OURS = "urn:momantu-bt:1"
-"""Namespace of what only this language has."""
-
 
 @dataclass(frozen=True, slots=True)
 class Attribute:
@@ -26,7 +23,9 @@ class Attribute:
 
 @dataclass(slots=True)
 class Element:
-    """One element. name: without prefix; space: its namespace. place: of the tag's name.
+    """One element. name: without prefix; space: its namespace; said: the tag as it is written.
+
+    place: of the tag's name.
 
     text: what stands inside it before its first child; text_place: where the first letter
     directly inside it stands. comments: those before it and beside it; end_comments: those after
@@ -35,6 +34,7 @@ class Element:
 
     name: str
     space: str
+    said: str
     place: Place
     attributes: list[Attribute]
     children: list[Element] = field(default_factory=list)
@@ -46,11 +46,6 @@ class Element:
     def get(self, name: str, space: str = "") -> Attribute | None:
         """The attribute of that name."""
         return next((a for a in self.attributes if a.name == name and a.space == space), None)
-
-    @property
-    def said(self) -> str:
-        """The tag as the file says it, with our usual prefix."""
-        return f"momantu:{self.name}" if self.space == OURS else self.name
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,14 +3,32 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 from lxml import etree
 
 from momantu_bt.formats.names import nearest
 from momantu_bt.formats.places import Place, lines_of
 from momantu_bt.formats.problems import Problem
+
+
+@dataclass(frozen=True, slots=True)
+class XmlRules:
+    """How one kind of file is read.
+
+    what: what a person calls such a file, in messages. most_nodes: elements, attributes and
+    comments; most_attributes: of one element. beginning: what to do about an empty file.
+    prefixes: namespaces of the language, by their usual prefixes.
+    """
+
+    what: str
+    most_bytes: int
+    most_depth: int
+    most_nodes: int
+    most_attributes: int = 500
+    beginning: str = ""
+    prefixes: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,13 +49,17 @@ def first_error(error: etree.XMLSyntaxError, parser: etree.XMLParser) -> Library
     return LibraryError("", str(error.msg), error.lineno or 1, max(1, error.offset or 1))
 
 
-def in_our_words(error: LibraryError, text: str, file: str) -> Problem:
+def in_our_words(error: LibraryError, text: str, file: str, rules: XmlRules) -> Problem:
     """One problem with the code "syntax" (or "too-large")."""
     lines = lines_of(text)
     line = min(max(1, error.line), len(lines))
     place = Place(file, line, min(error.column, len(lines[line - 1]) + 1))
     if error.kind == "ERR_RESOURCE_LIMIT":
         return Problem("too-large", "nested too deeply, or a text that is too long", place)
+    if error.kind == "ERR_DOCUMENT_EMPTY":
+        return Problem("syntax", "the file holds no XML", place, rules.beginning)
+    if error.kind == "NS_ERR_UNDEFINED_NAMESPACE":
+        return _prefix(error, place, lines, rules.prefixes)
     for read in (_tags, _attributes, _ampersand, _rest):
         found = read(error, place, lines)
         if found is not None:
@@ -91,15 +113,21 @@ def _attributes(error: LibraryError, place: Place, lines: tuple[str, ...]) -> Pr
         message = "the tag goes on here in a way that XML does not know"
         hint = 'attributes are name="value" with a space between, a tag ends with `>` or `/>`'
         return Problem("syntax", message, place, hint)
-    if error.kind == "NS_ERR_UNDEFINED_NAMESPACE":
-        prefix = re.search(r"prefix (\S+)", error.message)
-        name = prefix[1] if prefix is not None else "momantu"
-        near = nearest(name, ["momantu"])
-        hint = f'did you mean {near}? It is declared by xmlns:momantu="urn:momantu-bt:1" in <root>'
-        hint = hint if near is not None else "remove it"
-        where = _before(place, lines, f"{name}:", len(name))
-        return Problem("syntax", f"the prefix `{name}:` is not declared", where, hint)
     return None
+
+
+def _prefix(
+    error: LibraryError, place: Place, lines: tuple[str, ...], prefixes: Mapping[str, str]
+) -> Problem:
+    found = re.search(r"prefix (\S+)", error.message)
+    name = found[1] if found is not None else next(iter(prefixes), "")
+    near = nearest(name, prefixes)
+    hint = "remove it"
+    if near is not None:
+        declared = f'xmlns:{near}="{prefixes[near]}"'
+        hint = f"did you mean {near}? It is declared by {declared} in the first element"
+    where = _before(place, lines, f"{name}:", len(name))
+    return Problem("syntax", f"the prefix `{name}:` is not declared", where, hint)
 
 
 def _ampersand(error: LibraryError, place: Place, lines: tuple[str, ...]) -> Problem | None:
@@ -114,7 +142,6 @@ def _ampersand(error: LibraryError, place: Place, lines: tuple[str, ...]) -> Pro
 
 
 _SENTENCES = {
-    "ERR_DOCUMENT_EMPTY": ("the file holds no XML", 'begin with <root BTCPP_format="4">'),
     "ERR_DOCUMENT_END": ("something follows the end of the file's element", "remove it"),
     "ERR_HYPHEN_IN_COMMENT": ("`--` cannot stand inside a comment", "write one `-`"),
     "ERR_COMMENT_NOT_FINISHED": ("this comment is never closed", "end it with -->"),

@@ -6,9 +6,10 @@ import re
 from typing import Any
 
 from momantu_bt.formats.places import Place
-from momantu_bt.tree.files.yaml.raw import Entries, Items, Raw, Scalar
+from momantu_bt.formats.text import NOT_TEXT
+from momantu_bt.formats.yaml.values import Entries, Items, Raw, Scalar
 from momantu_bt.tree.model import Literal, PortValue, Reference, Scope, Template
-from momantu_bt.tree.problems import NOT_TEXT, Problems
+from momantu_bt.tree.problems import Problems
 
 _NAME = r"[^\W\d]\w*"
 KEY = re.compile(_NAME)

@@ -8,9 +8,12 @@ from hypothesis import strategies as st
 
 from momantu_bt.formats.places import lines_of
 from momantu_bt.formats.problems import Problem
-from momantu_bt.tree.files.xml.elements import OURS, Element
-from momantu_bt.tree.files.xml.source import MAX_BYTES, MAX_DEPTH, MAX_NODES, XmlSyntaxError, parse
-from momantu_bt.tree.model import Beside
+from momantu_bt.formats.text import Beside
+from momantu_bt.formats.xml.elements import Element
+from momantu_bt.formats.xml.reader import XmlSyntaxError
+from momantu_bt.tree.files.syntax import MAX_BYTES, OURS, XML_RULES, parse
+
+MAX_DEPTH, MAX_NODES = XML_RULES.most_depth, XML_RULES.most_nodes
 
 
 def refused(text: str) -> Problem:
@@ -62,7 +65,7 @@ def test_every_attribute_stands_where_its_place_says(data: st.DataObject) -> Non
 def test_namespaces() -> None:
     root = parse(f'<root xmlns:m="{OURS}"><m:Recover m:note="n"/></root>', "t.xml").root
     child = root.children[0]
-    assert (child.name, child.space, child.said) == ("Recover", OURS, "momantu:Recover")
+    assert (child.name, child.space, child.said) == ("Recover", OURS, "m:Recover")
     assert child.get("note", OURS) is not None
     assert child.get("note") is None
 

@@ -15,17 +15,10 @@ from lxml import etree
 
 from momantu_bt.formats.places import Place
 from momantu_bt.formats.problems import Problem
-from momantu_bt.tree.files.xml.comments import show_dashes
-from momantu_bt.tree.files.xml.elements import Attribute, Element, Parsed
-from momantu_bt.tree.files.xml.syntax import first_error, in_our_words
-from momantu_bt.tree.files.yaml.source import MAX_BYTES
-from momantu_bt.tree.model import Beside
-
-MAX_DEPTH = 200
-MAX_NODES = 10_000
-"""Elements, attributes and comments of a file."""
-MAX_ATTRIBUTES = 500
-"""Of one element."""
+from momantu_bt.formats.text import Beside
+from momantu_bt.formats.xml.comments import show_dashes
+from momantu_bt.formats.xml.elements import Attribute, Element, Parsed
+from momantu_bt.formats.xml.errors import XmlRules, first_error, in_our_words
 
 
 class XmlSyntaxError(Exception):
@@ -36,17 +29,18 @@ class XmlSyntaxError(Exception):
         self.problem = problem
 
 
-def parse(text: str, file: str) -> Parsed:
+def parse(text: str, file: str, rules: XmlRules) -> Parsed:
     """Read a text.
 
     Raises:
         XmlSyntaxError: with the one problem, in our words.
     """
     size = len(text.encode("utf-8", "surrogatepass"))
-    if size > MAX_BYTES:
-        raise _bound(Place(file, 1, 1), f"{size} bytes; a tree file has at most {MAX_BYTES}")
+    if size > rules.most_bytes:
+        message = f"{size} bytes; a {rules.what} has at most {rules.most_bytes}"
+        raise _bound(Place(file, 1, 1), message)
     text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
-    scan = _Scan(text, file)
+    scan = _Scan(text, file, rules)
     scan.refuse_doctype()
     parser = etree.XMLParser(
         encoding="utf-8",
@@ -60,7 +54,7 @@ def parse(text: str, file: str) -> Parsed:
     try:
         root = etree.fromstring(text.encode("utf-8", "surrogatepass"), parser)
     except etree.XMLSyntaxError as error:
-        raise XmlSyntaxError(in_our_words(first_error(error, parser), text, file)) from None
+        raise XmlSyntaxError(in_our_words(first_error(error, parser), text, file, rules)) from None
     return scan.parsed(root)
 
 
@@ -80,6 +74,7 @@ class _Scan:
 
     text: str
     file: str
+    rules: XmlRules
     starts: list[int] = field(default_factory=list)
     nodes: int = 0
     stack: list[Element] = field(default_factory=list)
@@ -99,7 +94,7 @@ class _Scan:
     def refuse_doctype(self) -> None:
         for start, kind, _ in self.tokens():
             if kind == "declaration":
-                message = "a tree file has no <!DOCTYPE> and no entities of its own"
+                message = f"a {self.rules.what} has no <!DOCTYPE> and no entities of its own"
                 raise XmlSyntaxError(
                     Problem("syntax", message, self.place(start, start + 9), "remove it")
                 )
@@ -159,11 +154,13 @@ class _Scan:
         tag = etree.QName(made)
         match = _START.match(self.text, start)
         assert match is not None
-        element = Element(tag.localname, tag.namespace or "", self.place(*match.span(1)), [])
+        element = Element(
+            tag.localname, tag.namespace or "", match[1], self.place(*match.span(1)), []
+        )
         written = [m for m in self.attributes(match.end()) if not _declares_prefix(m[1])]
         self.count(1 + len(written), element.place)
-        if len(written) > MAX_ATTRIBUTES:
-            raise _bound(element.place, f"more than {MAX_ATTRIBUTES} attributes")
+        if len(written) > self.rules.most_attributes:
+            raise _bound(element.place, f"more than {self.rules.most_attributes} attributes")
         for (name, value), found in zip(made.attrib.items(), written, strict=True):
             key = etree.QName(str(name))
             at = found.span(2) if found[2] is not None else found.span(3)
@@ -186,16 +183,16 @@ class _Scan:
 
     def count(self, more: int, place: Place) -> None:
         self.nodes += more
-        if self.nodes > MAX_NODES:
-            raise _bound(place, f"more than {MAX_NODES} elements and attributes")
+        if self.nodes > self.rules.most_nodes:
+            raise _bound(place, f"more than {self.rules.most_nodes} elements and attributes")
 
     def open(self, element: Element, start: int, end: int) -> None:
         element.comments = tuple(self.waiting)
         self.waiting = []
         if self.stack:
             self.stack[-1].children.append(element)
-        if len(self.stack) >= MAX_DEPTH:
-            raise _bound(element.place, f"nested more than {MAX_DEPTH} levels deep")
+        if len(self.stack) >= self.rules.most_depth:
+            raise _bound(element.place, f"nested more than {self.rules.most_depth} levels deep")
         if not self.text.endswith("/>", start, end):
             self.stack.append(element)
         self.ended = (self.line(end), element)

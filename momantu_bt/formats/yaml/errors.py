@@ -4,24 +4,44 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from ruamel.yaml.error import MarkedYAMLError, StringMark
 
 from momantu_bt.formats.places import Place, lines_of
 from momantu_bt.formats.problems import Problem
-from momantu_bt.tree.catalogue import XML_CONDITIONS
 
 _FLOW_MAPPING = "a flow mapping"
-_SCRIPTS = ("script", "condition", "if", *XML_CONDITIONS)
-_SCRIPT_WITHIN = re.compile(
-    rf"[{{,]\s*({'|'.join(_SCRIPTS)}):\s+" + r"""([^\s"'{}\[][^"{}]*?)\s*(?:,\s+\w+:|}|$)"""
-)
+
+
+@dataclass(frozen=True, slots=True)
+class YamlRules:
+    """How one kind of file is read.
+
+    what: what a person calls such a file, in messages. most_values: those behind aliases are
+    counted each time they are used; comments have the same bound.
+    beginning: what to do about an empty file. tag_hint: about a tag, `!x`. braces_hint: about a
+    mapping as a key, `{x}:`. scripts: keys whose values are expressions that YAML may misread.
+    """
+
+    what: str
+    most_bytes: int
+    most_depth: int
+    most_values: int
+    most_aliases: int = 500
+    beginning: str = ""
+    tag_hint: str = "put the whole value in quotes"
+    braces_hint: str = "put the key in quotes"
+    scripts: tuple[str, ...] = ()
+
+
+_UNQUOTED = r""":\s+([^\s"'{}\[][^"{}]*?)\s*(?:,\s+\w+:|}|$)"""
 """A script without quotes within braces, up to the next key or the brace that ends the mapping."""
 _OPENED_QUOTE = re.compile(r"""[^"'#]*(?:[:-]\s+|[\[{,]\s*)(?:"(?:[^"\\]|\\.)*|'[^']*)""")
 """A line in which a value begins with a quote that the line does not close."""
 
 
-def in_our_words(error: MarkedYAMLError, text: str, file: str) -> Problem:
+def in_our_words(error: MarkedYAMLError, text: str, file: str, rules: YamlRules) -> Problem:
     """The one problem of a text that is not YAML."""
     problem = str(error.problem or "")
     context = str(error.context or "")
@@ -31,7 +51,7 @@ def in_our_words(error: MarkedYAMLError, text: str, file: str) -> Problem:
             mark = error.context_mark if where == "start" and error.context_mark else at
             hint = _cause_above(text, at) or hint
             if known == _FLOW_MAPPING:
-                hint = hint or _script_within(text, error.context_mark, at)
+                hint = hint or _script_within(text, error.context_mark, at, rules.scripts)
             if known.startswith("a block") and error.context_mark is not None:
                 hint += _indented_above(text, error.context_mark, at)
             return Problem("syntax", message, _mark(mark, file), hint)
@@ -78,12 +98,14 @@ def _cause_above(text: str, mark: StringMark | None) -> str:
     return f"line {start + 1}: {hint}"
 
 
-def _script_within(text: str, begin: StringMark | None, at: StringMark | None) -> str:
+def _script_within(
+    text: str, begin: StringMark | None, at: StringMark | None, keys: Sequence[str]
+) -> str:
     """The hint where an unquoted script within braces has a `?`, `:` or `,` that YAML reads."""
-    if begin is None or at is None or begin.line >= len(lines_of(text)):
+    if begin is None or at is None or not keys or begin.line >= len(lines_of(text)):
         return ""
     line = lines_of(text)[begin.line]
-    found = _SCRIPT_WITHIN.search(line, begin.column)
+    found = re.compile(rf"[{{,]\s*({'|'.join(keys)}){_UNQUOTED}").search(line, begin.column)
     if found is not None and re.search(r"[?:]\s", found[2]):
         return f'put the script in quotes: {found[1]}: "{found[2]}"'
     return ""

@@ -8,11 +8,9 @@ from typing import Any
 
 from momantu_bt.errors import MomantuError
 from momantu_bt.formats.places import Place
-from momantu_bt.tree.files.yaml.core import resolve
-from momantu_bt.tree.files.yaml.values import KEY
-from momantu_bt.tree.files.yaml.words import BTCPP
+from momantu_bt.formats.yaml.core import resolve
+from momantu_bt.tree.files.port_values import KEY
 from momantu_bt.tree.model import Literal, PortValue, Reference, Scope, Template
-from momantu_bt.tree.script import ScriptSyntaxError, canonical, yaml_spelling
 
 _NEVER_FIRST = "-?:,[]{}#&*!|>'\"%@`"
 _NEVER_INSIDE = re.compile(r": |:$| #")
@@ -128,26 +126,3 @@ def _key(reference: Reference) -> str:
             raise CannotWrite(f"the key {name!r} is not made of letters, digits and underscores")
     at = "@" if reference.scope is Scope.ROOT else ""
     return at + ".".join((reference.key, *reference.fields))
-
-
-def script_spelling(text: str) -> str | None:
-    """A canonical script in our spelling, with words or else with signs.
-
-    None where neither comes back as the same script, as with `a && b || c`.
-    """
-    for words in (True, False):
-        try:
-            spelled = yaml_spelling(text, words=words)
-            if canonical(spelled) == text:
-                return spelled
-        except ScriptSyntaxError:
-            continue
-    return None
-
-
-def script_text(text: str, *, flow: bool = False) -> str:
-    """A canonical script as a YAML value; `{btcpp: …}` keeps one that our spelling cannot say."""
-    spelled = script_spelling(text)
-    if spelled is not None:
-        return scalar(spelled, flow=flow, typed=False)
-    return f"{{{BTCPP}: {scalar(text, flow=True, typed=False)}}}"

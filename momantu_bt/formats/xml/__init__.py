@@ -1,0 +1,1 @@
+"""XML as elements that know their place: read without recursion and within bounds."""
