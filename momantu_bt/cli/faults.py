@@ -9,9 +9,11 @@ import typer
 
 from momantu_bt.bench.table import columns
 from momantu_bt.cli.help import help_of
+from momantu_bt.cli.schema_file import Out, put_schema
 from momantu_bt.errors import ExitCode
 from momantu_bt.faults.catalogue import kinds
 from momantu_bt.faults.pages import as_data, as_parameters, as_table, as_text
+from momantu_bt.faults.schema import faults_schema
 from momantu_bt.faults.spec import parse_fault
 from momantu_bt.faults.tree_page import HEAD, tree_rows
 from momantu_bt.tree.load import load
@@ -64,6 +66,17 @@ def show_one(
     return ExitCode.SUCCESS
 
 
+def schema(out: Out = None) -> ExitCode:
+    """Print a JSON Schema of files of faults, such as my_tree.faults.yaml.
+
+    With it editors complete keys and names of faults; `momantu-bt check` says more.
+
+    Examples:
+      momantu-bt faults schema -o faults.schema.json
+    """
+    return put_schema(faults_schema(), out, "a file of faults")
+
+
 def _list(as_json: bool, tree: str | None) -> None:
     if tree is not None:
         _list_in(tree, as_json)
@@ -85,3 +98,4 @@ def _list_in(tree: str, as_json: bool) -> None:
 
 
 faults.command("show", help=help_of(show_one))(show_one)
+faults.command("schema", help=help_of(schema))(schema)

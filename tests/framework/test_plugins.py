@@ -104,6 +104,18 @@ BROKEN = {
     "no sentence explains TOO_FAR": GOOD.replace("it does not go that far", ""),
     "not a mapping of codes": GOOD.replace('{"TOO_FAR": "it does not go that far"}', "set()"),
     "uses is not a set": GOOD.replace("    failures", '    uses = "base"\n    failures'),
+    "activities: 'any' is not an activity": GOOD.replace(
+        "    failures", '    activities = {"any": ""}\n    failures'
+    ),
+    "activities: 'closing' is not '', '/PHASE' or '+3 s'": GOOD.replace(
+        "    failures", '    activities = {"grasp": "closing"}\n    failures'
+    ),
+    "symptoms: 'FAR' is not among its failures: TOO_FAR": GOOD.replace(
+        "    failures", '    symptoms = {"FAR": set()}\n    failures'
+    ),
+    "symptoms: TOO_FAR has {'gone'}; expected a set of Symptom": GOOD.replace(
+        "    failures", '    symptoms = {"TOO_FAR": {"gone"}}\n    failures'
+    ),
     "has no run": GOOD.replace("def run", "def walk"),
 }
 """Part of the reason, and a module `Good` of which is broken in that way."""

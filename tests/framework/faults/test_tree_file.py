@@ -6,6 +6,8 @@ import json
 from pathlib import Path
 
 import pytest
+from jsonschema import Draft202012Validator
+from ruamel.yaml import YAML
 
 from momantu_bt.bench.parcel import Parcel
 from momantu_bt.cli import main
@@ -13,7 +15,7 @@ from momantu_bt.cli.bench_setup import demands_of
 from momantu_bt.faults.spec import parse_fault
 from momantu_bt.faults.stage import plan
 from momantu_bt.faults.tree_file import TreeFaults, tree_faults
-from momantu_bt.tree.files.lookup import bundled, tree_files
+from momantu_bt.tree.files.lookup import bundled, faults_file, tree_files
 from momantu_bt.tree.load import load, read_file
 from momantu_bt.tree.problems import TreeError
 from momantu_bt.tree.registry import Registry
@@ -130,6 +132,22 @@ def test_the_listing_of_a_tree_says_when_its_faults_begin(
     assert main(["faults", "list", "--tree", str(tree)]) == 0
     lines = [line.split() for line in capsys.readouterr().out.splitlines()]
     assert ["camera.dead:for=inf", "Rest", "no", "5", "s", "SENSOR_DEAD"] in lines
+
+
+def test_the_schema_accepts_what_is_right_and_refuses_what_is_not(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert main(["faults", "schema"]) == 0
+    schema = json.loads(capsys.readouterr().out)
+    accepts = Draft202012Validator(schema).is_valid
+    yaml = YAML(typ="safe", pure=True)
+    for name, file in bundled().items():
+        beside = faults_file(file)
+        assert not beside.exists() or accepts(yaml.load(beside.read_text())), name
+    assert accepts({"momantu_bt": 1, "rows": ["camera.dead@12 s"]})
+    assert not accepts({"begins": {}})
+    assert not accepts({"momantu_bt": 1, "begins": {"camera.ded": "start"}})
+    assert not accepts({"momantu_bt": 1, "begins": {"map.wrong": "start"}})
 
 
 def test_it_is_no_tree_and_travels_with_its_tree(tree: Path) -> None:
