@@ -29,13 +29,13 @@ Question: TypeAlias = Literal["holding", "not_holding", "localized", "near", "gr
 
 
 class Check(Skill):
-    """Ask a question of the robot's beliefs; it moves nothing."""
+    """Check something that the robot believes. It moves nothing."""
 
     what: Question = In(doc='the question; "near" needs `place`')
     place: str | None = In(None, doc='for "near": a place or surface of the site', names="place")
     failures = {
-        "NOT_HOLDING": "nothing is held",
-        "HOLDING": "something is held",
+        "NOT_HOLDING": "the hand holds nothing",
+        "HOLDING": "the hand holds something",
         "NOT_LOCALIZED": "the robot is not sure where it is",
         "NOT_NEAR": "the robot is not near the place",
         "NOT_OPEN": "the gripper is not open",

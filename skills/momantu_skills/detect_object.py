@@ -31,10 +31,10 @@ EXACT = 0.02
 
 
 class DetectObject(Skill):
-    """Look over a surface, measure what stands on it, and pick out the asked thing.
+    """Look over a surface, measure what stands on it, and find the requested object.
 
-    Looks go from the surface's middle outwards until the thing is seen, then at the thing itself.
-    The surface is measured too: tables stand up to 0.1 m and 5 degrees from where the site says,
+    The camera looks from the surface's middle outwards until it sees the object, then at that.
+    The surface is measured too: tables may stand 0.1 m and 5 degrees from where the site says,
     and 3 cm higher or lower.
     """
 
@@ -43,8 +43,8 @@ class DetectObject(Skill):
     views: int = In(2, least=1, doc="from how many angles to see it before it counts as measured")
     found: DetectedObject = Out(doc="the best match; pose in odom, stamped")
     failures = {
-        "OBJECT_NOT_FOUND": "nothing on the surface is the asked thing; data lists what is there",
-        "SURFACE_NOT_SEEN": "no look showed a level surface where the site has one",
+        "OBJECT_NOT_FOUND": "no object on the surface is the requested one; data lists those found",
+        "SURFACE_NOT_SEEN": "no picture showed a level surface where the site has one",
     }
     uses = {CAMERA_CARRIER}
     activities = {Activity.FIND_OBJECT: ""}

@@ -39,7 +39,7 @@ class DetectPlane(Skill):
 
     near: Pose = In(doc="a place on the surface, such as a tag's pose")
     size: tuple[float, ...] | None = In(
-        None, unit="m", doc="x, y (and z) of what needs room; default: what is held"
+        None, unit="m", doc="x, y (and z) of the object to place; default: the held one"
     )
     plane: SupportPlane = Out(
         doc="the surface as seen within 0.6 m of `near`, where its frame lies, axes along odom's"
@@ -49,7 +49,7 @@ class DetectPlane(Skill):
     )
     failures = {
         "PLANE_NOT_FOUND": "no level surface was seen there",
-        "NO_FREE_SPOT": "nothing on it within reach of `near` has room for the size",
+        "NO_FREE_SPOT": "no spot on it within reach of `near` has room for the size",
     }
     uses = {CAMERA_CARRIER}
     activities = {Activity.MEASURE_SURFACE: ""}

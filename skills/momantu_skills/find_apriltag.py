@@ -43,7 +43,7 @@ class FindAprilTag(Skill):
     on: str | None = In(None, names="surface", doc="surface that it lies on; None: look around")
     tag_pose: Pose = Out(doc="centre of the tag, z out of it, x to its right; odom, stamped")
     tag_sigma: float = Out(unit="m", doc="standard uncertainty of its position")
-    failures = {"TAG_NOT_SEEN": "no look of the sweep showed the tag; data lists other tags"}
+    failures = {"TAG_NOT_SEEN": "no picture of the sweep showed the tag; data lists other tags"}
     uses = {CAMERA_CARRIER}
     activities = {Activity.FIND_MARKER: ""}
     symptoms = {

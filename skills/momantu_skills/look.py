@@ -24,7 +24,7 @@ SLACK = 0.03
 
 
 class Look(Skill):
-    """Point the camera at a pose, at a surface, or ahead; SUCCESS once it is still."""
+    """Point the camera at a pose, at a surface, or ahead. It succeeds once the camera is still."""
 
     at: Pose | None = In(None, doc="look at the origin of this pose (odom or map)")
     surface: str | None = In(None, names="surface", doc="look at the middle of this surface")
@@ -32,7 +32,7 @@ class Look(Skill):
         None, doc="look ahead, or down at the floor ahead"
     )
     failures = {
-        "BAD_TARGET": "not exactly one of at, surface, direction is given; an unknown surface",
+        "BAD_TARGET": "not exactly one of at, surface, direction is given, or no such surface",
         "OUT_OF_VIEW": "the camera's carrier cannot turn that far, or is stuck",
     }
     uses = {CAMERA_CARRIER}

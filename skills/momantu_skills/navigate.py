@@ -34,27 +34,27 @@ SURVEY = (0.05, 0.03)
 
 
 class Navigate(Skill):
-    """Drive somewhere, round what the map does not know, and stop there within tolerance."""
+    """Drive to a goal, around unknown obstacles, and stop there within tolerance."""
 
     in_front_of: str | None = In(None, names="place", doc="a place, or a surface to look over")
     goal: Pose2D | None = In(None, doc="a pose in the map")
     within_reach_of: Pose | None = In(
-        None, doc="stand where the hand reaches this pose, or as near as its surface lets"
+        None, doc="stand where the hand reaches this pose, or as near as its surface allows"
     )
     side: int = In(
         0, least=0, doc="0: the best stand; 1, 2, …: the next best, to try from elsewhere"
     )
-    tolerance: float = In(0.05, unit="m", least=0, doc="distance from the stand at the end")
-    angle_tolerance: float = In(0.05, unit="rad", least=0, doc="heading off the stand's at the end")
+    tolerance: float = In(0.05, unit="m", least=0, doc="largest distance from the stand")
+    angle_tolerance: float = In(0.05, unit="rad", least=0, doc="largest heading error at the end")
     recovery: bool = In(True, doc="when blocked: look again, back up, turn, and retry")
 
     failures: ClassVar = {
         "BAD_GOAL": "the goal is not one place on the map",
-        "GOAL_BLOCKED": "something stands wherever the base could stand",
-        "NO_PATH": "the map has no way that is wide enough",
-        "PATH_BLOCKED": "what the sensors see closes the way",
+        "GOAL_BLOCKED": "every place where the base could stand is occupied",
+        "NO_PATH": "the map has no path that is wide enough",
+        "PATH_BLOCKED": "obstacles that the sensors see block the path",
         "NO_PROGRESS": "the base got no nearer for too long",
-        "NOT_LOCALIZED": "the robot does not know well enough where it is",
+        "NOT_LOCALIZED": "the robot is not sure enough where it is",
         "ARM_STUCK": "the arm that carries the camera is stretched out and does not fold",
     }
     uses: ClassVar = {"base", CAMERA_CARRIER}

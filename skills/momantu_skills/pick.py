@@ -39,10 +39,9 @@ THERE = 0.03
 
 
 class Pick(Skill):
-    """Look, reach, close, check, lift, look again.
+    """Grasp a detected object and lift it: look, reach, close, check, lift, look again.
 
-    Fails with a code that says what the world was like: see `failures`. After a failure the hand
-    is open and drawn back, unless something else held the arm.
+    After a failure the hand is open and drawn back, unless something else held the arm.
     """
 
     object: DetectedObject = In(doc="what to grasp, as detected; pose in odom, not old")
@@ -51,9 +50,9 @@ class Pick(Skill):
         "STALE_POSE": "the pose is too old, or something was touched since it was seen",
         "NOTHING_THERE": "the camera sees nothing where the object should stand",
         "NO_GRASP": "no grasp can be approached, held and lifted from here",
-        "NO_PLAN": "the grasps can be reached, but no way to them was found",
+        "NO_PLAN": "the grasps can be reached, but no path to them was found",
         "GRASP_MISSED": "the fingers closed on nothing, or on something of another size",
-        "SLIPPED": "it was between the fingers and is not any more",
+        "SLIPPED": "it was between the fingers and no longer is",
         "HAND_FULL": "the hand holds something already",
         "ARM_STUCK": "the arm or the gripper does not follow its commands",
     }

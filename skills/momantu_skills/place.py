@@ -36,7 +36,7 @@ BESIDE = 0.02
 
 
 class Place(Skill):
-    """Look, carry above a spot, lower until contact is felt, open, draw back, look again."""
+    """Set down the held object: look, carry it above a spot, lower, open, draw back, look again."""
 
     plane: SupportPlane = In(doc="the surface, as measured; pose in odom, not old")
     spots: tuple[Pose, ...] = In(doc="free spots on it, best first; odom, z up, on the surface")
@@ -44,10 +44,10 @@ class Place(Skill):
         "NOTHING_HELD": "the hand holds nothing",
         "STALE_POSE": "the surface was measured too long ago, or before the hand last touched it",
         "NO_PLACE_POSE": "the hand cannot set it down upright on any of the spots from here",
-        "NO_PLAN": "no way leads above a spot",
+        "NO_PLAN": "no path leads above a spot",
         "NO_CONTACT": "lowered past the surface's height, nothing was felt",
         "LOST": "it is no longer in the hand, or not where it was set down",
-        "TOPPLED": "it was set down and does not stand upright",
+        "TOPPLED": "it was set down, but does not stand upright",
         "ARM_STUCK": "the arm or the gripper does not follow its commands",
     }
     uses = {ARM, "gripper", CAMERA_CARRIER}

@@ -17,14 +17,14 @@ OPEN = 0.01
 
 
 class Release(Skill):
-    """Open the gripper as wide as it goes; what it held is let go where it is."""
+    """Open the gripper fully. It lets go of what it held, where it is."""
 
     back: float = In(
         0.0,
         unit="m",
         least=0,
-        doc="how far the open hand then draws back along its fingers, where it can: what stands "
-        "between them is not swept along by the next motion",
+        doc="how far the open hand then draws back along its fingers, where it can, so that its "
+        "next motion does not push the object",
     )
     failures = {
         "GRIPPER_STUCK": "the gripper does not open",

@@ -48,13 +48,13 @@ PATIENCE = 1.0
 
 
 class Relocalize(Skill):
-    """Doubt the estimate a little, look around, and if that does not settle it, start from nothing.
+    """Localize again: near the estimate first, then anywhere on the map.
 
-    First the particles are spread about the estimate and the robot turns to and fro. If the scans
-    still do not fit, particles are spread over the whole map and the robot turns once round.
+    First the particles are spread around the estimate and the robot turns to and fro. If the scans
+    still do not fit, particles are spread over the whole map and the robot turns once around.
     """
 
-    everywhere: bool = In(False, doc="start with the whole map at once")
+    everywhere: bool = In(False, doc="start with the whole map")
 
     failures: ClassVar = {
         "NOT_LOCALIZED": "no place on the map fits what the laser sees",

@@ -31,7 +31,7 @@ REACHED = 0.03
 
 
 class ResetPose(Skill):
-    """Go to a named pose, planned around what stands there; what is held stays held.
+    """Move the arm to a named pose around obstacles. A held object stays in the hand.
 
     A pose that names only some joints moves only those. Fails with UNKNOWN_POSE, NO_PLAN,
     START_IN_COLLISION or ARM_STUCK.

@@ -97,7 +97,7 @@ def test_the_verb_writes_a_png(
 
 
 @pytest.mark.parametrize(
-    ("out", "words"), [("a.jpg", "no .png file"), ("nowhere/a.png", "no folder")]
+    ("out", "words"), [("a.jpg", "not a .png file"), ("nowhere/a.png", "no folder")]
 )
 def test_a_file_that_cannot_be_is_refused(out: str, words: str, tmp_path: Path) -> None:
     code, said = run("fetch", "-o", tmp_path / out)
