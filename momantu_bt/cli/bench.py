@@ -55,10 +55,12 @@ def bench(
     ],
     seeds: Seeds = "0:30",
     jobs: Jobs = None,
-    world: Annotated[str | None, typer.Option(help="A world's name; else the tree's own.")] = None,
+    world: Annotated[
+        str | None, typer.Option(help="A world's name. Default: the tree's own.")
+    ] = None,
     robot: Robot = None,
     set_: Annotated[
-        list[str] | None, typer.Option("--set", help="key=value: a value of the tree's board.")
+        list[str] | None, typer.Option("--set", help="key=value: a value of the tree's blackboard.")
     ] = None,
     values: Values = None,
     max_time: MaxTime = 600.0,
@@ -66,20 +68,20 @@ def bench(
     episode_limit: EpisodeLimit = 900.0,
     fault: Annotated[
         list[str] | None,
-        typer.Option(metavar="FAULT", help="Break this, once for each seed."),
+        typer.Option(metavar="FAULT", help="Inject this fault, once for each seed."),
     ] = None,
     faults: Annotated[
         str | None,
         typer.Option(metavar="all|GLOB", help="All faults, or those like camera.*,skill.*."),
     ] = None,
     out: Annotated[
-        Path | None, typer.Option(help="Folder of the results; else runs/bench/<tree>.")
+        Path | None, typer.Option(help="Folder of the results. Default: runs/bench/<tree>.")
     ] = None,
     shard: Annotated[
         str | None, typer.Option(metavar="I/N", help="Only every N-th episode, from the I-th.")
     ] = None,
     merge: Annotated[
-        bool, typer.Option("--merge", help="Run nothing: join folders of results in --out.")
+        bool, typer.Option("--merge", help="Run nothing; merge folders of results into --out.")
     ] = False,
     engine: Runner = "local",
     ray_address: RayAddress = None,
@@ -92,7 +94,9 @@ def bench(
     ] = None,
     demand: Annotated[
         float | None,
-        typer.Option(min=0.0, max=1.0, help="Exit 1 when the rate's lower limit is below it."),
+        typer.Option(
+            min=0.0, max=1.0, help="Exit 1 when the lower limit of the rate is below this."
+        ),
     ] = None,
 ) -> ExitCode:
     """Run a tree many times, each time with another seed and in a process of its own.

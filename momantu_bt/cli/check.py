@@ -25,9 +25,11 @@ def check(
         list[str] | None, typer.Argument(help="Tree files, or names of bundled trees.")
     ] = None,
     world: Annotated[
-        str | None, typer.Option(help="Check against this world; `none` is without one.")
+        str | None, typer.Option(help="Check against this world; `none` means without one.")
     ] = None,
-    robot: Annotated[str | None, typer.Option(help="Check against it: a name or file.")] = None,
+    robot: Annotated[
+        str | None, typer.Option(help="Check against this robot: a name or file.")
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,
     as_sarif: Annotated[
         bool, typer.Option("--sarif", help="Print SARIF 2.1.0, for editors and code reviews.")

@@ -45,10 +45,13 @@ def compare(
     tree_b: Annotated[str, typer.Argument(metavar="B", help="Another one.")],
     seeds: Seeds = "0:30",
     jobs: Jobs = None,
-    world: Annotated[str | None, typer.Option(help="A world's name; else the trees' own.")] = None,
+    world: Annotated[
+        str | None, typer.Option(help="A world's name. Default: the trees' own.")
+    ] = None,
     robot: Robot = None,
     set_: Annotated[
-        list[str] | None, typer.Option("--set", help="key=value: a value of both trees' boards.")
+        list[str] | None,
+        typer.Option("--set", help="key=value: a value of both trees' blackboards."),
     ] = None,
     values: Values = None,
     max_time: MaxTime = 600.0,

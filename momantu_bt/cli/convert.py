@@ -30,7 +30,8 @@ def convert(
         Path | None, typer.Option("--output", "-o", help="Write to this file, not to the terminal.")
     ] = None,
     to: Annotated[
-        Spelling | None, typer.Option(help="yaml or xml; else what OUTPUT ends with, or the other.")
+        Spelling | None,
+        typer.Option(help="yaml or xml. Default: OUTPUT's ending, or the other one."),
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Overwrite OUTPUT.")] = False,
 ) -> ExitCode:

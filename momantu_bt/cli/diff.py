@@ -23,7 +23,7 @@ _WIDEST = 160
 def diff(
     left: Annotated[Path, typer.Argument(help="The folder of a record.")],
     right: Annotated[Path, typer.Argument(help="The folder of another one.")],
-    json_: Annotated[bool, typer.Option("--json", help="The differences as JSON.")] = False,
+    json_: Annotated[bool, typer.Option("--json", help="Print the differences as JSON.")] = False,
 ) -> ExitCode:
     """Say where two recorded runs part, and how they differ as a whole.
 

@@ -24,10 +24,10 @@ from momantu_bt.world_plugins import WORLDS
 
 def doctor(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,
-    fix: Annotated[bool, typer.Option("--fix", help="Carry out the cures that can be.")] = False,
-    output: Annotated[
-        Path, typer.Option(help="The folder that reports and videos shall go to.")
-    ] = Path(),
+    fix: Annotated[
+        bool, typer.Option("--fix", help="Carry out the cures that can be automated.")
+    ] = False,
+    output: Annotated[Path, typer.Option(help="The folder for reports and videos.")] = Path(),
 ) -> ExitCode:
     """Look at Python, packages, Vulkan, memory and folders, and name the cure for what is wrong.
 

@@ -24,7 +24,9 @@ faults = typer.Typer(rich_markup_mode=None, invoke_without_command=True)
 _JSON = Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")]
 _TREE = Annotated[
     str | None,
-    typer.Option(metavar="TREE", help="Say when each begins in this tree, and how it must end."),
+    typer.Option(
+        metavar="TREE", help="Print when each begins in this tree, and how the run must end."
+    ),
 ]
 
 

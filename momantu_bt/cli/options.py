@@ -9,27 +9,29 @@ import typer
 
 Seeds: TypeAlias = Annotated[str, typer.Option(help="0:500, 3,5,7 or 0:10,20:30.")]
 Jobs: TypeAlias = Annotated[
-    int | None, typer.Option(min=1, help="Episodes at a time; else one per core.")
+    int | None, typer.Option(min=1, help="Episodes at a time. Default: one per core.")
 ]
 Robot: TypeAlias = Annotated[
-    str | None, typer.Option(help="A robot's name or file; else the world's own.")
+    str | None, typer.Option(help="A robot's name or file. Default: the world's own.")
 ]
 Values: TypeAlias = Annotated[Path | None, typer.Option(help="A YAML file of values.")]
 MaxTime: TypeAlias = Annotated[
     float, typer.Option(min=0.05, help="Simulated seconds after which an episode fails.")
 ]
 Judged: TypeAlias = Annotated[
-    bool, typer.Option("--referee/--no-referee", help="Whether somebody judges the episodes.")
+    bool, typer.Option("--referee/--no-referee", help="Whether the referee judges the episodes.")
 ]
 EpisodeLimit: TypeAlias = Annotated[
-    float, typer.Option(min=1.0, help="Seconds of wall time after which one is killed.")
+    float, typer.Option(min=1.0, help="Seconds of wall time after which an episode is killed.")
 ]
 Runner: TypeAlias = Annotated[
     str, typer.Option(help="What runs the episodes: local, or ray (several machines).")
 ]
 RayAddress: TypeAlias = Annotated[
     str | None,
-    typer.Option(metavar="HOST:PORT", help="The Ray cluster, or auto; else one on this machine."),
+    typer.Option(
+        metavar="HOST:PORT", help="The Ray cluster, or auto. Default: one on this machine."
+    ),
 ]
 Kept: TypeAlias = Annotated[
     str, typer.Option(help="Which episodes leave a record: failures, all or none.")

@@ -20,24 +20,24 @@ if TYPE_CHECKING:
 def replay(
     run: Annotated[Path, typer.Argument(help="The folder of a record.")],
     at: Annotated[
-        float | None, typer.Option(help="Print the moment at this time, in s, and end.")
+        float | None, typer.Option(help="Print the moment at this time, in s, and exit.")
     ] = None,
     node: Annotated[
         str | None,
         typer.Option(help="Print the first moment at which a node changes: its name or line."),
     ] = None,
     failure: Annotated[
-        int | None, typer.Option(help="Print the moment of a failure: 1 the first, -1 the last.")
+        int | None, typer.Option(help="Print the moment of a failure: 1 is the first, -1 the last.")
     ] = None,
-    json_: Annotated[bool, typer.Option("--json", help="The moment as JSON.")] = False,
+    json_: Annotated[bool, typer.Option("--json", help="Print the moment as JSON.")] = False,
     html: Annotated[
         Path | None, typer.Option(help="Write the run as one HTML page, for any browser.")
     ] = None,
     check: Annotated[
-        bool, typer.Option("--check", help="Tick the tree again; it must do what it did.")
+        bool, typer.Option("--check", help="Tick the tree again; it must do the same.")
     ] = False,
 ) -> ExitCode:
-    """Go through a recorded run; without a terminal print what it said.
+    """Step through a recorded run; without a terminal, print its lines.
 
     On a terminal, keys step through it; ? shows them. With --at and --node, --node is sought from
     that time on.

@@ -41,12 +41,14 @@ VIEW_PORT = 8080
 def run(
     tree: Annotated[str, typer.Argument(help="A tree file, or the name of a bundled tree.")],
     world: Annotated[
-        str | None, typer.Option(help="A world's name or file, or none; else the tree's own.")
+        str | None, typer.Option(help="A world's name or file, or none. Default: the tree's own.")
     ] = None,
     robot: Robot = None,
-    seed: Annotated[int, typer.Option(min=0, help="Varies the episode; same seed, same run.")] = 0,
+    seed: Annotated[
+        int, typer.Option(min=0, help="Varies the episode. The same seed gives the same run.")
+    ] = 0,
     set_: Annotated[
-        list[str] | None, typer.Option("--set", help="key=value: a value of the tree's board.")
+        list[str] | None, typer.Option("--set", help="key=value: a value of the tree's blackboard.")
     ] = None,
     values: Annotated[Path | None, typer.Option(help="A YAML file of values.")] = None,
     video: Annotated[Path | None, typer.Option(help="Film the run to this MP4 file.")] = None,
@@ -57,16 +59,16 @@ def run(
     ] = None,
     report: Annotated[Path | None, typer.Option(help="Write the report to this JSON file.")] = None,
     realtime: Annotated[
-        bool, typer.Option("--realtime", help="No faster than the simulated clock.")
+        bool, typer.Option("--realtime", help="Run no faster than real time.")
     ] = False,
     max_time: Annotated[
         float, typer.Option(min=0.05, help="Simulated seconds after which the run fails.")
     ] = 600.0,
     referee: Annotated[
-        bool, typer.Option("--referee/--no-referee", help="Whether somebody judges the run.")
+        bool, typer.Option("--referee/--no-referee", help="Whether the referee judges the run.")
     ] = True,
     substitute: Annotated[
-        Path | None, typer.Option(help="A YAML file that says what nodes do instead, for tests.")
+        Path | None, typer.Option(help="A YAML file of rules that replace nodes, for tests.")
     ] = None,
     break_: Annotated[
         list[str] | None,
@@ -74,18 +76,19 @@ def run(
     ] = None,
     fault: Annotated[
         list[str] | None,
-        typer.Option(metavar="FAULT", help="Break something; see momantu-bt faults."),
+        typer.Option(metavar="FAULT", help="Inject a fault; see momantu-bt faults."),
     ] = None,
     patience: Annotated[
         float,
         typer.Option(min=0.1, help="Wall-clock seconds after which a skill's step counts as hung."),
     ] = 60.0,
     unattended: Annotated[
-        bool, typer.Option("--unattended", help="Nobody answers: questions take their default.")
+        bool,
+        typer.Option("--unattended", help="Nobody answers questions: they take their default."),
     ] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Only the last line.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print only the last line.")] = False,
 ) -> ExitCode:
-    """Run a tree until it ends, and say what happened.
+    """Run a tree until it ends, and print what happened.
 
     Exit code 0: the tree succeeded and no referee denies it; 1: it failed, or the referee denies
     its success; 2: the tree or the arguments are wrong; 3: the world could not start; 4: an

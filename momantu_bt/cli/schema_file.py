@@ -13,7 +13,7 @@ from momantu_bt.errors import ExitCode
 from momantu_bt.formats.files import check_writable, write_whole
 
 Out: TypeAlias = Annotated[
-    Path | None, typer.Option("--out", "-o", help="Write to this file; else print it.")
+    Path | None, typer.Option("--out", "-o", help="Write to this file. Default: print.")
 ]
 
 

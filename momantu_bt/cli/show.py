@@ -26,14 +26,14 @@ INDENT = "  "
 def show(
     tree: Annotated[str, typer.Argument(help="A tree file, or the name of a bundled tree.")],
     other: Annotated[
-        str | None, typer.Argument(help="Another one: print what differs, from the first to it.")
+        str | None, typer.Argument(help="Another one: print the changes from the first to it.")
     ] = None,
     world: Annotated[str | None, typer.Option(help="Check against this world.")] = None,
     as_svg: Annotated[bool, typer.Option("--svg", help="Draw an SVG picture.")] = False,
     as_dot: Annotated[bool, typer.Option("--dot", help="Print it for Graphviz.")] = False,
     as_mermaid: Annotated[bool, typer.Option("--mermaid", help="Print a Mermaid chart.")] = False,
     with_wires: Annotated[
-        bool, typer.Option("--wires/--no-wires", help="Whether wires are shown.")
+        bool, typer.Option("--wires/--no-wires", help="Whether to show wires.")
     ] = True,
     output: Annotated[
         Path | None, typer.Option("--output", "-o", help="Write to this file instead.")

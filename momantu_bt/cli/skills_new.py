@@ -11,7 +11,7 @@ from momantu_bt.errors import ExitCode
 
 
 def new(
-    name: Annotated[str, typer.Argument(help="The skill's name, as trees will write it.")],
+    name: Annotated[str, typer.Argument(help="The skill's name, as trees write it.")],
     into: Annotated[
         Path, typer.Option(help="The folder to make the package's folder in.")
     ] = Path(),

@@ -14,9 +14,11 @@ from momantu_bt.tree.show.skill_page import pages as pages_of
 
 
 def pages(
-    folder: Annotated[Path, typer.Argument(help="Where they go; it is made if it is not there.")],
+    folder: Annotated[
+        Path, typer.Argument(help="The folder for the pages; it is created if needed.")
+    ],
     names: Annotated[
-        list[str] | None, typer.Argument(help="Skills, as in trees; all when none is named.")
+        list[str] | None, typer.Argument(help="Names of skills. Default: all.")
     ] = None,
 ) -> ExitCode:
     """Write a page of Markdown per skill, and an index, from what `skills show` knows.

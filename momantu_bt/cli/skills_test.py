@@ -15,7 +15,7 @@ from momantu_bt.tree.plugins import SKILLS
 
 def promises(
     names: Annotated[
-        list[str] | None, typer.Argument(help="Skills, as in trees; all when none is named.")
+        list[str] | None, typer.Argument(help="Names of skills. Default: all.")
     ] = None,
     seed: Annotated[int, typer.Option(help="The seed of the runs.")] = 0,
     halts: Annotated[

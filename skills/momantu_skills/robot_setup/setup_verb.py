@@ -24,13 +24,14 @@ FILE = "robot.yaml"
 def setup(
     urdf: Annotated[Path, typer.Argument(help="A URDF or xacro file.")],
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="The robot's folder; else its name.")
+        Path | None, typer.Option("-o", "--output", help="The robot's folder. Default: its name.")
     ] = None,
     samples: Annotated[
-        int, typer.Option(min=1, max=1_000_000, help="Random postures for self-collisions.")
+        int,
+        typer.Option(min=1, max=1_000_000, help="Number of random postures for self-collisions."),
     ] = 10_000,
-    seed: Annotated[int, typer.Option(min=0, help="The same seed proposes the same.")] = 0,
-    force: Annotated[bool, typer.Option("--force", help="Write over a file there is.")] = False,
+    seed: Annotated[int, typer.Option(min=0, help="The same seed gives the same proposal.")] = 0,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite an existing file.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,
 ) -> ExitCode:
     """Write a robot file for a URDF: hand, arm, poses, footprint, sensors, self-collisions.

@@ -19,7 +19,7 @@ with lazily():
 def preview(
     robot: Annotated[str, typer.Argument(help="An installed robot's name, or a robot file.")],
     out: Annotated[
-        Path | None, typer.Option("-o", "--out", help="The PNG file; else the robot's name.")
+        Path | None, typer.Option("-o", "--out", help="The PNG file. Default: the robot's name.")
     ] = None,
 ) -> ExitCode:
     """Draw a robot in its named poses, with its frames and what its camera sees.

@@ -25,12 +25,14 @@ MOST_SEEDS = 1000
 def check(
     world: Annotated[str, typer.Argument(help="The world's name, or its file.")],
     robot: Annotated[
-        str | None, typer.Option(help="A robot's name or file; else the world's own.")
+        str | None, typer.Option(help="A robot's name or file. Default: the world's own.")
     ] = None,
-    seeds: Annotated[str, typer.Option(help="Episodes to look at: 0:20, 3,5,7.")] = "0:20",
+    seeds: Annotated[
+        str, typer.Option(help="Seeds of the episodes to check: 0:20, 3,5,7.")
+    ] = "0:20",
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,
 ) -> ExitCode:
-    """Find whatever makes a world unusable.
+    """Find what makes a world unusable.
 
     Looked for, without a simulator: overlaps, tables and places that the robot does not get to,
     narrow doors, tags that nobody can see, starts in collision, things that do not stand, goals

@@ -17,23 +17,23 @@ from momantu_worlds.sdf.importing import Import, import_world
 
 
 def import_sdf(
-    file: Annotated[Path, typer.Argument(help="Gazebo's world: FILE.world or FILE.sdf.")],
+    file: Annotated[Path, typer.Argument(help="A Gazebo world: FILE.world or FILE.sdf.")],
     output: Annotated[Path, typer.Option("--output", "-o", help="The world file to write.")],
     models: Annotated[
         list[Path] | None,
-        typer.Option(help="A folder in which model:// is looked up; may be given again."),
+        typer.Option(help="A folder to search for model://; can be repeated."),
     ] = None,
     strict: Annotated[
-        bool, typer.Option("--strict", help="Exit code 1 when something did not come over.")
+        bool, typer.Option("--strict", help="Exit with 1 when something was left out or changed.")
     ] = False,
     heed_up_axis: Annotated[
         bool,
-        typer.Option("--heed-up-axis", help="Turn COLLADA upright by <up_axis>; Gazebo does not."),
+        typer.Option("--heed-up-axis", help="Apply <up_axis> of COLLADA files; Gazebo does not."),
     ] = False,
     force: Annotated[bool, typer.Option("--force", help="Overwrite the world file.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,
 ) -> ExitCode:
-    """Turn a world of Gazebo's into a world file, and list what is different.
+    """Turn a Gazebo world into a world file, and list the differences.
 
     Models are looked for in --models, in GAZEBO_MODEL_PATH and GZ_SIM_RESOURCE_PATH, and beside
     the file; nothing is downloaded. Meshes become GLB files in a folder beside the world file.

@@ -18,10 +18,10 @@ def new(
         str, typer.Option(metavar="WxD", help="Of both rooms together, along x and y, m.")
     ] = "8x5",
     schema: Annotated[
-        Path | None, typer.Option(help="Where the JSON Schema for the editor lies, if anywhere.")
+        Path | None, typer.Option(help="The JSON Schema for the editor, if there is one.")
     ] = None,
 ) -> ExitCode:
-    """Make a small world with comments, to be changed by hand.
+    """Make a small world with comments, to edit by hand.
 
     Two rooms with a door between them, two tables, a can and a tag: the bundled tree bring_object
     runs in it as it is. Nothing is overwritten.

@@ -23,7 +23,7 @@ def preview(
     out: Annotated[Path, typer.Option("--out", "-o", help="The PNG file to write.")],
     seed: Annotated[int, typer.Option(min=0, help="The episode to draw.")] = 0,
     robot: Annotated[
-        str | None, typer.Option(help="A robot's name or file; else the world's own.")
+        str | None, typer.Option(help="A robot's name or file. Default: the world's own.")
     ] = None,
     plan: Annotated[
         bool, typer.Option("--plan", help="Only the plan; needs no simulator and no Vulkan driver.")

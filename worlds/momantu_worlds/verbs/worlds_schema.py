@@ -17,7 +17,7 @@ from momantu_worlds.verbs.schema_descriptions import words_of
 
 def schema(
     out: Annotated[
-        Path | None, typer.Option("--out", "-o", help="Write to this file; else print it.")
+        Path | None, typer.Option("--out", "-o", help="Write to this file. Default: print.")
     ] = None,
 ) -> ExitCode:
     """Print a JSON Schema of world files.
