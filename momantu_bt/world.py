@@ -61,7 +61,7 @@ class Site:
     map_file: map_server's YAML of the floor plan; overhang_file: the same format, for known
     furniture that the laser's plane does not meet. start: the rough pose in the map where the
     robot stands at first, within start_sigma (m, rad).
-    services: parameters of services, by service name.
+    services: tunables of services and skills, by name.
     """
 
     name: str

@@ -27,11 +27,24 @@ def checked(reading: Reading, model: type[Model], error: type[DescriptionError])
         raise error(reading.path, reading.text, found) from None
 
 
+def problems_at(reading: Reading, keys: KeyPath, model: type[BaseModel]) -> list[KeyProblem]:
+    """What a model objects to in the part of a file that stands at some keys."""
+    try:
+        model.model_validate(reading.value(keys))
+    except ValidationError as trouble:
+        return _Findings(reading, model, str(keys[-1]), keys).problems(trouble)
+    return []
+
+
 class _Findings:
     """Turns pydantic's findings into problems at their places."""
 
-    def __init__(self, reading: Reading, model: type[BaseModel], what: str) -> None:
-        self._reading, self._what = reading, what
+    def __init__(
+        self, reading: Reading, model: type[BaseModel], what: str, keys: KeyPath = ()
+    ) -> None:
+        """keys: where in the file the part stands that the model was asked about."""
+        self._reading, self._what, self._keys = reading, what, keys
+        self._plain = reading.value(keys)
         self._schema: dict[str, Any] = model.model_json_schema()
 
     def problems(self, error: ValidationError) -> list[KeyProblem]:
@@ -54,7 +67,7 @@ class _Findings:
     def _place(self, location: tuple[str | int, ...]) -> KeyPath:
         """Where a finding is in the file: without the names of a union's members."""
         place: list[str | int] = []
-        here: Any = self._reading.plain
+        here: Any = self._plain
         for i, part in enumerate(location):
             inside = isinstance(here, dict) and part in here
             inside |= isinstance(here, list) and isinstance(part, int) and part < len(here)
@@ -68,21 +81,32 @@ class _Findings:
     def _problem(self, place: KeyPath, finding: dict[str, Any]) -> KeyProblem:
         kind, name = finding["type"], str(place[-1]) if place else ""
         if kind == "extra_forbidden":
-            return self._reading.problem(place, self._unknown_key(name, place), key=True)
+            return self._at(place, self._unknown_key(name, place), key=True)
         if kind == "missing" and isinstance(finding["loc"][-1], int):
-            values = len(self._reading.value(place))
+            values = len(self._value(place))
             message = f"expected more values, found {values}"
             wanted = self._schema_at(place).get("minItems")
             if wanted is not None:
                 message = f"expected {wanted} values, found {values}"
-            return self._reading.problem(place, f"{self._dotted(place)}: {message}")
+            return self._at(place, f"{self._dotted(place)}: {message}")
         if kind == "missing":
             message = f"{self._dotted(place[:-1])} needs a key {name!r}"
-            return KeyProblem("", message, self._reading.at(place[:-1]), keys=place)
+            return self._at(place, message, at=place[:-1])
         if kind in ("union_tag_invalid", "union_tag_not_found"):
             return self._unknown_kind(place, finding)
         message = said(finding, self._known_keys(place))
-        return self._reading.problem(place, f"{self._dotted(place)}: {message}")
+        return self._at(place, f"{self._dotted(place)}: {message}")
+
+    def _at(
+        self, place: KeyPath, message: str, *, key: bool = False, at: KeyPath | None = None
+    ) -> KeyProblem:
+        """A problem of what stands at `place` in the part; shown `at` another one."""
+        whole = (*self._keys, *place)
+        where = self._reading.at((*self._keys, *(place if at is None else at)), key=key)
+        return KeyProblem("", message, where, keys=whole)
+
+    def _value(self, place: KeyPath) -> Any:
+        return self._reading.value((*self._keys, *place))
 
     def _unknown_kind(self, place: KeyPath, finding: dict[str, Any]) -> KeyProblem:
         """What kinds there are of a thing whose kind is missing or unknown."""
@@ -91,16 +115,16 @@ class _Findings:
         members = (union, *union.get("anyOf", ()))  # what may be left out is one of nothing and it
         mappings = (member.get("discriminator", {}).get("mapping", {}) for member in members)
         kinds = ", ".join(kind for mapping in mappings for kind in mapping)
-        given = _item(self._reading.value(place), key)
+        given = _item(self._value(place), key)
         if given is None:
             place_of, words = place, f"{self._dotted(place)} needs a key {key!r}"
         else:
             place_of, words = (*place, key), f"{given!r} is not possible here"
-        at = self._reading.at(place_of)
-        return KeyProblem("", f"{words}; possible: {kinds}", at, keys=place)
+        return self._at(place, f"{words}; possible: {kinds}", at=place_of)
 
     def _dotted(self, place: KeyPath) -> str:
-        return ".".join(str(part) for part in place) or f"the {self._what}"
+        whole = (*self._keys, *place)
+        return ".".join(str(part) for part in whole) or f"the {self._what}"
 
     def _unknown_key(self, name: str, place: KeyPath) -> str:
         """Says what would have been right beside an unknown key."""
@@ -116,7 +140,7 @@ class _Findings:
         return list(self._schema_at(place).get("properties", {}))
 
     def _schema_at(self, place: KeyPath) -> dict[str, Any]:
-        here, data = self._resolved(self._schema, self._reading.plain), self._reading.plain
+        here, data = self._resolved(self._schema, self._plain), self._plain
         for part in place:
             data = _item(data, part)
             here = self._resolved(_inner(here, part), data)

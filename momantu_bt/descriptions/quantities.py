@@ -52,9 +52,10 @@ class Measured:
     def __get_pydantic_core_schema__(
         self, source: type, handler: GetCoreSchemaHandler
     ) -> core_schema.CoreSchema:
-        """How pydantic reads it."""
+        """How pydantic reads it; a field's own range narrows the quantity's."""
         number = core_schema.float_schema(allow_inf_nan=False, gt=self.gt, ge=self.ge)
-        return core_schema.no_info_before_validator_function(self.read, number)
+        narrowed = core_schema.chain_schema([number, handler(source)])
+        return core_schema.no_info_before_validator_function(self.read, narrowed)
 
     def __get_pydantic_json_schema__(
         self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler

@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 from momantu_bt.activity import Activity
 from momantu_bt.claim import BaseAt, BaseNear, Claim
+from momantu_bt.descriptions.tunables import configured
 from momantu_bt.failure import FailureValue
 from momantu_bt.frames import MAP, ODOM
 from momantu_bt.geometry import Pose, Pose2D
@@ -18,7 +19,7 @@ from momantu_bt.skill import Failure, In, Needs, Run, Skill
 from momantu_bt.symptom import Symptom
 from momantu_bt.world import Surface
 from momantu_skills.manipulation.scene.arm_scene import ArmScene
-from momantu_skills.navigation.config import NavigationConfig, configured
+from momantu_skills.navigation.config import NavigationConfig
 from momantu_skills.navigation.drive.vehicle import Vehicle
 from momantu_skills.navigation.localize.confidence import estimate
 from momantu_skills.navigation.plan.goals import Stand, before_surface, surface_at, within_reach

@@ -46,7 +46,7 @@ def compile_navigation() -> None:
     localizer = Localizer(grid, LocalizationConfig(), random)
     localizer.reset(here, 0.1, 0.1)
     localizer.observe(rays)
-    way = plan(costmap, here, goal, 0.25, config.comfort)
+    way = plan(costmap, here, goal, 0.25, config.comfort, config.planner)
     if way is not None:
         Mppi(limits, config, random).command(here, (0.0, 0.0), costmap, disc, way)
     graceful.simulate(here, (0.0, 0.0), goal, limits, costmap, disc)

@@ -4,32 +4,55 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from pydantic import Field
 
-@dataclass(frozen=True)
-class SceneConfig:
+from momantu_bt.descriptions.quantities import Force, Size
+from momantu_bt.descriptions.tunables import Tunables
+
+
+class SceneConfig(Tunables):
     """How the planning scene sees its surroundings and judges what is held."""
 
-    voxel: float = 0.02
-    """m; edge of the octree's cells: finer than any gap the arm goes through."""
-    beyond_reach: float = 0.35
-    """m beyond what the robot reaches at which elbow, hand or load may still meet something."""
-    pixel_stride: int = 4
-    """Every n-th pixel in each direction: 7 mm apart at 1 m, denser than the voxels."""
-    points_per_voxel: int = 2
-    """Cells with fewer points are noise at depth edges."""
-    thickness: float = 0.04
-    """m; what is seen is taken to be at least this deep behind its visible face."""
-    robot_padding: float = 0.03
-    """m; around links and held object when they are taken out of a picture: depth noise, the
-    camera's mounting error, and the lag between joints and picture."""
-    surface_band: float = 0.015
-    """m; points this near a support surface's height belong to it."""
-    width_tolerance: float = 0.012
-    """m; change of the gripper's opening at which the held object is believed gone."""
-    least_effort: float = 3.0
-    """N; closing force below which nothing is held: the sensor's noise is 1 N."""
-    doubt: int = 4
-    """Updates in a row that must speak against holding: 0.2 s at 20 Hz, longer than any bounce."""
+    voxel: Size = Field(
+        default=0.02, description="edge of the cells: finer than any gap that the arm goes through"
+    )
+    beyond_reach: Size = Field(
+        default=0.35,
+        description="how far beyond what the robot reaches elbow, hand or load may still meet "
+        "something",
+    )
+    pixel_stride: int = Field(
+        default=4,
+        ge=1,
+        description="every n-th pixel in each direction: 7 mm apart at 1 m, denser than the cells",
+    )
+    points_per_voxel: int = Field(
+        default=2, ge=1, description="cells with fewer points are noise at depth edges"
+    )
+    thickness: Size = Field(
+        default=0.04, description="what is seen is at least this deep behind its visible face"
+    )
+    robot_padding: Size = Field(
+        default=0.03,
+        description="around links and held object when they are taken out of a picture: depth "
+        "noise, the camera's mounting error, and the lag between joints and picture",
+    )
+    surface_band: Size = Field(
+        default=0.015, description="points this near a support surface's height belong to it"
+    )
+    width_tolerance: Size = Field(
+        default=0.012, description="change of the opening at which the held object is believed gone"
+    )
+    least_effort: Force = Field(
+        default=3.0,
+        description="closing force below which nothing is held: the sensor's noise is 1 N",
+    )
+    doubt: int = Field(
+        default=4,
+        ge=1,
+        description="updates in a row that must speak against holding: 0.2 s at 20 Hz, longer "
+        "than any bounce",
+    )
 
 
 @dataclass(frozen=True)

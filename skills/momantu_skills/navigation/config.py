@@ -2,97 +2,167 @@
 
 from __future__ import annotations
 
-import dataclasses
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Annotated, TypeAlias
 
-T = TypeVar("T")
+from pydantic import Field
 
+from momantu_bt.descriptions.quantities import (
+    Angle,
+    AngularSpeed,
+    LinearSpeed,
+    Measured,
+    Size,
+    Time,
+)
+from momantu_bt.descriptions.tunables import Tunables
 
-@dataclass(frozen=True, slots=True)
-class LocalizationConfig:
-    """Adaptive Monte Carlo localization (Thrun, Burgard, Fox: Probabilistic Robotics, ch. 8).
-
-    beams: of a scan that are weighed. hit_sigma: spread of hits about the map's surfaces, m: laser
-    noise, the map's cells and small shifts of furniture together. random_share: share of beams that
-    may be anything. trust: exponent on a scan's likelihood, as neighbouring beams are not
-    independent. reach: distance at which a beam counts as unexplained, m.
-    translation_noise, rotation_noise: standard deviations per metre and per radian of odometry;
-    turn_per_metre: rad per m. move, turn: m and rad of odometry after which a scan is weighed.
-    rest_scans: scans weighed at rest after a reset. rest_jitter: m (and rad) by which particles are
-    moved at such a scan. particles: fewest and most. bin_size: m and rad of a KLD bin.
-    kld_error, kld_quantile: the bound of KLD sampling and its normal quantile.
-    slow, fast: decay per scan of augmented MCL's two averages. injected_most: largest share of
-    random particles. global_spacing, global_headings: poses tried after `spread`, m and count.
-    """
-
-    beams: int = 60
-    hit_sigma: float = 0.05
-    random_share: float = 0.15
-    trust: float = 0.3
-    reach: float = 0.5
-    translation_noise: float = 0.12
-    rotation_noise: float = 0.12
-    turn_per_metre: float = 0.06
-    move: float = 0.12
-    turn: float = 0.08
-    rest_scans: int = 15
-    rest_jitter: float = 0.006
-    particles: tuple[int, int] = (400, 20_000)
-    bin_size: tuple[float, float] = (0.10, 0.10)
-    kld_error: float = 0.05
-    kld_quantile: float = 2.33
-    slow: float = 0.02
-    fast: float = 0.2
-    injected_most: float = 0.1
-    global_spacing: float = 0.15
-    global_headings: int = 72
+Count: TypeAlias = Annotated[int, Field(ge=1)]
+Share: TypeAlias = Annotated[float, Field(ge=0.0, le=1.0)]
+Weight: TypeAlias = Annotated[float, Field(ge=0.0)]
+Spare: TypeAlias = Annotated[float, Measured("a length", ("m",), ge=0)]
+"""A length that may be 0."""
 
 
-@dataclass(frozen=True, slots=True)
-class NavigationConfig:
-    """Costmap, planner, controller and patience of `navigate`; lengths in m, times in s.
+class LocalizationConfig(Tunables):
+    """Adaptive Monte Carlo localization (Thrun, Burgard, Fox: Probabilistic Robotics, ch. 8)."""
 
-    period: of the controller; a whole number of ticks. speed: top speed, m/s.
-    margin: least room between footprint and anything. comfort: decay length of the cost of
-    nearness. near_speed: speed allowed where only `margin` is left; full speed at `far_clearance`.
-    laser_reach, depth_reach: how far hits are kept. known_reach: hits this near to the map's own
-    obstacles are the map's. depth_every: metres of driving between two looks at the depth picture.
-    lowest_obstacle: height above the floor of what counts as an obstacle and not as floor; all
-    between it and the robot's own height does.
-    patience: time without getting nearer before recovery. blocked_patience: time that something
-    may stand in the way. attempts: recoveries and approaches before giving up.
-    """
+    beams: Count = Field(default=60, description="beams of a scan that are weighed")
+    hit_sigma: Size = Field(
+        default=0.05,
+        description="spread of hits about the map's surfaces: laser noise, the map's cells and "
+        "small shifts of furniture together",
+    )
+    random_share: Share = Field(
+        default=0.15, gt=0.0, description="share of beams that may be anything"
+    )
+    trust: Share = Field(
+        default=0.3,
+        gt=0.0,
+        description="exponent on a scan's likelihood, as neighbouring beams are not independent",
+    )
+    reach: Size = Field(default=0.5, description="distance at which a beam counts as unexplained")
+    translation_noise: Weight = Field(
+        default=0.12, description="standard deviation of odometry, m per metre driven"
+    )
+    rotation_noise: Weight = Field(
+        default=0.12, description="standard deviation of odometry, rad per radian turned"
+    )
+    turn_per_metre: Weight = Field(
+        default=0.06, description="standard deviation of the heading, rad per metre driven"
+    )
+    move: Size = Field(default=0.12, description="way by odometry after which a scan is weighed")
+    turn: Angle = Field(
+        default=0.08, gt=0.0, description="turn by odometry after which a scan is weighed"
+    )
+    rest_scans: int = Field(
+        default=15, ge=0, description="scans that are weighed at rest after a reset"
+    )
+    rest_jitter: Spare = Field(
+        default=0.006,
+        description="by which a scan at rest moves particles, and 0.7 times it in rad",
+    )
+    particles: tuple[Count, Count] = Field(
+        default=(400, 20_000), description="fewest and most particles"
+    )
+    bin_size: tuple[Size, Angle] = Field(
+        default=(0.10, 0.10), description="edge of a KLD bin, along the floor and in heading"
+    )
+    kld_error: Share = Field(default=0.05, gt=0.0, description="error bound of KLD sampling")
+    kld_quantile: Weight = Field(
+        default=2.33, description="normal quantile of KLD sampling's bound"
+    )
+    slow: Share = Field(default=0.02, description="decay per scan of augmented MCL's slow average")
+    fast: Share = Field(default=0.2, description="decay per scan of augmented MCL's fast average")
+    injected_most: Share = Field(default=0.1, description="largest share of random particles")
+    global_spacing: Size = Field(
+        default=0.15, description="distance between the places that are tried on the whole map"
+    )
+    global_headings: Count = Field(
+        default=72, description="headings that are tried at each of them"
+    )
 
-    period: float = 0.1
-    speed: float = 1.0
-    margin: float = 0.03
-    comfort: float = 0.12
-    near_speed: float = 0.3
-    far_clearance: float = 0.4
-    laser_reach: float = 6.0
-    depth_reach: float = 3.0
-    known_reach: float = 0.08
-    depth_every: float = 1.3
-    lowest_obstacle: float = 0.06
-    patience: float = 6.0
-    blocked_patience: float = 3.0
-    attempts: int = 4
-    planning_time: float = 0.05
+
+class CriticWeights(Tunables):
+    """What each critic of the controller counts, in metres still to go; see `critics`."""
+
+    collision: Weight = Field(default=60.0, description="meeting something; the earlier, the worse")
+    nearness: Weight = Field(default=1.0, description="being near something, times the speed there")
+    haste: Weight = Field(default=25.0, description="speed above what the room allows, squared")
+    heading: Weight = Field(
+        default=0.7, description="looking away from the way to the goal, at the end"
+    )
+    smoothness: Weight = Field(default=0.05, description="changes of the turning speed, squared")
 
 
-def configured(kind: type[T], parameters: Mapping[str, Any], owner: str) -> T:
-    """A config with a site's parameters in it.
+class ControllerConfig(Tunables):
+    """Model predictive path integral control: how rollouts are drawn and weighed."""
 
-    Raises:
-        ValueError: an unknown parameter, with the known ones.
-    """
-    known = [field.name for field in dataclasses.fields(kind)]  # type: ignore[arg-type]
-    wrong = [name for name in parameters if name not in known]
-    if wrong:
-        raise ValueError(
-            f"{owner} has no parameter {', '.join(wrong)}; parameters: {', '.join(known)}"
-        )
-    values = {k: tuple(v) if isinstance(v, list) else v for k, v in parameters.items()}
-    return kind(**values)
+    samples: int = Field(default=300, ge=3, le=10_000, description="rollouts per call")
+    steps: int = Field(default=22, ge=2, le=200, description="steps of a rollout")
+    step: Time = Field(default=0.1, gt=0.0, le=1.0, description="length of one")
+    knots: int = Field(
+        default=6,
+        ge=2,
+        description="instants at which noise is drawn; between them it is interpolated",
+    )
+    speed_noise: LinearSpeed = Field(default=0.30, description="standard deviation of speeds drawn")
+    turn_noise: AngularSpeed = Field(default=0.60, description="standard deviation of turns drawn")
+    temperature: float = Field(
+        default=0.08, gt=0.0, description="of the rollouts' weights, in metres to the goal"
+    )
+    weights: CriticWeights = CriticWeights()
+
+
+class PlannerConfig(Tunables):
+    """What a metre costs the global planner."""
+
+    nearness: Weight = Field(
+        default=6.0, description="cost of a metre right beside something, over one in the open"
+    )
+    tight: float = Field(
+        default=40.0,
+        gt=0.0,
+        description="cost of a metre where the footprint has no room to spare: only to leave such "
+        "a place",
+    )
+    tight_by: Spare = Field(
+        default=0.08,
+        description="missing room that is still let through at `tight`, for starts and goals "
+        "beside tables",
+    )
+
+
+class NavigationConfig(Tunables):
+    """Costmap, planner, controller and patience of `navigate`."""
+
+    period: Time = Field(default=0.1, ge=0.05, le=1.0, description="of the controller; whole ticks")
+    speed: LinearSpeed = Field(default=1.0, le=5.0, description="top speed")
+    margin: Size = Field(default=0.03, description="least room between footprint and anything")
+    comfort: Size = Field(default=0.12, description="decay length of the cost of nearness")
+    near_speed: LinearSpeed = Field(
+        default=0.3, description="speed allowed where only `margin` is left"
+    )
+    far_clearance: Size = Field(default=0.4, description="room from which on full speed is allowed")
+    laser_reach: Size = Field(default=6.0, description="how far hits of the laser are kept")
+    depth_reach: Size = Field(
+        default=3.0, description="how far points of the depth camera are kept"
+    )
+    known_reach: Size = Field(
+        default=0.08, description="hits this near to the map's own obstacles are the map's"
+    )
+    depth_every: Size = Field(default=1.3, description="way between two looks at the depth picture")
+    lowest_obstacle: Size = Field(
+        default=0.06,
+        description="height above the floor from which on something is an obstacle, up "
+        "to the robot's own height",
+    )
+    patience: Time = Field(default=6.0, description="time without getting nearer before recovery")
+    blocked_patience: Time = Field(
+        default=3.0, description="how long something may stand in the way"
+    )
+    attempts: Count = Field(default=4, description="recoveries and approaches before giving up")
+    planning_time: Time = Field(
+        default=0.05, description="simulated time that planning a way takes"
+    )
+    controller: ControllerConfig = ControllerConfig()
+    planner: PlannerConfig = PlannerConfig()

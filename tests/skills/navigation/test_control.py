@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from momantu_skills.navigation.config import NavigationConfig
+from momantu_skills.navigation.config import ControllerConfig, NavigationConfig
 from momantu_skills.navigation.control import graceful
 from momantu_skills.navigation.control.guard import safe_share
 from momantu_skills.navigation.control.mppi import Mppi
+from momantu_skills.navigation.drive.manoeuvre import TURN_AT_END
 from momantu_skills.navigation.map.costmap import Costmap
 from momantu_skills.navigation.map.maps import GridMap
 from momantu_skills.navigation.plan.planner import plan
@@ -51,7 +52,7 @@ def _drive(
     costmap: Costmap, start: Pose2D, goal: Pose2D, seconds: float
 ) -> tuple[_Unicycle, float]:
     """Least room on the way, with the controller alone."""
-    way = plan(costmap, start, goal, 0.32, CONFIG.comfort)
+    way = plan(costmap, start, goal, 0.32, CONFIG.comfort, CONFIG.planner)
     assert way is not None
     base, mppi, least = _Unicycle(start), Mppi(LIMITS, CONFIG, np.random.default_rng(0)), 9.0
     for _ in range(int(seconds / 0.1)):
@@ -109,7 +110,7 @@ def test_the_approach_ends_on_the_goal(offset: Pose2D, yaw: float) -> None:
             break
     end = goal.inverse() @ base.pose
     assert math.hypot(end.x, end.y) < 0.02
-    assert abs(end.yaw) < 0.12
+    assert abs(end.yaw) < TURN_AT_END  # the rest is a turn on the spot
 
 
 @settings(max_examples=60)
@@ -185,3 +186,23 @@ def test_the_approach_keeps_a_slow_base_slow() -> None:
         assert quick is not None
         assert wanted is not None
         assert quick[0] > 0.3 >= wanted[0] > 0.0
+
+
+@pytest.mark.parametrize("period", [0.05, 0.1, 0.3])
+def test_the_plan_of_controls_moves_on_by_the_period(period: float) -> None:
+    """What was meant for the next call is what the next call begins with."""
+    config = NavigationConfig(
+        period=period,
+        controller=ControllerConfig(step=0.05, speed_noise=1e-9, turn_noise=1e-9),
+    )
+    costmap, start = _costmap(), Pose2D(1.0, 3.0)
+    way = plan(costmap, start, Pose2D(7.0, 3.0), 0.32, config.comfort, config.planner)
+    assert way is not None
+    mppi = Mppi(LIMITS, config, np.random.default_rng(0))
+    steps = config.controller.steps
+    ramp = np.linspace(0.1, 0.9, steps)
+    mppi._controls = np.column_stack([ramp, np.zeros(steps)])
+    # Of all rollouts only the plan itself, at full speed and at rest differ: weigh them out.
+    moved = np.concatenate([ramp[round(period / 0.05) :], ramp[-1:].repeat(round(period / 0.05))])
+    mppi.command(start, (0.1, 0.0), costmap, DISC, way)
+    assert mppi._controls[0, 0] == pytest.approx(moved[0], abs=0.05)

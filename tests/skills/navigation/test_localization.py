@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from momantu_skills.navigation.config import LocalizationConfig, NavigationConfig, configured
+from momantu_skills.navigation.config import LocalizationConfig, NavigationConfig
 from momantu_skills.navigation.localize.confidence import is_localized, sigmas
 from momantu_skills.navigation.localize.fit import scan_fit
 from momantu_skills.navigation.localize.localizer import Localizer
@@ -16,6 +16,7 @@ from momantu_skills.navigation.map.fields import surface_distance
 from momantu_skills.navigation.map.maps import GridMap, read_grid
 from momantu_skills.navigation.map.sensing import SPREAD, Rays
 
+from momantu_bt.descriptions.tunables import configured
 from momantu_bt.formats.maps import FREE, OCCUPIED
 from momantu_bt.geometry import Pose2D, Transform
 from momantu_bt.messages import BaseVelocity, LaserScan
@@ -179,9 +180,9 @@ def test_thinning_counts_what_is_near_no_more_than_what_is_far() -> None:
     assert (~near).sum() > 2 * near.sum()
 
 
-def test_unknown_parameters_are_named() -> None:
+def test_unknown_tunables_are_named() -> None:
     assert configured(LocalizationConfig, {"particles": [4, 6]}, "localization").particles == (4, 6)
-    with pytest.raises(ValueError, match="navigate has no parameter sped; parameters: period"):
+    with pytest.raises(ValueError, match="navigate has no tunable 'sped'; did you mean speed"):
         configured(NavigationConfig, {"sped": 1.0}, "navigate")
 
 

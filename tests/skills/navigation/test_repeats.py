@@ -11,11 +11,12 @@ import numpy as np
 from momantu_skills.navigation.map.fields import clearance
 from momantu_skills.navigation.localize.particle_filter import likelihood_field
 from momantu_skills.navigation.plan.planner import _slowness
+from momantu_skills.navigation.config import PlannerConfig
 
 padding = [bytearray(int(n)) for n in np.random.default_rng(int(sys.argv[1])).integers(1, 999, 50)]
 blocked = np.random.default_rng(0).random((141, 133)) < 0.01
 field = clearance(blocked, 0.05)
-parts = field, likelihood_field(field, 0.05, 0.15), _slowness(field, 0.31, 0.12)
+parts = field, likelihood_field(field, 0.05, 0.15), _slowness(field, 0.31, 0.12, PlannerConfig())
 print(hashlib.sha256(b"".join(part.tobytes() for part in parts)).hexdigest())
 """
 

@@ -222,3 +222,42 @@ def test_after_a_misspelt_section_no_names_are_missed():
     text = STUDIO.replace("tables:", "tabels:")
     (problem,) = refusal(text).problems
     assert "unknown key 'tabels' in the world; did you mean 'tables'?" in problem.message
+
+
+def with_services(services: str) -> str:
+    assert TEXT.count("\nsite:\n") == 1
+    return TEXT.replace("\nsite:\n", f"\nsite:\n  services:\n    {services}\n")
+
+
+TUNED = [
+    ("navigat: {speed: 1}", "navigat", ["no service or skill 'navigat'", "did you mean navigate"]),
+    ("navigate: {sped: 1}", "sped", ["unknown key 'sped' in site.services.navigate", "'speed'"]),
+    ("navigate: {speed: 1 m}", "1 m}", ["site.services.navigate.speed", "expected a speed"]),
+    ("navigate: {speed: 50}", "50}", ["less than or equal to 5"]),
+    ("localization: {beams: many}", "many", ["site.services.localization.beams"]),
+    ("navigate: {controller: {weights: {haste: -1}}}", "-1}", ["controller.weights.haste"]),
+    ("planning_scene: {voxl: 1 cm}", "voxl", ["did you mean 'voxel'?"]),
+]
+
+
+@pytest.mark.parametrize(("services", "place", "words"), TUNED, ids=lambda c: str(c)[:25])
+def test_a_wrong_tunable_is_named_at_its_place(services, place, words):
+    text = with_services(services)
+    error = refusal(text)
+    assert len(error.problems) == 1, error
+    found = error.problems[0].place
+    line = text.splitlines()[found.line - 1]
+    assert line[found.column - 1 :].startswith(place), error
+    for word in words:
+        assert word in str(error)
+
+
+def test_tunables_that_are_right_reach_the_site():
+    world = parse_world(with_services("navigate: {speed: 50 cm/s}"), PATH)
+    assert world.site.services == {"navigate": {"speed": "50 cm/s"}}
+
+
+def test_wrong_tunables_are_told_with_all_other_mistakes():
+    text = with_services("navigate: {sped: 1}").replace("  id: 1 ", "  ident: 1 ")
+    assert "sped" in str(refusal(text))
+    assert "ident" in str(refusal(text))

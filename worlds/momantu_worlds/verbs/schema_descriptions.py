@@ -124,7 +124,7 @@ WORDS: Mapping[str, str] = MappingProxyType(
         "SiteNotes.resolution": "Edge of the map's cells.",
         "SiteNotes.places": "[x, y, yaw] of places that a tree can name.",
         "SiteNotes.objects": "Kinds of objects by the names that trees use.",
-        "SiteNotes.services": "Parameters of services, by service.",
+        "SiteNotes.services": "Tunables of services and skills, by name.",
         "SiteNotes.map": "map_server's YAML of a floor plan; drawn from this file when not said.",
         "Start.turn": "How far from `at` it may look; in any direction when not said.",
         "Start.clear": "Half the edge of the square around it that is free.",

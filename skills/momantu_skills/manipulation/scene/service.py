@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from functools import cached_property
 from typing import Any, ClassVar
 
+from momantu_bt.descriptions.tunables import configured
 from momantu_bt.failure import FRAME_UNKNOWN, Failure
 from momantu_bt.frames import MAP, ODOM, FrameBuffer
 from momantu_bt.geometry import Array, Transform
@@ -30,8 +31,8 @@ class PlanningSceneService(Service):
     publishes: ClassVar[Mapping[str, type]] = {"holding": str}
 
     def start(self, context: ServiceContext) -> None:
-        """Build the robot's model. Parameters: any field of SceneConfig."""
-        self.config = SceneConfig(**context.parameters)
+        """Build the robot's model. Parameters: see `SceneConfig`."""
+        self.config = configured(SceneConfig, context.parameters, "planning_scene")
         self.frames: FrameBuffer = context.frames
         self.site = context.site
         self.holding = Holding(self.config)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numba
 import numpy as np
@@ -11,33 +10,19 @@ import numpy as np
 from momantu_bt.geometry import Array, Pose2D
 from momantu_bt.robot import BaseLimits
 from momantu_skills.navigation.config import NavigationConfig
+from momantu_skills.navigation.control import critics
 from momantu_skills.navigation.map.costmap import Costmap, room
 from momantu_skills.navigation.map.fields import Field, sample
 from momantu_skills.navigation.plan.planner import Plan
 
-
-@dataclass(frozen=True, slots=True)
-class MppiConfig:
-    """Sampling and weights.
-
-    samples: rollouts per call. steps, step: horizon, count and s. knots: noise is drawn at this
-    many instants and interpolated, so that rollouts are smooth. speed_noise, turn_noise: standard
-    deviations, m/s and rad/s. temperature: of the weights, in cost units (metres to the goal).
-    collision, nearness, haste, heading, smoothness: weights of the terms, see `_cost`.
-    """
-
-    samples: int = 300
-    steps: int = 22
-    step: float = 0.1
-    knots: int = 6
-    speed_noise: float = 0.30
-    turn_noise: float = 0.60
-    temperature: float = 0.08
-    collision: float = 60.0
-    nearness: float = 1.0
-    haste: float = 25.0
-    heading: float = 0.7
-    smoothness: float = 0.05
+CLOSE = 0.3
+"""m to go from which on the heading at the end does not matter."""
+SLOPE = 0.1
+"""m to either side of a point between which the slope of the distance to go is measured."""
+FARTHEST, STEEPEST = 1e5, 100.0
+"""m, and m per 2 `SLOPE`, beyond which the distance to go is that of a place no way leads from."""
+DETOUR = 3.0
+"""m by which a rollout may seem to get farther from the goal at most."""
 
 
 class Mppi:
@@ -48,9 +33,8 @@ class Mppi:
         limits: BaseLimits,
         navigation: NavigationConfig,
         random: np.random.Generator,
-        config: MppiConfig | None = None,
     ) -> None:
-        self._config = config or MppiConfig()
+        self._config, self._period = navigation.controller, navigation.period
         self._random = random
         self._limits = np.array(
             [
@@ -61,10 +45,13 @@ class Mppi:
             ]
         )
         c = self._config
-        self._terms = np.array(
-            [c.collision, c.nearness, c.haste, c.heading, c.smoothness, navigation.margin,
-             navigation.comfort, navigation.near_speed, navigation.far_clearance]
-        )  # fmt: skip
+        self._critics = critics.Critics(
+            **c.weights.model_dump(),
+            margin=navigation.margin,
+            comfort=navigation.comfort,
+            near_speed=navigation.near_speed,
+            far_clearance=navigation.far_clearance,
+        )
         at = np.linspace(0.0, c.knots - 1.0, c.steps)
         low = np.minimum(at.astype(np.int64), c.knots - 2)
         self._blend = np.zeros((c.steps, c.knots))
@@ -81,7 +68,7 @@ class Mppi:
     ) -> tuple[float, float]:
         """Next (m/s, rad/s) from a pose in the map and the measured (m/s, rad/s)."""
         c = self._config
-        shift = max(1, round(0.1 / c.step))
+        shift = max(1, round(self._period / c.step))
         self._controls = np.concatenate(
             [self._controls[shift:], self._controls[-1:].repeat(shift, 0)]
         )
@@ -96,7 +83,7 @@ class Mppi:
         start = np.array([pose.x, pose.y, pose.yaw, speed[0], speed[1]])
         costs = _costs(
             start, controls, c.step, costmap.field, costmap.frame, discs, plan.cost, self._limits,
-            self._terms,
+            self._critics,
         )  # fmt: skip
         weights = np.exp((costs.min() - costs) / c.temperature)
         self._controls = np.einsum("s,stc->tc", weights / weights.sum(), controls)
@@ -113,11 +100,11 @@ def _costs(
     discs: Array,
     cost_to_go: Field,
     limits: Array,
-    terms: Array,
+    weights: critics.Critics,
 ) -> Array:
     costs = np.empty(controls.shape[0])
     for i in range(controls.shape[0]):
-        costs[i] = _cost(start, controls[i], dt, field, frame, discs, cost_to_go, limits, terms)
+        costs[i] = _cost(start, controls[i], dt, field, frame, discs, cost_to_go, limits, weights)
     return costs
 
 
@@ -131,20 +118,18 @@ def _cost(
     discs: Array,
     cost_to_go: Field,
     limits: Array,
-    terms: Array,
+    weights: critics.Critics,
 ) -> float:
-    """One rollout of a unicycle within acceleration limits.
+    """One rollout of a unicycle within acceleration limits: the sum of its `critics`.
 
-    Metres still to go at its end and on average; collision (the earlier the worse); nearness
-    times speed; haste (speed above what the room allows); heading against the way down the
-    cost-to-go at its end; changes of turning.
+    A rollout ends where it meets something.
     """
     x, y, yaw, v, w = start[0], start[1], start[2], start[3], start[4]
     steps = controls.shape[0]
     total = 0.0
-    here = min(_to_go(cost_to_go, frame, x, y), 1e5)
+    here = min(_to_go(cost_to_go, frame, x, y), FARTHEST)
     last = here
-    worst = here + 3.0
+    worst = here + DETOUR
     for t in range(steps):
         before = w
         v += min(max(controls[t, 0] - v, -limits[2] * dt), limits[2] * dt)
@@ -153,23 +138,21 @@ def _cost(
         x += v * math.cos(yaw) * dt
         y += v * math.sin(yaw) * dt
         yaw += 0.5 * w * dt
-        spare = room(field, frame, discs, x, y, yaw) - terms[5]
+        spare = room(field, frame, discs, x, y, yaw) - weights.margin
         last = min(_to_go(cost_to_go, frame, x, y), worst)
         if spare < 0.0:
-            total += terms[0] * (steps - t) / steps + 10.0 * min(-spare, 0.3)
+            total += critics.collision(weights, spare, t, steps)
             break
-        share = min(spare / (terms[8] - terms[5]), 1.0)
-        allowed = terms[7] + share * (limits[0] - terms[7])
-        total += terms[1] * math.exp(-spare / terms[6]) * (0.1 + v) * dt
-        total += terms[2] * max(0.0, v - allowed) ** 2 * dt
-        total += terms[4] * (w - before) ** 2 + 0.3 * last / steps
+        total += critics.nearness(weights, spare, v, dt)
+        total += critics.haste(weights, spare, v, limits[0], dt)
+        total += critics.smoothness(weights, w, before) + critics.progress(last, steps)
     total += last
-    if last > 0.3:
-        dx = _to_go(cost_to_go, frame, x + 0.1, y) - _to_go(cost_to_go, frame, x - 0.1, y)
-        dy = _to_go(cost_to_go, frame, x, y + 0.1) - _to_go(cost_to_go, frame, x, y - 0.1)
+    if last > CLOSE:
+        dx = _slope(cost_to_go, frame, x, y, SLOPE, 0.0)
+        dy = _slope(cost_to_go, frame, x, y, 0.0, SLOPE)
         steep = math.hypot(dx, dy)
-        if 1e-6 < steep < 100.0:
-            total += terms[3] * (1.0 + (math.cos(yaw) * dx + math.sin(yaw) * dy) / steep)
+        if 1e-6 < steep < STEEPEST:
+            total += critics.heading(weights, yaw, dx, dy, steep)
     return total
 
 
@@ -178,3 +161,12 @@ def _to_go(cost_to_go: Field, frame: Array, x: float, y: float) -> float:
     column = (x - frame[0]) / frame[2] - 0.5
     row = (y - frame[1]) / frame[2] - 0.5
     return sample(cost_to_go, column, row, 1e6)
+
+
+@numba.njit(cache=True, inline="always")
+def _slope(
+    cost_to_go: Field, frame: Array, x: float, y: float, along_x: float, along_y: float
+) -> float:
+    """Difference of the distance to go between two points on either side of (x, y), m."""
+    ahead = _to_go(cost_to_go, frame, x + along_x, y + along_y)
+    return ahead - _to_go(cost_to_go, frame, x - along_x, y - along_y)

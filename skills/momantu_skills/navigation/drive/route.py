@@ -105,14 +105,12 @@ def choose(vehicle: Vehicle, stands: list[Stand], side: int) -> Route:
 
 def route_to(vehicle: Vehicle, stand: Pose2D) -> Route | None:
     """The cheapest way to a stand, by way of a lead-in on its axis; None when there is none."""
-    pose = vehicle.pose()
-    comfort = vehicle.config.comfort
     for distance in LEAD_IN:
         lead_in = stand @ Pose2D(-distance, 0.0, 0.0)
         wanted = vehicle.config.margin if distance else -math.inf
         if vehicle.room(lead_in, whole=False) < wanted:
             continue
-        found = plan(vehicle.costmap, pose, lead_in, planning_radius(vehicle), comfort)
+        found = _planned(vehicle, lead_in)
         if found is not None:
             return Route(stand, lead_in, found)
     return None
@@ -121,11 +119,17 @@ def route_to(vehicle: Vehicle, stand: Pose2D) -> Route | None:
 def no_way(vehicle: Vehicle, stand: Pose2D) -> Failure:
     """PATH_BLOCKED when the map alone has a way, else NO_PATH."""
     pose = vehicle.pose()
-    known = plan(
-        vehicle.costmap, pose, stand, planning_radius(vehicle), vehicle.config.comfort, known=True
-    )
+    known = _planned(vehicle, stand, known=True)
     where = f"({stand.x:.2f}, {stand.y:.2f})"
     data = {"from": [pose.x, pose.y], "to": [stand.x, stand.y], "radius": planning_radius(vehicle)}
     if known is not None:
         return Failure("PATH_BLOCKED", f"what the sensors see closes every way to {where}", **data)
     return Failure("NO_PATH", f"the map has no way wide enough to {where}", **data)
+
+
+def _planned(vehicle: Vehicle, goal: Pose2D, *, known: bool = False) -> Plan | None:
+    """The cheapest way from where the base is; see `planner.plan`."""
+    config, radius = vehicle.config, planning_radius(vehicle)
+    return plan(
+        vehicle.costmap, vehicle.pose(), goal, radius, config.comfort, config.planner, known=known
+    )

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
+from momantu_bt.descriptions.tunables import configured
 from momantu_bt.failure import SENSOR_DEAD, Failure
 from momantu_bt.geometry import Array, Pose2D, Transform
 from momantu_bt.lazy import lazily
 from momantu_bt.robot import Robot, read_laser
 from momantu_bt.service import Service, ServiceContext
-from momantu_skills.navigation.config import LocalizationConfig, configured
+from momantu_skills.navigation.config import LocalizationConfig
 from momantu_skills.navigation.localize.confidence import sigmas
 from momantu_skills.navigation.map.maps import read_grid
 from momantu_skills.navigation.map.sensing import Rays

@@ -10,15 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array, Pose2D
+from momantu_skills.navigation.config import PlannerConfig
 from momantu_skills.navigation.map.costmap import Costmap
 from momantu_skills.navigation.map.fields import Field, sample
 
-NEARNESS = 6.0
-"""Cost of a metre right beside something, over a metre in the open."""
-TIGHT = 40.0
-"""Cost of a metre where the footprint has no room to spare: only to leave such a place."""
-TIGHT_BY = 0.08
-"""m of missing room that is still let through at `TIGHT`, for starts and goals beside tables."""
 UNREACHED = np.float32(1e6)
 STEP = 0.5
 """Cells per step of the descent to the goal."""
@@ -48,6 +43,7 @@ def plan(
     goal: Pose2D,
     radius: float,
     comfort: float,
+    costs: PlannerConfig,
     *,
     known: bool = False,
 ) -> Plan | None:
@@ -56,7 +52,7 @@ def plan(
     known: by the map's layers alone, to tell a blocked way from one that never was.
     """
     field = costmap.known_field if known else costmap.field
-    slowness = _slowness(field, radius, comfort)
+    slowness = _slowness(field, radius, comfort, costs)
     row, column = costmap.grid.index(goal.x, goal.y)
     start_row, start_column = costmap.grid.index(start.x, start.y)
     if not (costmap.grid.contains(goal.x, goal.y) and costmap.grid.contains(start.x, start.y)):
@@ -69,10 +65,10 @@ def plan(
     return Plan(cost, path, (goal.x, goal.y))
 
 
-def _slowness(field: Field, radius: float, comfort: float) -> Field:
+def _slowness(field: Field, radius: float, comfort: float, costs: PlannerConfig) -> Field:
     spare = field - np.float32(radius)
-    slow = 1.0 + NEARNESS * np.exp(-np.maximum(spare, 0.0) / comfort)
-    slow = np.where(spare < 0.0, np.where(spare > -TIGHT_BY, TIGHT, np.inf), slow)
+    slow = 1.0 + costs.nearness * np.exp(-np.maximum(spare, 0.0) / comfort)
+    slow = np.where(spare < 0.0, np.where(spare > -costs.tight_by, costs.tight, np.inf), slow)
     return np.ascontiguousarray(slow, dtype=np.float32)
 
 

@@ -10,6 +10,7 @@ from pydantic import ValidationError
 
 from momantu_bt.descriptions.findings import checked
 from momantu_bt.descriptions.reading import DescriptionError, KeyProblem, Reading, read_text
+from momantu_bt.descriptions.tunables import tunable_problems
 from momantu_worlds.scenes.file.references import dangling
 from momantu_worlds.scenes.file.world import WorldFile
 
@@ -41,10 +42,14 @@ def world_text(path: Path) -> str:
 def parse_world(text: str, path: Path) -> WorldFile:
     """As `read_world`, from text; `path` is for the messages, and where named files lie."""
     reading = Reading(path, text, WorldFileError)
+    tunables = list(tunable_problems(reading, ("site", "services")))
     try:
         world = checked(reading, WorldFile, WorldFileError).located(path)
     except WorldFileError as error:
-        raise WorldFileError(path, text, [*error.problems, *_beside(reading, error)]) from None
+        found = [*error.problems, *_beside(reading, error), *tunables]
+        raise WorldFileError(path, text, found) from None
+    if tunables:
+        raise WorldFileError(path, text, tunables)
     reading.refuse(dangling(world))
     return world
 

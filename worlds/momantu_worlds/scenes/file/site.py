@@ -40,7 +40,7 @@ class SiteNotes(Part):
     """What a person would tell the robot, beside what follows from the file.
 
     map: map_server's YAML of a floor plan of one's own; drawn from this file when not said.
-    services: parameters of services, by service name.
+    services: tunables of services and skills, by name; see `momantu_bt.descriptions.tunables`.
     """
 
     resolution: Annotated[Size, Field(ge=0.01, le=0.5)] = 0.05

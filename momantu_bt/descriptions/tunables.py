@@ -1,0 +1,151 @@
+"""Tunables: what a site may set of a service or skill, with unit, range, default and meaning.
+
+A plug-in declares its tunables as a subclass of `Tunables` under the entry point group
+`momantu_bt.tunables`, by the service's or skill's name. A world file sets them at
+`site.services.NAME`; whatever is wrong there is told at its place.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from importlib.metadata import entry_points
+from typing import Any, TypeVar, get_args, get_origin
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic.fields import FieldInfo
+
+from momantu_bt.descriptions.findings import problems_at
+from momantu_bt.descriptions.quantities import Measured
+from momantu_bt.descriptions.reading import KeyProblem, Reading
+from momantu_bt.descriptions.wording import said
+from momantu_bt.formats.names import valid_names
+from momantu_bt.formats.places import KeyPath
+from momantu_bt.plugins import Group
+
+
+class Tunables(BaseModel):
+    """The tunables of one service or skill; a field each, with a default and a description.
+
+    Quantities have the types of `quantities`; `pydantic.Field(ge=…, le=…)` gives the range. A
+    field may be a `Tunables` itself: a group of them.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+def _objection(name: str, plugin: Any) -> str | None:
+    if not (isinstance(plugin, type) and issubclass(plugin, Tunables)):
+        return f"{plugin!r} is not a subclass of momantu_bt.descriptions.tunables.Tunables"
+    needed = [key for key, field in plugin.model_fields.items() if field.is_required()]
+    return f"it has no default for {', '.join(needed)}" if needed else None
+
+
+TUNABLES: Group[type[Tunables]] = Group("momantu_bt.tunables", "set of tunables", _objection)
+
+Kind = TypeVar("Kind", bound=Tunables)
+
+
+def configured(kind: type[Kind], parameters: Mapping[str, Any], owner: str) -> Kind:
+    """Tunables with what a site sets of them.
+
+    Raises:
+        ValueError: an unknown name, a wrong unit, or a value out of range; all that is wrong.
+    """
+    try:
+        return kind.model_validate(dict(parameters))
+    except ValidationError as error:
+        raise ValueError("; ".join(_told(kind, owner, dict(e)) for e in error.errors())) from None
+
+
+def _told(kind: type[Tunables], owner: str, finding: dict[str, Any]) -> str:
+    *groups, name = finding["loc"] or ("",)
+    if finding["type"] != "extra_forbidden":
+        return f"{'.'.join(map(str, (owner, *groups, name)))}: {said(finding, ())}"
+    for group in groups:
+        kind = dict(groups_of(kind))[group]
+    names = valid_names(name, kind.model_fields, "tunables")
+    return f"{'.'.join((owner, *groups))} has no tunable {name!r}; {names}"
+
+
+def tunable_problems(reading: Reading, keys: KeyPath) -> Iterator[KeyProblem]:
+    """What is wrong with the tunables that a file sets, by service, at some keys."""
+    given: Any = reading.plain
+    for part in keys:
+        given = given.get(part) if isinstance(given, dict) else None
+    if not isinstance(given, dict):
+        return
+    for name, values in given.items():
+        if name in TUNABLES:
+            if isinstance(values, dict):
+                yield from problems_at(reading, (*keys, name), TUNABLES.load(name))
+        elif name not in {entry.name for entry in entry_points(group="momantu_bt.services")}:
+            hint = valid_names(str(name), sorted(TUNABLES), "with tunables")
+            message = f"no service or skill {name!r} has tunables; {hint}"
+            yield reading.problem((*keys, name), message, key=True)
+
+
+@dataclass(frozen=True, slots=True)
+class Tunable:
+    """One tunable, in words."""
+
+    name: str
+    unit: str
+    default: str
+    range: str
+    meaning: str
+
+
+def groups_of(kind: type[Tunables]) -> Iterator[tuple[str, type[Tunables]]]:
+    """The groups of tunables within a set, by name."""
+    for key, field in kind.model_fields.items():
+        inner = field.annotation
+        if isinstance(inner, type) and issubclass(inner, Tunables):
+            yield key, inner
+
+
+def tunables_of(kind: type[Tunables]) -> Iterator[Tunable]:
+    """The tunables of a set, without its groups, in the order in which it declares them."""
+    groups = dict(groups_of(kind))
+    for key, field in kind.model_fields.items():
+        if key not in groups:
+            default, meaning = _plain(field.default), field.description or ""
+            yield Tunable(key, _unit(field), default, _range(field), meaning)
+
+
+def _plain(value: Any) -> str:
+    return ", ".join(map(str, value)) if isinstance(value, tuple) else str(value)
+
+
+def _unit(field: FieldInfo) -> str:
+    parts = [p for p in get_args(field.annotation) if p is not ...]
+    inner = [_measured(get_args(part)) for part in parts if get_origin(part) is not None]
+    found = [_measured(field.metadata), *inner]
+    return ", ".join(dict.fromkeys(each for each in found if each))
+
+
+def _measured(metadata: Any) -> str:
+    return next((each.si[0] for each in metadata if isinstance(each, Measured)), "")
+
+
+def _range(field: FieldInfo) -> str:
+    bounds = _bounds(field.metadata)
+    for part in get_args(field.annotation):
+        bounds = bounds or _bounds(get_args(part))
+    return ", ".join(bounds)
+
+
+_BOUNDS = {"gt": "above", "ge": "at least", "lt": "below", "le": "at most"}
+
+
+def _bounds(metadata: Any) -> list[str]:
+    """The tightest lower and upper bound, in words: a field may narrow its quantity's."""
+    stated = [bound for each in metadata for bound in (each, *getattr(each, "metadata", ()))]
+    given = [(getattr(bound, key), key) for bound in stated for key in _BOUNDS if _has(bound, key)]
+    lower = max((each for each in given if each[1] in ("ge", "gt")), default=None)
+    upper = min((each for each in given if each[1] in ("le", "lt")), default=None)
+    return [f"{_BOUNDS[key]} {value:g}" for value, key in filter(None, (lower, upper))]
+
+
+def _has(bound: Any, key: str) -> bool:
+    return getattr(bound, key, None) is not None
