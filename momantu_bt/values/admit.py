@@ -70,10 +70,10 @@ class _MisfitError(Exception):
 def _admitted(value: Any, kind: ValueKind) -> Any:
     """Raises _MisfitError."""
     match kind:
-        case kinds.Anything() | kinds.Unknown():
-            return freeze(value)
         case kinds.Number():
             return _number(value, kind)
+        case kinds.Anything() | kinds.Unknown():
+            return freeze(value)
         case kinds.Text():
             return _instance(value, str)
         case (

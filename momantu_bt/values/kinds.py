@@ -13,7 +13,7 @@ from collections import abc
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, is_dataclass
 from enum import Enum
-from functools import cache
+from functools import cache, lru_cache
 from typing import (
     Annotated,
     Any,
@@ -196,11 +196,8 @@ class Part:
 
 
 def kind_of(type_: ValueType) -> ValueKind:
-    """The kind of a type.
-
-    Forms such as `A | B` are read anew each time: `B | A` is equal to it and reads differently.
-    """
-    return _of_class(type_) if isinstance(type_, type) else _of_form(type_)
+    """The kind of a type; each type is read once."""
+    return _of_class(type_) if isinstance(type_, type) else _of_form(_Form(type_))
 
 
 def is_type(annotation: ValueType) -> bool:
@@ -273,7 +270,22 @@ def _is_checkable(type_: type) -> bool:
     return True
 
 
-def _of_form(type_: ValueType) -> ValueKind:
+@dataclass(frozen=True, slots=True, eq=False)
+class _Form:
+    """A type that is not a class, by its identity: `A | B` and `B | A` are equal, yet differ."""
+
+    type: ValueType
+
+    def __hash__(self) -> int:
+        return id(self.type)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Form) and self.type is other.type
+
+
+@lru_cache(maxsize=1024)
+def _of_form(form: _Form) -> ValueKind:
+    type_ = form.type
     if type_ is None:
         return Nothing(types.NoneType)
     head: Any = get_origin(type_)
