@@ -7,6 +7,8 @@ when they are first used, so that importing the package costs next to nothing.
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from momantu_bt.version import __version__
+
 if TYPE_CHECKING:
     from momantu_bt.failure import Failure
     from momantu_bt.geometry import Pose, Pose2D, Transform
@@ -17,7 +19,6 @@ if TYPE_CHECKING:
     from momantu_bt.skill import In, Needs, Out, Run, Skill, compute
     from momantu_bt.world import Site, World
 
-__version__ = "0.1.0"
 
 _HOMES = {
     "CAMERA_CARRIER": "robot",

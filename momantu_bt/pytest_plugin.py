@@ -9,6 +9,14 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import pytest
 
+from momantu_bt.lazy import lazily
+
+with lazily():
+    from momantu_bt import testing
+    from momantu_bt.running import api
+    from momantu_bt.tree import registry
+
+
 if TYPE_CHECKING:
     from momantu_bt.record.report import Report
     from momantu_bt.skill import Skill
@@ -60,12 +68,8 @@ def run_tree(tmp_path: Path) -> Iterator[RunTree]:
         seed: int = 0,
         max_time: float = 60.0,
     ) -> Report:
-        from momantu_bt.running.api import run
-        from momantu_bt.testing import ExampleWorld, ScriptedWorld
-        from momantu_bt.tree.registry import Registry
-
-        having = Registry.installed()
-        registry = Registry(
+        having = registry.Registry.installed()
+        chosen = registry.Registry(
             skills=_before(skills, having.skills),
             worlds=having.worlds,
             robots=having.robots,
@@ -73,11 +77,15 @@ def run_tree(tmp_path: Path) -> Iterator[RunTree]:
         )
         place = world
         if place is None:
-            place = ExampleWorld(seed, robot) if site is None else ScriptedWorld(robot, site)
+            place = (
+                testing.ExampleWorld(seed, robot)
+                if site is None
+                else testing.ScriptedWorld(robot, site)
+            )
             opened.append(place)
         file = _file(tree, tmp_path)
-        return run(
-            file, world=place, seed=seed, values=values, max_time=max_time, registry=registry
+        return api.run(
+            file, world=place, seed=seed, values=values, max_time=max_time, registry=chosen
         )
 
     yield start

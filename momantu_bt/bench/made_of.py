@@ -19,7 +19,6 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
 
-import momantu_bt
 from momantu_bt.engine.build import skills_in
 from momantu_bt.faults.tree_file import faults_source
 from momantu_bt.plugins import Group
@@ -31,6 +30,7 @@ from momantu_bt.tree.files.settings import Given
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.plugins import SERVICES, SKILLS
 from momantu_bt.tree.registry import Registry
+from momantu_bt.version import __version__
 from momantu_bt.world_plugins import WORLDS
 
 DIGITS = 16
@@ -130,7 +130,7 @@ def _digest(data: bytes) -> str:
 
 def _of_machine(packages: Iterable[str]) -> dict[str, str]:
     """Versions, and digests of the code of these packages."""
-    found = {"momantu-bt": momantu_bt.__version__, "python": platform.python_version()}
+    found = {"momantu-bt": __version__, "python": platform.python_version()}
     found |= _libraries()
     return found | {f"{_CODE}{package}": _code(package) for package in packages}
 

@@ -14,12 +14,12 @@ from collections.abc import Sequence
 import typer
 
 import momantu_bt.threads  # noqa: F401 - before numpy, which the next imports load
-from momantu_bt import __version__
 from momantu_bt.cli.notices import notice
 from momantu_bt.cli.subverbs import add_command, with_subverbs
 from momantu_bt.cli.usage import usage_message
 from momantu_bt.cli.verbs import COMMANDS, VERBS, built_in
 from momantu_bt.errors import ExitCode, MomantuError
+from momantu_bt.version import __version__
 
 TRACEBACK = "MOMANTU_BT_TRACEBACK"
 """Environment variable: set to anything, internal errors come with their traceback."""

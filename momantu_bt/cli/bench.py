@@ -9,23 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from momantu_bt.cli.bench_setup import (
+from momantu_bt.cli.options import (
     OUT,
     RECORD,
-    HowToRun,
-    check_faults,
-    choose,
-    demands_of,
-    engine_of,
-    keep_plan,
-    one_tree,
-    plan_of,
-    say_missing,
-    say_others,
-    say_refused,
-    shard_of,
-)
-from momantu_bt.cli.options import (
     EpisodeLimit,
     Jobs,
     Judged,
@@ -38,6 +24,17 @@ from momantu_bt.cli.options import (
     Values,
 )
 from momantu_bt.errors import ExitCode
+from momantu_bt.formats.files import check_writable
+from momantu_bt.formats.seeds import parse_seeds
+from momantu_bt.lazy import lazily
+
+with lazily():
+    from momantu_bt.bench import carry_out, coverage_text, summary, tables
+    from momantu_bt.bench import coverage as coverages
+    from momantu_bt.bench import matrix as matrices
+    from momantu_bt.bench import report as reports
+    from momantu_bt.bench import store as results
+    from momantu_bt.cli import bench_merge, bench_progress, bench_setup, given
 
 if TYPE_CHECKING:
     from momantu_bt.bench.plan import Plan
@@ -118,20 +115,18 @@ def bench(
     """
     options = _Options(out, shard, (engine, jobs, ray_address), coverage, report, demand)
 
-    from momantu_bt.cli.bench_merge import merge_folders
-    from momantu_bt.cli.given import given_values
-    from momantu_bt.formats.seeds import parse_seeds
-
     if merge:
-        return merge_folders(tree, out, report)
-    place = one_tree(tree)
-    chosen = choose(record, RECORD, "--record")
-    board = given_values(set_ or [], values)
-    demands = demands_of(place, fault or [], faults)
+        return bench_merge.merge_folders(tree, out, report)
+    place = bench_setup.one_tree(tree)
+    chosen = bench_setup.choose(record, RECORD, "--record")
+    board = given.given_values(set_ or [], values)
+    demands = bench_setup.demands_of(place, fault or [], faults)
     broken: list[str | None] = [demand.fault for demand in demands] or [None]
-    how = HowToRun(world, robot, board, max_time, referee, episode_limit, chosen, broken)
-    plan, document = plan_of(place, parse_seeds(seeds), how)
-    check_faults(fault or [], document, how)
+    how = bench_setup.HowToRun(
+        world, robot, board, max_time, referee, episode_limit, chosen, broken
+    )
+    plan, document = bench_setup.plan_of(place, parse_seeds(seeds), how)
+    bench_setup.check_faults(fault or [], document, how)
     return _bench(plan, document, demands, options)
 
 
@@ -149,24 +144,19 @@ def _bench(
     plan: Plan, document: Document, demands: Sequence[Demand], options: _Options
 ) -> ExitCode:
     """Run what is missing, then say what all of it comes to."""
-    from momantu_bt.bench.carry_out import carry_out
-    from momantu_bt.bench.store import Store
-    from momantu_bt.cli.bench_progress import progress
-    from momantu_bt.formats.files import check_writable
-
-    part = plan.wanted.shard(*shard_of(options.shard))
-    engine = engine_of(*options.engine)
+    part = plan.wanted.shard(*bench_setup.shard_of(options.shard))
+    engine = bench_setup.engine_of(*options.engine)
     if options.report is not None:
         check_writable(options.report)
     folder = options.out or OUT / Path(plan.tree).stem
-    with Store(folder) as store:
-        say_others(plan, store)
-        keep_plan(plan, store)
-        ended = carry_out([(plan.of(part), store)], engine, progress())
+    with results.Store(folder) as store:
+        bench_setup.say_others(plan, store)
+        bench_setup.keep_plan(plan, store)
+        ended = carry_out.carry_out([(plan.of(part), store)], engine, bench_progress.progress())
         rows, missing = part.present(store.rows), part.missing(store.rows)
     _say(plan, rows, document, demands, options)
-    say_refused(ended)
-    say_missing(missing)
+    bench_setup.say_refused(ended)
+    bench_setup.say_missing(missing)
     if ended.interrupted:
         return ExitCode.INTERRUPTED
     failed = missing or _falls_short(rows, options.demand)
@@ -181,36 +171,27 @@ def _say(
     options: _Options,
 ) -> None:
     """Print the figures, and write them if that is wanted."""
-    from momantu_bt.bench.coverage import coverage
-    from momantu_bt.bench.coverage_text import coverage_text
-    from momantu_bt.bench.matrix import Matrix, matrix_text
-    from momantu_bt.bench.report import report, write_report
-    from momantu_bt.bench.summary import Summary
-    from momantu_bt.bench.tables import summary_text
-
     name = Path(plan.tree).name + (", with faults" if demands else "")
-    typer.echo(summary_text(name, Summary.of(rows)))
+    typer.echo(tables.summary_text(name, summary.Summary.of(rows)))
     more: dict[str, Any] = {}
     if demands:
-        matrix = Matrix.of(demands, rows)
-        typer.echo(f"\n{matrix_text(matrix)}")
+        matrix = matrices.Matrix.of(demands, rows)
+        typer.echo(f"\n{matrices.matrix_text(matrix)}")
         more["matrix"] = matrix.as_dict()
     if options.coverage:
-        points = coverage(document, rows)
-        typer.echo(f"\n{coverage_text(points, document.source)}")
+        points = coverages.coverage(document, rows)
+        typer.echo(f"\n{coverage_text.coverage_text(points, document.source)}")
         more["coverage"] = [point.as_dict() for point in points]
     if options.report is not None:
-        write_report(options.report, report(rows, more))
+        reports.write_report(options.report, reports.report(rows, more))
         typer.echo(f"report: {options.report}")
 
 
 def _falls_short(rows: Sequence[Row], demand: float | None) -> bool:
     """Whether the rate is not surely as high as demanded; said in a line."""
-    from momantu_bt.bench.summary import Summary
-
     if demand is None:
         return False
-    low, _ = Summary.of(rows).interval
+    low, _ = summary.Summary.of(rows).interval
     if low >= demand:
         return False
     typer.echo(f"the lower limit {100 * low:.1f} % is below {100 * demand:g} %", err=True)

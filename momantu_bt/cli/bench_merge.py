@@ -5,15 +5,19 @@ from __future__ import annotations
 import shutil
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import typer
 
+from momantu_bt.bench.merge import Merged, merge
+from momantu_bt.bench.plan import PLAN, RECORDS, record_name
+from momantu_bt.bench.report import report as as_report
+from momantu_bt.bench.report import write_report
+from momantu_bt.bench.spec import Row
+from momantu_bt.bench.store import Store
+from momantu_bt.bench.summary import Summary
+from momantu_bt.bench.tables import summary_text
 from momantu_bt.errors import ExitCode, InputError
-
-if TYPE_CHECKING:
-    from momantu_bt.bench.merge import Merged
-    from momantu_bt.bench.spec import Row
+from momantu_bt.formats.files import check_writable
 
 
 def merge_folders(words: Sequence[str], out: Path | None, report: Path | None) -> ExitCode:
@@ -22,11 +26,6 @@ def merge_folders(words: Sequence[str], out: Path | None, report: Path | None) -
     Exit code 0: every episode that any of them was to run has a row; 1: some are missing, or
     differ between two folders.
     """
-    from momantu_bt.bench.merge import merge
-    from momantu_bt.bench.plan import PLAN
-    from momantu_bt.bench.store import Store
-    from momantu_bt.formats.files import check_writable
-
     if out is None:
         raise InputError("--merge needs --out, a folder for all of it")
     if report is not None:
@@ -48,7 +47,6 @@ def merge_folders(words: Sequence[str], out: Path | None, report: Path | None) -
 
 
 def _copy_record(row: Row, folders: Sequence[Path], out: Path) -> None:
-    from momantu_bt.bench.plan import RECORDS, record_name
 
     name = record_name(row["seed"], row["fault"], row["key"])
     for folder in folders:
@@ -58,10 +56,6 @@ def _copy_record(row: Row, folders: Sequence[Path], out: Path) -> None:
 
 
 def _say(merged: Merged, report: Path | None) -> None:
-    from momantu_bt.bench.report import report as as_report
-    from momantu_bt.bench.report import write_report
-    from momantu_bt.bench.summary import Summary
-    from momantu_bt.bench.tables import summary_text
 
     rows = list(merged.rows.values())
     if rows:

@@ -5,9 +5,11 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import typer
+from rich.console import Console, RenderableType
+from rich.live import Live
+from rich.text import Text
 
 from momantu_bt.bench.engine import Engine
 from momantu_bt.bench.intervals import wilson
@@ -15,9 +17,6 @@ from momantu_bt.bench.outcome import succeeded
 from momantu_bt.bench.process import REFUSED
 from momantu_bt.bench.spec import Row
 from momantu_bt.bench.tables import row_text
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
 
 MOST_RUNNING = 4
 """Running episodes that the live line names."""
@@ -88,9 +87,6 @@ class LiveProgress(Progress):
 
     def begin(self, rows: Sequence[Row], waiting: int, engine: Engine) -> None:
         """Begin to draw."""
-        from rich.console import Console
-        from rich.live import Live
-
         super().begin(rows, waiting, engine)
         console = Console()
         self._live = Live(console=console, get_renderable=self._drawn, transient=True)
@@ -114,8 +110,6 @@ class LiveProgress(Progress):
         self._live.stop()
 
     def _drawn(self) -> RenderableType:
-        from rich.text import Text
-
         return Text(self.headline(), no_wrap=True, overflow="ellipsis")
 
 

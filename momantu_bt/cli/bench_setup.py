@@ -5,27 +5,38 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import typer
 
+from momantu_bt.bench.carry_out import Ended
+from momantu_bt.bench.engine import Engine
+from momantu_bt.bench.local_engine import LocalEngine
+from momantu_bt.bench.made_of import made_of
+from momantu_bt.bench.plan import Plan, Wanted
+from momantu_bt.bench.ray_engine import RayEngine
+from momantu_bt.bench.store import Store
 from momantu_bt.cli.notices import notice
+from momantu_bt.engine.build import skills_in
 from momantu_bt.errors import InputError
-
-if TYPE_CHECKING:
-    from momantu_bt.bench.carry_out import Ended
-    from momantu_bt.bench.engine import Engine
-    from momantu_bt.bench.plan import Plan
-    from momantu_bt.bench.store import Store
-    from momantu_bt.faults.matrix import Row as Demand
-    from momantu_bt.tree.files.settings import Given
-    from momantu_bt.tree.model import Document
+from momantu_bt.faults.matrix import Row as Demand
+from momantu_bt.faults.matrix import row_of, rows_like
+from momantu_bt.faults.spec import parse_fault
+from momantu_bt.faults.stage import plan
+from momantu_bt.faults.tree_file import tree_faults
+from momantu_bt.formats.names import valid_names
+from momantu_bt.robots.plugins import ROBOTS
+from momantu_bt.running.launch import check_world
+from momantu_bt.tree.check.named_world import world_of
+from momantu_bt.tree.files.lookup import find
+from momantu_bt.tree.files.settings import Given
+from momantu_bt.tree.load import load, read_file
+from momantu_bt.tree.model import Document
+from momantu_bt.tree.registry import Registry
+from momantu_bt.tree.substitute.substitution import Substitution
+from momantu_bt.world_plugins import WORLDS
 
 ENGINES = ("local", "ray")
-OUT = Path("runs/bench")
-"""Where results are kept unless something else is said, in a folder for each tree."""
-RECORD = ("failures", "all", "none")
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,17 +59,6 @@ def plan_of(tree: str, seeds: Sequence[int], how: HowToRun) -> tuple[Plan, Docum
     Raises:
         TreeNotFound, TreeError, LaunchError, PluginError: it cannot run.
     """
-    from momantu_bt.bench.made_of import made_of
-    from momantu_bt.bench.plan import Plan, Wanted
-    from momantu_bt.engine.build import skills_in
-    from momantu_bt.robots.plugins import ROBOTS
-    from momantu_bt.running.launch import check_world
-    from momantu_bt.tree.check.named_world import world_of
-    from momantu_bt.tree.files.lookup import find
-    from momantu_bt.tree.load import load
-    from momantu_bt.tree.registry import Registry
-    from momantu_bt.world_plugins import WORLDS
-
     registry = Registry.installed()
     place = str(find(tree))
     told: dict[str, Any] = {
@@ -84,12 +84,6 @@ def demands_of(tree: str, faults: Sequence[str], patterns: str | None) -> tuple[
         FaultError: a text is not a fault, or a pattern matches no fault.
         TreeNotFound, TreeError: the tree, or the file of faults beside it, is wrong.
     """
-    from momantu_bt.faults.matrix import row_of, rows_like
-    from momantu_bt.faults.spec import parse_fault
-    from momantu_bt.faults.tree_file import tree_faults
-    from momantu_bt.tree.files.lookup import find
-    from momantu_bt.tree.load import read_file
-
     like: tuple[Demand, ...] = ()
     if patterns is not None:
         like = rows_like(patterns, tree_faults(read_file(find(tree))[0]).rows)
@@ -104,13 +98,6 @@ def check_faults(faults: Sequence[str], document: Document, how: HowToRun) -> No
     Raises:
         FaultError: the tree has nothing of the kind, or its phase occurs nowhere.
     """
-    from momantu_bt.engine.build import skills_in
-    from momantu_bt.faults.spec import parse_fault
-    from momantu_bt.faults.stage import plan
-    from momantu_bt.tree.check.named_world import world_of
-    from momantu_bt.tree.registry import Registry
-    from momantu_bt.tree.substitute.substitution import Substitution
-
     having = Registry.installed().skills
     skills = {name: having[name] for name in skills_in(document)}
     with_world = world_of(document, how.world) is not None
@@ -130,8 +117,6 @@ def one_tree(words: Sequence[str]) -> str:
 
 def choose(value: str, valid: Sequence[str], option: str) -> str:
     """A value that is one of a few; InputError says which."""
-    from momantu_bt.formats.names import valid_names
-
     if value not in valid:
         raise InputError(f"{option} {value}: {valid_names(value, valid, 'valid values')}")
     return value
@@ -150,9 +135,6 @@ def shard_of(text: str | None) -> tuple[int, int]:
 
 def engine_of(name: str, jobs: int | None, address: str | None) -> Engine:
     """The engine of that name. address: of a Ray cluster that runs, None for one of our own."""
-    from momantu_bt.bench.local_engine import LocalEngine
-    from momantu_bt.bench.ray_engine import RayEngine
-
     choose(name, ENGINES, "--engine")
     if name == "ray":
         return RayEngine(jobs, address)
@@ -170,8 +152,6 @@ def say_others(plan: Plan, store: Store) -> None:
 
 def keep_plan(plan: Plan, store: Store) -> None:
     """Note in the folder which episodes it is to hold, beside those that it already was."""
-    from momantu_bt.bench.plan import Wanted
-
     plan.wanted.united(Wanted.read(store.folder)).write(store.folder)
 
 

@@ -8,19 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from momantu_bt.cli.bench_setup import (
+from momantu_bt.cli.options import (
     OUT,
     RECORD,
-    HowToRun,
-    choose,
-    engine_of,
-    keep_plan,
-    plan_of,
-    say_missing,
-    say_others,
-    say_refused,
-)
-from momantu_bt.cli.options import (
     EpisodeLimit,
     Jobs,
     Judged,
@@ -33,6 +23,17 @@ from momantu_bt.cli.options import (
     Values,
 )
 from momantu_bt.errors import ExitCode, InputError
+from momantu_bt.formats.files import check_writable
+from momantu_bt.formats.seeds import parse_seeds
+from momantu_bt.lazy import lazily
+
+with lazily():
+    from momantu_bt.bench import carry_out, tables
+    from momantu_bt.bench import paired as pairs
+    from momantu_bt.bench import report as reports
+    from momantu_bt.bench import store as results
+    from momantu_bt.bench import summary as figures
+    from momantu_bt.cli import bench_progress, bench_setup, given
 
 if TYPE_CHECKING:
     from momantu_bt.bench.engine import Engine
@@ -76,37 +77,29 @@ def compare(
       momantu-bt compare bring_object bring_object_plain --seeds 0:100
       momantu-bt compare old.yaml new.yaml --seeds 0:50 --report comparison.json
     """
-    from momantu_bt.cli.given import given_values
-    from momantu_bt.formats.files import check_writable
-    from momantu_bt.formats.seeds import parse_seeds
-
-    chosen = choose(record, RECORD, "--record")
-    board = given_values(set_ or [], values)
-    how = HowToRun(world, robot, board, max_time, referee, episode_limit, chosen)
-    plans = [plan_of(tree, parse_seeds(seeds), how)[0] for tree in (tree_a, tree_b)]
+    chosen = bench_setup.choose(record, RECORD, "--record")
+    board = given.given_values(set_ or [], values)
+    how = bench_setup.HowToRun(world, robot, board, max_time, referee, episode_limit, chosen)
+    plans = [bench_setup.plan_of(tree, parse_seeds(seeds), how)[0] for tree in (tree_a, tree_b)]
     if plans[0].wanted == plans[1].wanted:
         raise InputError(f"{tree_a} and {tree_b} are the same; name two different trees")
     if report is not None:
         check_writable(report)
-    return _compare(plans, engine_of(engine, jobs, ray_address), out, report)
+    return _compare(plans, bench_setup.engine_of(engine, jobs, ray_address), out, report)
 
 
 def _compare(plans: list[Plan], engine: Engine, out: Path, report: Path | None) -> ExitCode:
     """Run what is missing of both, turn about, then say how they differ."""
-    from momantu_bt.bench.carry_out import carry_out
-    from momantu_bt.bench.store import Store
-    from momantu_bt.cli.bench_progress import progress
-
     names = [Path(plan.tree).stem for plan in plans]
     if names[0] == names[1]:
         names[1] += "-2"
     with ExitStack() as stack:
-        stores = [stack.enter_context(Store(out / name)) for name in names]
+        stores = [stack.enter_context(results.Store(out / name)) for name in names]
         work = list(zip(plans, stores, strict=True))
         for plan, store in work:
-            say_others(plan, store)
-            keep_plan(plan, store)
-        ended = carry_out(work, engine, progress())
+            bench_setup.say_others(plan, store)
+            bench_setup.keep_plan(plan, store)
+        ended = carry_out.carry_out(work, engine, bench_progress.progress())
         rows = [plan.wanted.present(store.rows) for plan, store in work]
         missing = [
             f"{words} of {name}"
@@ -114,28 +107,24 @@ def _compare(plans: list[Plan], engine: Engine, out: Path, report: Path | None) 
             for words in plan.wanted.missing(store.rows)
         ]
     _say(names, rows, report)
-    say_refused(ended)
-    say_missing(missing)
+    bench_setup.say_refused(ended)
+    bench_setup.say_missing(missing)
     if ended.interrupted:
         return ExitCode.INTERRUPTED
     return ExitCode.FAILURE if missing else ExitCode.SUCCESS
 
 
 def _say(names: list[str], rows: list[list[Row]], report: Path | None) -> None:
-    from momantu_bt.bench.paired import Paired, paired_text
-    from momantu_bt.bench.report import write_report
-    from momantu_bt.bench.summary import Summary
-    from momantu_bt.bench.tables import summary_text
 
-    summaries = [Summary.of(each) for each in rows]
+    summaries = [figures.Summary.of(each) for each in rows]
     for name, summary in zip(names, summaries, strict=True):
-        typer.echo(summary_text(name, summary) + "\n")
-    paired = Paired.of(*rows)
-    typer.echo(paired_text(paired, *names))
+        typer.echo(tables.summary_text(name, summary) + "\n")
+    paired = pairs.Paired.of(*rows)
+    typer.echo(pairs.paired_text(paired, *names))
     if report is not None:
         trees = [
             {"tree": name, **summary.as_dict()}
             for name, summary in zip(names, summaries, strict=True)
         ]
-        write_report(report, {"a": trees[0], "b": trees[1], "paired": paired.as_dict()})
+        reports.write_report(report, {"a": trees[0], "b": trees[1], "paired": paired.as_dict()})
         typer.echo(f"report: {report}")

@@ -9,11 +9,16 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from momantu_bt.cli.records import open_record
 from momantu_bt.errors import ExitCode
+from momantu_bt.lazy import lazily
+
+with lazily():
+    from momantu_bt.cli import records
+    from momantu_bt.replay import compare
 
 if TYPE_CHECKING:
     from momantu_bt.replay.compare import Comparison
+
 
 MOST_LINES = 20
 """Of one text's diff, and of the nodes whose counts differ; `--json` has them all."""
@@ -34,10 +39,8 @@ def diff(
       momantu-bt diff runs/3 runs/4
       momantu-bt diff before after --json
     """
-    from momantu_bt.replay.compare import compare
-
-    records = [open_record(folder) for folder in (left, right)]
-    comparison = compare(*records)
+    both = [records.open_record(folder) for folder in (left, right)]
+    comparison = compare.compare(*both)
     if json_:
         typer.echo(json.dumps(comparison.as_dict(), indent=2))
     else:

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from momantu_bt.errors import InputError
-
-if TYPE_CHECKING:
-    from momantu_bt.tree.files.settings import Given
+from momantu_bt.tree.files.settings import Given
+from momantu_bt.tree.load import read_values
 
 
 def given_values(settings: Sequence[str], file: Path | None) -> Given:
@@ -19,9 +17,6 @@ def given_values(settings: Sequence[str], file: Path | None) -> Given:
         InputError: a setting is not written as key=value.
         TreeNotFound, TreeError: the file cannot be read, or is not a mapping.
     """
-    from momantu_bt.tree.files.settings import Given
-    from momantu_bt.tree.load import read_values
-
     board = Given() if file is None else read_values(file)
     try:
         board.set(settings)

@@ -36,3 +36,8 @@ RayAddress: TypeAlias = Annotated[
 Kept: TypeAlias = Annotated[
     str, typer.Option(help="Which episodes leave a record: failures, all or none.")
 ]
+
+OUT = Path("runs/bench")
+"""Where results are kept unless something else is said, in a folder for each tree."""
+RECORD = ("failures", "all", "none")
+"""Values of `--record`."""

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from momantu_bt.cli.notices import notice
-
-if TYPE_CHECKING:
-    from momantu_bt.record.recording import Recording
+from momantu_bt.record.reader import RecordError, read_record
+from momantu_bt.record.recording import Recording
 
 
 def open_record(folder: Path) -> Recording:
@@ -17,8 +15,6 @@ def open_record(folder: Path) -> Recording:
     Raises:
         RecordError: no record can be read, or it ends before the first tick.
     """
-    from momantu_bt.record.reader import RecordError, read_record
-
     recording = read_record(folder)
     if not recording.ticks or not recording.nodes:
         raise RecordError(f"{folder}: the record ends before the first tick")

@@ -8,9 +8,18 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from momantu_bt import __version__
-from momantu_bt.cli.records import open_record
 from momantu_bt.errors import ExitCode
+from momantu_bt.lazy import lazily
+from momantu_bt.version import __version__
+
+with lazily():
+    from rich import console
+
+    from momantu_bt import page
+    from momantu_bt.cli import records, replay_screen, terminal
+    from momantu_bt.replay import moment_text, rebuild, recheck, seek, stepper, telling
+    from momantu_bt.replay import timeline as timelines
+    from momantu_bt.tree import registry
 
 if TYPE_CHECKING:
     from momantu_bt.record.recording import Recording
@@ -52,20 +61,17 @@ def replay(
       momantu-bt replay runs/3 --html run.html
       momantu-bt replay runs/3 --check
     """
-    from momantu_bt.cli.terminal import is_interactive
-    from momantu_bt.replay.timeline import Timeline
-
-    recording = open_record(run)
+    recording = records.open_record(run)
     if check:
         return _check(recording)
     if html is not None:
         return _write_page(recording, html)
-    timeline = Timeline(recording)
+    timeline = timelines.Timeline(recording)
     chosen = (at, node, failure) != (None, None, None)
     index = _chosen(timeline, at, node, failure)
     if chosen or json_:
         _print_moment(timeline, index, as_json=json_)
-    elif is_interactive():
+    elif terminal.is_interactive():
         _step(timeline)
     else:
         _print_all(recording)
@@ -78,75 +84,62 @@ def _chosen(timeline: Timeline, at: float | None, node: str | None, failure: int
     Raises:
         SeekError: the record has no such moment.
     """
-    from momantu_bt.replay.seek import SeekError, changes_of, failures, following, matching
-
     if failure is not None:
-        found = failures(timeline.recording)
+        found = seek.failures(timeline.recording)
         if not 1 <= abs(failure) <= len(found):
             counted = f"{len(found)}; 1 is the first, -1 the last" if found else "none"
-            raise SeekError(f"there is no failure {failure}; the record has {counted}")
+            raise seek.SeekError(f"there is no failure {failure}; the record has {counted}")
         return found[failure - 1 if failure > 0 else failure].index
     start = -1 if at is None else timeline.at(at)
     if node is None:
         return len(timeline) - 1 if at is None else start
-    indices = changes_of(timeline.recording, matching(timeline.recording, node))
-    index = following(indices, start - 1)
+    indices = seek.changes_of(timeline.recording, seek.matching(timeline.recording, node))
+    index = seek.following(indices, start - 1)
     if index is None:
         since = "" if at is None else f" from {at:g} s on"
-        raise SeekError(f"{node} never changes{since}")
+        raise seek.SeekError(f"{node} never changes{since}")
     return index
 
 
 def _write_page(recording: Recording, path: Path) -> ExitCode:
-    from momantu_bt.page import write_page
 
-    write_page(recording, path)
+    page.write_page(recording, path)
     typer.echo(f"{path}: open it in a browser")
     return ExitCode.SUCCESS
 
 
 def _print_moment(timeline: Timeline, index: int, *, as_json: bool) -> None:
-    from momantu_bt.replay.moment_text import moment_data, moment_lines
 
     moment = timeline.moment(index)
     if as_json:
-        typer.echo(json.dumps(moment_data(moment), indent=2, default=str))
+        typer.echo(json.dumps(moment_text.moment_data(moment), indent=2, default=str))
         return
-    for line in moment_lines(moment):
+    for line in moment_text.moment_lines(moment):
         typer.echo(line)
 
 
 def _print_all(recording: Recording) -> None:
-    from momantu_bt.replay.telling import ending, headline, told
 
-    typer.echo(headline(recording))
-    for _, line in told(recording):
+    typer.echo(telling.headline(recording))
+    for _, line in telling.told(recording):
         typer.echo(line)
-    typer.echo(ending(recording))
+    typer.echo(telling.ending(recording))
 
 
 def _step(timeline: Timeline) -> None:
-    from rich.console import Console
-
-    from momantu_bt.cli.replay_screen import show
-    from momantu_bt.replay.stepper import Stepper
-    from momantu_bt.replay.telling import ending, headline, told
 
     recording = timeline.recording
-    typer.echo(headline(recording))
-    show(Stepper(timeline), list(told(recording)), Console())
-    typer.echo(ending(recording))
+    typer.echo(telling.headline(recording))
+    replay_screen.show(stepper.Stepper(timeline), list(telling.told(recording)), console.Console())
+    typer.echo(telling.ending(recording))
 
 
 def _check(recording: Recording) -> ExitCode:
-    from momantu_bt.replay.rebuild import RebuildError
-    from momantu_bt.replay.recheck import recheck
-    from momantu_bt.tree.registry import Registry
 
     try:
-        result = recheck(recording, Registry.installed())
-    except RebuildError as error:
-        raise RebuildError(f"{recording.folder}: {error}") from None
+        result = recheck.recheck(recording, registry.Registry.installed())
+    except rebuild.RebuildError as error:
+        raise rebuild.RebuildError(f"{recording.folder}: {error}") from None
     different = result.difference
     if different is None:
         typer.echo(f"the tree did the same in all {result.ticks} ticks")

@@ -9,8 +9,10 @@ import typer
 
 from momantu_bt.cli.help import help_of
 from momantu_bt.cli.listing import listing
+from momantu_bt.cli.robot_text import robot_lines
 from momantu_bt.cli.robots_schema import schema
 from momantu_bt.robots.plugins import ROBOTS, Describe, load_robot
+from momantu_bt.robots.summary import summary
 
 robots = typer.Typer(rich_markup_mode=None, invoke_without_command=True)
 
@@ -39,9 +41,6 @@ def show_one(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,
 ) -> None:
     """Show one robot."""
-    from momantu_bt.cli.robot_text import robot_lines
-    from momantu_bt.robots.summary import summary
-
     about = summary(load_robot(name))
     if as_json:
         typer.echo(json.dumps(about, indent=2))

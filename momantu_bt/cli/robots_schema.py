@@ -7,12 +7,11 @@ from typing import Any
 from momantu_bt.cli.schema_file import Out, put_schema
 from momantu_bt.descriptions.schema import editor_schema
 from momantu_bt.errors import ExitCode
+from momantu_bt.robots.robot_file import RobotFile
 
 
 def robot_schema() -> dict[str, Any]:
     """The schema, from the models that read robot files."""
-    from momantu_bt.robots.robot_file import RobotFile
-
     made = RobotFile.model_json_schema(mode="validation")
     return editor_schema(made, "momantu-bt robot file")
 

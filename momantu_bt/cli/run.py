@@ -7,33 +7,35 @@ from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from momantu_bt.cli.breakpoints import Breakpoints
-from momantu_bt.cli.given import given_values
 from momantu_bt.cli.notices import notice
 from momantu_bt.cli.options import Robot
-from momantu_bt.cli.terminal import Terminal, is_interactive
-from momantu_bt.engine.executor import Executor, Observer
-from momantu_bt.engine.person import Scripted
 from momantu_bt.errors import ExitCode, InputError, MomantuError
-from momantu_bt.faults.spec import parse_fault
 from momantu_bt.formats.files import check_writable
 from momantu_bt.lazy import lazily
-from momantu_bt.record.changes import ChangeLines
-from momantu_bt.record.ending import ending_text
-from momantu_bt.record.film import FilmObserver, ViewObserver
-from momantu_bt.record.report import Report
-from momantu_bt.running.launch import launch
-from momantu_bt.running.options import RunOptions
-from momantu_bt.running.prepare import Prepared, prepare
 
 with lazily():
     from rich import console
 
-    from momantu_bt.cli import live
+    from momantu_bt.cli import breakpoints, given, live
+    from momantu_bt.cli import terminal as terminals
+    from momantu_bt.engine import person
+    from momantu_bt.faults import spec
+    from momantu_bt.record import changes, ending, film
+    from momantu_bt.running import launch as launching
+    from momantu_bt.running import options as run_options
+    from momantu_bt.running import prepare as preparing
+
+if TYPE_CHECKING:
+    from momantu_bt.cli.breakpoints import Breakpoints
+    from momantu_bt.cli.terminal import Terminal
+    from momantu_bt.engine.executor import Executor, Observer
+    from momantu_bt.record.report import Report
+    from momantu_bt.running.options import RunOptions
+    from momantu_bt.running.prepare import Prepared
 
 VIEW_PORT = 8080
 
@@ -101,20 +103,20 @@ def run(
       momantu-bt run bring_object --robot my_robot/robot.yaml
       momantu-bt run bring_object --fault "camera.dead@12 s:for=10 s"
     """
-    terminal = Terminal() if is_interactive() and not unattended else None
-    options = RunOptions(
+    terminal = terminals.Terminal() if terminals.is_interactive() and not unattended else None
+    options = run_options.RunOptions(
         world=world,
         robot=robot,
         seed=seed,
-        values=given_values(set_ or [], values),
+        values=given.given_values(set_ or [], values),
         substitute=substitute,
-        faults=tuple(parse_fault(text) for text in fault or []),
+        faults=tuple(spec.parse_fault(text) for text in fault or []),
         max_time=max_time,
         realtime=realtime,
         referee=referee,
         patience=patience,
         record=record,
-        person=terminal or Scripted(),
+        person=terminal or person.Scripted(),
         remark=notice,
     )
     shown = _Shown(video, view_port if view else None, report, quiet, terminal, break_ or [])
@@ -148,12 +150,12 @@ class _Shown:
 
 def _run(tree: str, options: RunOptions, shown: _Shown) -> Report:
     """Check what was asked for, run, and say how it ended."""
-    prepared = prepare(tree, options)
+    prepared = preparing.prepare(tree, options)
     stops = _breakpoints(shown, prepared)
     for path in (shown.report, shown.video):
         if path is not None:
             check_writable(path)
-    result = launch(prepared, lambda run: _watch(run, shown, stops))
+    result = launching.launch(prepared, lambda run: _watch(run, shown, stops))
     if shown.report is not None:
         result.write(shown.report)
     _say_end(result, options, shown)
@@ -166,7 +168,9 @@ def _breakpoints(shown: _Shown, prepared: Prepared) -> Breakpoints | None:
         return None
     if shown.terminal is None:
         raise InputError("--break needs a person at a terminal, and no --unattended")
-    return Breakpoints(shown.breaks, prepared.document, shown.terminal, prepared.substitution)
+    return breakpoints.Breakpoints(
+        shown.breaks, prepared.document, shown.terminal, prepared.substitution
+    )
 
 
 def _watch(run: Executor, shown: _Shown, stops: Breakpoints | None) -> list[Observer]:
@@ -181,10 +185,14 @@ def _watch(run: Executor, shown: _Shown, stops: Breakpoints | None) -> list[Obse
         if (shown.video is not None or shown.view_port is not None) and run.world is None:
             raise InputError("--video and --view need a world; this run has none")
         if shown.video is not None and run.world is not None:
-            add(FilmObserver(run.world.open_video(shown.video, run.built.root.model.place.file)))
+            add(
+                film.FilmObserver(
+                    run.world.open_video(shown.video, run.built.root.model.place.file)
+                )
+            )
         if shown.view_port is not None and run.world is not None:
             scene = run.world.open_view(shown.view_port)
-            add(ViewObserver(scene))
+            add(film.ViewObserver(scene))
             typer.echo(f"view: {scene.url}")
         if not shown.quiet:
             add(_display(shown.terminal))
@@ -197,7 +205,7 @@ def _watch(run: Executor, shown: _Shown, stops: Breakpoints | None) -> list[Obse
 def _display(terminal: Terminal | None) -> Observer:
     """A live tree on a terminal, plain lines elsewhere."""
     if not sys.stdout.isatty():
-        return ChangeLines(typer.echo)
+        return changes.ChangeLines(typer.echo)
     display = live.LiveTree(console.Console())
     if terminal is not None:
         terminal.display = display
@@ -209,4 +217,4 @@ def _say_end(result: Report, options: RunOptions, shown: _Shown) -> None:
         typer.echo(result.error, err=True)
     named = (("report", shown.report), ("video", shown.video), ("record", options.record))
     places = [f"{what}: {path}" for what, path in named if path is not None]
-    typer.echo("; ".join([ending_text(result), *places]))
+    typer.echo("; ".join([ending.ending_text(result), *places]))

@@ -10,6 +10,9 @@ import typer
 
 from momantu_bt.drawing.boxes import pictures
 from momantu_bt.drawing.difference import difference
+from momantu_bt.drawing.dot import dot
+from momantu_bt.drawing.mermaid import mermaid
+from momantu_bt.drawing.svg import svg
 from momantu_bt.drawing.wires import Wire, wire_lines, wires
 from momantu_bt.errors import ExitCode
 from momantu_bt.formats.files import write_whole
@@ -21,6 +24,8 @@ from momantu_bt.tree.registry import Registry
 from momantu_bt.tree.show.printing import lines
 
 INDENT = "  "
+DRAWINGS = {"svg": svg, "dot": dot, "mermaid": mermaid}
+"""Ways to draw a tree, by the option that asks for each."""
 
 
 def show(
@@ -73,13 +78,7 @@ def show(
 
 
 def _picture(kind: str, document: Document, registry: Registry, with_wires: bool) -> str:
-    if kind == "svg":
-        from momantu_bt.drawing.svg import svg as draw
-    elif kind == "dot":
-        from momantu_bt.drawing.dot import dot as draw
-    else:
-        from momantu_bt.drawing.mermaid import mermaid as draw
-    return draw(pictures(document, registry), wires=with_wires)
+    return DRAWINGS[kind](pictures(document, registry), wires=with_wires)
 
 
 def _words(document: Document, found: list[Wire], world: str | None) -> Iterator[str]:

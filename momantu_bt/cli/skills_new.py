@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from momantu_bt.errors import ExitCode
+from momantu_bt.scaffold import new_skill
 
 
 def new(
@@ -22,8 +23,6 @@ def new(
       momantu-bt skills new turn
       momantu-bt skills new turn --into ~/robots
     """
-    from momantu_bt.scaffold import new_skill
-
     folder = new_skill(name, into)
     typer.echo(f"{folder}: `pip install -e {folder}`, then trees may say `{name}:`")
     return ExitCode.SUCCESS

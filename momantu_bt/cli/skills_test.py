@@ -9,8 +9,12 @@ import typer
 
 from momantu_bt.errors import ExitCode
 from momantu_bt.formats.problems import Problem, Severity
+from momantu_bt.lazy import lazily
 from momantu_bt.plugins import PluginError
 from momantu_bt.tree.plugins import SKILLS
+
+with lazily():
+    from momantu_bt import testing
 
 
 def promises(
@@ -32,12 +36,10 @@ def promises(
       momantu-bt skills test
       momantu-bt skills test turn_round
     """
-    from momantu_bt.testing import check_skill
-
     passed, told = True, dict[str, list[Problem]]()
     for name in names or SKILLS:
         try:
-            found = check_skill(SKILLS.load(name), seed=seed, halts=halts)
+            found = testing.check_skill(SKILLS.load(name), seed=seed, halts=halts)
         except PluginError as error:
             if names and name not in SKILLS:
                 raise

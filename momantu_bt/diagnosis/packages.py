@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, requires, version
 from pathlib import Path
 
-import momantu_bt
 from momantu_bt.diagnosis import Diagnosis
 
 DISTRIBUTION = "momantu-bt"
@@ -104,7 +103,7 @@ def requirements(lines: list[str]) -> list[Requirement]:
 
 def tested_versions() -> dict[str, str]:
     """Versions of constraints.txt by package name; it lies in the package or in the checkout."""
-    package = Path(momantu_bt.__file__).parent
+    package = Path(__file__).resolve().parents[1]
     for folder in (package, package.parent):
         file = folder / "constraints.txt"
         if file.is_file():

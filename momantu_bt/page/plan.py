@@ -9,8 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from momantu_bt.lazy import lazily
 from momantu_bt.record.floor_plan import FREE_BYTE, OCCUPIED_BYTE
 from momantu_bt.record.recording import Recording
+
+with lazily():
+    from PIL import Image
+
 
 _COLOURS = {"free": (0, 0, 0, 0), "occupied": (112, 118, 126, 255), "unknown": (128, 128, 128, 40)}
 """Red, green, blue, opacity."""
@@ -48,8 +53,6 @@ def plan_image(recording: Recording) -> dict[str, Any] | None:
 
 def _png(cells: NDArray[np.uint8]) -> bytes:
     """Three colours, the first row at the bottom."""
-    from PIL import Image
-
     kinds = np.full(cells.shape, 2, dtype=np.uint8)
     kinds[cells == FREE_BYTE] = 0
     kinds[cells == OCCUPIED_BYTE] = 1

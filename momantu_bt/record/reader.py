@@ -8,6 +8,10 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, BinaryIO
 
+from mcap.exceptions import McapError
+from mcap.records import Channel, Message
+from mcap.stream_reader import StreamReader
+
 from momantu_bt.engine.role import Role
 from momantu_bt.errors import MomantuError
 from momantu_bt.record.about import FORMAT
@@ -77,8 +81,6 @@ def read_record(folder: Path) -> Recording:
 
 def _messages(path: Path) -> tuple[dict[str, list[tuple[float, bytes]]], bool]:
     """All messages by topic with their time in s, and whether the file has its end."""
-    from mcap.exceptions import McapError
-
     try:
         file = path.open("rb")
     except OSError as error:
@@ -105,9 +107,6 @@ def _records(file: BinaryIO) -> Iterator[tuple[str, float, bytes]]:
 
     A message that was cut short is as long as what is left of the file, so its end is looked at.
     """
-    from mcap.records import Channel, Message
-    from mcap.stream_reader import StreamReader
-
     size = file.seek(0, 2)
     file.seek(0)
     topics: dict[int, str] = {}

@@ -10,6 +10,7 @@ import numpy as np
 
 from momantu_bt.engine.executor import Executor
 from momantu_bt.geometry import Transform
+from momantu_bt.lazy import lazily
 from momantu_bt.messages import CameraImage, LaserScan
 from momantu_bt.record.channel import stamp_of, time_text
 from momantu_bt.record.codec import dumps
@@ -17,6 +18,10 @@ from momantu_bt.record.mcap_file import McapFile
 from momantu_bt.record.poses import pose_text
 from momantu_bt.record.tap import Tap
 from momantu_bt.record.viewer_schemas import IMAGE, SCAN
+
+with lazily():
+    from PIL import Image
+
 
 WIDTH = 320
 """Pixels that a kept picture is at most wide."""
@@ -47,8 +52,6 @@ class Sensors:
 
 def jpeg(image: CameraImage) -> bytes:
     """The colours, made smaller by a whole factor so that they are at most WIDTH wide."""
-    from PIL import Image
-
     picture = Image.fromarray(np.ascontiguousarray(image.color))
     factor = math.ceil(picture.width / WIDTH)
     if factor > 1:

@@ -7,7 +7,7 @@ import sys
 from functools import cache
 from importlib import metadata
 
-import momantu_bt
+from momantu_bt.version import __version__
 
 LIBRARIES = {
     "numpy": "numpy",
@@ -28,7 +28,7 @@ LIBRARIES = {
 
 def versions() -> dict[str, str]:
     """Versions by name; a library counts only when the run has loaded it."""
-    found = {"momantu-bt": momantu_bt.__version__, "python": platform.python_version()}
+    found = {"momantu-bt": __version__, "python": platform.python_version()}
     for module, distribution in LIBRARIES.items():
         if module in sys.modules:
             found[distribution] = _version(distribution)

@@ -12,6 +12,7 @@ from lxml import etree
 from momantu_bt.formats.places import KeyPath
 from momantu_bt.robots.errors import PartError, RobotNotInstalled
 from momantu_bt.robots.robot_file import PackageFile, PartSource
+from momantu_bt.robots.xacro_files import expand
 
 MOST_BYTES = 20_000_000
 """No robot's URDF is longer."""
@@ -65,8 +66,6 @@ def load_part(name: str, source: PartSource, folder: Path, meshes: Path | None) 
     if path.stat().st_size > MOST_BYTES:
         raise PartError(place, f"{path} has more than {MOST_BYTES} bytes")
     if kind == "xacro":
-        from momantu_bt.robots.xacro_files import expand
-
         text, included = expand(path, source.args, folder, place)
     else:
         text, included = path.read_bytes(), ()

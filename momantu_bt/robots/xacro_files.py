@@ -18,7 +18,12 @@ from types import ModuleType
 
 from momantu_bt.formats.names import nearest
 from momantu_bt.formats.places import KeyPath
+from momantu_bt.lazy import lazily
 from momantu_bt.robots.errors import PartError
+
+with lazily():
+    import xacro
+
 
 _LOCK = threading.Lock()
 """xacro keeps its state in module variables."""
@@ -36,8 +41,6 @@ def expand(
     Raises:
         PartError: xacro objects; with its words and the file.
     """
-    import xacro
-
     given = {name: _argument(value) for name, value in args.items()}
     with _LOCK, _package_index(path, folder) as missing:
         xacro.all_includes.clear()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import importlib.util
 import inspect
+import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
@@ -71,8 +72,6 @@ def _module(name: str) -> Module | None:
 
 
 def _path(name: str) -> Path | None:
-    import sys
-
     if name in sys.modules:
         file = inspect.getsourcefile(sys.modules[name]) if _has_file(name) else None
         return None if file is None else Path(file)
@@ -84,7 +83,6 @@ def _path(name: str) -> Path | None:
 
 
 def _has_file(name: str) -> bool:
-    import sys
 
     return getattr(sys.modules[name], "__file__", None) is not None
 

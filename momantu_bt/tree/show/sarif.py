@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
-from momantu_bt import __version__
 from momantu_bt.formats.problems import Problem, Severity
 from momantu_bt.tree.show.problem_pages import codes, explanation
+from momantu_bt.version import __version__
 
 SCHEMA = (
     "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"

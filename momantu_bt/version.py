@@ -1,0 +1,3 @@
+"""The version of momantu-bt."""
+
+__version__ = "0.1.0"
