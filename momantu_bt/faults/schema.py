@@ -9,7 +9,7 @@ from momantu_bt.fault_kind import Where
 from momantu_bt.faults.catalogue import kinds
 from momantu_bt.faults.phase import FORMS
 from momantu_bt.faults.spec import FORM
-from momantu_bt.faults.tree_file import VERSION
+from momantu_bt.tree.language import VERSION
 
 
 def faults_schema() -> dict[str, Any]:

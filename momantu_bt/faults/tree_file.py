@@ -27,14 +27,12 @@ from momantu_bt.formats.yaml.reader import YamlSyntaxError
 from momantu_bt.formats.yaml.values import Entries, Items, Raw, Scalar
 from momantu_bt.tree.files.lookup import FAULTS_SUFFIX, SUFFIXES, TreeNotFound, faults_file
 from momantu_bt.tree.files.port_values import drop_duplicates
+from momantu_bt.tree.files.side_file import top_values
 from momantu_bt.tree.files.syntax import compose
 from momantu_bt.tree.files.text import read_text
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.problems import Problems, TreeError
 from momantu_bt.tree.substitute.substitution import Substitution
-
-VERSION = 1
-_TOP = ("momantu_bt", "begins", "rows")
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,28 +89,11 @@ def tree_beside(path: Path) -> Path:
 
 
 def _read(raw: Raw, document: Document, problems: Problems) -> TreeFaults:
-    if not isinstance(raw, Entries):
-        hint = f"begin with `momantu_bt: {VERSION}`, then `begins:` or `rows:`"
-        problems.error("not-a-tree", raw.place, "a file of faults is a mapping", hint)
+    having = top_values(raw, ("begins", "rows"), "a file of faults", problems)
+    if having is None:
         return TreeFaults()
-    drop_duplicates(raw, problems)
-    having = {key.text: value for key, value in raw.entries}
-    for key, _ in raw.entries:
-        if key.text not in _TOP:
-            hint = valid_names(key.text, _TOP, "keys of a file of faults")
-            problems.error("unknown-key", key.place, f"a file of faults has no {key.text!r}", hint)
-    _version(having.get("momantu_bt"), raw.place, problems)
     begins = _begins(having.get("begins"), document, problems)
     return TreeFaults(begins, _rows(having.get("rows"), document, problems))
-
-
-def _version(raw: Raw | None, place: Place, problems: Problems) -> None:
-    hint = f"write `momantu_bt: {VERSION}`"
-    if raw is None:
-        place = Place(place.file, place.line, 1)
-        problems.error("no-version", place, "the file does not say its language", hint)
-    elif not isinstance(raw, Scalar) or raw.text != str(VERSION):
-        problems.error("wrong-version", raw.place, "this version is not known", hint)
 
 
 def _begins(raw: Raw | None, document: Document, problems: Problems) -> Mapping[str, str]:

@@ -17,17 +17,15 @@ from typing import Any, Literal
 from momantu_bt.failure import CODE, FAILED
 from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.places import Place
-from momantu_bt.formats.yaml.values import Entries, Items, Raw, Scalar, plain_value
+from momantu_bt.formats.yaml.values import Entries, Items, Raw, plain_value
 from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue.spec import by_name, input_port
 from momantu_bt.tree.files.port_values import drop_duplicates
+from momantu_bt.tree.files.side_file import top_values
 from momantu_bt.tree.problems import Problems
 from momantu_bt.values.convert import convert
 from momantu_bt.values.kinds import CodeText
 from momantu_bt.values.words import ConversionError
-
-VERSION = 1
-_TOP = ("momantu_bt", "substitute", "values")
 
 Status = Literal["SUCCESS", "FAILURE", "SKIPPED", "RUNNING"]
 
@@ -78,18 +76,9 @@ class RuleFile:
 def read_rules(raw: Raw, problems: Problems) -> RuleFile:
     """The rules of a composed file; those with errors are reported and left out."""
     found = RuleFile()
-    if not isinstance(raw, Entries):
-        hint = f"begin with `momantu_bt: {VERSION}`, then `substitute:`"
-        problems.error("not-a-tree", raw.place, "a file of substitutions is a mapping", hint)
+    having = top_values(raw, ("substitute", "values"), "a file of substitutions", problems)
+    if having is None:
         return found
-    drop_duplicates(raw, problems)
-    having = {key.text: value for key, value in raw.entries}
-    for key, _ in raw.entries:
-        if key.text not in _TOP:
-            hint = valid_names(key.text, _TOP, "keys of a file of substitutions")
-            message = f"a file of substitutions has no {key.text!r}"
-            problems.error("unknown-key", key.place, message, hint)
-    _version(having.get("momantu_bt"), raw.place, problems)
     listed = having.get("substitute")
     if not isinstance(listed, Items):
         hint = "write `substitute:` and under it rules such as `- {node: grip, status: SUCCESS}`"
@@ -102,15 +91,6 @@ def read_rules(raw: Raw, problems: Problems) -> RuleFile:
             found.rules.append(rule)
     _values(having.get("values"), found, problems)
     return found
-
-
-def _version(raw: Raw | None, place: Place, problems: Problems) -> None:
-    hint = f"write `momantu_bt: {VERSION}`"
-    if raw is None:
-        place = Place(place.file, place.line, 1)
-        problems.error("no-version", place, "the file does not say its language", hint)
-    elif not isinstance(raw, Scalar) or raw.text != str(VERSION):
-        problems.error("wrong-version", raw.place, "this version is not known", hint)
 
 
 def _values(raw: Raw | None, found: RuleFile, problems: Problems) -> None:
