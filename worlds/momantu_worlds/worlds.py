@@ -68,7 +68,7 @@ class WorldOfFile:
 
     def about(self) -> Mapping[str, Mapping[str, str]]:
         """Tags, loose things, what varies and the goal, in words."""
-        return summary.about(self.path)
+        return summary.world_summary(self.path)
 
     def draw(self, seed: int) -> Episode:
         """The episode of a seed; raises WorldError."""

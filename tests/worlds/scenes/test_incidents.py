@@ -161,7 +161,7 @@ def test_what_is_taken_is_not_dropped_and_what_is_added_can_be():
     watched = watching(truth)
     truth.touches = HELD
     watched.observe(TICK, truth.touches)
-    watched.taken("can")
+    watched.relocated("can")
     truth.touches = []
     for tick in range(2, 6):
         watched.observe(tick * TICK, truth.touches)

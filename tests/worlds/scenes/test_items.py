@@ -9,7 +9,7 @@ from momantu_worlds.scenes.catalogue.objects import OBJECT_KINDS, ObjectKind, Th
 from momantu_worlds.scenes.file.objects import Item
 from momantu_worlds.scenes.file.world import WorldFile
 from momantu_worlds.scenes.geometry.bodies import Body
-from momantu_worlds.scenes.geometry.standing import Upright
+from momantu_worlds.scenes.geometry.support import UprightCylinder
 from momantu_worlds.scenes.loading import load_world
 from momantu_worlds.worlds import four_rooms
 
@@ -46,7 +46,7 @@ def drawn(item: dict[str, Any], seed: int) -> Layout:
 def test_the_item_is_judged_by_the_cylinder_around_it(kind: ObjectKind) -> None:
     thing = Thing(kind, SIZES[kind], 0.3, (0.5, 0.5, 0.5))
     body = Body("thing", kind, Transform(), thing.parts(), static=False, mass=0.3)
-    around = Upright(body)
+    around = UprightCylinder(body)
     assert around.height == pytest.approx(thing.height)
     assert around.radius == pytest.approx(thing.reach, abs=0.002)
     beside = Transform((around.radius + 0.2, 0.0, thing.height / 2))
@@ -55,7 +55,7 @@ def test_the_item_is_judged_by_the_cylinder_around_it(kind: ObjectKind) -> None:
 
 def test_a_body_of_air_is_no_item() -> None:
     with pytest.raises(ValueError, match="'ghost' has nothing solid"):
-        Upright(Body("ghost", "can", Transform(), ()))
+        UprightCylinder(Body("ghost", "can", Transform(), ()))
 
 
 @pytest.mark.parametrize("kind", OBJECT_KINDS)

@@ -15,7 +15,7 @@ from momantu_worlds.scenes.catalogue.furniture import furniture
 from momantu_worlds.scenes.catalogue.objects import Thing
 from momantu_worlds.scenes.catalogue.tag36h11 import tag_picture
 from momantu_worlds.scenes.geometry.bodies import Body, Box, Part, Picture
-from momantu_worlds.scenes.geometry.solids import Scene, Standing
+from momantu_worlds.scenes.geometry.solids import PlacedBody, Scene
 from momantu_worlds.scenes.referee.judge import ClaimJudge
 
 from momantu_bt.claim import (
@@ -334,8 +334,8 @@ def test_a_body_however_it_is_turned_keeps_its_size_and_holds_its_centre(
         if body.static:
             continue
         turn = quaternion_from_rpy(lean, 0.0, yaw)
-        standing = Standing(body, Transform((1.0, 2.0, 1.0 + up), turn))
-        upright = Standing(body, Transform())
+        standing = PlacedBody(body, Transform((1.0, 2.0, 1.0 + up), turn))
+        upright = PlacedBody(body, Transform())
         assert standing.size == pytest.approx(upright.size)
         assert standing.lowest <= standing.centre[2] <= standing.highest
         reach = float(np.linalg.norm(standing.size)) / 2

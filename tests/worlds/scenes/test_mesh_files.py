@@ -8,7 +8,7 @@ from momantu_worlds.scenes.arrange.mesh_files import HULL_POINTS, hull_points, m
 from momantu_worlds.scenes.file.furniture import MeshUse
 from momantu_worlds.scenes.file.reader import WorldFileError
 from momantu_worlds.scenes.geometry.bodies import Body, Box, Hull, Mesh, Part
-from momantu_worlds.scenes.geometry.solids import Standing, outline
+from momantu_worlds.scenes.geometry.solids import PlacedBody, outline
 from momantu_worlds.scenes.loading import draw_episode, load_world
 from momantu_worlds.scenes.site.floor_plan import OCCUPIED, cells_of, draw_plans
 from PIL import Image
@@ -125,7 +125,7 @@ def test_what_lies_in_a_large_hull_is_told_by_its_faces():
     wedge = np.array([[0, 0, 0], [2, 0, 0], [0, 2, 0], [0, 0, 2]], dtype=float)
     body = Body("wedge", "body", Transform((1, 0, 0)), (Part(Hull(wedge), visual=False),))
     points = np.array([(1.3, 0.3, 0.3), (2.5, 1.5, 1.5), (1.6, 0.6, 0.6), (1.7, 0.7, 0.7)])
-    inside = Standing(body, body.map_from_body).inside(points)
+    inside = PlacedBody(body, body.map_from_body).inside(points)
     assert inside.tolist() == [True, False, True, False]
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from momantu_worlds.scenes.arrange.variation import vary
 from momantu_worlds.scenes.geometry.solids import outline
-from momantu_worlds.scenes.geometry.standing import Top
+from momantu_worlds.scenes.geometry.support import SupportTop
 from momantu_worlds.scenes.loading import draw_episode, load_world, nominal_site
 from momantu_worlds.scenes.site.floor_plan import FREE, OCCUPIED, UNKNOWN, cells_of, draw_plans
 
@@ -51,13 +51,13 @@ def test_a_board_is_a_surface_and_a_body_of_its_own(write):
     episode = draw_episode(path, 0)
     board, rack = episode.body("middle"), episode.body("rack")
     surface = episode.site.surfaces["middle"]
-    top = Top(board).surface(board.map_from_body)
+    top = SupportTop(board).surface(board.map_from_body)
     assert surface.height == pytest.approx(0.5)
     assert float(top.position[2]) == pytest.approx(0.5)
     assert top.position[:2] == pytest.approx(
         [surface.map_from_surface.x, surface.map_from_surface.y]
     )
-    assert Top(board).size == surface.size
+    assert SupportTop(board).size == surface.size
     boards = [p for p in rack.parts if p.body_from_part.position[2] == pytest.approx(0.485)]
     assert not boards
     assert len(rack.parts) == 3 + 2
@@ -193,7 +193,7 @@ def test_the_top_of_a_body_is_a_surface_where_the_file_says(write):
     )
     episode = draw_episode(path, 0)
     bench = episode.body("bench")
-    top = Top(bench).surface(bench.map_from_body)
+    top = SupportTop(bench).surface(bench.map_from_body)
     assert top.position == pytest.approx([3, 2, 0.6])
     assert top.yaw == pytest.approx(0.0)
     assert episode.body("cup").map_from_body.position == pytest.approx([3.1, 2, 0.6])

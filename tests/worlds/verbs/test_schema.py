@@ -9,7 +9,7 @@ import jsonschema
 import pytest
 from momantu_worlds.scenes.file.reader import WorldFileError, parse_world
 from momantu_worlds.scenes.loading import world_path
-from momantu_worlds.verbs.schema_descriptions import WORDS, words_of
+from momantu_worlds.verbs.schema_descriptions import DESCRIPTIONS, description_of
 from momantu_worlds.verbs.template import two_rooms
 from momantu_worlds.verbs.worlds_schema import world_schema
 from ruamel.yaml import YAML
@@ -77,11 +77,11 @@ def test_it_is_a_schema_and_tells_units_where_there_are_any() -> None:
 def test_every_key_is_described_and_no_words_are_left_over() -> None:
     parts = {"WorldFile": SCHEMA, **SCHEMA["$defs"]}
     keys = {(part, key) for part, schema in parts.items() for key in schema.get("properties", {})}
-    assert {f"{part}.{key}" for part, key in keys if words_of(part, key) is None} == set()
+    assert {f"{part}.{key}" for part, key in keys if description_of(part, key) is None} == set()
     of_all = {f"*.{key}" for _, key in keys}
-    assert set(WORDS) - {f"{part}.{key}" for part, key in keys} - of_all == set()
+    assert set(DESCRIPTIONS) - {f"{part}.{key}" for part, key in keys} - of_all == set()
     for part, key in keys:
-        assert str(words_of(part, key)) in parts[part]["properties"][key]["description"]
+        assert str(description_of(part, key)) in parts[part]["properties"][key]["description"]
 
 
 def test_the_verb_prints_or_writes_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

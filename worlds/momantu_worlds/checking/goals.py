@@ -15,7 +15,7 @@ from momantu_worlds.checking.convex import Convex, solids_of
 from momantu_worlds.checking.scenario import Scenario
 from momantu_worlds.scenes.geometry.bodies import Body, Goal
 from momantu_worlds.scenes.geometry.solids import FLUSH
-from momantu_worlds.scenes.geometry.standing import Top
+from momantu_worlds.scenes.geometry.support import SupportTop
 
 SPARSE = 3
 """Of the cells that the robot gets to every third is enough: they are 2 cm apart."""
@@ -110,7 +110,7 @@ def _width(points: Array) -> float:
 
 def _met(scenario: Scenario, goal: Goal, item: Body) -> bool:
     support = scenario.episode.body(goal.support)
-    top, foot = Top(support), _foot(scenario, item)
+    top, foot = SupportTop(support), _foot(scenario, item)
     beside = 0.0
     if goal.marker is not None:
         marker = scenario.episode.body(goal.marker).map_from_body.position

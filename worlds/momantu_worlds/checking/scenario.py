@@ -14,7 +14,7 @@ from momantu_worlds.checking.convex import Convex, solids_of
 from momantu_worlds.checking.ground import Ground, Obstacle, obstacle
 from momantu_worlds.checking.measures import Measures
 from momantu_worlds.scenes.geometry.bodies import Body, Episode
-from momantu_worlds.scenes.geometry.standing import Top
+from momantu_worlds.scenes.geometry.support import SupportTop
 
 MARGIN = 1.0
 """m of floor that is looked at around everything."""
@@ -25,7 +25,7 @@ UNKNOWN = "extra_"
 
 
 class Scenario:
-    """An episode and a robot in it; everything is worked out when it is first asked for."""
+    """An episode and a robot in it; everything is computed when it is first used."""
 
     def __init__(self, episode: Episode, robot: Measures, place: Callable[[str], KeyPath]) -> None:
         """place: where in the world file a body or a doorway comes from, by its name."""
@@ -92,7 +92,7 @@ class Scenario:
         found = {}
         for name in self.episode.site.surfaces:
             body = self.episode.body(name)
-            top = Top(body)
+            top = SupportTop(body)
             found[name] = (top.surface(body.map_from_body), (top.size[0], top.size[1]))
         return found
 

@@ -25,7 +25,7 @@ SLANT = math.radians(75)
 PAPER = 0.001
 """m before the tag: where its points must be seen, so that its own carrier does not hide them."""
 INSIDE = 0.95
-"""How far out on the paper the points lie that must all be seen."""
+"""How far out on the paper the points are that must all be visible."""
 GRID = np.array([(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)]) / 2
 """Of those points, for a paper with edges of 1."""
 

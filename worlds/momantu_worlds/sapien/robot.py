@@ -102,7 +102,7 @@ class SimulatedRobot:
         return self._state
 
     def read(self, sensor: str) -> SensorReading:
-        """The reading of now; KeyError with the sensors there are when there is none."""
+        """The reading of now; KeyError lists the sensors if there is none."""
         reading = self.peek(sensor)
         if self._asked.get(sensor) != reading.stamp:
             self._asked[sensor] = reading.stamp

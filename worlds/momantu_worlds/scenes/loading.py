@@ -54,12 +54,12 @@ def nominal(path: Path) -> Nominal:
         text = path.read_bytes()
     except OSError:
         text = b""  # nothing is cached for it, and `load_world` says why it cannot be read
-    having = cached_nominal(text)
-    if having is None:
+    found = cached_nominal(text)
+    if found is None:
         world = load_world(path)
-        having = Nominal(nominal_site(world), world.robot)
-        store_nominal(having, text)
-    return having
+        found = Nominal(nominal_site(world), world.robot)
+        store_nominal(found, text)
+    return found
 
 
 def nominal_site(world: WorldFile) -> Site:

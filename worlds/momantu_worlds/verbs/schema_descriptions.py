@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-WORDS: Mapping[str, str] = MappingProxyType(
+DESCRIPTIONS: Mapping[str, str] = MappingProxyType(
     {
         "*.at": "Where it stands: [x, y, yaw] in the map.",
         "*.color": "Red, green and blue, each 0 to 1.",
@@ -70,7 +70,7 @@ WORDS: Mapping[str, str] = MappingProxyType(
         "Distractors.gap": "Between any two of them.",
         "Distractors.gap_to_item": "Around the item, so that a hand fits.",
         "Distractors.kinds": "What they may be.",
-        "Distractors.on": "The tables that they may stand on; all when not said.",
+        "Distractors.on": "The tables that they may stand on; all if omitted.",
         "Distractors.patterns": "Whether they are painted in many ways.",
         "Door.at": "[x, y] of its middle, on a wall of a room.",
         "Door.width": "Of the gap.",
@@ -79,11 +79,11 @@ WORDS: Mapping[str, str] = MappingProxyType(
         "Door.clear": "Radius around its middle that is kept free of unknown furniture.",
         "Doorway.at": "[x, y] of its middle in the map.",
         "Doorway.clear": "Radius around its middle that is kept free of unknown furniture.",
-        "Floor.center": "[x, y] of its middle; under everything when not said.",
+        "Floor.center": "[x, y] of its middle; under everything if omitted.",
         "Floor.size": "[along x, along y].",
         "GoalDemand.item": "The object that is brought.",
         "GoalDemand.on": "The surface on which it is to stand.",
-        "GoalDemand.beside": "A tag, an object, a surface or a body; anywhere when not said.",
+        "GoalDemand.beside": "A tag, an object, a surface or a body; anywhere if omitted.",
         "GoalDemand.tilt": "It leans at most so far.",
         "GoalDemand.distance": "At most from the middle of what it is beside, along the floor.",
         "GoalDemand.still": "It has not moved for so long.",
@@ -107,11 +107,11 @@ WORDS: Mapping[str, str] = MappingProxyType(
         "MeshUse.up": "Which of its own axes points up.",
         "MeshUse.collision": "What touches: the hull or box around all, a hull of each part, none.",
         "ObjectNote.on": "The surface that it stands on, or several of which an episode takes one.",
-        "ObjectNote.at": "[x, y] on the surface, in its own frame; anywhere when not said.",
+        "ObjectNote.at": "[x, y] on the surface, in its own frame; anywhere if omitted.",
         "ObjectNote.yaw": "How it is turned on the surface.",
-        "ObjectNote.size": "Of a box; drawn when not said.",
-        "ObjectNote.radius": "Of something round; drawn when not said.",
-        "ObjectNote.height": "Of something round; drawn when not said.",
+        "ObjectNote.size": "Of a box; drawn if omitted.",
+        "ObjectNote.radius": "Of something round; drawn if omitted.",
+        "ObjectNote.height": "Of something round; drawn if omitted.",
         "ObjectSizes.category": "What kind of thing it is.",
         "ObjectSizes.diameter": "Of something round.",
         "ObjectSizes.width": "Its shorter edge on the table.",
@@ -125,8 +125,8 @@ WORDS: Mapping[str, str] = MappingProxyType(
         "SiteNotes.places": "[x, y, yaw] of places that a tree can name.",
         "SiteNotes.objects": "Kinds of objects by the names that trees use.",
         "SiteNotes.services": "Tunables of services and skills, by name.",
-        "SiteNotes.map": "map_server's YAML of a floor plan; drawn from this file when not said.",
-        "Start.turn": "How far from `at` it may look; in any direction when not said.",
+        "SiteNotes.map": "map_server's YAML of a floor plan; drawn from this file if omitted.",
+        "Start.turn": "How far from `at` it may look; in any direction if omitted.",
         "Start.clear": "Half the edge of the square around it that is free.",
         "Start.belief_shift": "How far from the truth it may be told to stand.",
         "Start.belief_turn": "How far from the truth it may be told to look.",
@@ -164,9 +164,9 @@ INHERITED: Mapping[str, str] = MappingProxyType({"Tag": "TagNote"})
 """Parts that are another part with something added."""
 
 
-def words_of(part: str, key: str) -> str | None:
-    """What a key of a part means; None where nothing is said of it."""
+def description_of(part: str, key: str) -> str | None:
+    """What a key of a part means; None if it is not given of it."""
     for owner in (part, INHERITED.get(part), "*"):
-        if owner is not None and f"{owner}.{key}" in WORDS:
-            return WORDS[f"{owner}.{key}"]
+        if owner is not None and f"{owner}.{key}" in DESCRIPTIONS:
+            return DESCRIPTIONS[f"{owner}.{key}"]
     return None

@@ -50,7 +50,7 @@ def _extent(size: str) -> tuple[float, float]:
 
 
 def _filled(name: str, width: float, depth: float) -> str:
-    """The template with every place worked out from the extents, m."""
+    """The template with every place computed from the extents, m."""
     x, y = width / 2, depth / 2
     lengths = {
         "west": -x,

@@ -12,7 +12,7 @@ from momantu_bt.descriptions.schema import editor_schema
 from momantu_bt.errors import ExitCode
 from momantu_bt.formats.files import write_whole
 from momantu_worlds.scenes.file.world import WorldFile
-from momantu_worlds.verbs.schema_descriptions import words_of
+from momantu_worlds.verbs.schema_descriptions import description_of
 
 
 def schema(
@@ -42,7 +42,7 @@ def world_schema() -> dict[str, Any]:
     made = WorldFile.model_json_schema(mode="validation")
     for part, schema in {"WorldFile": made, **made["$defs"]}.items():
         for key, inner in schema.get("properties", {}).items():
-            words = words_of(part, key)
+            words = description_of(part, key)
             if words is not None:
                 inner["description"] = words
     return editor_schema(made, "momantu-bt world file")

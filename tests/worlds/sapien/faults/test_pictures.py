@@ -8,7 +8,7 @@ from momantu_worlds.robots import fetch
 from momantu_worlds.sapien.faults.rows import prepare
 from momantu_worlds.sapien.faults.stage import Stage
 from momantu_worlds.sapien.sensors.camera import Camera
-from momantu_worlds.scenes.geometry.standing import Upright
+from momantu_worlds.scenes.geometry.support import UprightCylinder
 
 from momantu_bt.fault import FaultError
 from momantu_bt.geometry import Array, Pose2D, Transform
@@ -29,7 +29,7 @@ def seen_at(stage: Stage, thing: Transform, *, own: bool = True) -> bool:
 
     own: the robot takes the picture itself, which counts.
     """
-    robot, item = stage.simulator.robot, Upright(stage.item)
+    robot, item = stage.simulator.robot, UprightCylinder(stage.item)
     image = read_camera(robot) if own else robot.peek(NAME)
     camera = robot.sensors[NAME]
     assert isinstance(camera, Camera)

@@ -14,7 +14,7 @@ from momantu_worlds.sapien.faults.tops import table_top, things_on
 from momantu_worlds.sapien.sensors.camera import Camera
 from momantu_worlds.scenes.arrange.spots import SetDown, free_spots
 from momantu_worlds.scenes.catalogue.tag36h11 import tag_cells
-from momantu_worlds.scenes.geometry.standing import Upright
+from momantu_worlds.scenes.geometry.support import UprightCylinder
 
 from momantu_bt.geometry import Pose2D
 from momantu_bt.robot import read_camera
@@ -24,7 +24,7 @@ SEEDS = (0, 3, 6)
 
 def spots(stage: Stage) -> list[tuple[float, float]]:
     """Free spots by the rule of how episodes are drawn, those on the marker left out."""
-    top, item = table_top(stage, stage.goal.support), Upright(stage.item)
+    top, item = table_top(stage, stage.goal.support), UprightCylinder(stage.item)
     marker = top.map_from_top.inverse() @ stage.simulator.truth.pose(stage.goal.marker)
     wanted = SetDown(item.radius, item.height, stage.goal.max_distance, top.side)
     found = free_spots(wanted, top.placed, things_on(stage, top), Pose2D.from_transform(marker))

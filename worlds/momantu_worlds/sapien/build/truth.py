@@ -62,7 +62,7 @@ class Truth:
         del self._entities[name]
 
     def entity(self, name: str) -> Any:
-        """A body's SAPIEN entity; KeyError with the names there are when there is none."""
+        """A body's SAPIEN entity; KeyError lists the known names if there is none."""
         if name not in self._entities:
             raise KeyError(f"no body {name!r}; bodies: {', '.join(self._entities)}")
         return self._entities[name]
@@ -73,7 +73,7 @@ class Truth:
         return tuple(self._entities)
 
     def pose(self, body: str) -> Transform:
-        """`map_from_body`; KeyError with the names there are when there is none."""
+        """`map_from_body`; KeyError lists the known names if there is none."""
         return transform_of(self.entity(body).pose)
 
     def speed(self, body: str) -> tuple[float, float]:
@@ -85,11 +85,11 @@ class Truth:
         return float(np.linalg.norm(linear)), float(np.linalg.norm(angular))
 
     def link(self, name: str) -> Transform:
-        """`map_from_link` of one of the robot's links; KeyError when there is none."""
+        """`map_from_link` of one of the robot's links; KeyError if there is none."""
         return transform_of(self._model.links[name].entity_pose)
 
     def joint(self, name: str) -> float:
-        """Position of one of the robot's joints, rad or m; KeyError when there is none."""
+        """Position of one of the robot's joints, rad or m; KeyError if there is none."""
         return float(self._model.positions()[self._model.index[name]])
 
     def height_below(self, body: str, points: Array) -> tuple[float, str]:

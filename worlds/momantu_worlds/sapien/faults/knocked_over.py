@@ -10,7 +10,7 @@ from momantu_worlds.sapien.faults.laid import lying
 from momantu_worlds.sapien.faults.parameters import only
 from momantu_worlds.sapien.faults.stage import Stage
 from momantu_worlds.sapien.faults.tops import TableTop, clear_on, item_top
-from momantu_worlds.scenes.geometry.standing import Upright
+from momantu_worlds.scenes.geometry.support import UprightCylinder
 
 ASIDE = 0.01
 """m; least gap to everything where it lies."""
@@ -23,7 +23,7 @@ class KnockedOver:
     def __init__(self, stage: Stage, fault: Fault) -> None:
         """No parameters."""
         only(fault)
-        self._stage, self._fault, self._item = stage, fault, Upright(stage.item)
+        self._stage, self._fault, self._item = stage, fault, UprightCylinder(stage.item)
 
     def begin(self) -> None:
         """Tip it over its rim in a seeded direction in which it meets nothing.

@@ -10,7 +10,7 @@ from momantu_worlds.sapien.faults.floor_space import walls_between
 from momantu_worlds.sapien.faults.laid import lying
 from momantu_worlds.sapien.faults.parameters import only
 from momantu_worlds.sapien.faults.stage import Stage
-from momantu_worlds.scenes.geometry.standing import Upright
+from momantu_worlds.scenes.geometry.support import UprightCylinder
 
 DISTANCES = (0.7, 0.9, 1.1, 1.4, 1.8)
 """m from the robot, the first that is free is taken."""
@@ -25,7 +25,7 @@ class Lost:
     def __init__(self, stage: Stage, fault: Fault) -> None:
         """No parameters."""
         only(fault)
-        self._stage, self._fault, self._item = stage, fault, Upright(stage.item)
+        self._stage, self._fault, self._item = stage, fault, UprightCylinder(stage.item)
 
     def begin(self) -> None:
         """Lay it on the floor beside the robot.

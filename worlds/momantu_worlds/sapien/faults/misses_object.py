@@ -9,7 +9,7 @@ from momantu_bt.fault import Fault
 from momantu_bt.geometry import Array
 from momantu_worlds.sapien.faults.pictures import PictureCount, cameras, frames
 from momantu_worlds.sapien.faults.stage import Stage
-from momantu_worlds.scenes.geometry.standing import Upright
+from momantu_worlds.scenes.geometry.support import UprightCylinder
 
 
 class MissesObject:
@@ -19,7 +19,7 @@ class MissesObject:
         """Parameters: frames, how many pictures of the place do not show it."""
         self._stage = stage
         self._cameras, self._frames = cameras(stage, fault), frames(fault)
-        self._middle = np.array([0.0, 0.0, Upright(stage.item).height / 2])
+        self._middle = np.array([0.0, 0.0, UprightCylinder(stage.item).height / 2])
         entity = stage.simulator.truth.entity(stage.goal.item)
         self._look = entity.find_component_by_type(sapien.render.RenderBodyComponent)
         self._count: PictureCount | None = None

@@ -10,7 +10,7 @@ from momantu_worlds.sapien.faults.parameters import number, only
 from momantu_worlds.sapien.faults.stage import Stage
 from momantu_worlds.sapien.faults.tops import TableTop, clear_on, item_top, things_on
 from momantu_worlds.scenes.arrange.spots import Disc, lane
-from momantu_worlds.scenes.geometry.standing import Upright
+from momantu_worlds.scenes.geometry.support import UprightCylinder
 
 FARTHEST = 2.0
 """m."""
@@ -27,7 +27,7 @@ class Moved:
         only(fault, "distance")
         self._distance = number(fault, "distance", 0.01, FARTHEST, "m")
         self._stage, self._fault = stage, fault
-        self._item = Upright(stage.item)
+        self._item = UprightCylinder(stage.item)
 
     def begin(self) -> None:
         """Shift it in a seeded direction, to where a hand still gets to it when there is one.

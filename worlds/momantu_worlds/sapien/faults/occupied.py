@@ -16,7 +16,7 @@ from momantu_worlds.scenes.geometry.bodies import Body
 from momantu_worlds.scenes.geometry.parts import block
 from momantu_worlds.scenes.geometry.plane import Rectangle
 from momantu_worlds.scenes.geometry.prisms import body_prism
-from momantu_worlds.scenes.geometry.standing import Upright
+from momantu_worlds.scenes.geometry.support import UprightCylinder
 
 MOST_FREE = 4
 APART = 0.25
@@ -37,7 +37,7 @@ class Occupied:
         self._picture = marker_picture(stage)
         self._free = whole(fault, "free", 0, MOST_FREE)
         self._stage, self._fault = stage, fault
-        self._item = Upright(stage.item)
+        self._item = UprightCylinder(stage.item)
         self._boxes: list[str] = []
 
     def begin(self) -> None:

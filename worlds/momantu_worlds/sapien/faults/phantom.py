@@ -15,7 +15,7 @@ from momantu_worlds.sapien.faults.tops import TableTop, clear_on, item_top, thin
 from momantu_worlds.scenes.arrange.spots import Disc, lane, outline_points, seen_share
 from momantu_worlds.scenes.arrange.tabletop import ITEM_SEEN
 from momantu_worlds.scenes.geometry.bodies import Body
-from momantu_worlds.scenes.geometry.standing import Upright
+from momantu_worlds.scenes.geometry.support import UprightCylinder
 
 APART = 0.15
 """m; least distance to the item."""
@@ -41,7 +41,7 @@ class Phantom:
         pose = self._place(top)
         parts = tuple(dataclasses.replace(p, collision=False) for p in self._item.parts)
         self._shown = self._stage.add(Body("phantom", "phantom", pose, parts))
-        middle = pose.apply(np.array([0.0, 0.0, Upright(self._item).height / 2]))
+        middle = pose.apply(np.array([0.0, 0.0, UprightCylinder(self._item).height / 2]))
         self._count = PictureCount(self._stage, self._frames, lambda: middle, self.end)
 
     def end(self) -> None:
@@ -53,7 +53,7 @@ class Phantom:
 
     def _place(self, top: TableTop) -> Transform:
         """A seeded free place on the top that is seen from before it, and that a hand gets to."""
-        item, draw = Upright(self._item), self._stage.random(self._fault)
+        item, draw = UprightCylinder(self._item), self._stage.random(self._fault)
         here = top.map_from_top.inverse().apply(self._stage.item_pose().position)
         things = things_on(self._stage, top)
         half = np.array(top.size) / 2

@@ -15,7 +15,7 @@ from momantu_bt.world import seeded
 from momantu_worlds.sapien.faults.robot_room import RobotRoom
 from momantu_worlds.scenes.geometry.bodies import Body, Episode, Gap, Goal, Picture
 from momantu_worlds.scenes.geometry.prisms import Prism, body_prism
-from momantu_worlds.scenes.geometry.standing import Upright
+from momantu_worlds.scenes.geometry.support import UprightCylinder
 
 if TYPE_CHECKING:
     from momantu_worlds.sapien.simulator import Simulator
@@ -102,7 +102,7 @@ class Stage:
     def in_hand(self) -> bool:
         """Whether the item is between the fingers, gripped or about to be."""
         hand = self.simulator.truth.link(self.description.end_effector.frame)
-        return Upright(self.item).distance(self.item_pose(), hand) < IN_HAND
+        return UprightCylinder(self.item).distance(self.item_pose(), hand) < IN_HAND
 
     def held(self) -> bool:
         """Whether the item is in the hand, off every surface."""
@@ -130,7 +130,7 @@ class Stage:
         """Take the item elsewhere, at rest; it is not the robot that let go of it."""
         self.simulator.put(self.goal.item, map_from_item)
         if self.referee is not None:
-            self.referee.taken(self.goal.item)
+            self.referee.relocated(self.goal.item)
 
     def add(self, body: Body) -> str:
         """Put one more body into the world; the referee watches it when it is loose.

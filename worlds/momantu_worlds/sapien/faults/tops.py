@@ -14,7 +14,7 @@ from momantu_worlds.scenes.arrange.layout import PlacedTable
 from momantu_worlds.scenes.arrange.spots import Disc
 from momantu_worlds.scenes.geometry.bodies import Body, Cylinder
 from momantu_worlds.scenes.geometry.prisms import Prism, body_points, prism_around
-from momantu_worlds.scenes.geometry.standing import Top
+from momantu_worlds.scenes.geometry.support import SupportTop
 
 TABLES = ("table", "desk")
 """Categories of bodies with a top, surfaces of the site or not."""
@@ -52,7 +52,7 @@ class TableTop:
 
 def table_top(stage: Stage, name: str) -> TableTop:
     """The top of a body, where it truly is."""
-    top = Top(stage.episode.body(name))
+    top = SupportTop(stage.episode.body(name))
     surface = stage.episode.site.surfaces.get(name)
     side = surface.sides[0] if surface is not None and surface.sides else 0.0
     return TableTop(name, top.surface(stage.simulator.truth.pose(name)), top.size, side)

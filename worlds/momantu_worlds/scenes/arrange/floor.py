@@ -16,7 +16,7 @@ import numpy as np
 from momantu_bt.geometry import Pose2D
 from momantu_bt.world import WorldError, seeded
 from momantu_worlds.scenes.arrange.layout import PlacedPiece, PlacedTable
-from momantu_worlds.scenes.arrange.obstacles import floor_extent, footprint, standing_rectangles
+from momantu_worlds.scenes.arrange.obstacles import fixed_rectangles, floor_extent, footprint
 from momantu_worlds.scenes.arrange.surfaces import board_surface, carriers, nominal_surfaces
 from momantu_worlds.scenes.file.furniture import Piece
 from momantu_worlds.scenes.file.variation import Unknown
@@ -78,7 +78,7 @@ def place_start(world: WorldFile, seed: int) -> tuple[Pose2D, Pose2D]:
     """Where the robot truly stands, and what it is told."""
     draw = seeded(seed, "start")
     nominal = Pose2D(*world.start.at)
-    fixed = [*standing_rectangles(world)]
+    fixed = [*fixed_rectangles(world)]
     fixed += [footprint(world, p, p.pose) for p in world.furniture.values()]
     fixed += [Rectangle(t.pose, t.size) for t in nominal_surfaces(world).values()]
     turn = world.start.turn
@@ -192,7 +192,7 @@ class _Room:
     ) -> None:
         self.unknown = unknown
         self._world = world
-        self._standing, self._floor = standing_rectangles(world), floor_extent(world)
+        self._standing, self._floor = fixed_rectangles(world), floor_extent(world)
         self._tops = [Rectangle(table.pose, table.size) for table in tables.values()]
         doors = world.all_doorways.values()
         self._doors = [(np.array(door.at), door.clear) for door in doors]

@@ -94,9 +94,9 @@ class Layout:
     light: Lighting
 
     def object(self, name: str) -> PlacedThing:
-        """One of the objects; KeyError when there is none of that name."""
+        """One of the objects; KeyError if there is none of that name."""
         return {placed.name: placed for placed in self.objects}[name]
 
     def tag(self, name: str) -> PlacedTag:
-        """One of the tags; KeyError when there is none of that name."""
+        """One of the tags; KeyError if there is none of that name."""
         return {placed.name: placed for placed in self.tags}[name]

@@ -25,8 +25,8 @@ MOST_PIECES = 200
 """Parts of one file that are convex pieces of their own; more are one piece."""
 HULL_POINTS = 60
 """Of a convex piece; few, so that contacts are found quickly."""
-KEPT = 256
-"""Meshes that are kept in memory: a world asks for each several times in one episode."""
+CACHED = 256
+"""Meshes in memory: a world asks for each several times in one episode."""
 FLAT = 1e-4
 """m; a piece thinner than this is thickened to it, for a convex body has a volume."""
 Z_FROM_Y = np.array([(1.0, 0.0, 0.0), (0.0, 0.0, -1.0), (0.0, 1.0, 0.0)])
@@ -65,14 +65,14 @@ def mesh_size(use: MeshUse, file: Path) -> tuple[float, float, float]:
 
 @dataclass(frozen=True, slots=True)
 class _State:
-    """A file as it is now, so that nothing is kept of what it was."""
+    """The key of a mesh file in the cache: an edited file is another key."""
 
     file: Path
     changed: int
     size: int
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=CACHED)
 def _parts(use: MeshUse, state: _State, standing: bool, color: Color | None) -> tuple[Part, ...]:
     pieces = _placed(use, state, standing)
     seen = [
@@ -83,7 +83,7 @@ def _parts(use: MeshUse, state: _State, standing: bool, color: Color | None) -> 
     return (*seen, *_touched(use.collision, points))
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=CACHED)
 def _size(use: MeshUse, state: _State) -> tuple[float, float, float]:
     x, y, z = np.ptp(np.concatenate([v for _, v in _placed(use, state, standing=True)]), axis=0)
     return float(x), float(y), float(z)
@@ -149,7 +149,7 @@ def _state(file: Path) -> _State:
     return _State(file, stat.st_mtime_ns, stat.st_size)
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=CACHED)
 def _read(state: _State) -> tuple[MeshPiece, ...]:
     """The pieces of a mesh file, in its own frame and units."""
     file = state.file

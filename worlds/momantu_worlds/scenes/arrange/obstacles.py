@@ -40,7 +40,7 @@ def piece_size(world: WorldFile, piece: Piece) -> Size3:
     return mesh_size(piece.mesh, world.beside(piece.mesh.file))
 
 
-def standing_rectangles(world: WorldFile) -> list[Rectangle]:
+def fixed_rectangles(world: WorldFile) -> list[Rectangle]:
     """The floor that walls, closed doors and bodies take up which stand still and in the way."""
     return [*wall_rectangles(world), *(base for base, _, _ in body_columns(world))]
 
@@ -75,7 +75,7 @@ def floor_extent(world: WorldFile) -> tuple[tuple[float, float], tuple[float, fl
     floor = world.floor
     if floor.center is not None and floor.size is not None:
         return floor.center, floor.size
-    found = [*standing_rectangles(world), Rectangle(Pose2D(*world.start.at), (1.0, 1.0))]
+    found = [*fixed_rectangles(world), Rectangle(Pose2D(*world.start.at), (1.0, 1.0))]
     found += [footprint(world, piece, piece.pose) for piece in world.furniture.values()]
     found += [Rectangle(top.pose, top.size) for top in nominal_surfaces(world).values()]
     corners = np.concatenate([rectangle.corners() for rectangle in found])

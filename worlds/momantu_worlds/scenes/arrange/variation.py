@@ -14,7 +14,7 @@ from momantu_worlds.scenes.geometry.bodies import PointLight, SunLight
 LAMP_HEIGHT = 2.4
 """m; where lamps hang, just below the walls' tops."""
 USUAL_SUN = (0.5, 0.9)
-"""Least and greatest strength of a sun of which nothing is said."""
+"""Least and greatest strength of a sun that is not given."""
 SUN_TILT = (math.radians(20), math.radians(50))
 """rad from straight down, least and most."""
 

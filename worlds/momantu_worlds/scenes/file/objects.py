@@ -30,7 +30,7 @@ class ObjectNote(Part):
     """A loose object on a table or board. What is not said of it is drawn from the seed.
 
     on: one surface, or several of which an episode takes one. at: where on it, in its own frame;
-    anywhere on it when not said. size: of a box; radius and height: of everything round.
+    anywhere on it if omitted. size: of a box; radius and height: of everything round.
     color: it has the usual paint of its kind in this colour, not one of many patterns.
     """
 
@@ -115,7 +115,7 @@ class Tag(TagNote):
 class Distractors(Part):
     """Loose things on the tables, 0 to `most` on each. Gaps are between surfaces.
 
-    on: the tables that they may stand on; all when not said. patterns: they are painted in many
+    on: the tables that they may stand on; all if omitted. patterns: they are painted in many
     ways, not each kind in one.
     """
 

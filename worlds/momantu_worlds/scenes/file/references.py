@@ -75,9 +75,9 @@ class _Names:
         yield from self._goal()
 
     def _missing(
-        self, place: KeyPath, name: str, having: Iterable[str], what: str
+        self, place: KeyPath, name: str, known: Iterable[str], what: str
     ) -> Iterator[KeyMessage]:
-        names = list(having)
+        names = list(known)
         if name not in names and name not in self._also:
             yield place, f"there is no {what} {name!r}; {valid_names(name, names, f'{what}s')}"
 

@@ -39,7 +39,7 @@ class ObjectSizes(Part):
 class SiteNotes(Part):
     """What a person would tell the robot, beside what follows from the file.
 
-    map: map_server's YAML of a floor plan of one's own; drawn from this file when not said.
+    map: map_server's YAML of a floor plan of one's own; drawn from this file if omitted.
     services: tunables of services and skills, by name; see `momantu_bt.descriptions.tunables`.
     """
 

@@ -16,7 +16,7 @@ MOST = 60
 """Lines of a section; the file itself has the rest."""
 
 
-def about(path: Path) -> dict[str, dict[str, str]]:
+def world_summary(path: Path) -> dict[str, dict[str, str]]:
     """Tags, loose things, what an episode varies, the goal; sections without a line are left out.
 
     Raises:

@@ -38,7 +38,7 @@ Direction: TypeAlias = Annotated[tuple[_Finite, _Finite, _Finite], AfterValidato
 class Start(Part):
     """Where the robot stands at first, how far an episode shifts that, what it is told.
 
-    turn: how far from the yaw of `at` it may look; in any direction when not said.
+    turn: how far from the yaw of `at` it may look; in any direction if omitted.
     clear: half the edge of the square around it that is free, m.
     """
 

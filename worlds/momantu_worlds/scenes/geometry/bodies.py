@@ -185,7 +185,7 @@ class Episode:
     doorways: Mapping[str, Gap] = field(default_factory=lambda: MappingProxyType({}))
 
     def body(self, name: str) -> Body:
-        """The body of that name; KeyError with the known names when there is none."""
+        """The body of that name; KeyError lists the known names if there is none."""
         for body in self.bodies:
             if body.name == name:
                 return body

@@ -74,8 +74,8 @@ class Solid:
         return float((point @ DIRECTIONS - reach).max())
 
 
-class Standing:
-    """A body as it is at one instant."""
+class PlacedBody:
+    """A body at its pose of one moment."""
 
     def __init__(self, body: Body, map_from_body: Transform) -> None:
         self.body, self.pose = body, map_from_body
@@ -119,7 +119,7 @@ class Standing:
 
 
 @dataclass(frozen=True, slots=True)
-class Top:
+class LevelTop:
     """A level rectangle on which things stand. half: (2,) m along its own x and y."""
 
     body: str
@@ -143,32 +143,34 @@ class Scene:
     def __init__(self, bodies: Mapping[str, Body], pose: Callable[[str], Transform]) -> None:
         self._bodies, self._pose = bodies, pose
 
-    def body(self, name: str) -> Standing:
-        """One body as it stands now; KeyError when there is none."""
-        return Standing(self._bodies[name], self._pose(name))
+    def body(self, name: str) -> PlacedBody:
+        """One body as it stands now; KeyError if there is none."""
+        return PlacedBody(self._bodies[name], self._pose(name))
 
-    def loose(self) -> Iterator[Standing]:
+    def loose(self) -> Iterator[PlacedBody]:
         """Everything that can be brought."""
         return (self.body(name) for name, body in self._bodies.items() if not body.static)
 
-    def solid(self) -> Iterator[Standing]:
+    def solid(self) -> Iterator[PlacedBody]:
         """Everything that collides."""
         for name, body in self._bodies.items():
             if any(part.collision for part in body.parts):
                 yield self.body(name)
 
     @cached_property
-    def tops(self) -> tuple[Top, ...]:
+    def tops(self) -> tuple[LevelTop, ...]:
         """Tops of all that stands still: those that are told, or else upper faces of boxes."""
         return tuple(self._tops())
 
-    def _tops(self) -> Iterator[Top]:
+    def _tops(self) -> Iterator[LevelTop]:
         for name, body in self._bodies.items():
             if body.static:
                 for top in (body.top,) if body.top is not None else box_tops(body):
-                    yield Top(name, self._pose(name) @ top.body_from_top, np.array(top.size) / 2)
+                    yield LevelTop(
+                        name, self._pose(name) @ top.body_from_top, np.array(top.size) / 2
+                    )
 
-    def below(self, thing: Standing) -> tuple[str, float]:
+    def below(self, thing: PlacedBody) -> tuple[str, float]:
         """What is highest below a body, and how far its lowest point is above that, m."""
         under = (
             (top.height, top.body)

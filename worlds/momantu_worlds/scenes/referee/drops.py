@@ -63,9 +63,9 @@ class Drops:
     def removed(self, name: str) -> None:
         """An added body is gone."""
         self._points.pop(name, None)
-        self.taken(name)
+        self.relocated(name)
 
-    def taken(self, name: str) -> None:
+    def relocated(self, name: str) -> None:
         """A thing was set elsewhere by somebody else: it did not leave the hand by itself."""
         self._grips.pop(name, None)
 

@@ -10,28 +10,28 @@ from momantu_bt.world import Incident
 from momantu_worlds.scenes.referee.ground_truth import GroundTruth, TouchingForce
 from momantu_worlds.scenes.referee.hand import Hand
 
-HARD = 150.0
+MAX_FORCE = 150.0
 """N; ISO/TS 15066 lets a robot press 140 N on a hand or a chest."""
-ONE_BLOW = 0.5
-"""s; force that comes back within this time belongs to the same blow: things rebound."""
+REBOUND = 0.5
+"""s; force that comes back within this time belongs to the same impact: things rebound."""
 
 
 @dataclass(slots=True)
-class _Blow:
+class _Impact:
     begun: float
     last: float
     force: float
 
 
-class Blows:
-    """One incident for each blow of a link on a thing: since when, and the largest force.
+class Impacts:
+    """One incident for each impact of a link on a thing: since when, and the largest force.
 
-    What two fingers squeeze between them is not a blow.
+    What two fingers squeeze between them is not an impact.
     """
 
     def __init__(self, truth: GroundTruth, hand: Hand) -> None:
         self._links, self._fingers = truth.robot_links, hand.fingers
-        self._blows: dict[tuple[str, str], list[_Blow]] = {}
+        self._impacts: dict[tuple[str, str], list[_Impact]] = {}
 
     def observe(self, now: float, contacts: Iterable[TouchingForce]) -> None:
         """Take what touched during the tick that ended at `now`, s."""
@@ -39,23 +39,26 @@ class Blows:
         squeezed = Counter(c.second for c in contacts if c.first in self._fingers)
         for contact in contacts:
             squeeze = contact.first in self._fingers and squeezed[contact.second] > 1
-            if contact.force > HARD and not squeeze:
+            if contact.force > MAX_FORCE and not squeeze:
                 self._take(now, contact)
 
     def incidents(self) -> list[Incident]:
-        """All blows so far; value: N."""
+        """All impacts so far; value: N."""
         return [
             Incident(
-                blow.begun, "force", f"{link} pushed {thing} with {blow.force:.0f} N", blow.force
+                impact.begun,
+                "force",
+                f"{link} pushed {thing} with {impact.force:.0f} N",
+                impact.force,
             )
-            for (link, thing), blows in self._blows.items()
-            for blow in blows
+            for (link, thing), impacts in self._impacts.items()
+            for impact in impacts
         ]
 
     def _take(self, now: float, contact: TouchingForce) -> None:
-        blows = self._blows.setdefault((contact.first, contact.second), [])
-        if blows and now - blows[-1].last <= ONE_BLOW:
-            blows[-1].last = now
-            blows[-1].force = max(blows[-1].force, contact.force)
+        impacts = self._impacts.setdefault((contact.first, contact.second), [])
+        if impacts and now - impacts[-1].last <= REBOUND:
+            impacts[-1].last = now
+            impacts[-1].force = max(impacts[-1].force, contact.force)
         else:
-            blows.append(_Blow(now, now, contact.force))
+            impacts.append(_Impact(now, now, contact.force))

@@ -9,28 +9,28 @@ from momantu_worlds.scenes.geometry.bodies import Body, Episode
 from momantu_worlds.scenes.referee.drops import Drops
 from momantu_worlds.scenes.referee.ground_truth import GroundTruth, TouchingForce
 from momantu_worlds.scenes.referee.hand import Hand
-from momantu_worlds.scenes.referee.impacts import Blows
+from momantu_worlds.scenes.referee.impacts import Impacts
 
 LINEAR, ANGULAR = 0.02, 0.05
 """m/s and rad/s; what is slower rests."""
 
 
 class Incidents:
-    """Watches for blows and drops tick by tick, and for motion when it is asked."""
+    """Watches for impacts and drops tick by tick, and for motion when it is asked."""
 
     def __init__(self, episode: Episode, truth: GroundTruth, hand: Hand) -> None:
         self._truth, self._hand = truth, hand
-        self._blows = Blows(truth, hand)
+        self._impacts = Impacts(truth, hand)
         self._drops = Drops(episode, truth, hand)
 
     def observe(self, now: float, contacts: Sequence[TouchingForce]) -> None:
         """Take what touched during the tick that ended at `now`, s."""
-        self._blows.observe(now, contacts)
+        self._impacts.observe(now, contacts)
         self._drops.observe(now, contacts)
 
-    def taken(self, name: str) -> None:
+    def relocated(self, name: str) -> None:
         """A body was set elsewhere by somebody else: the robot did not let go of it."""
-        self._drops.taken(name)
+        self._drops.relocated(name)
 
     def added(self, body: Body) -> None:
         """A body came into the world."""
@@ -42,7 +42,7 @@ class Incidents:
 
     def until(self, now: float) -> tuple[Incident, ...]:
         """All so far in the order of time, with what moves at `now`, s, the end of the run."""
-        found = [*self._blows.incidents(), *self._drops.incidents]
+        found = [*self._impacts.incidents(), *self._drops.incidents]
         found += still_moving(self._truth, self._hand, now)
         return tuple(sorted(found, key=lambda incident: incident.time))
 

@@ -15,7 +15,7 @@ from momantu_bt.messages import ObjectClass
 from momantu_bt.robot import RobotDescription
 from momantu_worlds.scenes.catalogue.tag36h11 import CODES, tag_picture
 from momantu_worlds.scenes.geometry.bodies import Body, Picture
-from momantu_worlds.scenes.geometry.solids import FLUSH, Scene, Standing, Top
+from momantu_worlds.scenes.geometry.solids import FLUSH, LevelTop, PlacedBody, Scene
 from momantu_worlds.scenes.referee.referee import tilt
 
 UPRIGHT = math.radians(10.0)
@@ -110,12 +110,12 @@ class ClaimJudge:
 
     # things
 
-    def _standing(self) -> Iterator[Standing]:
+    def _standing(self) -> Iterator[PlacedBody]:
         for thing in self._scene.loose():
             if tilt(thing.pose) <= UPRIGHT and abs(self._scene.below(thing)[1]) <= FLUSH:
                 yield thing
 
-    def _such(self, asked: ObjectClass) -> Iterator[Standing]:
+    def _such(self, asked: ObjectClass) -> Iterator[PlacedBody]:
         return (thing for thing in self._standing() if _meant(asked, thing))
 
     # tags
@@ -154,7 +154,7 @@ class ClaimJudge:
 
     # tops
 
-    def _tops_at(self, point: Array, tolerance: float) -> Iterator[Top]:
+    def _tops_at(self, point: Array, tolerance: float) -> Iterator[LevelTop]:
         for top in self._scene.tops:
             if abs(top.height - point[2]) <= tolerance and top.margin(point) >= 0.0:
                 yield top
@@ -181,10 +181,10 @@ class ClaimJudge:
 
     # the robot
 
-    def _held(self, thing: Standing) -> bool:
+    def _held(self, thing: PlacedBody) -> bool:
         return self._gripped(thing) and self._scene.below(thing)[1] > LIFTED
 
-    def _gripped(self, thing: Standing) -> bool:
+    def _gripped(self, thing: PlacedBody) -> bool:
         """Whether any of it is between the pads."""
         return bool(thing.inside(self._between_pads).any())
 
@@ -223,7 +223,7 @@ def _apart(a: Array, b: Array) -> float:
     return float(np.linalg.norm(a - b))
 
 
-def _meant(asked: ObjectClass, thing: Standing) -> bool:
+def _meant(asked: ObjectClass, thing: PlacedBody) -> bool:
     """Whether a thing is of the category, and of the sizes that are known."""
     if thing.body.category != asked.category:
         return False

@@ -18,7 +18,7 @@ import numpy as np
 from momantu_bt.geometry import Transform
 from momantu_bt.world import Verdict
 from momantu_worlds.scenes.geometry.bodies import Body, Episode, Goal
-from momantu_worlds.scenes.geometry.standing import Top, Upright
+from momantu_worlds.scenes.geometry.support import SupportTop, UprightCylinder
 from momantu_worlds.scenes.referee.ground_truth import GroundTruth, TouchingForce
 from momantu_worlds.scenes.referee.hand import Hand
 from momantu_worlds.scenes.referee.incidents import Incidents
@@ -53,8 +53,8 @@ class Referee:
             raise ValueError(f"the episode of {episode.name!r} has no goal to judge")
         self._goal: Goal = episode.goal
         self._truth, self._gripper = truth, hand.gripper
-        self._item = Upright(episode.body(self._goal.item))
-        self._support = Top(episode.body(self._goal.support))
+        self._item = UprightCylinder(episode.body(self._goal.item))
+        self._support = SupportTop(episode.body(self._goal.support))
         self._others = {
             body.name: body.map_from_body
             for body in episode.bodies
@@ -81,9 +81,9 @@ class Referee:
             self._shift.see(_moved(before, pose), name)
             self._tilt.see(tilt(pose), name)
 
-    def taken(self, name: str) -> None:
+    def relocated(self, name: str) -> None:
         """A body was set elsewhere by somebody else than the robot."""
-        self._incidents.taken(name)
+        self._incidents.relocated(name)
 
     def added(self, body: Body) -> None:
         """A body came into the world; a loose one must not be pushed or toppled either."""

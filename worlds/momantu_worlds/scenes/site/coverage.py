@@ -21,8 +21,8 @@ ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
-class Standing:
-    """The floor under one part, and the heights between which it lies, m.
+class Column:
+    """One part as a column: the floor under it, and the heights between which it lies, m.
 
     base: a rectangle, of which only the round disc within counts when `round`; for a part that
     is neither, `points` (n, 3) in the map have it as their convex hull.
@@ -35,7 +35,7 @@ class Standing:
     points: Array | None = None
 
 
-def standing_of(parts: Iterable[Part], map_from_body: Transform) -> Iterator[Standing]:
+def columns_of(parts: Iterable[Part], map_from_body: Transform) -> Iterator[Column]:
     """The colliding ones among the parts of a body."""
     for part in parts:
         if not part.collision:
@@ -45,7 +45,7 @@ def standing_of(parts: Iterable[Part], map_from_body: Transform) -> Iterator[Sta
         if not upright or not isinstance(shape, Box | Cylinder):
             points = pose.apply(outline(part))
             prism = prism_around(points, 0.0)
-            yield Standing(prism.base, prism.bottom, prism.top, points=points)
+            yield Column(prism.base, prism.bottom, prism.top, points=points)
             continue
         round_ = isinstance(shape, Cylinder)
         size = (
@@ -54,11 +54,11 @@ def standing_of(parts: Iterable[Part], map_from_body: Transform) -> Iterator[Sta
         height = shape.height if isinstance(shape, Cylinder) else shape.size[2]
         middle = float(pose.position[2])
         base = Rectangle(Pose2D.from_transform(pose), size)
-        yield Standing(base, middle - height / 2, middle + height / 2, round_)
+        yield Column(base, middle - height / 2, middle + height / 2, round_)
 
 
 def covered(
-    centers: Array, parts: Iterable[Standing], cell: float, band: tuple[float, float]
+    centers: Array, parts: Iterable[Column], cell: float, band: tuple[float, float]
 ) -> NDArray[np.bool_]:
     """Cells whose centre lies in what a part has within some heights, m.
 
@@ -80,7 +80,7 @@ def covered(
 
 
 def _within(
-    centers: Array, part: Standing, cell: float, band: tuple[float, float]
+    centers: Array, part: Column, cell: float, band: tuple[float, float]
 ) -> NDArray[np.bool_]:
     pose, size = part.base.pose, part.base.size
     if part.points is not None:

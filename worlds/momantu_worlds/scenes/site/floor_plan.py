@@ -21,7 +21,7 @@ from momantu_worlds.scenes.arrange.given_bodies import given_bodies
 from momantu_worlds.scenes.arrange.obstacles import DOORSTEP, floor_extent, wall_rectangles
 from momantu_worlds.scenes.file.world import WorldFile
 from momantu_worlds.scenes.geometry.plane import in_outline
-from momantu_worlds.scenes.site.coverage import Standing, covered, standing_of
+from momantu_worlds.scenes.site.coverage import Column, columns_of, covered
 
 OCCUPIED, UNKNOWN, FREE = 0, 205, 254
 """Grey levels; map_server reads a level g as occupied with probability (255 - g) / 255."""
@@ -56,7 +56,7 @@ def draw_plans(
         ),
         axis=-1,
     )
-    walls = [Standing(base, 0.0, math.inf) for base in wall_rectangles(world)]
+    walls = [Column(base, 0.0, math.inf) for base in wall_rectangles(world)]
     solid = covered(centers, [*walls, *standing], cell, band)
     hanging = covered(centers, standing, cell, (DOORSTEP, robot_height)) & ~solid
     plan = np.where(solid, OCCUPIED, np.where(_inside(world, centers), FREE, UNKNOWN))
@@ -75,20 +75,20 @@ def _short(number: float) -> float:
     return float(f"{number:g}")
 
 
-def known_parts(world: WorldFile) -> Iterator[Standing]:
+def known_parts(world: WorldFile) -> Iterator[Column]:
     """Every colliding part of what stands still and is not a wall, where the file has it."""
     for table in world.tables.values():
         if table.board_of is None and table.at is not None and table.size is not None:
             parts = table_parts(world, table, table.size)
-            yield from standing_of(parts, Pose2D(*table.at).transform())
+            yield from columns_of(parts, Pose2D(*table.at).transform())
     for piece in world.furniture.values():
-        yield from standing_of(piece_parts(world, piece), piece.pose.transform())
+        yield from columns_of(piece_parts(world, piece), piece.pose.transform())
     for body in given_bodies(world):
         if body.static:
-            yield from standing_of(body.parts, body.map_from_body)
+            yield from columns_of(body.parts, body.map_from_body)
     for run in world.wall_runs:
         if run.bottom > 0.0:
-            yield Standing(run.base, run.bottom, run.top)
+            yield Column(run.base, run.bottom, run.top)
 
 
 def _extent(world: WorldFile, cell: float) -> tuple[Array, Array]:

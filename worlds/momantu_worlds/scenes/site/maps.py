@@ -33,7 +33,7 @@ def with_maps(site: Site, world: WorldFile, band: tuple[float, float], robot_hei
     try:
         plan, overhang = _drawn(world, band, robot_height)
     except OSError as error:
-        raise WorldError(f"the map of {world.name!r} cannot be kept: {error}") from error
+        raise WorldError(f"the map of {world.name!r} cannot be written: {error}") from error
     return replace(site, map_file=plan, overhang_file=overhang)
 
 

@@ -12,7 +12,7 @@ from momantu_worlds.scenes.arrange.layout import PlacedTable
 from momantu_worlds.scenes.arrange.surfaces import nominal_surfaces
 from momantu_worlds.scenes.file.world import WorldFile
 from momantu_worlds.scenes.geometry.plane import Rectangle, gap
-from momantu_worlds.scenes.site.coverage import Standing
+from momantu_worlds.scenes.site.coverage import Column
 from momantu_worlds.scenes.site.floor_plan import known_parts
 
 SIGMAS = 2.0
@@ -64,13 +64,13 @@ def overhangs(world: WorldFile, tops: Mapping[str, PlacedTable]) -> dict[str, tu
     }
 
 
-def _hangs_over(part: Standing, top: PlacedTable) -> bool:
+def _hangs_over(part: Column, top: PlacedTable) -> bool:
     if not top.height + LEAST <= part.bottom <= top.height + MOST:
         return False
     return gap(part.base, Rectangle(top.pose, top.size)) == 0.0
 
 
-def _named(part: Standing, tops: Mapping[str, PlacedTable]) -> bool:
+def _named(part: Column, tops: Mapping[str, PlacedTable]) -> bool:
     """Whether a part is the top of one of the surfaces."""
     return any(
         abs(part.top - top.height) < SAME and part.base.pose.distance_to(top.pose) < SAME

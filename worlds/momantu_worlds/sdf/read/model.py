@@ -94,7 +94,7 @@ Geometry: TypeAlias = Box | Cylinder | Sphere | Capsule | Cone | Ellipsoid | Pla
 
 @dataclass(frozen=True, slots=True)
 class Material:
-    """What a shape looks like. color: None where nothing is said. texture: of its colour."""
+    """What a shape looks like. color: None if it is not given. texture: of its colour."""
 
     color: Rgba | None = None
     texture: Path | None = None
@@ -102,7 +102,7 @@ class Material:
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """A visual or a collision. friction: None where nothing is said."""
+    """A visual or a collision. friction: None if it is not given."""
 
     name: str
     place: Place

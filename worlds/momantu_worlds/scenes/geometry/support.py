@@ -11,7 +11,7 @@ from momantu_worlds.scenes.geometry.bodies import Body, Cylinder, Part
 from momantu_worlds.scenes.geometry.solids import box_tops, outline
 
 
-class Upright:
+class UprightCylinder:
     """The least upright cylinder around all of an item that collides, standing on its origin."""
 
     def __init__(self, body: Body) -> None:
@@ -48,7 +48,7 @@ def _levels(part: Part) -> tuple[float, float]:
     return float(heights.min()), float(heights.max())
 
 
-class Top:
+class SupportTop:
     """A body's top: the one that is told, or else its highest box's."""
 
     def __init__(self, body: Body) -> None:
