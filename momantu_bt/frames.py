@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from lxml import etree
 
 from momantu_bt.failure import FRAME_UNKNOWN, Failure
+from momantu_bt.formats import urdf
 from momantu_bt.geometry import (
     Array,
     Transform,
@@ -40,6 +40,12 @@ class Joint:
     parent_from_joint: Transform
     axis: tuple[float, float, float]
 
+    @classmethod
+    def of_urdf(cls, joint: urdf.Joint) -> Joint:
+        """A joint as its URDF has it."""
+        parent_from_joint = Transform.from_rpy(joint.xyz, joint.rpy)
+        return cls(joint.name, joint.kind, joint.parent, joint.child, parent_from_joint, joint.axis)
+
     def transform(self, position: float) -> Array:
         """`parent_from_child` as a matrix (4, 4) at `position`, rad or m."""
         matrix = self.parent_from_joint.matrix
@@ -65,21 +71,22 @@ class KinematicTree:
 
         Raises:
             FileNotFoundError: there is no such file.
-            ValueError: it is not a URDF, or has no link `base_frame`.
+            UrdfError: it is not a URDF, or has no link `base_frame`.
         """
-        try:
-            root = etree.fromstring(path.read_bytes(), _parser())
-        except etree.XMLSyntaxError as error:
-            raise ValueError(f"{path} is not a URDF file: {error}") from None
-        links = [link.get("name", "") for link in root.findall("link")]
+        robot = urdf.read_urdf(path)
+        links = [link.name for link in robot.links]
         if base_frame not in links:
-            raise ValueError(f"{path} has no link {base_frame!r}; links: {', '.join(links)}")
-        return cls.from_element(root, base_frame)
+            raise urdf.UrdfError(f"{path} has no link {base_frame!r}; links: {', '.join(links)}")
+        return cls.of_urdf(robot, base_frame)
 
     @classmethod
-    def from_element(cls, root: etree._Element, base_frame: str) -> KinematicTree:
-        """Read joints from a URDF's `robot` element, which has the link `base_frame`."""
-        return cls([_joint(element) for element in root.findall("joint")], base_frame)
+    def of_urdf(cls, robot: urdf.Urdf, base_frame: str) -> KinematicTree:
+        """The joints of a URDF that has the link `base_frame`.
+
+        Raises:
+            UrdfError: a number of a joint cannot be read.
+        """
+        return cls([Joint.of_urdf(joint) for joint in robot.joints], base_frame)
 
     def frames(self) -> tuple[str, ...]:
         """Every frame below the base, and the base itself."""
@@ -126,32 +133,6 @@ class KinematicTree:
             frame = joint.parent
         chain.reverse()
         return chain
-
-
-def _parser() -> etree.XMLParser:
-    return etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False)
-
-
-def _joint(element: etree._Element) -> Joint:
-    def attribute(tag: str, name: str, default: str) -> str:
-        child = element.find(tag)
-        return default if child is None else str(child.get(name, default))
-
-    def numbers(text: str) -> tuple[float, float, float]:
-        a, b, c = (float(part) for part in text.split())
-        return a, b, c
-
-    return Joint(
-        name=str(element.get("name")),
-        kind=str(element.get("type")),
-        parent=attribute("parent", "link", ""),
-        child=attribute("child", "link", ""),
-        parent_from_joint=Transform.from_rpy(
-            numbers(attribute("origin", "xyz", "0 0 0")),
-            numbers(attribute("origin", "rpy", "0 0 0")),
-        ),
-        axis=numbers(attribute("axis", "xyz", "1 0 0")),
-    )
 
 
 class FrameBuffer:

@@ -11,6 +11,7 @@ from momantu_bt.descriptions.reading import KeyMessage, Reading
 from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.places import KeyPath
 from momantu_bt.formats.units import quantity
+from momantu_bt.formats.urdf import Urdf
 from momantu_bt.frames import Joint, KinematicTree
 from momantu_bt.robot import ARM, REQUIRED_POSES
 from momantu_bt.robot_parts import ActuatorKind, CameraSensor, LaserSensor, LidarSensor
@@ -31,7 +32,7 @@ def findings(robot: RobotFile, root: etree._Element, reading: Reading) -> list[K
     if robot.base_frame not in links:
         hint = valid_names(robot.base_frame, links, "links")
         return [(("base_frame",), f"there is no link {robot.base_frame!r}; {hint}")]
-    tree = KinematicTree.from_element(root, robot.base_frame)
+    tree = KinematicTree.of_urdf(Urdf(root), robot.base_frame)
     return list(_Checks(robot, tree, root, links, reading).run())
 
 

@@ -10,9 +10,9 @@ from lxml import etree
 
 from momantu_bt.formats.places import Place
 from momantu_bt.formats.problems import Problem, Severity
+from momantu_bt.formats.urdf import linked
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.robots.parts import line_of
-from momantu_bt.robots.structure import linked
 
 TRIANGLE_SLACK = 0.01
 """Relative; how far rounding may carry one principal inertia beyond the sum of the others."""

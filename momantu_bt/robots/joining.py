@@ -11,13 +11,14 @@ from lxml import etree
 
 from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.places import KeyPath
+from momantu_bt.formats.urdf import Urdf, linked
 from momantu_bt.frames import KinematicTree
 from momantu_bt.geometry import Transform
 from momantu_bt.robot_simulation import BaseJoints
 from momantu_bt.robots.errors import PartError
 from momantu_bt.robots.parts import LoadedPart
 from momantu_bt.robots.robot_file import Drive, Mount, RobotFile
-from momantu_bt.robots.structure import linked, root_link
+from momantu_bt.robots.structure import root_link
 
 VIRTUAL_JOINTS = BaseJoints(x="base_x_joint", y="base_y_joint", yaw="base_yaw_joint")
 """Names of the joints that are added above a base that has none of its own."""
@@ -197,7 +198,7 @@ def _root_from_link(part: LoadedPart, root: str, link: str) -> Transform:
         raise PartError(
             place, f"{part.name!r} has no link {link!r}; {valid_names(link, names, 'links')}"
         )
-    tree = KinematicTree.from_element(part.root, root)
+    tree = KinematicTree.of_urdf(Urdf(part.root), root)
     moving = [joint.name for joint in tree.chain(link) if joint.kind != "fixed"]
     if moving:
         said = f"{link!r} moves against the part's root {root!r}, by {', '.join(moving)}"

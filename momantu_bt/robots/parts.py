@@ -10,6 +10,7 @@ from pathlib import Path
 from lxml import etree
 
 from momantu_bt.formats.places import KeyPath
+from momantu_bt.formats.urdf import UrdfError, parse_urdf
 from momantu_bt.robots.errors import PartError, RobotNotInstalled
 from momantu_bt.robots.robot_file import PackageFile, PartSource
 from momantu_bt.robots.xacro_files import expand
@@ -99,13 +100,10 @@ def shown(path: Path, folder: Path) -> str:
 
 
 def _parsed(text: bytes, path: Path, place: KeyPath) -> etree._Element:
-    parser = etree.XMLParser(
-        resolve_entities=False, no_network=True, load_dtd=False, remove_comments=True
-    )
     try:
-        root = etree.fromstring(text, parser)
-    except etree.XMLSyntaxError as error:
-        raise PartError(place, f"{path} is not XML: {error.msg}") from None
+        root = parse_urdf(text, str(path))
+    except UrdfError as error:
+        raise PartError(place, str(error)) from None
     if root.tag != "robot":
         raise PartError(place, f"{path} is not a URDF: its element is <{root.tag}>, not <robot>")
     for tag in ("link", "joint"):

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from lxml import etree
 
 from momantu_bt.formats.names import valid_names
+from momantu_bt.formats.urdf import linked
 from momantu_bt.robots.errors import PartError
 from momantu_bt.robots.limits import LIMITED
 from momantu_bt.robots.parts import LoadedPart, line_of
@@ -120,12 +121,6 @@ def _numbers(text: str) -> list[float]:
     except ValueError:
         return []
     return numbers if all(map(math.isfinite, numbers)) else []
-
-
-def linked(joint: etree._Element, end: str) -> str:
-    """The link at the `parent` or `child` end of a joint; empty when none is named."""
-    element = joint.find(end)
-    return "" if element is None else str(element.get("link", ""))
 
 
 def root_link(part: LoadedPart) -> str:

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from lxml import etree
 
+from momantu_bt.formats.urdf import Urdf, read_urdf
 from momantu_bt.robot import RobotDescription, laser_band
 from momantu_bt.robot_parts import CameraSensor, LaserSensor, Sensor
 from momantu_bt.robots.assembly import load_parts
@@ -28,7 +28,7 @@ def summary(description: RobotDescription) -> dict[str, Any]:
         "name": description.name,
         "file": None if description.source is None else str(description.source),
         "urdf": str(description.urdf),
-        "mass": _mass(etree.fromstring(description.urdf.read_bytes())),
+        "mass": read_urdf(description.urdf).mass,
         "height": description.height,
         "base_frame": description.base_frame,
         "footprint": {"length": max(xs) - min(xs), "width": max(ys) - min(ys)},
@@ -48,16 +48,13 @@ def summary(description: RobotDescription) -> dict[str, Any]:
     }
 
 
-def _mass(root: etree._Element) -> float:
-    return sum(float(mass.get("value", "0")) for mass in root.findall("link/inertial/mass"))
-
-
 def _parts(description: RobotDescription) -> Iterator[tuple[str, dict[str, Any]]]:
     """The parts of a robot file; nothing of a description that has none."""
     if description.source is None:
         return
     robot, folder = read_robot_file(description.source), description.source.absolute().parent
     for part in load_parts(robot, folder):
+        urdf = Urdf(part.root)
         mount = robot.mounts.get(part.name)
         yield (
             part.name,
@@ -65,9 +62,9 @@ def _parts(description: RobotDescription) -> Iterator[tuple[str, dict[str, Any]]
                 "file": str(part.path),
                 "namespace": part.source.namespace,
                 "meshes": None if part.meshes is None else str(part.meshes),
-                "links": len(part.root.findall("link")),
-                "moving_joints": sum(j.get("type") != "fixed" for j in part.root.findall("joint")),
-                "mass": _mass(part.root),
+                "links": len(urdf.links),
+                "moving_joints": sum(joint.kind != "fixed" for joint in urdf.joints),
+                "mass": urdf.mass,
                 "mount": None if mount is None else mount.model_dump(),
             },
         )

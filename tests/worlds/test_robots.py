@@ -109,7 +109,7 @@ def test_without_the_mesh_package_the_cure_is_named(monkeypatch: pytest.MonkeyPa
     [
         (("kind: base}", "kind: wheels}"), "actuators.base.kind"),
         (("grasp_offset: 0.0", "grasp_ofset: 0.0"), "grasp_ofset"),
-        (("name: fetch", "name: [fetch"), "not YAML"),
+        (("name: fetch", "name: [fetch"), "is never closed"),
     ],
 )
 def test_a_broken_robot_file_is_named_with_the_place(

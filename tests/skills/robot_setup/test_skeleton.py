@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import pytest
-from lxml import etree
 from momantu_skills.robot_setup.urdf.skeleton import SetupError, Skeleton, read_skeleton
+
+from momantu_bt.formats.urdf import Urdf, parse_urdf
 
 
 def link(name: str, shape: str = "") -> str:
@@ -23,7 +24,9 @@ SHAPE = '<collision><geometry><box size="1 1 1"/></geometry></collision>'
 
 
 def skeleton(*elements: str) -> Skeleton:
-    return read_skeleton(etree.fromstring(f"<robot name='r'>{''.join(elements)}</robot>"))
+    return read_skeleton(
+        Urdf(parse_urdf(f"<robot name='r'>{''.join(elements)}</robot>".encode(), "r.urdf"))
+    )
 
 
 CHAIN = (
@@ -46,7 +49,7 @@ def test_chains_and_rigid_pieces() -> None:
     assert set(found.subtree("b")) == {"b", "c", "d"}
     assert [j.name for j in found.branches("b")] == ["cd"]
     assert [j.name for j in found.moving_below("b")] == ["cd"]
-    assert found.links["a"].shapes == 1
+    assert found.links["a"].collisions == 1
 
 
 def test_every_link_below_the_root_hangs_on_the_joint_that_carries_it() -> None:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
 from lxml import etree
 
+from momantu_bt.formats.urdf import Link, Urdf, linked, parse_urdf
 from momantu_bt.geometry import Transform
 
 
@@ -64,12 +66,11 @@ def base_urdf(description: UrdfSource) -> BaseUrdf:
     joints two coordinates, and readers take their limits as (0, 0): they become revolute with
     +-pi here, and whoever plans treats their range as endless.
     """
-    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False)
-    root = etree.fromstring(description.urdf.read_bytes(), parser)
+    root = parse_urdf(description.urdf.read_bytes(), str(description.urdf))
     keep = _links_below(root, description.base_frame)
     continuous: list[str] = []
     for joint in root.findall("joint"):
-        if _linked(joint, "child") not in keep - {description.base_frame}:
+        if linked(joint, "child") not in keep - {description.base_frame}:
             root.remove(joint)
         elif joint.get("type") == "continuous":
             continuous.append(str(joint.get("name")))
@@ -77,14 +78,14 @@ def base_urdf(description: UrdfSource) -> BaseUrdf:
     for link in root.findall("link"):
         if link.get("name") not in keep:
             root.remove(link)
-    parts = tuple(p for link in root.findall("link") for p in _parts(link, description))
+    parts = tuple(p for link in Urdf(root).links for p in _parts(link, description))
     return BaseUrdf(etree.tostring(root).decode(), tuple(continuous), parts)
 
 
 def _links_below(root: etree._Element, base: str) -> set[str]:
     children: dict[str, list[str]] = {}
     for joint in root.findall("joint"):
-        children.setdefault(_linked(joint, "parent"), []).append(_linked(joint, "child"))
+        children.setdefault(linked(joint, "parent"), []).append(linked(joint, "child"))
     keep, waiting = {base}, [base]
     while waiting:
         for child in children.get(waiting.pop(), []):
@@ -92,11 +93,6 @@ def _links_below(root: etree._Element, base: str) -> set[str]:
                 keep.add(child)
                 waiting.append(child)
     return keep
-
-
-def _linked(joint: etree._Element, end: str) -> str:
-    element = joint.find(end)
-    return "" if element is None else str(element.get("link"))
 
 
 def _make_revolute(joint: etree._Element) -> None:
@@ -108,32 +104,11 @@ def _make_revolute(joint: etree._Element) -> None:
     limit.set("upper", repr(math.pi))
 
 
-def _parts(link: etree._Element, description: UrdfSource) -> list[CollisionPart]:
-    parts = []
-    for collision in link.findall("collision"):
-        origin = collision.find("origin")
-        xyz = _numbers("0 0 0" if origin is None else origin.get("xyz", "0 0 0"))
-        rpy = _numbers("0 0 0" if origin is None else origin.get("rpy", "0 0 0"))
-        place = Transform.from_rpy(xyz, rpy)
-        shape = collision.find("geometry/*")
-        if shape is None:
-            continue
-        name = str(link.get("name"))
-        if shape.tag == "mesh":
-            path = _mesh_path(str(shape.get("filename")), description)
-            scale = _numbers(shape.get("scale", "1 1 1"))
-            parts.append(CollisionPart(name, "mesh", place, scale, path))
-        elif shape.tag == "box":
-            parts.append(CollisionPart(name, "box", place, _numbers(str(shape.get("size")))))
-        elif shape.tag in ("cylinder", "sphere"):
-            size = (float(str(shape.get("radius"))), float(shape.get("length", "0")), 0.0)
-            parts.append(CollisionPart(name, str(shape.tag), place, size))
-    return parts
-
-
-def _numbers(text: str) -> tuple[float, float, float]:
-    a, b, c = (float(part) for part in text.split())
-    return a, b, c
+def _parts(link: Link, description: UrdfSource) -> Iterator[CollisionPart]:
+    for shape in link.shapes:
+        place = Transform.from_rpy(shape.xyz, shape.rpy)
+        mesh = _mesh_path(shape.mesh, description) if shape.kind == "mesh" else None
+        yield CollisionPart(link.name, shape.kind, place, shape.size, mesh)
 
 
 def _mesh_path(name: str, description: UrdfSource) -> Path:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from lxml import etree
 
 from momantu_bt.findings import FindingAtKeys
 from momantu_bt.formats.problems import Severity
+from momantu_bt.formats.urdf import read_urdf
 from momantu_bt.robot import REQUIRED_POSES, ActuatorKind, RobotDescription
 from momantu_skills.manipulation.model.arm_model import ArmModel
 from momantu_skills.manipulation.model.collision import CollisionWorld, body_pairs
@@ -219,12 +219,8 @@ def check_hulls(description: RobotDescription, body: Body) -> Iterator[FindingAt
 
 def check_looks(description: RobotDescription) -> Iterator[FindingAtKeys]:
     """Links that touch things and that no camera sees."""
-    root = read_urdf(description)
-    bare = [
-        str(link.get("name"))
-        for link in root.findall("link")
-        if link.find("collision") is not None and link.find("visual") is None
-    ]
+    links = read_urdf(description.urdf).links
+    bare = [link.name for link in links if link.collisions and not link.visuals]
     if bare:
         yield FindingAtKeys(
             Severity.WARNING,
@@ -234,9 +230,3 @@ def check_looks(description: RobotDescription) -> Iterator[FindingAtKeys]:
             "give them a <visual>, the same shape at least",
             ("parts",),
         )
-
-
-def read_urdf(description: RobotDescription) -> etree._Element:
-    """The assembled URDF's element."""
-    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False)
-    return etree.fromstring(description.urdf.read_bytes(), parser)

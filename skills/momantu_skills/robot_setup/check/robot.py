@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from momantu_bt.descriptions.reading import Reading, read_text
 from momantu_bt.findings import Finding, FindingAtKeys, worst_first
 from momantu_bt.formats.places import NOWHERE
+from momantu_bt.formats.urdf import read_urdf
 from momantu_bt.robot import RobotDescription
 from momantu_bt.robots import RobotFileError
 from momantu_skills.manipulation.model.arm_model import ArmModel
@@ -16,7 +17,6 @@ from momantu_skills.robot_setup.check.body import (
     check_limits,
     check_looks,
     check_poses,
-    read_urdf,
 )
 from momantu_skills.robot_setup.check.hand import check_hand, check_reach
 from momantu_skills.robot_setup.check.sensors import check_sensors
@@ -31,7 +31,7 @@ def check_robot(description: RobotDescription) -> list[Finding]:
     Raises:
         SetupError: the URDF is not a mechanism, or has a collision shape without volume.
     """
-    body = Body(read_skeleton(read_urdf(description)), description)
+    body = Body(read_skeleton(read_urdf(description.urdf)), description)
     stand = find_stand(body)
     return _located(
         description,

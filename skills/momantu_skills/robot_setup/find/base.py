@@ -71,7 +71,7 @@ def find_base(skeleton: Skeleton) -> BaseFrame:
     """The link that carries everything, below joints that only place the robot in a world."""
     link = skeleton.root
     virtual: list[str] = []
-    while not any(skeleton.links[name].shapes for name in skeleton.rigid(link)):
+    while not any(skeleton.links[name].collisions for name in skeleton.rigid(link)):
         if planar(skeleton, tuple(virtual)) is not None:
             break
         below = [j for name in skeleton.rigid(link) for j in skeleton.below(name)]
@@ -103,7 +103,7 @@ def _places(joint: SetupJoint) -> bool:
 
 def _named(skeleton: Skeleton, link: str) -> str:
     candidates = [skeleton.rigid_root(link)]
-    while not skeleton.links[candidates[-1]].shapes:
+    while not skeleton.links[candidates[-1]].collisions:
         below = skeleton.below(candidates[-1])
         if len(below) != 1 or below[0].moving:
             break

@@ -9,6 +9,7 @@ import numpy as np
 from lxml import etree
 from scipy.spatial import QhullError
 
+from momantu_bt.formats.urdf import Urdf
 from momantu_bt.robots.errors import PartError
 from momantu_bt.robots.parts import MOST_BYTES, load_part
 from momantu_bt.robots.robot_file import PartSource
@@ -90,7 +91,7 @@ def prepare(source: Path, folder: Path) -> Prepared:
     except PartError as error:
         raise SetupError(str(error)) from None
     root = part.root
-    skeleton = read_skeleton(root)
+    skeleton = read_skeleton(Urdf(root))
     notes = _Notes()
     for joint in root.findall("joint"):
         _mend_joint(joint, notes)
@@ -101,7 +102,7 @@ def prepare(source: Path, folder: Path) -> Prepared:
     path.write_bytes(etree.tostring(root))
     _drop_flat(root, path, skeleton.root, notes)
     path.write_bytes(etree.tostring(root))
-    return Prepared(source, kind, path, read_skeleton(root), root, notes.all())
+    return Prepared(source, kind, path, read_skeleton(Urdf(root)), root, notes.all())
 
 
 def _is_xacro(source: Path) -> bool:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
 
-from lxml import etree
-
 from momantu_bt.errors import MomantuError
+from momantu_bt.formats.urdf import Joint, Link, Mimic, Urdf, UrdfError
 from momantu_bt.geometry import Transform
 
 TURNING = ("revolute", "continuous")
@@ -18,24 +17,6 @@ MOVING = (*TURNING, "prismatic")
 
 class SetupError(MomantuError):
     """A URDF that nothing can be found out of; the message says why and what to do."""
-
-
-@dataclass(frozen=True)
-class Mimic:
-    """A joint that follows another: position = multiplier * leader's + offset."""
-
-    leader: str
-    multiplier: float
-    offset: float
-
-
-@dataclass(frozen=True)
-class Link:
-    """mass: kg, 0 where none is given. shapes: how many collision elements it has."""
-
-    name: str
-    mass: float
-    shapes: int
 
 
 @dataclass(frozen=True)
@@ -161,73 +142,29 @@ class Skeleton:
         return tuple(j for j in self.joints.values() if j.moving and j.parent in inside)
 
 
-def read_skeleton(root: etree._Element) -> Skeleton:
-    """Links and joints of a parsed URDF.
+def read_skeleton(urdf: Urdf) -> Skeleton:
+    """The links and joints of a URDF.
 
     Raises:
         SetupError: an invalid number, or not a tree.
     """
     try:
-        links = [_link(element) for element in root.findall("link")]
-        joints = [_joint(element) for element in root.findall("joint")]
-    except (ValueError, TypeError) as error:
+        return Skeleton(urdf.links, [_joint(joint) for joint in urdf.joints])
+    except UrdfError as error:
         raise SetupError(f"the URDF has a value that cannot be read: {error}") from None
-    return Skeleton(links, joints)
 
 
-def _link(element: etree._Element) -> Link:
-    mass = element.find("inertial/mass")
-    weight = 0.0 if mass is None else float(mass.get("value", "0"))
-    return Link(element.get("name", ""), weight, len(element.findall("collision")))
-
-
-def _joint(element: etree._Element) -> SetupJoint:
-    def attribute(tag: str, name: str, default: str) -> str:
-        child = element.find(tag)
-        return default if child is None else str(child.get(name, default))
-
-    def limit(name: str) -> float | None:
-        text = attribute("limit", name, "")
-        return _bound(element.get("name", ""), name, text) if text else None
-
+def _joint(joint: Joint) -> SetupJoint:
     return SetupJoint(
-        name=element.get("name", ""),
-        kind=element.get("type", "fixed"),
-        parent=attribute("parent", "link", ""),
-        child=attribute("child", "link", ""),
-        parent_from_joint=Transform.from_rpy(
-            _three(attribute("origin", "xyz", "0 0 0")), _three(attribute("origin", "rpy", "0 0 0"))
-        ),
-        axis=_three(attribute("axis", "xyz", "1 0 0")),
-        lower=limit("lower"),
-        upper=limit("upper"),
-        velocity=limit("velocity"),
-        effort=limit("effort"),
-        mimic=_mimic(element),
+        name=joint.name,
+        kind=joint.kind,
+        parent=joint.parent,
+        child=joint.child,
+        parent_from_joint=Transform.from_rpy(joint.xyz, joint.rpy),
+        axis=joint.axis,
+        lower=joint.lower,
+        upper=joint.upper,
+        velocity=joint.velocity,
+        effort=joint.effort,
+        mimic=joint.mimic,
     )
-
-
-def _bound(joint: str, name: str, text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    signed = name in ("lower", "upper")
-    if not math.isfinite(value) or (value < 0 and not signed):
-        wanted = "a number" if signed else "a number of 0 or more"
-        raise ValueError(f"the joint {joint} has {name}={text!r}; write {wanted}")
-    return value
-
-
-def _mimic(element: etree._Element) -> Mimic | None:
-    mimic = element.find("mimic")
-    if mimic is None:
-        return None
-    ratio, offset = mimic.get("multiplier", "1"), mimic.get("offset", "0")
-    return Mimic(mimic.get("joint", ""), float(ratio), float(offset))
-
-
-def _three(text: str) -> tuple[float, float, float]:
-    numbers: Iterator[float] = (float(part) for part in text.split())
-    a, b, c = numbers
-    return a, b, c

@@ -103,7 +103,7 @@ def end_effector_lines(proposal: Proposal) -> Iterator[str]:
         yield "#   pad_length: 0.03, pad_height: 0.02, hand_clearance: 0.03, touch_links: [hand]}"
         return
     hand = arm.hand
-    touch = [link for link in hand.links if proposal.prepared.skeleton.links[link].shapes]
+    touch = [link for link in hand.links if proposal.prepared.skeleton.links[link].collisions]
     yield "# Measured: opening and pads by the distance of the fingers' hulls."
     if hand.single:
         yield "# Look at it: one jaw closes against the palm; its widths are those of its tip."

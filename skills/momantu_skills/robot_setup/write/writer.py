@@ -223,7 +223,7 @@ def _simulation(proposal: Proposal) -> Iterator[str]:
     if hand is not None:
         moving = {link for branch in hand.branches for link in branch.links}
         fingers = [n for n in (*hand.ahead, *hand.behind) if n in moving]
-        fingers = [n for n in fingers if skeleton.links[n].shapes]
+        fingers = [n for n in fingers if skeleton.links[n].collisions]
     yield "# What a simulator must know beside all this. Friction is guessed: rubber pads."
     yield "simulation:"
     yield f"  floor_links: {listed(proposal.stand.grounded)}"

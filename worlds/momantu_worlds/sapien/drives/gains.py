@@ -7,8 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from lxml import etree
-
+from momantu_bt.formats.urdf import read_urdf
 from momantu_bt.robot import JointGains, RobotDescription, SimulationModel
 from momantu_worlds.sapien.config import Physics
 
@@ -60,11 +59,5 @@ def with_own(own: JointGains | None, usual: Gains) -> Gains:
 
 def _efforts(description: RobotDescription) -> dict[str, float]:
     """The URDF's effort limits, by joint; one of 0 is one that nobody gave."""
-    root = etree.fromstring(description.urdf.read_bytes())
-    efforts: dict[str, float] = {}
-    for joint in root.findall("joint"):
-        limit = joint.find("limit")
-        effort = 0.0 if limit is None else float(limit.get("effort", "0"))
-        if effort > 0.0:
-            efforts[str(joint.get("name"))] = effort
-    return efforts
+    joints = read_urdf(description.urdf).joints
+    return {joint.name: joint.effort for joint in joints if joint.effort}

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from lxml import etree
 
+from momantu_bt.formats.urdf import read_urdf
 from momantu_bt.geometry import Array, Pose2D, wrap_angle
 from momantu_bt.robot import RobotDescription
 from momantu_bt.world import seeded
@@ -50,8 +50,7 @@ class Encoders:
 
 def prismatic_joints(description: RobotDescription, names: tuple[str, ...]) -> Array:
     """(n,) bool: which of the named joints slide."""
-    root = etree.fromstring(description.urdf.read_bytes())
-    kinds = {str(j.get("name")): str(j.get("type")) for j in root.findall("joint")}
+    kinds = {joint.name: joint.kind for joint in read_urdf(description.urdf).joints}
     return np.array([kinds.get(name) == "prismatic" for name in names])
 
 
