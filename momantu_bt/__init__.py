@@ -12,6 +12,7 @@ from momantu_bt.version import __version__
 if TYPE_CHECKING:
     from momantu_bt.failure import Failure
     from momantu_bt.geometry import Pose, Pose2D, Transform
+    from momantu_bt.py_trees_bridge.mount import as_behaviour
     from momantu_bt.record.report import Report
     from momantu_bt.robot import CAMERA_CARRIER, Robot
     from momantu_bt.running.api import run
@@ -37,6 +38,7 @@ _HOMES = {
     "Skill": "skill",
     "Transform": "geometry",
     "World": "world",
+    "as_behaviour": "py_trees_bridge.mount",
     "compute": "skill",
     "run": "running.api",
 }
@@ -59,6 +61,7 @@ __all__ = [
     "Transform",
     "World",
     "__version__",
+    "as_behaviour",
     "compute",
     "run",
 ]

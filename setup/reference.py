@@ -30,6 +30,8 @@ PUBLIC = (
     "momantu_bt.lazy",
     "momantu_bt.messages",
     "momantu_bt.nodes",
+    "momantu_bt.nodes.behaviour",
+    "momantu_bt.py_trees_bridge.view",
     "momantu_bt.record.codec",
     "momantu_bt.record.reader",
     "momantu_bt.robot",

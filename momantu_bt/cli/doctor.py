@@ -17,6 +17,7 @@ from momantu_bt.diagnosis.plugins import plugins
 from momantu_bt.errors import ExitCode
 from momantu_bt.faults.catalogue import FAULTS
 from momantu_bt.robots.plugins import ROBOTS
+from momantu_bt.tree.catalogue.nodes import BEHAVIOURS
 from momantu_bt.tree.catalogue.nodes import PLUGINS as NODES
 from momantu_bt.tree.plugins import SERVICES, SKILLS
 from momantu_bt.world_plugins import WORLDS
@@ -58,7 +59,7 @@ def diagnose(output: Path) -> Iterator[Diagnosis]:
     """Everything there is to look at, the quick and the certain first."""
     yield from machine(output)
     yield from packages()
-    yield from plugins((SKILLS, NODES, SERVICES, ROBOTS, WORLDS, FAULTS, COMMANDS))
+    yield from plugins((SKILLS, NODES, BEHAVIOURS, SERVICES, ROBOTS, WORLDS, FAULTS, COMMANDS))
 
 
 def mended(diagnosis: Diagnosis) -> Diagnosis:

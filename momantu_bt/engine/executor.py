@@ -113,15 +113,11 @@ class Executor:
         return Ending(status, self._failure, verdict, sim_time, wall_time, ticks, self._error)
 
     def _until_end(self, interrupts: Interrupts, started: float) -> str:
-        body = self.context.body
-        self.fingerprint.add(None, (), (), self._written())
-        if body is not None:
-            body.frames.add_state(body.actuators.robot.state())
-            self.services.start(body.site, body.frames, self._stepper, self.context.seed)
+        self.begin()
         while True:
             if interrupts.requested:
                 return ending.INTERRUPTED
-            status = self._tick()
+            status = self.tick()
             if status is not RUNNING:
                 self._failure = self.built.root.failure if status is FAILURE else None
                 return ending.FAILURE if status is FAILURE else ending.SUCCESS
@@ -141,7 +137,16 @@ class Executor:
         self._stepper.step()
         self._world_is_sound = True
 
-    def _tick(self) -> Status:
+    def begin(self) -> None:
+        """Before the first tick: services start."""
+        body = self.context.body
+        self.fingerprint.add(None, (), (), self._written())
+        if body is not None:
+            body.frames.add_state(body.actuators.robot.state())
+            self.services.start(body.site, body.frames, self._stepper, self.context.seed)
+
+    def tick(self) -> Status:
+        """One tick: the world steps, then services, the tree and the observers take their turns."""
         self._step()
         self.context.begin_tick()
         body = self.context.body
@@ -182,7 +187,7 @@ class Executor:
         self.context.changes.clear()
         self.context.writes.clear()
         try:
-            self._halt_and_stop()
+            self.stop()
             if status == ending.ERROR:
                 self._settle_unseen()
                 return None
@@ -195,8 +200,8 @@ class Executor:
             self._error = self._error or traceback.format_exc()
             return None
 
-    def _halt_and_stop(self) -> None:
-        """Every actuator is stopped even when halting the tree goes wrong."""
+    def stop(self) -> None:
+        """Halt the tree; every actuator is stopped even when halting the tree goes wrong."""
         try:
             halt_tree(self.built)
         finally:

@@ -61,21 +61,13 @@ def launch(prepared: Prepared, watch: Watch | None = None) -> Report:
         KeyboardInterrupt: Ctrl-C before the first tick.
     """
     begun = time.perf_counter()
-    document, options, registry = prepared.document, prepared.options, prepared.registry
+    document, options = prepared.document, prepared.options
     if not options.patience > 0.0:
         raise LaunchError(f"a patience of {options.patience} s; expected more than 0, or inf")
-    kinds = {name: registry.skills[name] for name in skills_in(document, prepared.substitution)}
     with ExitStack() as stack:
         interrupts = stack.enter_context(Interrupts())
-        needed = _services(kinds, registry)
-        planned = _planned(prepared, kinds)
-        recorder = _recorder(options, stack)
-        world = _open(prepared, kinds, needed)
-        if world is not None and world is not options.world:
-            stack.callback(world.close)
-        stage = Stage(planned, world, options.seed, stack)
-        executor = _assemble(prepared, kinds, needed, stage, recorder)
-        auditor = Auditor(executor.context, world) if options.audit else None
+        executor, stage, recorder = _assembled(prepared, stack)
+        auditor = Auditor(executor.context, executor.world) if options.audit else None
         if watch is not None:
             executor.observers = list(watch(executor))
         if recorder is not None:
@@ -95,6 +87,30 @@ def launch(prepared: Prepared, watch: Watch | None = None) -> Report:
         if recorder is not None:
             recorder.finish(report)
         return report
+
+
+def assemble(prepared: Prepared, stack: ExitStack) -> Executor:
+    """A run that somebody else ticks: `begin`, then `tick` until it ends, or `stop`.
+
+    stack: closes what is opened here.
+
+    Raises:
+        LaunchError, FaultError, OutputError, WorldError: as `launch` does.
+    """
+    return _assembled(prepared, stack)[0]
+
+
+def _assembled(prepared: Prepared, stack: ExitStack) -> tuple[Executor, Stage, Recorder | None]:
+    document, options, registry = prepared.document, prepared.options, prepared.registry
+    kinds = {name: registry.skills[name] for name in skills_in(document, prepared.substitution)}
+    needed = _services(kinds, registry)
+    planned = _planned(prepared, kinds)
+    recorder = _recorder(options, stack)
+    world = _open(prepared, kinds, needed)
+    if world is not None and world is not options.world:
+        stack.callback(world.close)
+    stage = Stage(planned, world, options.seed, stack)
+    return _executor(prepared, kinds, needed, stage, recorder), stage, recorder
 
 
 def _recorder(options: RunOptions, stack: ExitStack) -> Recorder | None:
@@ -191,7 +207,7 @@ def _services(kinds: Mapping[str, type[Skill]], registry: Registry) -> dict[str,
     return in_order(needs, registry.services.__getitem__)
 
 
-def _assemble(
+def _executor(
     prepared: Prepared,
     kinds: Mapping[str, type[Skill]],
     needed: Mapping[str, type[Service]],

@@ -24,7 +24,7 @@ OF_THE_READER = {
     "src/pace_nodes/pace.py",
     "tests/test_pace.py",
     "src/door/door.py",
-    "tests/test_door.py",
+    "mounted.py",
     "test_look_round.py",
     "turn/src/turn_skill/turn.py",
     "turn/tests/test_speed.py",

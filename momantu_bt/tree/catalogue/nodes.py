@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from importlib import import_module
 from importlib.metadata import EntryPoint
-from typing import ClassVar, Protocol, TypeVar
+from typing import Any, ClassVar, Protocol, TypeAlias, TypeVar
 
 from momantu_bt.plugins import Group, PluginError
 from momantu_bt.tree.catalogue.built_in import BUILT_IN
@@ -17,6 +18,7 @@ from momantu_bt.tree.catalogue.words import CONDITIONS, NODE_KEYS
 
 K = TypeVar("K")
 V = TypeVar("V")
+_Installed: TypeAlias = tuple[tuple[str, EntryPoint], ...]
 
 
 class NodeClass(Protocol):
@@ -26,12 +28,20 @@ class NodeClass(Protocol):
 
 
 def _objection(name: str, plugin: object) -> str | None:
-    built_in = {spelling for kind in _built_in().values() for spelling in kind.spec.yaml}
-    return node_objection(name, plugin, built_in)
+    return node_objection(name, plugin, _spellings())
 
 
 PLUGINS: Group[type[NodeClass]] = Group("momantu_bt.nodes", "node", _objection)
 """Nodes that other packages bring, by YAML spelling."""
+
+
+def _behaviour_objection(name: str, plugin: object) -> str | None:
+    found: str | None = _bridge().behaviour_objection(name, plugin, _spellings())
+    return found
+
+
+BEHAVIOURS: Group[object] = Group("momantu_bt.behaviours", "behaviour", _behaviour_objection)
+"""Behaviours of py_trees that other packages bring, by their names in trees."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +99,17 @@ def is_ours(name: str) -> bool:
 
 
 def _tables() -> _Tables:
-    return _read(tuple(PLUGINS.installed().items()))
+    return _read(tuple(PLUGINS.installed().items()), tuple(BEHAVIOURS.installed().items()))
+
+
+def _bridge() -> Any:
+    """The module that makes leaves of behaviours; py_trees is imported with it."""
+    return import_module("momantu_bt.nodes.behaviour")
+
+
+def _spellings() -> frozenset[str]:
+    """YAML spellings of the built-in nodes."""
+    return frozenset(name for kind in _built_in().values() for name in kind.spec.yaml)
 
 
 @cache
@@ -101,15 +121,16 @@ def _built_in() -> Mapping[str, type[NodeClass]]:
 
 
 @lru_cache(maxsize=4)
-def _read(having: tuple[tuple[str, EntryPoint], ...]) -> _Tables:
-    """having: the plug-ins. A broken one is left out; `PLUGINS.load` says why to who uses it."""
+def _read(nodes: _Installed, behaviours: _Installed) -> _Tables:
+    """A plug-in that is broken is left out; `load` of its group says why to who uses it."""
     classes = dict(_built_in())
-    for name, _ in having:
-        try:
+    for name, _ in nodes:
+        with suppress(PluginError):
             plugin = PLUGINS.load(name)
-        except PluginError:
-            continue
-        classes[plugin.spec.type] = plugin
+            classes[plugin.spec.type] = plugin
+    for name, _ in behaviours:
+        with suppress(PluginError):
+            classes[name] = _bridge().node_class(name, BEHAVIOURS.load(name))
     specs = {type_: kind.spec for type_, kind in classes.items()}
     return _Tables(
         classes=classes,

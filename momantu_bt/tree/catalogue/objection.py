@@ -36,10 +36,10 @@ def node_objection(name: str, plugin: object, built_in: Collection[str]) -> str 
     if not isinstance(spec, NodeSpec):
         return f"{plugin.__name__} has no `spec`: write control(…), decorator(…) or leaf(…)"
     return (
-        _bad_name(name, plugin.__name__, built_in)
+        bad_name(name, built_in)
         or _bad_spelling(name, spec)
         or _bad_spec(spec)
-        or next(filter(None, (_bad_port(name, port) for port in spec.ports.values())), None)
+        or next(filter(None, (bad_port(name, port) for port in spec.ports.values())), None)
     )
 
 
@@ -48,7 +48,8 @@ def type_of(name: str) -> str:
     return "".join(word.capitalize() for word in name.split("_"))
 
 
-def _bad_name(name: str, class_name: str, built_in: Collection[str]) -> str | None:
+def bad_name(name: str, built_in: Collection[str]) -> str | None:
+    """Why no node can be called so; None when one can."""
     if not _NAME.fullmatch(name):
         return f"{name!r} is not a name for a node: lower-case letters, digits and underscores"
     if name in built_in or type_of(name) in BUILT_IN or type_of(name) == SUBTREE:
@@ -86,7 +87,8 @@ def _bad_spec(spec: NodeSpec) -> str | None:
     return None if missing is None else f"its spec names the port {missing!r}, which it has not"
 
 
-def _bad_port(name: str, port: Port) -> str | None:
+def bad_port(name: str, port: Port) -> str | None:
+    """What is wrong with a port of a node; None when nothing is."""
     if port.name in ("child", "children"):
         return f"the port {name}.{port.name} would hide what stands below the node; rename it"
     if not isinstance(port.doc, str) or not port.doc.strip():

@@ -12,7 +12,7 @@ from momantu_bt.plugins import PluginError
 from momantu_bt.robot import RobotDescription
 from momantu_bt.skill import Port, Skill
 from momantu_bt.tree.catalogue import AUTOREMAP, NODES, SUBTREE, NodeSpec
-from momantu_bt.tree.catalogue.nodes import PLUGINS
+from momantu_bt.tree.catalogue.nodes import BEHAVIOURS, PLUGINS
 from momantu_bt.tree.catalogue.objection import type_of
 from momantu_bt.tree.model import BROKEN, Document, Node, Tree
 from momantu_bt.tree.problems import Problems
@@ -151,6 +151,8 @@ def _why_broken(context: Context, name: str) -> str | None:
     try:
         if name in PLUGINS or name in spelled:
             PLUGINS.load(spelled.get(name, name))
+        elif name in BEHAVIOURS:
+            BEHAVIOURS.load(name)
         elif name in context.registry.skills:
             context.registry.skills[name]
     except PluginError as error:

@@ -98,7 +98,7 @@ class NodeReader:
             return self.reading.broken("again", key.place, message)
         if "$" in name:
             return self.reading.broken("not-a-node", key.place, f"{name} is a wire, not a node")
-        if name in NODES or name == SUBTREE:
+        if (name in NODES and name not in SPELLED) or name == SUBTREE:
             ours = NODES[name].yaml[0] if name in NODES else "the tree's name"
             message, hint = f"no node is called {name!r}", f"did you mean {ours}?"
             return self.reading.broken("unknown-node", key.place, message, hint)

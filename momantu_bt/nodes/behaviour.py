@@ -1,0 +1,229 @@
+"""Behaviours of py_trees as leaves of our trees.
+
+An entry point of the group `momantu_bt.behaviours` names a `py_trees.behaviour.Behaviour` class, or
+what `behaviour(…)` makes of one that has ports. What a behaviour says in a tick comes from outside
+the tree: it is recorded, and a replay takes it from the record without the behaviour.
+"""
+
+from __future__ import annotations
+
+import inspect
+import traceback
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any, ClassVar
+
+from py_trees.behaviour import Behaviour
+from py_trees.blackboard import Blackboard
+from py_trees.common import Status as PyTreesStatus
+
+from momantu_bt.engine.label import label
+from momantu_bt.engine.node import Parts, TreeNode
+from momantu_bt.engine.role import Role
+from momantu_bt.engine.status import RUNNING, SUCCESS, Status
+from momantu_bt.engine.watchdog import Hung
+from momantu_bt.failure import CODE, FAILED, HUNG, Failure
+from momantu_bt.skill import Port
+from momantu_bt.tree.catalogue.codes import and_also
+from momantu_bt.tree.catalogue.objection import bad_name, bad_port
+from momantu_bt.tree.catalogue.spec import leaf
+from momantu_bt.values.admit import admit_output
+
+BEHAVIOUR_ERROR = "BEHAVIOUR_ERROR"
+"""A behaviour raised an exception; `data["traceback"]` holds the traceback."""
+
+
+class Through(StrEnum):
+    """How values reach a behaviour and come back."""
+
+    CONSTRUCTOR = "constructor"
+    """Each start makes a behaviour, with the inputs as named arguments; outputs are attributes."""
+    ATTRIBUTES = "attributes"
+    """Inputs are set as attributes before each start; outputs are attributes."""
+    BLACKBOARD = "blackboard"
+    """Inputs are written to py_trees' blackboard before each start, and outputs read from there."""
+
+
+@dataclass(frozen=True, slots=True)
+class Declaration:
+    """A behaviour class and what trees need to know of it; `behaviour` makes it."""
+
+    kind: type[Behaviour]
+    ports: Mapping[str, Port]
+    through: Through
+    failure: str
+    doc: str
+
+
+def behaviour(
+    kind: type[Behaviour],
+    *ports: Port,
+    through: str = Through.ATTRIBUTES,
+    failure: str = FAILED,
+    doc: str = "",
+) -> Declaration:
+    """Declare the ports of a behaviour, for an entry point of the group `momantu_bt.behaviours`.
+
+    ports: made by `input_port` and `output_port`; their names are those of the arguments,
+    attributes or keys. through: "constructor", "attributes" or "blackboard"; see `Through`.
+    failure: the code of its FAILURE; the sentence is its feedback message. doc: one sentence,
+    unless the docstring of the class says it.
+    """
+    said = doc or (inspect.getdoc(kind) or "").partition("\n")[0]
+    by_name = {port.name: port for port in ports}
+    return Declaration(kind, by_name, Through(through), failure, said)
+
+
+def declared(plugin: object) -> Declaration | None:
+    """What an entry point names, as a declaration; None where it is neither of the two."""
+    if isinstance(plugin, type) and issubclass(plugin, Behaviour):
+        return behaviour(plugin)
+    return plugin if isinstance(plugin, Declaration) else None
+
+
+def behaviour_objection(name: str, plugin: object, built_in: Collection[str]) -> str | None:
+    """Why trees cannot use this behaviour; None when they can. built_in: spellings of nodes."""
+    declaration = declared(plugin)
+    if declaration is None:
+        return f"{plugin!r} is not a py_trees Behaviour class and not made by `behaviour(…)`"
+    if not declaration.doc.strip():
+        return f"{declaration.kind.__name__} has no docstring: one sentence that says what it does"
+    if not CODE.fullmatch(declaration.failure):
+        return f"{declaration.failure!r} is not a failure code: UPPER_CASE words"
+    wrong = (bad_port(name, port) for port in declaration.ports.values())
+    return bad_name(name, built_in) or next(filter(None, wrong), None)
+
+
+def node_class(name: str, plugin: object) -> type[BehaviourLeaf]:
+    """The class of the leaves that run a behaviour. name: of the leaf, in YAML and in XML."""
+    declaration = declared(plugin)
+    assert declaration is not None
+    spec = leaf(
+        name,
+        name,
+        declaration.doc,
+        *declaration.ports.values(),
+        first=next((p.name for p in declaration.ports.values() if p.direction == "in"), None),
+        codes=and_also(declaration.failure, BEHAVIOUR_ERROR, HUNG),
+    )
+    return type(name, (BehaviourLeaf,), {"spec": spec, "declaration": declaration})
+
+
+class BehaviourLeaf(TreeNode):
+    """Ticks a behaviour: `initialise` and `update` at a start, `update` while it runs.
+
+    `terminate` follows its end, or with INVALID a halt. It is made, and its `setup(clock=…)`
+    called, before its first start. INVALID from `update` is a failure.
+    """
+
+    declaration: ClassVar[Declaration]
+
+    def __init__(self, parts: Parts) -> None:
+        super().__init__(parts)
+        self.inputs = parts.inputs()
+        self.outputs = parts.outputs()
+        self._behaviour: Behaviour | None = None
+        self._at_work = False
+        self._feedback = ""
+
+    @property
+    def role(self) -> Role:
+        """What the robot does."""
+        return Role.ACT
+
+    @property
+    def note(self) -> str:
+        """What the behaviour says while it runs."""
+        return self._feedback
+
+    def step(self) -> Status:
+        """One tick of the behaviour."""
+        inputs: dict[str, Any] = {}
+        begins, self._at_work = not self._at_work, True
+        if begins:
+            inputs = self.inputs.all()
+            self.label = label(self.model, inputs)
+        said = self.context.outside.ask(
+            f"behaviour {self.index}", lambda: self._ticked(begins, inputs)
+        )
+        status, self._feedback, outputs = said
+        if status == RUNNING.value:
+            return RUNNING
+        self._at_work = False
+        if status != SUCCESS.value:
+            return self.fail(self.declaration.failure, self._feedback or f"returned {status}")
+        for name, cell in self.outputs.items():
+            cell.write(outputs[name])
+        return SUCCESS
+
+    def clear(self) -> None:
+        """End the behaviour: `terminate(INVALID)`."""
+        self._at_work = False
+        self._feedback = ""
+        running = self._behaviour
+        if running is not None and running.status is PyTreesStatus.RUNNING:
+            try:
+                running.stop(PyTreesStatus.INVALID)
+            except Exception as error:
+                self.context.remark(f"{self.where}: while it was halted: {_words(error)}")
+
+    def _ticked(self, begins: bool, inputs: Mapping[str, Any]) -> tuple[str, str, dict[str, Any]]:
+        """The status, the feedback message and, with SUCCESS, the outputs of one tick.
+
+        Raises:
+            Failure: what the behaviour raised, BEHAVIOUR_ERROR for any other exception.
+        """
+        watchdog = self.context.watchdog
+        watchdog.begin_step()
+        try:
+            return self._tick(begins, inputs)
+        except Failure:
+            raise
+        except Hung:
+            message = f"{self.name} gave no status back within the run's patience"
+            raise Failure(HUNG, message) from None
+        except Exception as error:
+            text = "".join(traceback.format_exception(error))
+            raise Failure(BEHAVIOUR_ERROR, _words(error), traceback=text) from error
+        finally:
+            watchdog.end_step()
+
+    def _tick(self, begins: bool, inputs: Mapping[str, Any]) -> tuple[str, str, dict[str, Any]]:
+        running = self._begun(inputs) if begins or self._behaviour is None else self._behaviour
+        running.tick_once()
+        status = running.status
+        done = status is PyTreesStatus.SUCCESS
+        return status.value, running.feedback_message or "", self._given(running) if done else {}
+
+    def _begun(self, inputs: Mapping[str, Any]) -> Behaviour:
+        """The behaviour with its inputs; made and set up where there is none yet."""
+        declaration, made = self.declaration, self._behaviour
+        if declaration.through is Through.CONSTRUCTOR:
+            made = declaration.kind(name=self.name, **inputs)
+        elif made is None:
+            made = declaration.kind(name=self.name)
+        if declaration.through is Through.ATTRIBUTES:
+            for name, value in inputs.items():
+                setattr(made, name, value)
+        if declaration.through is Through.BLACKBOARD:
+            for name, value in inputs.items():
+                Blackboard.set(name, value)
+        if made is not self._behaviour:
+            for each in made.iterate():
+                each.setup(clock=self.context.clock)
+            self._behaviour = made
+        return made
+
+    def _given(self, running: Behaviour) -> dict[str, Any]:
+        """The outputs that are wired."""
+        found = {}
+        for name in self.outputs:
+            on_board = self.declaration.through is Through.BLACKBOARD
+            value = Blackboard.get(name) if on_board else getattr(running, name)
+            found[name] = admit_output(value, self.spec.ports[name])
+        return found
+
+
+def _words(error: Exception) -> str:
+    return f"raised {type(error).__name__}: {error}"
