@@ -218,7 +218,7 @@ class EndEffector(Part):
             ValueError: the gripper has no finger joints.
         """
         if not self.opening:
-            raise ValueError("a gripper without joints has no opening that joints could tell")
+            raise ValueError("`opening` needs joints, and this gripper has none")
         told = [_inverse(rows, positions[joint]) for joint, rows in self.opening.items()]
         return sum(told) / len(told)
 

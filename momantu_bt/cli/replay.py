@@ -17,7 +17,7 @@ with lazily():
 
     from momantu_bt import page
     from momantu_bt.cli import records, replay_screen, terminal
-    from momantu_bt.replay import moment_text, rebuild, recheck, seek, stepper, telling
+    from momantu_bt.replay import moment_text, rebuild, recheck, run_text, seek, stepper
     from momantu_bt.replay import timeline as timelines
     from momantu_bt.tree import registry
 
@@ -120,18 +120,20 @@ def _print_moment(timeline: Timeline, index: int, *, as_json: bool) -> None:
 
 def _print_all(recording: Recording) -> None:
 
-    typer.echo(telling.headline(recording))
-    for _, line in telling.told(recording):
+    typer.echo(run_text.headline(recording))
+    for _, line in run_text.run_lines(recording):
         typer.echo(line)
-    typer.echo(telling.ending(recording))
+    typer.echo(run_text.ending(recording))
 
 
 def _step(timeline: Timeline) -> None:
 
     recording = timeline.recording
-    typer.echo(telling.headline(recording))
-    replay_screen.show(stepper.Stepper(timeline), list(telling.told(recording)), console.Console())
-    typer.echo(telling.ending(recording))
+    typer.echo(run_text.headline(recording))
+    replay_screen.show(
+        stepper.Stepper(timeline), list(run_text.run_lines(recording)), console.Console()
+    )
+    typer.echo(run_text.ending(recording))
 
 
 def _check(recording: Recording) -> ExitCode:

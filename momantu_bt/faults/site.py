@@ -18,7 +18,7 @@ NEAR = 5.0
 """m from the start within which the piece of wall is missing, where there are walls."""
 
 
-def told(site: Site, fault: Fault, seed: int, folder: Path) -> Site:
+def wrong_site(site: Site, fault: Fault, seed: int, folder: Path) -> Site:
     """The site as the fault makes it. folder: where changed maps may be written.
 
     Raises:

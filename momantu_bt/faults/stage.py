@@ -136,7 +136,7 @@ class Stage:
             self.robot = layer
             return layer
         folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="momantu_bt_site_"))
-        self.site = at_site.told(self.site, fault, seed, Path(folder))
+        self.site = at_site.wrong_site(self.site, fault, seed, Path(folder))
         return None
 
 

@@ -11,7 +11,7 @@ from momantu_bt.page.codes import FAILURE
 from momantu_bt.page.tables import value_text
 from momantu_bt.record.failure_text import tries_text
 from momantu_bt.record.recording import NodeInfo, Recording, TickRecord
-from momantu_bt.replay.telling import report_of
+from momantu_bt.replay.run_text import report_of
 
 _MOST_LINKS = 200
 """Of one chain; a longer one is cut."""

@@ -15,7 +15,7 @@ from momantu_bt.record.failure_text import failure_line
 _WORDS = {"RUNNING": "starts", "SUCCESS": "done", "IDLE": "halted", "SKIPPED": "skipped"}
 
 
-class Told(Protocol):
+class ReportedNode(Protocol):
     """A node of a run, or of its record."""
 
     @property
@@ -39,12 +39,12 @@ class Told(Protocol):
         ...
 
     @property
-    def above(self) -> Told | None:
+    def above(self) -> ReportedNode | None:
         """The node around it."""
         ...
 
 
-News: TypeAlias = tuple[Told, Status, str, FailureValue | None]
+StatusChange: TypeAlias = tuple[ReportedNode, Status, str, FailureValue | None]
 """A node, its new status, its note and why it failed; a `Change` is one."""
 
 
@@ -63,7 +63,7 @@ class ChangeLines:
         """Tell this tick's changes."""
         self.tell(run.context.now, run.context.changes)
 
-    def tell(self, now: float, changes: Iterable[News]) -> None:
+    def tell(self, now: float, changes: Iterable[StatusChange]) -> None:
         """Tell the changes of one tick of a run or of a record."""
         for node, status, note, failure in _parents_first(changes):
             if node.role is Role.RECOVERY:
@@ -74,7 +74,9 @@ class ChangeLines:
     def close(self) -> None:
         """Nothing is left to say."""
 
-    def _tell(self, now: float, node: Told, status: Status, failure: FailureValue | None) -> None:
+    def _tell(
+        self, now: float, node: ReportedNode, status: Status, failure: FailureValue | None
+    ) -> None:
         running = node.index in self._was_running
         self._was_running.discard(node.index)
         if status is RUNNING:
@@ -84,24 +86,24 @@ class ChangeLines:
         words = f"fails: {_reason(node, failure)}" if status is FAILURE else _WORDS[status.value]
         self._line(now, node, f"{node.label} {words}")
 
-    def _tell_note(self, now: float, node: Told, note: str) -> None:
+    def _tell_note(self, now: float, node: ReportedNode, note: str) -> None:
         before = self._notes.get(node.index, "try 1")
         self._notes[node.index] = note
         if note not in (before, "try 1", ""):
             self._line(now, node, f"{node.name}: {note}")
 
-    def _line(self, now: float, node: Told, words: str) -> None:
+    def _line(self, now: float, node: ReportedNode, words: str) -> None:
         self._say(f"{now:8.2f} s {'  ' * _level(node)}{words}")
 
 
-def _parents_first(changes: Iterable[News]) -> Iterator[News]:
+def _parents_first(changes: Iterable[StatusChange]) -> Iterator[StatusChange]:
     """Nodes that start in one tick in the order of the file, though the innermost is first."""
     for starting, group in groupby(changes, key=lambda change: change[1] is RUNNING):
         together = list(group)
         yield from sorted(together, key=lambda change: change[0].index) if starting else together
 
 
-def _level(node: Told) -> int:
+def _level(node: ReportedNode) -> int:
     """How many subtrees it is in."""
     level, above = 0, node.above
     while above is not None:
@@ -109,7 +111,7 @@ def _level(node: Told) -> int:
     return level
 
 
-def _reason(node: Told, failure: FailureValue | None) -> str:
+def _reason(node: ReportedNode, failure: FailureValue | None) -> str:
     if failure is None:
         return "FAILED"
     if node.role is Role.TREE:

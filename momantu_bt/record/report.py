@@ -41,7 +41,7 @@ class NodeReport:
 
 
 @dataclass(frozen=True, slots=True)
-class Lie:
+class FalseClaim:
     """An end that ground truth contradicts: at time (s), of the node at place.
 
     code: the failure's, None where success was claimed. claim: the sentences that were judged.
@@ -69,7 +69,7 @@ class SkillClaims:
     failures: int = 0
     judged_failures: int = 0
     false_failures: int = 0
-    lies: tuple[Lie, ...] = ()
+    lies: tuple[FalseClaim, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ from typing import Any
 
 from momantu_bt.record.recording import NodeInfo, Recording
 from momantu_bt.replay.difference import NOTHING, Difference, first_difference, node_words
-from momantu_bt.replay.telling import told
+from momantu_bt.replay.run_text import run_lines
 
 _OUTCOME = ("status", "success", "failure", "unmet", "sim_time_s", "ticks", "error")
 """Of a report what a run came to; wall times and folders do not count."""
@@ -22,7 +22,7 @@ _ABOUT = ("world", "robot", "seed")
 
 @dataclass(frozen=True, slots=True)
 class Parting:
-    """Where the told lines of two runs part; times do not count.
+    """Where the printed lines of two runs part; times do not count.
 
     before: the last line of both, empty at the beginning. left, right: the next one of each.
     """
@@ -111,7 +111,7 @@ def _first(left: Recording, right: Recording) -> Difference | None:
 
 def _parting(left: Recording, right: Recording) -> Parting | None:
     before = ""
-    for one, other in zip_longest(told(left), told(right)):
+    for one, other in zip_longest(run_lines(left), run_lines(right)):
         texts = [NOTHING if each is None else each[1].strip() for each in (one, other)]
         if _without_time(texts[0]) != _without_time(texts[1]):
             return Parting(before, texts[0], texts[1])

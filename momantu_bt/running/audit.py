@@ -10,7 +10,7 @@ from momantu_bt.engine.context import RunContext
 from momantu_bt.engine.outside import SkillNode, SkillSession
 from momantu_bt.engine.session import Session
 from momantu_bt.geometry import Transform
-from momantu_bt.record.report import Lie, SkillClaims
+from momantu_bt.record.report import FalseClaim, SkillClaims
 from momantu_bt.world import World
 
 
@@ -52,7 +52,7 @@ class Auditor:
             )
         if false:
             code = None if failure is None else failure.code
-            lie = Lie(self._context.now, leaf.place, code, str(claim))
+            lie = FalseClaim(self._context.now, leaf.place, code, str(claim))
             count = replace(count, lies=(*count.lies, lie))
         self._claims[name] = replace(count, runs=count.runs + 1)
 

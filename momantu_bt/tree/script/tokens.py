@@ -73,7 +73,7 @@ def _token(match: re.Match[str], dollar: bool) -> Token:
             raise ScriptSyntaxError("`$` does not belong here", offset, len(text), "write the name")
         if text[1:] in ("true", "false"):
             hint = f"write {text[1:]}"
-            raise ScriptSyntaxError(f"{text} is a value, no key", offset, len(text), hint)
+            raise ScriptSyntaxError(f"{text} is a value, not a key", offset, len(text), hint)
         return Token("name", text[1:], offset, len(text))
     if kind == "name" and dollar:
         if text in _WORDS:

@@ -85,7 +85,7 @@ def blind_spot(arm: Arm, transit: Sequence[JointTrajectory]) -> Array | None:
         inner |= within(points[:, :2], support.outline, -BESIDE) & (above > 0.0)
         low |= within(points[:, :2], support.outline) & (above > 0.0) & (above < TALL)
     beside = ~inner & (arm.service.floor_plan.distance(points) < BESIDE)
-    doubtful = points[(low | beside) & ~arm.scene.looks.show(points)]
+    doubtful = points[(low | beside) & ~arm.scene.seen_space.show(points)]
     return None if len(doubtful) < ALONG else np.asarray(doubtful[len(doubtful) // 2])
 
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from momantu_bt.fault import FaultError
-from momantu_bt.faults.site import told
+from momantu_bt.faults.site import wrong_site
 from momantu_bt.faults.skills.outputs import without_numbers
 from momantu_bt.faults.spec import parse_fault
 from momantu_bt.formats.maps import FREE, OCCUPIED, read_map
@@ -336,7 +336,7 @@ def test_every_map_that_a_robot_can_drive_on_can_be_made_wrong(tmp_path, header,
     site = scripted_site(map_file=tmp_path / "map.yaml")
     out = tmp_path / "out"
     out.mkdir()
-    wrong = read_map(told(site, parse_fault("map.wrong:missing=0.1 m"), 0, out).map_file)
+    wrong = read_map(wrong_site(site, parse_fault("map.wrong:missing=0.1 m"), 0, out).map_file)
     assert (read_map(site.map_file).cells() == OCCUPIED).sum() == 1
     assert (wrong.cells() == FREE).all()
     assert wrong.brightest == brightest

@@ -18,7 +18,7 @@ import pytest
 from momantu_bt.cli import main
 from momantu_bt.record.ending import ending_text
 from momantu_bt.record.failure_text import failure_line
-from momantu_bt.replay.telling import report_of
+from momantu_bt.replay.run_text import report_of
 
 TREE = """
 momantu_bt: 1

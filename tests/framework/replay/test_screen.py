@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from rich.console import Console, ConsoleDimensions
 
 from momantu_bt.cli.replay_screen import picture
+from momantu_bt.replay.run_text import told
 from momantu_bt.replay.stepper import Stepper
-from momantu_bt.replay.telling import told
 from momantu_bt.replay.timeline import Timeline
 
 TREE = """

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from momantu_skills.gaze.unseen_ways import blind_spot, planned_in_sight
 from momantu_skills.manipulation.scene.site_obstacles import FAR, FloorPlan
-from momantu_skills.manipulation.scene.surroundings import KEPT, Looks, Support
+from momantu_skills.manipulation.scene.surroundings import KEPT, SeenSpace, Support
 
 from momantu_bt.failure import FRAME_UNKNOWN, Failure
 from momantu_bt.geometry import Transform
@@ -34,19 +34,19 @@ NEAREST = 0.25
 """m; depth from which on that camera measures."""
 
 
-def looks(*cameras: Transform) -> Looks:
-    taken = Looks()
+def looks(*cameras: Transform) -> SeenSpace:
+    taken = SeenSpace()
     for camera in cameras:
         taken.add(picture(), camera, NEAREST)
     return taken
 
 
-def arm(taken: Looks, known: float = FAR) -> Any:
+def arm(taken: SeenSpace, known: float = FAR) -> Any:
     """An arm whose joints are the place between the pads; `known` m beside furniture."""
     scene = SimpleNamespace(
         surroundings=SimpleNamespace(supports=(TABLE,)),
         known=(),
-        looks=taken,
+        seen_space=taken,
         model=SimpleNamespace(tip_from_grasp=Transform()),
     )
     plan = SimpleNamespace(distance=lambda points: np.full(len(points), known))
@@ -166,7 +166,7 @@ class Turning:
         x, y, _ = self.looked[-1]
         turn = np.arctan2(y, x)
         pose = Transform((0.0, 0.0, 0.0), (np.cos(turn / 2), 0.0, 0.0, np.sin(turn / 2)))
-        self.arm.scene.looks.add(picture(), pose @ AHEAD, NEAREST)
+        self.arm.scene.seen_space.add(picture(), pose @ AHEAD, NEAREST)
 
     def plan(self, made: Any) -> tuple[Any, int]:
         """The plan that comes of it, and how often it was made."""

@@ -23,7 +23,7 @@ from momantu_skills.manipulation.model.collision import (
 from momantu_skills.manipulation.model.hulls import LinkMask, floor_outline, object_corners
 from momantu_skills.manipulation.scene.site_obstacles import Overhead, hanging
 from momantu_skills.manipulation.scene.surroundings import (
-    Looks,
+    SeenSpace,
     Support,
     Surroundings,
     cells_of,
@@ -61,7 +61,7 @@ class Scene:
         self.points: Array = np.empty((0, 3))
         self.known: tuple[Support, ...] = ()
         self.overhead: tuple[Overhead, ...] = ()
-        self.looks = Looks()
+        self.seen_space = SeenSpace()
         self._mask = LinkMask(self.model.hulls, config.robot_padding)
 
     # seeing
@@ -70,7 +70,7 @@ class Scene:
         """Update the cells that a depth picture shows."""
         image, odom_from_camera = snapshot.image, snapshot.odom_from_camera
         nearest = self.model.description.camera()[1].min_depth
-        self.looks.add(image, odom_from_camera, nearest)
+        self.seen_space.add(image, odom_from_camera, nearest)
         self.points = self._seen(snapshot, held)
         new = cells_of(self.points, odom_from_camera.position, FLOOR_BAND, self.config)
         old = self.surroundings.cells

@@ -203,7 +203,7 @@ def support_of_plane(plane: SupportPlane) -> Support:
 
 
 @dataclass(frozen=True, eq=False)
-class _Look:
+class _View:
     odom_from_camera: Transform
     intrinsics: Array
     shape: tuple[int, int]
@@ -219,21 +219,21 @@ class _Look:
         return np.asarray(inside & (own[:, 2] > self.nearest))
 
 
-class Looks:
+class SeenSpace:
     """Where the camera has looked, in odom."""
 
     def __init__(self) -> None:
-        self._looks: deque[_Look] = deque(maxlen=KEPT)
+        self._views: deque[_View] = deque(maxlen=KEPT)
 
     def add(self, image: CameraImage, odom_from_camera: Transform, nearest: float) -> None:
         """Remember a picture's view. nearest: depth from which on the camera measures, m."""
         height, width = image.depth.shape
-        look = _Look(odom_from_camera, image.intrinsics, (height, width), nearest)
-        self._looks.append(look)
+        view = _View(odom_from_camera, image.intrinsics, (height, width), nearest)
+        self._views.append(view)
 
     def show(self, points: Array) -> NDArray[np.bool_]:
         """(n,) which points (n, 3) in odom lay in the view of one of the pictures."""
         shown = np.zeros(len(points), dtype=np.bool_)
-        for look in self._looks:
-            shown |= look.shows(points)
+        for view in self._views:
+            shown |= view.shows(points)
         return shown

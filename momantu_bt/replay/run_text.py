@@ -24,8 +24,8 @@ def headline(recording: Recording) -> str:
     return f"{', '.join(words)}; momantu-bt {version}"
 
 
-def told(recording: Recording) -> Iterator[tuple[int, str]]:
-    """Every line that the run said, with the index of its tick."""
+def run_lines(recording: Recording) -> Iterator[tuple[int, str]]:
+    """Every line that the run printed, with the index of its tick."""
     nodes: list[ShownNode] = []
     for info in recording.nodes:
         above = None if info.parent is None else nodes[info.parent]
