@@ -17,7 +17,7 @@ FETCH_FILES = ("fetch.urdf", "fetch.srdf")
 
 
 def diagnose() -> Iterator[Diagnosis]:
-    """Diagnoses of what worlds need; silent about what the extra would bring and is not there."""
+    """Diagnoses of what worlds need; libraries of the extra that are not installed are left out."""
     present = [name for name in LIBRARIES if importlib.util.find_spec(name) is not None]
     errors = import_errors(present)
     for name, reason in errors.items():

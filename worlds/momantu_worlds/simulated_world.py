@@ -71,11 +71,11 @@ class SapienWorld:
             self._referee.observe(self.simulator.now())
 
     def verdict(self) -> Verdict | None:
-        """The referee's word on this instant; None without a referee."""
+        """The referee's verdict on this moment; None without a referee."""
         return None if self._referee is None else self._referee.verdict()
 
     def judge(self, sentence: Sentence, odom_from_base: Transform) -> bool | None:
-        """Whether something that a skill claims is true of this instant."""
+        """Whether a skill's claim is true at this moment."""
         bodies = {body.name: body for body in self._stage.bodies}
         judge = ClaimJudge(self.robot.description, bodies, self.simulator.truth)
         return judge.judge(sentence, odom_from_base)

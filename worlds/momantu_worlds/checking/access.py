@@ -14,12 +14,12 @@ from momantu_worlds.checking.overlaps import TOUCHING
 from momantu_worlds.checking.scenario import UNKNOWN, Scenario
 
 DOOR = 0.1
-"""m around a doorway's middle in which its widest spot is looked for: no farther than walls are
-thick, or the room behind would count."""
+"""m; search radius around a doorway's middle for its widest point. It is at most the thickness of
+walls, so that the room behind does not count."""
 
 
 def start(scenario: Scenario) -> Iterator[FindingAtKeys]:
-    """The base as it stands at first overlaps nothing."""
+    """At the start pose the base overlaps nothing."""
     pose = scenario.episode.start
     base = scenario.robot.outline(pose)
     worst: dict[str, float] = {}
@@ -39,7 +39,7 @@ def start(scenario: Scenario) -> Iterator[FindingAtKeys]:
 
 
 def places(scenario: Scenario) -> Iterator[FindingAtKeys]:
-    """The middle of the base can be at every place; what an episode adds is not looked at."""
+    """The robot can stand at every place; furniture that an episode adds is ignored."""
     ground, robot = scenario.known_ground, scenario.robot
     begin = scenario.episode.start
     reached = ground.reached((begin.x, begin.y), robot.half_width)
@@ -102,7 +102,7 @@ def doorways(scenario: Scenario) -> Iterator[FindingAtKeys]:
 
 
 def surfaces(scenario: Scenario) -> Iterator[FindingAtKeys]:
-    """The robot gets before each surface, and its hand to what stands on it."""
+    """The robot can drive up to each surface, and its hand reaches what stands on it."""
     robot = scenario.robot
     for name, (map_from_top, size) in scenario.surfaces.items():
         place, height = scenario.place(name), float(map_from_top.position[2])

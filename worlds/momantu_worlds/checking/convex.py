@@ -22,7 +22,7 @@ from momantu_worlds.scenes.geometry.bodies import Body, Box, Cylinder, Part
 from momantu_worlds.scenes.geometry.solids import SIDES, outline
 
 MOST_AXES = 3000
-"""Cross products of edges that are looked at: two finely cut hulls have more, all much alike."""
+"""Limit of the edge cross products that are tested: finer hulls have more, nearly parallel ones."""
 PARALLEL = 1e-9
 """Length of a cross product, of unit vectors, below which they count as parallel."""
 

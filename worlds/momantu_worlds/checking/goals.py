@@ -18,17 +18,17 @@ from momantu_worlds.scenes.geometry.solids import FLUSH
 from momantu_worlds.scenes.geometry.support import SupportTop
 
 SPARSE = 3
-"""Of the cells that the robot gets to every third is enough: they are 2 cm apart."""
+"""Every third reachable cell is tested: cells are 2 cm apart."""
 STEP = 0.05
-"""m between the spots that are tried for what is brought."""
+"""m; grid step of the positions that are tested for the item."""
 
 
 FAR = 2.0
-"""m; from where something is, along x and along y: farther off no arm reaches it."""
+"""m along x and along y; no arm reaches farther."""
 
 
 def goals(scenario: Scenario) -> Iterator[FindingAtKeys]:
-    """The goal is not met at first, and the item can be reached, held and set down."""
+    """The goal is not met at the start, and the item can be reached, grasped and set down."""
     goal = scenario.episode.goal
     if goal is None:
         return
@@ -171,7 +171,7 @@ def _beside(scenario: Scenario, item: Body, marker: Array, radius: float) -> lis
 
 
 def _free(solids: list[Convex], item: Body) -> bool:
-    """Whether the item as it is put there overlaps none of the solids."""
+    """Whether the item at this pose overlaps none of the solids."""
     return not any(
         own.near(solid, 0.0) and own.depth(solid) > 0.0
         for own in solids_of(item)
@@ -180,7 +180,7 @@ def _free(solids: list[Convex], item: Body) -> bool:
 
 
 def _farness(scenario: Scenario, spots: Array) -> float:
-    """How far the nearest of some spots (n, 2) is from where the robot gets, m; inf: too far."""
+    """Distance of the nearest of some spots (n, 2) from the reachable floor, m; inf beyond FAR."""
     stands = scenario.stands_near(spots.mean(axis=0), FAR)[::SPARSE]
     if len(stands) == 0:
         return math.inf

@@ -16,18 +16,18 @@ from momantu_worlds.checking.convex import Convex
 CELL = 0.02
 """m; of the grid, so that free spots are known to about 1.5 cm."""
 MOST_CELLS = 4_000_000
-"""A greater floor gets greater cells."""
+"""A larger floor gets larger cells."""
 DOORSTEP = 0.03
 """m; a robot drives over what is lower."""
 FRACTION_BITS = 4
-"""Of a cell to which outlines are drawn exactly: a sixteenth."""
+"""Outlines are drawn with a precision of a sixteenth of a cell."""
 
 Point = tuple[float, float]
 
 
 @dataclass(frozen=True, eq=False)
 class Obstacle:
-    """What a part of a body keeps a base from. outline: (n, 2) convex, on the floor plan."""
+    """A part of a body as an obstacle for the base. outline: (n, 2) convex, on the floor plan."""
 
     body: str
     outline: Array
@@ -48,7 +48,7 @@ class Obstacle:
 
 
 def obstacle(body: str, solid: Convex, ceiling: float) -> Obstacle | None:
-    """What a solid is to a robot `ceiling` m high; None when it drives over or below it."""
+    """A solid as an obstacle for a robot `ceiling` m high; None if it drives over or below it."""
     low, high = solid.box
     if high[2] <= DOORSTEP or low[2] >= ceiling:
         return None
@@ -78,11 +78,11 @@ class Ground:
         """(rows along y, columns along x) m; distance of a cell's centre from what is nearest."""
 
     def free(self, radius: float) -> NDArray[np.bool_]:
-        """Where the middle of a disc may be; what the grid rounds off is given to the disc."""
+        """Where the centre of a disc may be; rounding to the grid is in favour of the disc."""
         return np.asarray(self.clearance >= max(self.cell / 2, radius - self.cell))
 
     def reached(self, start: Point, radius: float) -> NDArray[np.bool_]:
-        """Cells that a disc gets to from a spot, or from the nearest free one within its radius."""
+        """Cells that a disc reaches from a point, or from the nearest free cell in its radius."""
         free = self.free(radius)
         _, regions = cv2.connectedComponents(free.astype(np.uint8), connectivity=4)
         near = np.where(free, self._distances(start), np.inf)
@@ -118,7 +118,7 @@ class Ground:
         return np.asarray(self.low + self.cell * (cells + 0.5))
 
     def blocking(self, point: Point, but: Callable[[str], bool] = lambda body: False) -> str:
-        """The body that is nearest to a point, or in which it lies; "" when there is none."""
+        """The body that is nearest to a point or contains it; "" if there is none."""
         near = [(each.distance(point), each.body) for each in self.obstacles if not but(each.body)]
         return min(near)[1] if near else ""
 

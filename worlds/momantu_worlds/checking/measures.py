@@ -15,16 +15,16 @@ from momantu_bt.robot import RobotDescription
 from momantu_bt.world import seeded
 
 SAMPLES = 2000
-"""Random postures of the arm by which its reach is known."""
+"""Random configurations of the arm that sample its reach."""
 FREE_TURN = math.pi
-"""rad; how far a joint that turns for ever is turned for them, either way."""
+"""rad; sampled range of a continuous joint, either way."""
 EYES = ("look_around", "ready")
 """Named poses in which the camera looks at things."""
 
 
 @dataclass(frozen=True, eq=False)
 class Measures:
-    """A robot as a world meets it.
+    """The measures of a robot that matter to a world.
 
     footprint: (n, 2) corners of the base in its frame. half_width: from the middle to the nearest
     edge, m. height: below which everything is in its way, m. reach: (nearest, best, farthest) m
@@ -63,7 +63,7 @@ GRASP = (0.03, 0.20)
 FRONT = 0.10
 """m before the base's front: a surface's edge is no nearer, and things stand behind it."""
 ENOUGH = 3
-"""Postures out of `SAMPLES` that must reach: fewer are accidents at the end of the arm's reach."""
+"""Of `SAMPLES` configurations, so many must reach: fewer are outliers at the limit of the reach."""
 
 
 def measured(description: RobotDescription) -> Measures:

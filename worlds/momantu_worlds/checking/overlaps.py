@@ -12,7 +12,7 @@ from momantu_worlds.checking.scenario import WALL, Scenario
 from momantu_worlds.scenes.geometry.bodies import Body
 
 TOUCHING = 0.005
-"""m; bodies that overlap less deep only touch."""
+"""m; a smaller overlap counts as contact."""
 
 
 def overlaps(scenario: Scenario) -> Iterator[FindingAtKeys]:
@@ -54,7 +54,7 @@ def _depth(scenario: Scenario, first: str, second: str) -> float:
 
 
 def _overlap(scenario: Scenario, first: Body, second: Body, depth: float) -> FindingAtKeys:
-    """The blame is on what is loose, else on the one that is not a wall, else on the later one."""
+    """It is told of the loose body, else of the one that is not a wall, else of the later one."""
     blamed, other = (first, second) if second.category == WALL else (second, first)
     if blamed.static and not other.static:
         blamed, other = other, blamed

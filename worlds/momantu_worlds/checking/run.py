@@ -74,7 +74,7 @@ def _of_seed(
 
 
 def _together(remarks: Iterable[tuple[int, FindingAtKeys]], where: Where) -> Iterator[Finding]:
-    """One finding for what is alike in several episodes, in the words of the worst."""
+    """Merge equal findings of several episodes; the message is that of the worst."""
     alike: dict[tuple[str, KeyPath, tuple[str, ...]], list[tuple[int, FindingAtKeys]]] = {}
     for seed, remark in remarks:
         alike.setdefault((remark.code, remark.keys, remark.about), []).append((seed, remark))

@@ -17,11 +17,11 @@ from momantu_worlds.scenes.geometry.bodies import Body, Episode
 from momantu_worlds.scenes.geometry.support import SupportTop
 
 MARGIN = 1.0
-"""m of floor that is looked at around everything."""
+"""m of floor around everything that the checks cover."""
 FLOOR, WALL = "floor", "wall"
 """Categories of bodies."""
 UNKNOWN = "extra_"
-"""How the names of bodies begin that an episode adds somewhere."""
+"""Prefix of the names of furniture that an episode adds."""
 
 
 class Scenario:
@@ -43,7 +43,7 @@ class Scenario:
 
     @cached_property
     def obstacles(self) -> tuple[Obstacle, ...]:
-        """All that the robot's base cannot be where it is."""
+        """All obstacles of the robot's base."""
         found = (
             obstacle(name, solid, self.robot.height)
             for name, solids in self.solids.items()
@@ -53,7 +53,7 @@ class Scenario:
 
     @cached_property
     def extent(self) -> tuple[Array, Array]:
-        """Corners (2,) of the area that is looked at: around the start and all that collides."""
+        """Corners (2,) of the checked area: around the start and all colliding parts."""
         points = [np.array([[self.episode.start.x, self.episode.start.y]])]
         points += [s.vertices[:, :2] for solids in self.solids.values() for s in solids]
         everything = np.concatenate(points)
@@ -78,7 +78,7 @@ class Scenario:
 
     @cached_property
     def reached(self) -> NDArray[np.bool_]:
-        """Cells of `ground` that the middle of the base gets to from the start."""
+        """Cells of `ground` that the middle of the base reaches from the start."""
         start = self.episode.start
         return self.ground.reached((start.x, start.y), self.robot.half_width)
 
@@ -103,7 +103,7 @@ class Scenario:
     def hit(self, origins: Array, rays: Array, but: frozenset[str]) -> tuple[Array, list[str]]:
         """Where segments first meet a body, in lengths of the ray (inf: nowhere), and which.
 
-        origins, rays: (n, 3). but: bodies that are looked through.
+        origins, rays: (n, 3). but: bodies that do not count.
         """
         low = np.minimum(origins, origins + rays).min(axis=0)
         high = np.maximum(origins, origins + rays).max(axis=0)

@@ -15,15 +15,15 @@ from momantu_worlds.checking.scenario import Scenario
 from momantu_worlds.scenes.geometry.bodies import Body, Picture
 
 RINGS = (0.4, 0.7, 1.0, 1.4, 1.9, 2.5)
-"""m from the tag along the floor: how far off it is looked for. Farther off few cameras read it."""
+"""m; distances from the tag along the floor that are tested. Few cameras read it from farther."""
 RING = 0.15
 """m; half the width of a ring."""
 SECTORS = 24
-"""Directions around the tag in which it is looked for."""
+"""Directions around the tag that are tested."""
 SLANT = math.radians(75)
 """rad from straight before the tag, beyond which its squares are too flat to be read."""
 PAPER = 0.001
-"""m before the tag: where its points must be seen, so that its own carrier does not hide them."""
+"""m; test points lie this far before the tag, so that its own carrier does not hide them."""
 INSIDE = 0.95
 """How far out on the paper the points are that must all be visible."""
 GRID = np.array([(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)]) / 2
@@ -31,7 +31,7 @@ GRID = np.array([(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)]) / 2
 
 
 def tags(scenario: Scenario) -> Iterator[FindingAtKeys]:
-    """Every tag is seen whole from one of the spots that the robot gets to."""
+    """Every tag is wholly visible from some reachable point."""
     for body in scenario.bodies:
         if body.category == "tag" and scenario.robot.eyes:
             hidden = _hidden(scenario, body)
@@ -48,7 +48,7 @@ def tags(scenario: Scenario) -> Iterator[FindingAtKeys]:
 
 
 def _hidden(scenario: Scenario, tag: Body) -> tuple[str, str] | None:
-    """Why a tag is not seen, and what to do; None when it is."""
+    """Why a tag is not visible, and what to do; None if it is visible."""
     points, normal = _points(tag)
     within = [
         name
@@ -88,7 +88,7 @@ def _points(tag: Body) -> tuple[Array, Array]:
 
 
 def _eyes(scenario: Scenario, stands: Array, middle: Array, ring: float) -> Array:
-    """Where a camera may be (n, 3): one spot of each sector of a ring, at each of its heights."""
+    """Possible camera positions (n, 3): one in each sector of a ring, at each camera height."""
     offsets = stands - middle[:2]
     off = np.abs(np.hypot(offsets[:, 0], offsets[:, 1]) - ring)
     around = np.flatnonzero(off <= RING)

@@ -16,17 +16,16 @@ from momantu_worlds.scenes.geometry.bodies import Body
 from momantu_worlds.scenes.geometry.solids import FLUSH
 
 FROM_ABOVE = 0.002
-"""m above a body's lowest points: where it is begun to look for what carries them."""
+"""m above a body's lowest points; the search for what carries them starts here."""
 FALL = 3.0
-"""m; how far below a body it is looked for something that carries it."""
+"""m; depth below a body of the search for what carries it."""
 TIPPING = 0.003
-"""m; how far beyond what carries it the middle of a body may be, and how closely its outline is
-looked at."""
+"""m; tolerance of a body's middle beyond its support, and the sampling step of its outline."""
 MOST_STEPS = 1000
 """Along the outline of what is large."""
 WITHIN, COARSE = (0.0, 0.25, 0.5, 0.75), 8
-"""Shares of the outline, and of its steps, at which it is looked below the inside: a tray may stand
-on a narrow foot."""
+"""Scales of the outline, and the step along it, at which the inside of the bottom is sampled: a
+tray may stand on a narrow foot."""
 
 
 def upright(scenario: Scenario) -> Iterator[FindingAtKeys]:
@@ -103,7 +102,7 @@ def _middle(scenario: Scenario, body: Body) -> Array:
 
 
 def _beyond(carried: Array, middle: Array) -> float:
-    """How far a point lies outside the hull of the points that carry, m; at most 0 inside."""
+    """Distance of a point from the hull of the supporting points, m; at most 0 inside."""
     hull = cv2.convexHull((carried[:, :2] - middle).astype(np.float32))
     return -float(cv2.pointPolygonTest(hull, (0.0, 0.0), True))
 

@@ -11,9 +11,9 @@ from momantu_bt.formats.places import KeyPath, Place
 SECTIONS = ("tables", "furniture", "objects", "tags", "bodies", "doors", "doorways", "rooms")
 """Parts of a world file whose keys are names of what they describe."""
 NAMED = ("item", "tag")
-"""Parts of a world file that say their name themselves."""
+"""Sections with a key `name`."""
 WALL = "wall_"
-"""How the names of walls' bodies begin."""
+"""Prefix of the names of walls."""
 
 
 class Where:
@@ -29,7 +29,7 @@ class Where:
         return self._reading.at(keys, key=True)
 
     def body(self, name: str) -> KeyPath:
-        """What describes a body or a doorway; what an episode adds follows from its rules."""
+        """The keys that describe a body or a doorway; for added furniture, `unknown`."""
         world = self._reading.plain
         for section in SECTIONS:
             if name in _mapping(world, section):

@@ -29,19 +29,19 @@ class ChaseConfig:
     """rad; preferred direction from the robot, left or right of its heading: beside and a little
     behind, so that the hand is seen at work and the way ahead as well."""
     loyalty: float = 0.4
-    """How much a direction counts that the camera has already, against the preferred one."""
+    """Weight of the current direction against the preferred one."""
     choices: int = 16
     """Directions that are tried."""
     rate: float = 0.8
     """rad/s; how fast the camera goes round."""
     hurry: float = 4.0
-    """How many times faster it goes round while a wall hides the robot."""
+    """Factor of its rate while a wall hides the robot."""
     lag: float = 0.6
-    """s; how slowly it follows what it looks at."""
+    """s; time constant with which it follows its target."""
 
 
 class Chase:
-    """A camera that follows a robot; to be asked with rising times."""
+    """A camera that follows a robot; call `pose` with increasing times."""
 
     def __init__(self, bodies: Iterable[Body], config: ChaseConfig | None = None) -> None:
         self._config = config or ChaseConfig()

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 HOST = "127.0.0.1"
 """Only browsers on this machine are served."""
 MOVED = 1e-4
-"""m or quaternion units; what moved less is not sent again."""
+"""m or quaternion units; smaller motions are not sent."""
 EYE = (-9.0, -9.0, 14.0)
 """m from the middle of the floor: where a browser looks from at first."""
 

@@ -11,12 +11,12 @@ from PIL import Image, ImageDraw, ImageFont
 from momantu_bt.geometry import Array
 
 SMOOTH = 2
-"""The picture is drawn so many times greater, then made smaller: its edges are smooth then."""
+"""Supersampling factor, for smooth edges."""
 MOST_PIXELS = 2200
 """px; the longer side of a picture."""
 
 SMALL_SCALE, LARGEST = 70.0, 1.5
-"""px per metre above which words grow with the picture, and how much they grow at most."""
+"""px per metre above which text grows with the picture, and its largest factor."""
 
 Rgb = tuple[int, int, int]
 Point = Sequence[float] | Array
@@ -85,7 +85,7 @@ class Canvas:
         above: float = 0.0,
         always: bool = True,
     ) -> None:
-        """Words around a point with a halo, moved up or down to where none are yet.
+        """Text around a point with a halo, moved up or down to where there is no text yet.
 
         above: px by which they are moved up. always: else they are left out where there is no room.
         """

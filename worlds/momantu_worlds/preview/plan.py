@@ -19,7 +19,7 @@ PAPER: Rgb = (226, 224, 219)
 WAY: Rgb = (251, 250, 246)
 DARK: Rgb = (72, 74, 80)
 ABOVE: Rgb = (196, 194, 188)
-"""Lintels, lamps and roofs: what begins above the robot, which passes below."""
+"""Lintels, lamps and roofs: parts above the robot."""
 INK: Rgb = (40, 42, 48)
 FAINT: Rgb = (122, 120, 114)
 RED: Rgb = (190, 32, 24)

@@ -22,7 +22,7 @@ from momantu_worlds.sapien.simulator import Simulator
 WIDTH, HEIGHT = 720, 600
 """px of a pose's picture."""
 SMOOTH = 2
-"""It is rendered so many times greater, then made smaller: its edges are smooth then."""
+"""Supersampling factor, for smooth edges."""
 FIELD = math.radians(32)
 """rad; width of a pose's picture: narrow, so that near arms do not look long."""
 AROUND = math.radians(72)
@@ -30,11 +30,11 @@ AROUND = math.radians(72)
 ABOVE = math.radians(20)
 """rad; how far from above."""
 AIR = 1.25
-"""How much more than the robot is in a picture."""
+"""Factor of the picture's extent over the robot's."""
 AXIS = 0.14
 """m; length of a frame's axes."""
 LINE = 30
-"""px; height of a line of words."""
+"""px; height of a line of text."""
 GAP = 10
 """px between pictures."""
 COLORS = ((214, 39, 40), (44, 160, 44), (31, 119, 180))

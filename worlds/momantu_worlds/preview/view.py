@@ -25,25 +25,25 @@ ELEVATION = math.radians(56)
 AZIMUTH = math.radians(-76)
 """rad; the side from which it looks, from the x axis: nearly from the map's south."""
 SMOOTH = 2
-"""It is rendered so many times greater, then made smaller: its edges are smooth then."""
+"""Supersampling factor, for smooth edges."""
 AIR = 1.03
-"""How much more than the rooms is in the picture."""
+"""Factor of the picture's extent over the rooms'."""
 CUT = 1.3
 """m; walls are cut at this height, so that they hide little of the rooms behind them."""
 ROOF, WIDE = 1.9, 1.0
 """m; what begins so high and is so wide either way is a roof: it is left out."""
 AMBIENT = 0.7
-"""Light from everywhere; an episode's own light is for the robot's camera, not for a picture."""
+"""Ambient light; an episode's own light is for the robot's camera, not for previews."""
 SUN = SunLight((0.35, 0.55, -1.0), (0.75, 0.75, 0.72))
 """One sun from behind the eye gives every face its own shade."""
 HALVINGS = 50
-"""Of the heights between which the eye must be: far below a millimetre."""
+"""Steps of the bisection for the camera's height: far below a millimetre."""
 MOST_HEIGHT = 1800
 """px; a deep house makes a narrower picture."""
 UPRIGHT = 0.999
 """Cosine of the tilt up to which a box of a wall counts as upright."""
 PAPER = (238, 238, 236)
-"""RGB of where nothing is."""
+"""RGB of the background."""
 
 
 def draw_view(

@@ -122,7 +122,7 @@ class SimulatedRobot:
         return known
 
     def command(self, actuator: str, goal: ActuatorGoal) -> None:
-        """Give an actuator its goal; see `momantu_bt.robot.Robot.command`."""
+        """Send a goal to an actuator; see `momantu_bt.robot.Robot.command`."""
         kind = self._actuator(actuator).kind
         if kind is ActuatorKind.BASE:
             self.base.command(goal, self._now())

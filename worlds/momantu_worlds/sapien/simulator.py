@@ -107,11 +107,11 @@ class Simulator:
 
     @property
     def added(self) -> tuple[Body, ...]:
-        """Bodies that were added since the episode began and are still there."""
+        """Bodies that were added since the episode began and not removed."""
         return tuple(addition.body for addition in self._added.values())
 
     def add(self, body: Body) -> None:
-        """Put one more body into the running world: it touches, stops lasers and is seen.
+        """Add a body to the running world: it collides, stops lasers and is visible.
 
         Raises:
             ValueError: there is a body of that name.

@@ -10,7 +10,7 @@ from momantu_bt.formats.places import Place
 
 
 class Outcome(StrEnum):
-    """What became of something: it is gone, or it is there in another form."""
+    """What happened to an element: it was dropped, or changed."""
 
     DROPPED = "dropped"
     CHANGED = "changed"
@@ -18,7 +18,7 @@ class Outcome(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Deviation:
-    """One thing that did not come over as it was.
+    """One element that was not imported as it is.
 
     subject: model and link, `kitchen/table/top`. what: the thing, in SDF's words. instead: what
     was done.
@@ -33,16 +33,16 @@ class Deviation:
 
 @dataclass(slots=True)
 class Deviations:
-    """The list of an import, in the order of places; one thing is listed once."""
+    """The deviations of an import, in order of places, without duplicates."""
 
     _all: dict[Deviation, None] = field(default_factory=dict)
 
     def dropped(self, place: Place, subject: str, what: str, instead: str) -> None:
-        """Something is gone."""
+        """Record that something was dropped."""
         self._all[Deviation(place, subject, what, instead, Outcome.DROPPED)] = None
 
     def changed(self, place: Place, subject: str, what: str, instead: str) -> None:
-        """Something is there in another form."""
+        """Record that something was changed."""
         self._all[Deviation(place, subject, what, instead, Outcome.CHANGED)] = None
 
     def __iter__(self) -> Iterator[Deviation]:

@@ -37,7 +37,7 @@ MOST_SAID = 10
 
 @dataclass(frozen=True, slots=True)
 class Import:
-    """What an import came to. text: of the world file; assets: the files beside it."""
+    """The result of an import. text: of the world file; assets: the files beside it."""
 
     world: Imported
     text: str

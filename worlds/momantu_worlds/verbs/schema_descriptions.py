@@ -158,10 +158,10 @@ DESCRIPTIONS: Mapping[str, str] = MappingProxyType(
         "Walls.pieces": "Walls one by one.",
     }
 )
-"""Part and key, joined by a point -> one sentence. A tag of the item has the words of `TagNote`."""
+"""Part and key, joined by a point -> one sentence. `Tag` uses the descriptions of `TagNote`."""
 
 INHERITED: Mapping[str, str] = MappingProxyType({"Tag": "TagNote"})
-"""Parts that are another part with something added."""
+"""Parts that extend another part."""
 
 
 def description_of(part: str, key: str) -> str | None:

@@ -14,7 +14,7 @@ _NAME = re.compile(r"[a-z][a-z0-9_]{0,59}")
 
 
 class CannotMake(MomantuError):
-    """No world can be made so; the message says what would be right."""
+    """The arguments describe no possible world; the message says what would be valid."""
 
 
 def two_rooms(file: Path, size: str, schema: Path | None) -> str:

@@ -79,7 +79,7 @@ def _print(found: Import, output: Path, assets: int) -> None:
 
 
 def _lines(deviations: list[Deviation]) -> list[str]:
-    """One line for each thing that a file says; where it is said often, how often."""
+    """One line for each distinct deviation of a file, with its count."""
 
     def alike(deviation: Deviation) -> tuple[str, str, str]:
         return deviation.place.file, deviation.what, deviation.instead

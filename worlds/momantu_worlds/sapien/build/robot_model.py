@@ -94,7 +94,7 @@ def build_robot(
 
 
 class _UnseenLoader(URDFLoader):  # type: ignore[misc]
-    """Leaves out what is only seen: without a renderer not even a colour can be made."""
+    """Leaves out visual shapes: without a renderer not even a colour can be created."""
 
     def _build_link(self, link: Any, link_builder: Any) -> None:
         link.visuals = []

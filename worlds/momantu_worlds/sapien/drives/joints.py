@@ -102,7 +102,7 @@ class JointDrive:
             self._braking = True
 
     def begin_tick(self, now: float, true_positions: Array) -> None:
-        """Work out the targets of the coming tick's physics steps; `true_positions` (n,) now."""
+        """Compute the targets of the coming tick's physics steps; `true_positions` (n,) now."""
         if bool(np.any(np.abs(self.position - true_positions) > self._tolerance)):
             self._give_way(true_positions)
         if now - self._last_command > WATCHDOG:

@@ -34,11 +34,11 @@ from momantu_worlds.scenes.geometry.bodies import (
 from momantu_worlds.scenes.geometry.parts import Size3, block
 
 TAG_LIFT = 0.0005
-"""m; thickness of the paper, so that it is seen before what it is on."""
+"""m; thickness of the paper, so that it is drawn above its carrier."""
 SLAB = 0.1
 """m; thickness of the floor."""
 X_TO_Z = Transform.from_rpy((0.0, 0.0, 0.0), (math.pi / 2, 0.0, math.pi / 2))
-"""Of a hung tag: its face (z) looks along x, its picture's right (x) is to the left of that."""
+"""Rotation of a hung tag: its normal (z) points along x."""
 
 
 def build(world: WorldFile, layout: Layout, site: Site) -> Episode:
@@ -84,7 +84,7 @@ def bodies(world: WorldFile, layout: Layout) -> Iterator[Body]:
 
 
 def floor_body(world: WorldFile) -> Body:
-    """The slab whose top is z = 0; the simulator's own plane there is what is touched."""
+    """The visible slab whose top is z = 0; contacts are with the simulator's own plane."""
     center, size = floor_extent(world)
     slab = Box((*size, SLAB))
     part = Part(slab, Transform((0, 0, -SLAB / 2)), world.floor.color, collision=False)

@@ -24,27 +24,27 @@ from momantu_worlds.scenes.file.world import WorldFile
 from momantu_worlds.scenes.geometry.plane import Rectangle, clear_of, passages
 
 TRIES = 60
-"""Draws for one thing before it is left out (an extra) or stays where the map has it."""
+"""Draws for one piece before it is left out (an extra) or stays where the map shows it."""
 MOVED_GAP = 0.03
-"""m; what a moved piece keeps from everything else."""
+"""m; least distance of a moved piece from everything else."""
 EXTRA_GAP = 0.15
-"""m; what an extra piece keeps from everything else."""
+"""m; least distance of an extra piece from everything else."""
 STAND_OFF = 0.55
 """m; from a table's edge to where a robot stands that reaches onto it."""
 WIDE = 0.4
-"""m; radius of a disc for which a coarse grid is fine enough: its doors are wide."""
+"""m; for discs from this radius on, which need wide doors, a coarse grid is enough."""
 COARSE, FINE = 0.1, 0.05
-"""m; cells in which passages are looked for. A narrow door leaves a disc's centre a few cm."""
+"""m; cell sizes of the grid of passages. A narrow door leaves a few cm for a disc's centre."""
 SIDEWAYS = 0.3
 """m; how much wider than the table's side the zone before it is kept free, on either hand."""
 UNVARIED = Unknown()
-"""Of a world that says nothing about the unknown: nothing is moved, nothing is added."""
+"""Default without a section `unknown`: nothing is moved or added."""
 
 
 def place_tables(
     world: WorldFile, seed: int
 ) -> tuple[dict[str, PlacedTable], dict[str, PlacedPiece]]:
-    """Surfaces shifted, turned and lifted, and the shelves whose boards are among them."""
+    """Draw the poses of surfaces, and of the shelves whose boards are surfaces."""
     shelves = {name: _shelf(world, seed, name) for name in carriers(world)}
     placed = {}
     for name, nominal in nominal_surfaces(world).items():
@@ -75,7 +75,7 @@ def _shifted(draw: np.random.Generator, pose: Pose2D, shift: float, turn: float)
 
 
 def place_start(world: WorldFile, seed: int) -> tuple[Pose2D, Pose2D]:
-    """Where the robot truly stands, and what it is told."""
+    """Draw the true start pose, and the one that the robot is told."""
     draw = seeded(seed, "start")
     nominal = Pose2D(*world.start.at)
     fixed = [*fixed_rectangles(world)]
@@ -181,7 +181,7 @@ def _anywhere(unknown: Unknown, seed: int, number: int) -> Iterator[PlacedPiece]
 
 
 class _Room:
-    """What a piece must leave free: doorways, the start, the floor before tables, ways through."""
+    """The floor that pieces must leave free: doorways, the start, before tables, passages."""
 
     def __init__(
         self,
@@ -206,7 +206,7 @@ class _Room:
         return footprint(self._world, placed.piece, placed.pose)
 
     def fits(self, placed: PlacedPiece, others: list[Rectangle]) -> bool:
-        """Whether a piece keeps its distance from everything."""
+        """Whether a piece keeps the required distances."""
         own = self.footprint(placed)
         least = MOVED_GAP if placed.known else EXTRA_GAP
         return (

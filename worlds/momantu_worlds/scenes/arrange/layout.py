@@ -13,7 +13,7 @@ from momantu_worlds.scenes.file.objects import TagNote
 from momantu_worlds.scenes.geometry.bodies import Color, PointLight, SunLight
 
 FRICTION = 0.6
-"""Of painted wood and of most things on it; within the 0.4-0.8 that tables of physics give."""
+"""Friction of painted wood and of most things on it; tables of physics give 0.4 to 0.8."""
 
 
 @dataclass(frozen=True, slots=True)

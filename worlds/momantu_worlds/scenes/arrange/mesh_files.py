@@ -30,7 +30,7 @@ CACHED = 256
 FLAT = 1e-4
 """m; a piece thinner than this is thickened to it, for a convex body has a volume."""
 Z_FROM_Y = np.array([(1.0, 0.0, 0.0), (0.0, 0.0, -1.0), (0.0, 1.0, 0.0)])
-"""Turns a mesh whose y points up so that its z does."""
+"""Rotation from a mesh with y up to z up."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

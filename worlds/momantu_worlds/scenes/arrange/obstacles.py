@@ -41,7 +41,7 @@ def piece_size(world: WorldFile, piece: Piece) -> Size3:
 
 
 def fixed_rectangles(world: WorldFile) -> list[Rectangle]:
-    """The floor that walls, closed doors and bodies take up which stand still and in the way."""
+    """The floor under walls, closed doors, and static bodies that obstruct the robot."""
     return [*wall_rectangles(world), *(base for base, _, _ in body_columns(world))]
 
 
@@ -55,7 +55,7 @@ def wall_rectangles(world: WorldFile) -> list[Rectangle]:
 def body_columns(world: WorldFile) -> Iterator[tuple[Rectangle, float, float]]:
     """The floor below each part of the bodies that stand still, and its heights, m.
 
-    Parts that a robot drives over or under are left out.
+    Parts that a robot can drive over or under are left out.
     """
     for body in given_bodies(world):
         for part in body.parts if body.static else ():
@@ -67,7 +67,7 @@ def body_columns(world: WorldFile) -> Iterator[tuple[Rectangle, float, float]]:
 
 
 def floor_extent(world: WorldFile) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Middle and size of the floor, m: the file's, or around all that stands on it.
+    """Centre and size of the floor, m: as given, or around everything that stands on it.
 
     Raises:
         WorldError: it would be wider than MOST_FLOOR.

@@ -14,11 +14,11 @@ from momantu_worlds.scenes.arrange.floor import STAND_OFF
 from momantu_worlds.scenes.arrange.layout import PlacedTable
 
 LANE = 0.07
-"""m; half the width of a hand's way to the item: half of Fetch's open gripper, 0.13 m, and air."""
+"""m; half the width of a hand's lane to the item: half of Fetch's open gripper and a margin."""
 LANE_LENGTH = 0.35
-"""m; of that way; farther off the hand is above what stands there."""
+"""m; length of that lane; farther away the hand is above other objects."""
 LANE_SPREAD = math.radians(60)
-"""rad; how far from straight ahead a hand's way may turn."""
+"""rad; largest angle of a lane from straight ahead."""
 EYE = 1.1
 """m; height of a camera above the floor."""
 EYE_OFFSETS = (0.0, -0.3, 0.3)
@@ -26,7 +26,7 @@ EYE_OFFSETS = (0.0, -0.3, 0.3)
 SPOT_GAP = 0.08
 """m; around a free spot for the item, so that fingers can open."""
 SPOT_REACH = 0.5
-"""m; the farthest from the preferred edge that a free spot counts."""
+"""m; farthest distance of a free spot from the preferred edge."""
 SPOT_MARGIN = 0.08
 """m; by which a free spot is nearer to the tag than the goal demands."""
 
@@ -47,7 +47,7 @@ def gap(a: Disc, b: Disc) -> float:
 
 
 def lane(target: Disc, discs: Iterable[Disc], side: float) -> bool:
-    """Whether a hand gets to a target along some straight way from before the preferred side."""
+    """Whether a straight lane for a hand leads from the preferred side to a target."""
     blocking = [d for d in discs if d != target]
     for turn in np.linspace(-LANE_SPREAD, LANE_SPREAD, 9):
         cos, sin = math.cos(side + turn), math.sin(side + turn)
@@ -64,7 +64,7 @@ def lane(target: Disc, discs: Iterable[Disc], side: float) -> bool:
 def seen_share(
     points: Array, discs: Sequence[Disc], table: PlacedTable, side: float, target: Disc
 ) -> float:
-    """Largest share of points (n, 3), in the top's frame, that one of the views has a line to."""
+    """Largest share of points (n, 3), in the top's frame, that is visible from one of the views."""
     cos, sin = math.cos(side), math.sin(side)
     half = table.size[0] / 2 if abs(cos) > abs(sin) else table.size[1] / 2
     lateral = target.y * cos - target.x * sin
@@ -111,7 +111,7 @@ def tag_points(at: Pose2D, corner: float) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class SetDown:
-    """What is to be set down: its radius and height, within `distance` of the tag, m.
+    """An object to set down: its radius and height, within `distance` of the tag, m.
 
     side: the table's preferred side, in its own frame, rad.
     """

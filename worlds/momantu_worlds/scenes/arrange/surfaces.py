@@ -50,7 +50,7 @@ def board_part(shelf: Piece, index: int) -> Part:
 
 
 def carriers(world: WorldFile) -> dict[str, tuple[str, ...]]:
-    """Shelves some of whose boards are surfaces, and the names of these."""
+    """Shelves with boards that are surfaces, and the names of these surfaces."""
     found: dict[str, tuple[str, ...]] = {}
     for name, table in world.tables.items():
         if table.board_of is not None:

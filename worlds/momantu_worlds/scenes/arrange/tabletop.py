@@ -37,13 +37,13 @@ from momantu_worlds.scenes.file.world import WorldFile
 TRIES = 80
 """Draws for one thing before it is left out."""
 RIM = 0.02
-"""m; what everything keeps from the table's edge."""
+"""m; least distance from the table's edge."""
 APART = 0.01
 """m; least gap between two named objects."""
 AIR = 0.03
-"""m; what is left between a thing and the board above it."""
+"""m; least gap between a thing and the board above it."""
 ITEM_SEEN = 0.5
-"""share of the item that must be seen from one of them."""
+"""Share of the item that must be visible from one view."""
 
 
 def place_objects(
@@ -52,7 +52,7 @@ def place_objects(
     tables: Mapping[str, PlacedTable],
     tags: Sequence[PlacedTag],
 ) -> tuple[PlacedThing, ...]:
-    """The item and all named objects, each whole on its top; those of the file first come first."""
+    """Place the item and all named objects, each wholly on its top, in the order of the file."""
     placed: list[PlacedThing] = []
     item = {} if world.item is None else {world.item.name: world.item}
     for name, note in {**item, **world.objects}.items():
@@ -69,7 +69,7 @@ def _placed_object(
     before: Sequence[PlacedThing],
     tags: Sequence[PlacedTag],
 ) -> PlacedThing:
-    """An object where nothing else stands yet; at its last draw when that is nowhere."""
+    """Place an object where nothing else stands; after TRIES draws, at the last draw."""
     table = note.tops[int(seeded(seed, "which top", name).integers(len(note.tops)))]
     thing = _thing_of(note, seed, name)
     taken = [disc_of(other) for other in before if other.table == table]
@@ -83,7 +83,7 @@ def _placed_object(
 
 
 def _thing_of(note: ObjectNote, seed: int, name: str) -> Thing:
-    """What the file says of an object, and of the rest what its kind usually is."""
+    """An object with the values of the file; the rest is drawn for its kind."""
     draw = seeded(seed, "object", name)
     paint = seeded(seed, "paint", name) if note.color is None else None
     thing = draw_thing(note.kind, draw, paint, size=note.extent, color=note.color)
@@ -93,7 +93,7 @@ def _thing_of(note: ObjectNote, seed: int, name: str) -> Thing:
 def place_tags(
     world: WorldFile, seed: int, tables: Mapping[str, PlacedTable]
 ) -> tuple[PlacedTag, ...]:
-    """Every tag: on its table, its white margin kept whole on the top, or where it is hung."""
+    """Place every tag: on its table, its white margin wholly on the top, or where it is hung."""
     placed = []
     for name, note in world.all_tags.items():
         if note.on is None or note.at is None:
@@ -106,9 +106,9 @@ def place_tags(
 
 @dataclass(frozen=True, slots=True)
 class Spot:
-    """Where something may lie on a top: at a point of it and around, or anywhere (`at` None).
+    """Where something may be placed on a top: around a point, or anywhere (`at` None).
 
-    margin: what its middle keeps from the edges, m. yaw, turn: how it is turned, rad.
+    margin: least distance of its middle from the edges, m. yaw, turn: its yaw and range, rad.
     """
 
     name: str
@@ -121,7 +121,7 @@ class Spot:
 
 
 def _on_top(tables: Mapping[str, PlacedTable], seed: int, spot: Spot) -> Iterator[Pose2D]:
-    """Draws of a place in the table's own frame, without end."""
+    """Endless draws of a pose in the table's own frame."""
     draw = seeded(seed, "on top", spot.name)
     half = np.maximum(np.array(tables[spot.table].size) / 2 - spot.margin, 0.0)
     while True:
@@ -140,7 +140,7 @@ def place_things(
     objects: Sequence[PlacedThing],
     tags: Sequence[PlacedTag],
 ) -> tuple[PlacedThing, ...]:
-    """0 to `most` loose things on each table, all of them leaving the job possible."""
+    """Place 0 to `most` loose things on each table so that the goal stays possible."""
     rule = world.distractors
     if rule is None:
         return ()
@@ -174,7 +174,7 @@ def draw_distractor(
     paint: np.random.Generator | None,
     sought: Thing | None,
 ) -> Thing:
-    """A thing of some usual size, weight and look, never like one that is sought."""
+    """A random thing that differs from the item."""
     if sought is None or sought.kind != kind:
         return draw_thing(kind, draw, paint)
     color = COLORS[int(draw.integers(len(COLORS)))]
@@ -186,7 +186,7 @@ def draw_distractor(
 
 
 OTHER_SIZE = 0.22
-"""relative; another thing of the item's kind is more than 20 % wider or higher, or less so."""
+"""Relative; a distractor of the item's kind differs in width or height by more than 20 %."""
 
 
 def _other_size(sought: Thing, draw: np.random.Generator) -> tuple[float, float, float]:
@@ -199,7 +199,7 @@ def _other_size(sought: Thing, draw: np.random.Generator) -> tuple[float, float,
 
 
 class _Crowd:
-    """What stands on one table already, and what loose things there must leave possible."""
+    """What already stands on one table, and what distractors must leave possible."""
 
     def __init__(
         self,
@@ -222,7 +222,7 @@ class _Crowd:
         return None if self._item is None else self._item.thing
 
     def takes(self, things: Sequence[PlacedThing]) -> bool:
-        """Whether the last of some things may stand where it does."""
+        """Whether the last of these things may stand at its place."""
         discs = [disc_of(thing) for thing in things]
         last, others = discs[-1], discs[:-1]
         if last.height > self._table.above - AIR:
@@ -254,7 +254,7 @@ class _Crowd:
         )
 
     def _leaves_spot(self, discs: Sequence[Disc]) -> bool:
-        """Whether the item can still be set down where it is to go."""
+        """Whether a free spot for the item is left beside the marker."""
         goal, item = self._goal, self._item
         if goal is None or item is None or goal.on != self._name:
             return True

@@ -14,9 +14,9 @@ from momantu_worlds.scenes.geometry.bodies import PointLight, SunLight
 LAMP_HEIGHT = 2.4
 """m; where lamps hang, just below the walls' tops."""
 USUAL_SUN = (0.5, 0.9)
-"""Least and greatest strength of a sun that is not given."""
+"""Default range of a sun's strength."""
 SUN_TILT = (math.radians(20), math.radians(50))
-"""rad from straight down, least and most."""
+"""rad from straight down; range."""
 
 
 def vary(world: WorldFile, seed: int) -> Layout:
@@ -43,7 +43,7 @@ def vary(world: WorldFile, seed: int) -> Layout:
 
 
 def place_light(world: WorldFile, seed: int) -> Lighting:
-    """Brightness of the surroundings, of sun and lamps, the sun's direction; and fixed lights."""
+    """Draw the brightness of ambient light, sun and lamps, and the sun's direction."""
     draw, light = seeded(seed, "light"), world.light
     ambient = float(draw.uniform(*light.ambient))
     sun, warm = float(draw.uniform(*(light.sun or USUAL_SUN))), float(draw.uniform(0.9, 1.0))

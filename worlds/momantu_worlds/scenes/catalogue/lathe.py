@@ -19,7 +19,7 @@ SEGMENTS = 28
 """Faces around; at 35 mm radius each is 8 mm wide, below what the depth camera resolves."""
 
 FLAT = 0.0015
-"""m; how far a flat side may lie within the round one that it stands for."""
+"""m; largest distance of a flat side from the round surface that it approximates."""
 
 
 def lathe(profile: Profile, segments: int = SEGMENTS) -> Mesh:

@@ -20,7 +20,7 @@ SHELF: Color = (0.62, 0.52, 0.42)
 RACK: Color = (0.20, 0.34, 0.56)
 """Of a rack's posts."""
 _DECK: Color = (0.73, 0.64, 0.50)
-"""Of a rack's boards: chipboard, whatever its posts are painted in."""
+"""Of a rack's boards: chipboard."""
 
 
 def shelf(size: Size3, color: Color) -> tuple[Part, ...]:

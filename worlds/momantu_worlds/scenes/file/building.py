@@ -12,13 +12,13 @@ from momantu_bt.geometry import Pose2D
 from momantu_worlds.scenes.file.values import Friction, Name, Part, Point, Rgb
 
 DOOR_HEIGHT = 2.0
-"""m; of doors that say nothing else: what building codes of many countries ask for."""
+"""m; default height of doors, which many building codes require."""
 DOOR_CLEAR = 0.9
 """m; around a doorway's middle, kept free of furniture that the map does not know."""
 MOST_ROOMS, MOST_DOORS, MOST_WALLS = 100, 200, 1000
 MOST_CORNERS = 60
 MOST_FLOOR = 500.0
-"""m; ways over a larger floor would take too long to find."""
+"""m; paths over a larger floor would take too long to find."""
 
 
 class Floor(Part):

@@ -23,11 +23,11 @@ from momantu_worlds.scenes.file.values import (
 )
 
 GRIP = 0.6
-"""Friction of an object that says nothing of its own: painted metal or plastic on wood."""
+"""Default friction of an object: painted metal or plastic on wood."""
 
 
 class ObjectNote(Part):
-    """A loose object on a table or board. What is not said of it is drawn from the seed.
+    """A loose object on a table or board. What is omitted is drawn from the seed.
 
     on: one surface, or several of which an episode takes one. at: where on it, in its own frame;
     anywhere on it if omitted. size: of a box; radius and height: of everything round.
@@ -74,7 +74,7 @@ class ObjectNote(Part):
 
 
 class Item(ObjectNote):
-    """What is brought, where nothing else of the file is asked for by the goal."""
+    """The object to bring, unless the goal names another one."""
 
     name: Name
 

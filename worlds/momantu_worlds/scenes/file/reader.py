@@ -55,9 +55,9 @@ def parse_world(text: str, path: Path) -> WorldFile:
 
 
 def _beside(reading: Reading, error: WorldFileError) -> Iterator[KeyProblem]:
-    """What is wrong with the names of a file whose values are wrong, too.
+    """Wrong references in a file whose values are wrong as well.
 
-    Parts that are wrong are left out; where whole sections would be, nothing is said.
+    Parts with wrong values are left out; if that would be whole sections, nothing is reported.
     """
     places = {problem.keys[:2] for problem in error.problems}
     if any(len(place) < 2 or place[0] not in SECTIONS for place in places):

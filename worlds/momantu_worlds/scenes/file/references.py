@@ -11,7 +11,7 @@ from momantu_worlds.scenes.file.furniture import MeshUse
 from momantu_worlds.scenes.file.world import WorldFile
 
 FLOOR = "floor"
-"""The name of the body that everything stands on."""
+"""The name of the floor's body."""
 NO_WORLD = "none"
 """What trees and the command line call running without a world."""
 
@@ -62,7 +62,7 @@ def _a(what: str) -> str:
 
 
 class _Names:
-    """Names of what stands on what, and what they point at."""
+    """Checks of the names that sections use for each other."""
 
     def __init__(self, world: WorldFile, also: Collection[str]) -> None:
         self._world, self._also = world, also
@@ -82,7 +82,7 @@ class _Names:
             yield place, f"there is no {what} {name!r}; {valid_names(name, names, f'{what}s')}"
 
     def _boards(self) -> Iterator[KeyMessage]:
-        """Boards that are surfaces: their shelf, their number, and whether somebody took it."""
+        """Boards that are surfaces: their shelf, their number, and duplicates."""
         world = self._world
         taken: dict[tuple[str, int], str] = {}
         shelves = [name for name, piece in world.furniture.items() if piece.boards]

@@ -12,7 +12,7 @@ from momantu_worlds.scenes.file.values import Name, Part, PlanarPose
 
 
 class GoalDemand(Part):
-    """What the referee wants: an object on a surface, within `distance` of a tag or body or not."""
+    """The goal: an object on a surface, optionally within `distance` of a tag or body."""
 
     item: Name
     on: Name
@@ -37,7 +37,7 @@ class ObjectSizes(Part):
 
 
 class SiteNotes(Part):
-    """What a person would tell the robot, beside what follows from the file.
+    """The site's own information, beside what follows from the other sections.
 
     map: map_server's YAML of a floor plan of one's own; drawn from this file if omitted.
     services: tunables of services and skills, by name; see `momantu_bt.descriptions.tunables`.

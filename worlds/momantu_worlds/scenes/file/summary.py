@@ -9,11 +9,11 @@ from typing import Any
 from momantu_bt.descriptions.reading import DescriptionError, Reading, read_text
 
 VARIES = ("shift", "turn", "lift", "belief_shift", "belief_turn")
-"""Keys that say how far something is moved, wherever they stand."""
+"""Keys of variations, in any section."""
 SECTIONS = ("unknown", "light", "distractors")
-"""Parts of a world file that are about nothing but what an episode draws."""
+"""Sections that describe variations only."""
 MOST = 60
-"""Lines of a section; the file itself has the rest."""
+"""Limit of lines in a section."""
 
 
 def world_summary(path: Path) -> dict[str, dict[str, str]]:
@@ -58,7 +58,7 @@ def _varying(world: dict[str, Any]) -> Iterator[tuple[str, str]]:
 
 
 def _notes(section: str, part: Any) -> Iterator[tuple[str, dict[str, Any]]]:
-    """A part of the file itself, and those within it that have names."""
+    """A section of the file, and its named parts."""
     if isinstance(part, dict):
         yield section, part
         yield from ((name, note) for name, note in part.items() if isinstance(note, dict))

@@ -30,7 +30,7 @@ Name: TypeAlias = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$", max_length=
 Friction: TypeAlias = Annotated[float, Field(gt=0, le=1)]
 Count: TypeAlias = Annotated[int, Field(ge=0, le=50)]
 Sides: TypeAlias = Annotated[tuple[Angle, ...], Field(min_length=1, max_length=8)]
-"""Directions in a top's own frame from which it is approached; the first is preferred."""
+"""Directions of approach in a top's own frame; the first is preferred."""
 NotNegative: TypeAlias = Annotated[Length, Field(ge=0)]
 """m."""
 Turn: TypeAlias = Annotated[Angle, Field(ge=0)]
@@ -59,7 +59,7 @@ Pose3D: TypeAlias = Annotated[
 
 
 class Part(BaseModel):
-    """A part of a world file: unknown keys are mistakes, and nothing changes it."""
+    """Base of the sections of a world file: immutable, unknown keys are errors."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 

@@ -67,7 +67,7 @@ NONE = Between(most=0)
 
 
 class Unknown(Part):
-    """What the map does not know: pieces moved, and extra pieces in some areas.
+    """Differences from the map: moved pieces, and extra pieces in some areas.
 
     passage: radius of a disc that still gets from the start to every table and through every
     doorway. stand: depth of the floor before tables that is kept free, m.

@@ -12,16 +12,16 @@ from momantu_worlds.scenes.file.building import Door, Doorway, Room, Walls
 from momantu_worlds.scenes.geometry.plane import Rectangle
 
 SAME_LINE, SAME_TURN = 0.005, 1e-3
-"""m, rad; edges of two rooms that are no farther apart than this are one wall."""
+"""m, rad; tolerance within which edges of two rooms are one wall."""
 BUCKET, BUCKET_TURN = 0.5, 0.01
 """m, rad; steps in which lines are sorted. Far from the origin a turn moves an offset: with what
 counts as the same line it is less than a step up to 500 m away."""
 ON_WALL = 0.05
-"""m; how far from the faces of a wall a door's point may lie and still mean this wall."""
+"""m; largest distance of a door's point from the faces of its wall."""
 LEAF = 0.04
 """m; thickness of a closed door."""
 LINTEL = 0.02
-"""m; what is lower is not a wall above a door."""
+"""m; a lower wall above a door is left out."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,7 +133,7 @@ class RoomWalls:
                 yield name, door, wall.line.pose(wall.line.along(door.at))
 
     def _hang(self, name: str, door: Door) -> str | None:
-        """Put a door into its wall; says why when there is none."""
+        """Put a door into its wall; returns why if that is not possible."""
         near = [(abs(w.line.across(door.at)), w) for w in self._walls if _beside(w, door)]
         if not near:
             return "no wall of a room is there; `at` is a point on the line between two corners"

@@ -167,7 +167,7 @@ class Gap:
 
 @dataclass(frozen=True, slots=True)
 class Episode:
-    """Everything of one episode. The frame of all bodies is the map's; the floor is z = 0.
+    """One episode. All poses are in the map; the floor is z = 0.
 
     start: where the robot's base truly stands at first. ambient: light from everywhere.
     site: what the robot is told. goal: what the referee wants. doorways: by name.

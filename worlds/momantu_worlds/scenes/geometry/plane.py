@@ -55,7 +55,7 @@ def gap(a: Rectangle, b: Rectangle) -> float:
 
 
 def clear_of(rectangle: Rectangle, others: Iterable[Rectangle], least: float) -> bool:
-    """Whether nothing is touched and the gap to every other rectangle is at least `least` m."""
+    """Whether the rectangle touches no other and is at least `least` m from each."""
     reach = math.hypot(*rectangle.size) / 2 + least
     for other in others:
         far = reach + math.hypot(*other.size) / 2
@@ -98,7 +98,7 @@ def in_outline(points: Array, corners: Array) -> NDArray[np.bool_]:
 
 @dataclass(frozen=True, slots=True)
 class Passages:
-    """Which cells of a floor plan a disc's centre may be in, and which of them hang together.
+    """The cells of a floor plan where a disc's centre may be, and paths over them.
 
     origin: of cell [0, 0]'s centre, m. cell: m. free: (rows along y, columns along x).
     """
@@ -108,7 +108,7 @@ class Passages:
     free: NDArray[np.bool_]
 
     def reachable(self, start: tuple[float, float]) -> NDArray[np.bool_]:
-        """Cells that the disc gets to from a point, by steps to four neighbours."""
+        """Cells that the disc reaches from a point, by steps to four neighbours."""
         _, region = cv2.connectedComponents(self.free.astype(np.uint8), connectivity=4)
         here = region[self.index(start)]
         reached: NDArray[np.bool_] = (region == here) & (here != 0)
@@ -124,7 +124,7 @@ class Passages:
         return float(x[best]), float(y[best])
 
     def route(self, start: tuple[float, float], end: tuple[float, float]) -> Array:
-        """Cell centres (n, 2) of a shortest way between two free points; (0, 2) if there is none.
+        """Cell centres (n, 2) of a shortest path between two free points; (0, 2) if there is none.
 
         Breadth first, by steps to four neighbours.
         """
@@ -155,7 +155,7 @@ class Passages:
         return row, column
 
     def connects(self, points: Sequence[tuple[float, float]]) -> bool:
-        """Whether the disc gets from the first point to all the others."""
+        """Whether the disc reaches all other points from the first one."""
         reached = self.reachable(points[0])
         return all(bool(reached[self.index(point)]) for point in points)
 
@@ -167,7 +167,7 @@ def passages(
     radius: float,
     cell: float = 0.1,
 ) -> Passages:
-    """Where a disc of `radius` m may be among obstacles, on an area with a closed border."""
+    """The free cells of a disc of `radius` m among obstacles, in an area with a closed border."""
     columns, rows = round(size[0] / cell), round(size[1] / cell)
     origin = (center[0] - size[0] / 2 + cell / 2, center[1] - size[1] / 2 + cell / 2)
     xs, ys = origin[0] + cell * np.arange(columns), origin[1] + cell * np.arange(rows)

@@ -16,7 +16,7 @@ from momantu_worlds.scenes.geometry.solids import outline
 
 @dataclass(frozen=True, slots=True)
 class Prism:
-    """All above a rectangle of the floor between two heights, m."""
+    """An upright prism over a rectangle, between two heights, m."""
 
     base: Rectangle
     bottom: float

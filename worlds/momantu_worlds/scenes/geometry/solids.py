@@ -38,11 +38,11 @@ DIRECTIONS = np.stack(
 )
 """(2, 180) unit vectors on the floor, every two degrees."""
 SMALL = 0.25
-"""m; a hull that is nowhere larger is one of a loose object."""
+"""m; smaller hulls belong to loose objects."""
 FLUSH = 0.005
 """m between a body's lowest point and a top that it stands on."""
 FLOOR = "floor"
-"""What the plane at z = 0 is called."""
+"""Name of the plane at z = 0."""
 
 
 @dataclass(frozen=True)
@@ -148,7 +148,7 @@ class Scene:
         return PlacedBody(self._bodies[name], self._pose(name))
 
     def loose(self) -> Iterator[PlacedBody]:
-        """Everything that can be brought."""
+        """All loose bodies."""
         return (self.body(name) for name, body in self._bodies.items() if not body.static)
 
     def solid(self) -> Iterator[PlacedBody]:
@@ -159,7 +159,7 @@ class Scene:
 
     @cached_property
     def tops(self) -> tuple[LevelTop, ...]:
-        """Tops of all that stands still: those that are told, or else upper faces of boxes."""
+        """Tops of all static bodies: those that are given, or else upper faces of boxes."""
         return tuple(self._tops())
 
     def _tops(self) -> Iterator[LevelTop]:

@@ -12,7 +12,7 @@ from momantu_worlds.scenes.geometry.solids import box_tops, outline
 
 
 class UprightCylinder:
-    """The least upright cylinder around all of an item that collides, standing on its origin."""
+    """The smallest upright cylinder around an item's colliding parts, on its origin."""
 
     def __init__(self, body: Body) -> None:
         parts = [part for part in body.parts if part.collision]
@@ -49,7 +49,7 @@ def _levels(part: Part) -> tuple[float, float]:
 
 
 class SupportTop:
-    """A body's top: the one that is told, or else its highest box's."""
+    """The top of a supporting body: the one that is given, or else its highest box's."""
 
     def __init__(self, body: Body) -> None:
         tops = (body.top,) if body.top is not None else tuple(box_tops(body))

@@ -13,9 +13,9 @@ from momantu_worlds.scenes.referee.ground_truth import GroundTruth, TouchingForc
 from momantu_worlds.scenes.referee.hand import Hand
 
 ABOVE = 0.03
-"""m; let go at no more than this above what lies below, a thing is set down, not dropped."""
+"""m; a thing that is released at most this far above its support is set down, not dropped."""
 GONE = 1.5 * TICK
-"""s without a finger's touch after which a thing has left the hand: one tick may be noise."""
+"""s without finger contact after which a thing has left the hand: one tick may be noise."""
 
 
 @dataclass(slots=True)
@@ -27,7 +27,7 @@ class _Grip:
 
 
 class Drops:
-    """Follows every loose thing from the tick in which two fingers held it off everything else."""
+    """Watches every loose thing once two fingers hold it and nothing else touches it."""
 
     def __init__(self, episode: Episode, truth: GroundTruth, hand: Hand) -> None:
         self._truth, self._fingers = truth, hand.fingers
@@ -38,7 +38,7 @@ class Drops:
         self.incidents: list[Incident] = []
 
     def observe(self, now: float, contacts: Iterable[TouchingForce]) -> None:
-        """Take what touched during the tick that ended at `now`, s."""
+        """Record the contacts of the tick that ended at `now`, s."""
         gripping: dict[str, int] = {}
         resting: set[str] = set()
         for contact in contacts:
@@ -55,18 +55,18 @@ class Drops:
                 self._left(name, grip)
 
     def added(self, body: Body) -> None:
-        """One more body is there."""
+        """A body was added."""
         points = None if body.static else body_points(body)
         if points is not None:
             self._points[body.name] = points
 
     def removed(self, name: str) -> None:
-        """An added body is gone."""
+        """An added body was removed."""
         self._points.pop(name, None)
         self.relocated(name)
 
     def relocated(self, name: str) -> None:
-        """A thing was set elsewhere by somebody else: it did not leave the hand by itself."""
+        """A thing was moved by a fault: the robot did not drop it."""
         self._grips.pop(name, None)
 
     def _left(self, name: str, grip: _Grip) -> None:

@@ -9,7 +9,7 @@ from momantu_bt.robot import ActuatorKind, RobotDescription
 
 @dataclass(frozen=True, slots=True)
 class Hand:
-    """Names of links and joints of a robot.
+    """The names of a robot's links and joints that the referee watches.
 
     gripper: link whose origin lies between the pads. fingers: links that squeeze what is held.
     joints: of the arm and of the gripper, which must rest when a run is over, as the base must.

@@ -24,9 +24,9 @@ class _Impact:
 
 
 class Impacts:
-    """One incident for each impact of a link on a thing: since when, and the largest force.
+    """One incident for each impact of a link on a thing: its start and its largest force.
 
-    What two fingers squeeze between them is not an impact.
+    A squeeze between two fingers is not an impact.
     """
 
     def __init__(self, truth: GroundTruth, hand: Hand) -> None:
@@ -34,7 +34,7 @@ class Impacts:
         self._impacts: dict[tuple[str, str], list[_Impact]] = {}
 
     def observe(self, now: float, contacts: Iterable[TouchingForce]) -> None:
-        """Take what touched during the tick that ended at `now`, s."""
+        """Record the contacts of the tick that ended at `now`, s."""
         contacts = [c for c in contacts if c.first in self._links and c.second not in self._links]
         squeezed = Counter(c.second for c in contacts if c.first in self._fingers)
         for contact in contacts:

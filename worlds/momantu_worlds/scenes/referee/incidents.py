@@ -12,7 +12,7 @@ from momantu_worlds.scenes.referee.hand import Hand
 from momantu_worlds.scenes.referee.impacts import Impacts
 
 LINEAR, ANGULAR = 0.02, 0.05
-"""m/s and rad/s; what is slower rests."""
+"""m/s and rad/s; slower counts as at rest."""
 
 
 class Incidents:
@@ -24,12 +24,12 @@ class Incidents:
         self._drops = Drops(episode, truth, hand)
 
     def observe(self, now: float, contacts: Sequence[TouchingForce]) -> None:
-        """Take what touched during the tick that ended at `now`, s."""
+        """Record the contacts of the tick that ended at `now`, s."""
         self._impacts.observe(now, contacts)
         self._drops.observe(now, contacts)
 
     def relocated(self, name: str) -> None:
-        """A body was set elsewhere by somebody else: the robot did not let go of it."""
+        """A body was moved by a fault: the robot did not drop it."""
         self._drops.relocated(name)
 
     def added(self, body: Body) -> None:
@@ -41,7 +41,7 @@ class Incidents:
         self._drops.removed(name)
 
     def until(self, now: float) -> tuple[Incident, ...]:
-        """All so far in the order of time, with what moves at `now`, s, the end of the run."""
+        """All incidents in order of time, with what still moves at `now`, s, the end of the run."""
         found = [*self._impacts.incidents(), *self._drops.incidents]
         found += still_moving(self._truth, self._hand, now)
         return tuple(sorted(found, key=lambda incident: incident.time))

@@ -55,7 +55,7 @@ class GroundTruth(Protocol):
 
 
 class ClaimJudge:
-    """Judges sentences of one instant of an episode. bodies: all there are, by name."""
+    """Judges sentences at one moment of an episode. bodies: all bodies, by name."""
 
     def __init__(
         self, description: RobotDescription, bodies: Mapping[str, Body], truth: GroundTruth
@@ -213,7 +213,7 @@ class ClaimJudge:
 
 
 def _lies_on(lower_from_upper: Transform, upper: Picture, lower: Picture) -> bool:
-    """Whether a picture hides some of another one beneath it."""
+    """Whether a picture covers a part of another one beneath it."""
     x, y, z = lower_from_upper.position
     reach = (math.hypot(*upper.size) + min(lower.size)) / 2
     return 0.0 < z <= ON_TAG[-1] and math.hypot(x, y) < reach

@@ -24,28 +24,28 @@ from momantu_worlds.scenes.referee.hand import Hand
 from momantu_worlds.scenes.referee.incidents import Incidents
 
 STILL_SHIFT = 0.002
-"""m; what stands still stays within this of where it was: four times what the solver jitters."""
+"""m; an object within this of its earlier position is at rest: four times the solver's jitter."""
 STILL_TURN = math.radians(0.5)
 """rad; likewise."""
 ON_TOP = 0.005
-"""m; the base may be this far above or below the top and still count as standing on it."""
+"""m; tolerance of the height at which an object stands on a top."""
 
 
 @dataclass(slots=True)
 class Worst:
-    """The largest value so far, and of what."""
+    """The largest value so far, and the name of what had it."""
 
     value: float = 0.0
     what: str = ""
 
     def see(self, value: float, what: str) -> None:
-        """Keep the value if it is larger."""
+        """Record a value; the largest counts."""
         if value > self.value:
             self.value, self.what = value, what
 
 
 class Referee:
-    """Judges one episode; see the module's text for what it holds against whom."""
+    """Judges one episode; the module's docstring lists the demands."""
 
     def __init__(self, episode: Episode, truth: GroundTruth, hand: Hand) -> None:
         """Watch from the next tick on."""
@@ -68,7 +68,7 @@ class Referee:
         truth.watch_contacts()
 
     def observe(self, now: float) -> None:
-        """Look at the instant `now`, s; to be called once after every tick."""
+        """Observe the moment `now`, s; call it once after every tick."""
         self._now = now
         contacts = tuple(self._truth.contacts())
         self._look_at_contacts(contacts)
@@ -82,7 +82,7 @@ class Referee:
             self._tilt.see(tilt(pose), name)
 
     def relocated(self, name: str) -> None:
-        """A body was set elsewhere by somebody else than the robot."""
+        """A body was moved by a fault, not by the robot."""
         self._incidents.relocated(name)
 
     def added(self, body: Body) -> None:
@@ -97,7 +97,7 @@ class Referee:
         self._incidents.removed(name)
 
     def verdict(self) -> Verdict:
-        """The word on the instant last observed, with every unmet demand and the numbers."""
+        """The verdict on the last observed moment, with every unmet demand and its numbers."""
         measures = self._measures()
         unmet = tuple(sentence for bad, sentence in self._demands(measures) if bad)
         incidents = self._incidents.until(self._now)

@@ -28,7 +28,7 @@ FIELDS = ("name", "start", "start_sigma", "places", "surfaces", "objects", "serv
 
 @dataclass(frozen=True, slots=True)
 class Nominal:
-    """What is asked of a world before it is opened. robot: the one it is meant for."""
+    """What a world tells before it is opened: its site, and the robot that it is meant for."""
 
     site: Site
     robot: str

@@ -36,7 +36,7 @@ class Column:
 
 
 def columns_of(parts: Iterable[Part], map_from_body: Transform) -> Iterator[Column]:
-    """The colliding ones among the parts of a body."""
+    """The colliding parts of a body as columns."""
     for part in parts:
         if not part.collision:
             continue

@@ -17,7 +17,7 @@ from momantu_worlds.scenes.site.cache import cache_key
 from momantu_worlds.scenes.site.floor_plan import draw_plans
 
 MOST_CACHED = 16
-"""Maps of one world: for several robots, and for the file as it was in the last edits."""
+"""Maps of one world: for several robots, and for recent versions of its file."""
 
 
 def with_maps(site: Site, world: WorldFile, band: tuple[float, float], robot_height: float) -> Site:
@@ -59,7 +59,7 @@ def _evict(newest: Path) -> None:
 
 
 def _contents(world: WorldFile) -> Iterator[str]:
-    """All that the plan depends on: the world file's values, and its mesh files."""
+    """Everything that the plan depends on: the world file's values and its mesh files."""
     yield world.model_dump_json()
     for file in world.mesh_files():
         yield hashlib.blake2b(file.read_bytes()).hexdigest()

@@ -16,11 +16,11 @@ from momantu_worlds.scenes.site.coverage import Column
 from momantu_worlds.scenes.site.floor_plan import known_parts
 
 SIGMAS = 2.0
-"""The farthest a rough start may be off counts as this many standard deviations."""
+"""The largest error of the rough start pose, in standard deviations."""
 LEAST = 0.10
-"""m above a surface from which on a solid hangs over it; what is lower stands on it."""
+"""m above a surface; lower solids stand on it, higher ones hang over it."""
 MOST = 1.5
-"""m above a surface up to which an arm that works on it may reach."""
+"""m above a surface that an arm which works on it may reach."""
 SAME = 0.01
 """m between the tops of two that are one."""
 
@@ -49,9 +49,9 @@ def site_of(world: WorldFile, start: Pose2D) -> Site:
 
 
 def overhangs(world: WorldFile, tops: Mapping[str, PlacedTable]) -> dict[str, tuple[Overhang, ...]]:
-    """By surface what hangs over it where the file has it, the lowest first.
+    """For each surface what hangs over it at its nominal place, the lowest first.
 
-    Boards that are surfaces themselves are left out: they are told as such.
+    Boards that are surfaces themselves are left out.
     """
     parts = [part for part in known_parts(world) if not _named(part, tops)]
     return {

@@ -19,9 +19,9 @@ from momantu_worlds.sdf.body.shaping import Shaping
 from momantu_worlds.sdf.deviations import Deviations
 
 MOST_PARTS = 500
-"""Of one body, as the reader of world files takes them."""
+"""Limit of parts of one body, as in world files."""
 FRICTION = (0.01, 1.0)
-"""Least and most that a world file takes."""
+"""Range that a world file accepts."""
 _LONGEST = 50
 
 
@@ -53,7 +53,7 @@ class ImportedBody:
 
 
 class BodyMaker:
-    """Makes bodies of one import, each with a name of its own."""
+    """Makes the bodies of one import, each with a unique name."""
 
     def __init__(self, shaping: Shaping, ground: Ground, deviations: Deviations) -> None:
         self._shaping, self._ground, self._findings = shaping, ground, deviations

@@ -25,7 +25,7 @@ _STEM = 40
 
 
 _untyped: Any = trimesh
-"""For what trimesh has no types of."""
+"""trimesh without types, for what it does not declare."""
 
 
 @dataclass(slots=True)

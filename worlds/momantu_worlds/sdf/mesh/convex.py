@@ -29,7 +29,7 @@ THICKENED = 0.005
 """m; what is flat is made thicker by this on every side."""
 
 _untyped: Any = trimesh
-"""For what trimesh has no types of."""
+"""trimesh without types, for what it does not declare."""
 
 
 def convex_pieces(pieces: Sequence[Piece], *, still: bool) -> tuple[list[Array], bool]:

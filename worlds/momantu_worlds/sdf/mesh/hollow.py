@@ -15,13 +15,13 @@ from momantu_bt.world import seeded
 SAMPLES = 300
 """Points tried within a hull."""
 CORNERS = 8
-"""Points are mixed from so many corners of the hull, evenly enough to get everywhere."""
+"""Each sample is a random mixture of so many corners of the hull."""
 EVENNESS = 0.6
 """Of the mixture (Dirichlet's alpha)."""
 INWARD = 0.95
-"""Points are drawn towards the middle by this factor: a point on a face sees nothing sure."""
+"""Samples are scaled towards the middle by this factor: visibility on a face is ambiguous."""
 AIR = 0.15
-"""Share of points in the air from which on a part is hollow."""
+"""Share of samples in the air above which a part is hollow."""
 ROOM = (2.0, 2.0, 1.5)
 """m; what extends farther is a building, whichever way its faces look."""
 UP = (0.0, 0.0, 1.0)
@@ -31,7 +31,7 @@ DIRECTIONS = np.array([UP, *_FLAT])
 
 
 class Air:
-    """Looks around from points within a mesh.
+    """Tests whether points within a mesh are in free air.
 
     A point is in the air when it sees the sky, or when most faces around look at it: within
     matter, one sees the backs of faces.

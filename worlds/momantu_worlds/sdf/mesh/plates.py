@@ -25,7 +25,7 @@ CELL = 0.02
 MOST_TRIANGLES = 4000
 """Of a part whose faces become plates; with more it is clustered first."""
 THIN = 1e-9
-"""m2; a triangle that is smaller has no side."""
+"""m2; smaller triangles are left out."""
 
 
 def plates_of(vertices: Array, triangles: NDArray[np.int64]) -> list[Array]:

@@ -23,7 +23,7 @@ DECIMALS = 6
 
 @dataclass(frozen=True, slots=True)
 class Imported:
-    """Everything that a world file is written from."""
+    """The input of the writer of a world file."""
 
     name: str
     source: str
@@ -61,7 +61,7 @@ def world_text(imported: Imported, deviations: Iterable[Deviation]) -> str:
 
 
 def _floor(ground: Ground, *, bare: bool) -> list[str]:
-    """bare: nothing stands on it, so that its size has to be said."""
+    """bare: nothing stands on it, so that its size must be written."""
     lines = [f"  center: {_row((0.0, 0.0))}", f"  size: {_row((BARE, BARE))}"] if bare else []
     if ground.color is not None:
         lines.append(f"  color: {_row(ground.color)}")
