@@ -16,11 +16,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, UnidentifiedImageError
-from ruamel.yaml import YAML
-from ruamel.yaml.error import YAMLError
 
 from momantu_bt.errors import MomantuError
 from momantu_bt.formats.files import write_whole
+from momantu_bt.formats.places import excerpt
+from momantu_bt.formats.yaml.errors import YamlRules
+from momantu_bt.formats.yaml.reader import YamlSyntaxError, compose
+from momantu_bt.formats.yaml.values import plain_value
 
 FREE, OCCUPIED, UNKNOWN = 0, 1, 2
 """What a cell can be."""
@@ -29,6 +31,7 @@ OCCUPIED_ABOVE, FREE_BELOW = 0.65, 0.196
 MAX_CELLS = 100_000_000
 """A picture of more pixels is taken for a mistake: 500 m x 500 m at 0.05 m."""
 
+_RULES = YamlRules("map file", most_bytes=100_000, most_depth=10, most_values=1000)
 _FORMATS = ("PPM", "PNG", "BMP")
 """Pillow's names; PPM has PGM with it."""
 _GAP = rb"(?:\s|#[^\r\n]*[\r\n])+"
@@ -125,11 +128,16 @@ def write_map(path: Path, map_: MapPicture) -> None:
 
 def _read_yaml(path: Path) -> dict[str, Any]:
     try:
-        entry = YAML(typ="safe", pure=True).load(path.read_text(encoding="utf-8"))
+        text = path.read_text(encoding="utf-8")
+        entry = plain_value(compose(text, str(path), _RULES))
     except OSError as error:
         raise MapError(f"the map {path} cannot be read: {error.strerror}") from None
-    except (YAMLError, UnicodeDecodeError) as error:
-        raise MapError(f"{path} is not YAML: {error}") from None
+    except UnicodeDecodeError as error:
+        raise MapError(f"{path} is not UTF-8 text: {error}") from None
+    except YamlSyntaxError as error:
+        raise MapError(
+            f"{error}\n{excerpt(error.problem.place, text, error.problem.hint)}"
+        ) from None
     if not isinstance(entry, dict) or "image" not in entry:
         raise MapError(
             f"{path} is not a map_server file; expected keys image, resolution, origin, negate, "

@@ -57,7 +57,7 @@ class PartSource(Part):
         return self
 
 
-class Place(Part):
+class Attachment(Part):
     """Where something is fixed: a pose in the frame of a link."""
 
     on: str
@@ -68,7 +68,7 @@ class Place(Part):
     """Roll, pitch and yaw about that link's fixed axes, as in a URDF."""
 
 
-class Mount(Place):
+class Mount(Attachment):
     """Where a part is fixed to the rest of the robot."""
 
     link: str | None = None
@@ -106,7 +106,7 @@ class RobotFile(Part):
     """The robot's URDF files; the first carries the base frame."""
     mounts: dict[str, Mount] = {}
     """Where each part but the first is fixed; the first may be put on a base frame of its own."""
-    frames: dict[str, Place] = {}
+    frames: dict[str, Attachment] = {}
     """More frames, fixed to links: where sensors sit, where the hand grasps."""
     base_frame: str = "base_link"
     """The link that stands on the floor, x forward."""

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
+from momantu_bt.formats.maps import MapPicture, write_map
 from momantu_bt.geometry import Array, Pose2D
 from momantu_bt.messages import LaserScan, WrenchReading, frozen
 from momantu_bt.robot import CameraSensor, LaserSensor, RobotDescription, SensorReading
@@ -137,14 +138,8 @@ def _write_map(folder: Path) -> Path:
     cells = np.full((rows, columns), _FREE, np.uint8)
     for block in (*_WALLS, *_tables()):
         cells[_covered(block, points)] = _OCCUPIED
-    header = f"P5\n{columns} {rows}\n255\n".encode()
-    (folder / "map.pgm").write_bytes(header + cells[::-1].tobytes())
     file = folder / "map.yaml"
-    file.write_text(
-        f"image: map.pgm\nresolution: {RESOLUTION}\norigin: [{left}, {bottom}, 0.0]\n"
-        "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n",
-        encoding="utf-8",
-    )
+    write_map(file, MapPicture(cells[::-1], RESOLUTION, (left, bottom)))
     return file
 
 

@@ -184,7 +184,7 @@ def test_trinary_values_and_row_order(tmp_path: Path, plain: bool, negate: int) 
         (b"", None, "neither a PGM"),
         (b"P5 0 2 255\n", None, "neither a PGM"),
         (b"P5 1 1 255\n1", "[1, 2]", "not a map_server file"),
-        (b"P5 1 1 255\n1", "a: [", "is not YAML"),
+        (b"P5 1 1 255\n1", "a: [", "this is not YAML"),
         (b"P5 1 1 255\n1", YAML.format(negate=0).replace("0.05", "fine"), "resolution"),
         (b"P5 1 1 255\n1", YAML.format(negate=0).replace("0.05", "0"), "resolution"),
         (b"P5 1 1 255\n1", YAML.format(negate=0).replace("2.0, 0.0", "2.0, 0.3"), "yaw"),

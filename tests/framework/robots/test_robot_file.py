@@ -84,7 +84,7 @@ def test_a_mistake_is_told(carter: Write, old: str, new: str, words: str) -> Non
 
 
 URDF_WRONG: list[tuple[str, tuple[str, str], str]] = [
-    ("cart", ("<robot name", "<sdf name"), "cart.urdf is not XML"),
+    ("cart", ("<robot name", "<sdf name"), "cart.urdf is not a URDF file, for it is not XML"),
     ("cart", ('type="fixed"', 'type="floating"'), "cart.urdf:11: .*'floating'; possible: fixed, "),
     (
         "cart",

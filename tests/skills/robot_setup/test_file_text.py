@@ -11,13 +11,16 @@ from hypothesis import strategies as st
 from momantu_skills.robot_setup.find.proposal import propose
 from momantu_skills.robot_setup.write.file_text import comment, listed, number, scalar
 from momantu_skills.robot_setup.write.writer import robot_file
-from ruamel.yaml import YAML
 
+from momantu_bt.formats.yaml.errors import YamlRules
+from momantu_bt.formats.yaml.reader import compose
+from momantu_bt.formats.yaml.values import plain_value
 from momantu_bt.robots import read_robot
 
 
 def read(text: str) -> object:
-    return YAML(typ="safe", pure=True).load(text)
+    rules = YamlRules("text", most_bytes=10_000, most_depth=10, most_values=1000)
+    return plain_value(compose(text, "t.yaml", rules))
 
 
 ODD = ["true", "null", "~", "1", "1e3", "0x1f", "2026-01-01", "-", "a: b", "a #b", "a,b", "[a]", ""]

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass
 
+from momantu_bt.formats.yaml.writer import scalar
 from momantu_bt.plugins import PluginError
 from momantu_bt.tree.catalogue import MODIFIERS, NODES, SPELLED, SUBTREE
-from momantu_bt.tree.files.scalars import CannotWrite, port_text, scalar
+from momantu_bt.tree.files.scalars import CannotWrite, port_text
 from momantu_bt.tree.files.yaml.lines import STEP, WIDTH, above, beside, is_nested, signed, spread
 from momantu_bt.tree.files.yaml.scripts import script_spelling, script_text
 from momantu_bt.tree.language import AGAIN

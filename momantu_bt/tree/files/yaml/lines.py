@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from momantu_bt.formats.text import Beside
-from momantu_bt.tree.files.scalars import literal, scalar
+from momantu_bt.formats.yaml.writer import scalar
+from momantu_bt.tree.files.scalars import literal
 from momantu_bt.tree.model import Literal, PortValue
 
 WIDTH = 100

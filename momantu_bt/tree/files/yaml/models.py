@@ -7,7 +7,7 @@ from typing import Any
 
 from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.yaml.values import Entries, Items, Raw, Scalar, plain_value
-from momantu_bt.tree.files.scalars import scalar
+from momantu_bt.formats.yaml.writer import scalar
 from momantu_bt.tree.files.yaml.lines import above
 from momantu_bt.tree.model import Literal, NodeModel, PortDeclaration
 from momantu_bt.tree.problems import Problems

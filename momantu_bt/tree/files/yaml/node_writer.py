@@ -10,8 +10,9 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from momantu_bt.formats.text import Beside
+from momantu_bt.formats.yaml.writer import scalar
 from momantu_bt.tree.catalogue import NODES, Kind
-from momantu_bt.tree.files.scalars import CannotWrite, port_text, scalar
+from momantu_bt.tree.files.scalars import CannotWrite, port_text
 from momantu_bt.tree.files.yaml.leaf_writer import LeafWriter
 from momantu_bt.tree.files.yaml.lines import STEP, WIDTH, above, beside
 from momantu_bt.tree.files.yaml.scripts import script_text

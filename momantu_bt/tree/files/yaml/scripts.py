@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from momantu_bt.formats.places import Place
 from momantu_bt.formats.yaml.values import Entries, Raw, Scalar
-from momantu_bt.tree.files.scalars import scalar
+from momantu_bt.formats.yaml.writer import scalar
 from momantu_bt.tree.files.yaml.words import BTCPP
 from momantu_bt.tree.problems import Problems
 from momantu_bt.tree.script import ScriptSyntaxError, canonical, parse, yaml_spelling

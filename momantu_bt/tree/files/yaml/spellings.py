@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from momantu_bt.formats.yaml.writer import scalar
 from momantu_bt.tree.catalogue import FORCED, NODES, Kind
-from momantu_bt.tree.files.scalars import port_text, scalar
+from momantu_bt.tree.files.scalars import port_text
 from momantu_bt.tree.files.yaml.lines import above, is_nested
 from momantu_bt.tree.files.yaml.scripts import script_spelling
 from momantu_bt.tree.model import Literal, Node, PortValue

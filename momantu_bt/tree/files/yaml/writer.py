@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from momantu_bt.tree.files.scalars import CannotWrite, literal, port_text, scalar
+from momantu_bt.formats.yaml.writer import scalar
+from momantu_bt.tree.files.scalars import CannotWrite, literal, port_text
 from momantu_bt.tree.files.yaml.leaf_writer import LeafWriter
 from momantu_bt.tree.files.yaml.lines import WIDTH, above, beside, spread
 from momantu_bt.tree.files.yaml.models import write_models

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Iterator
-from functools import cache
 
-from ruamel.yaml import YAML
-from ruamel.yaml.error import YAMLError
+from momantu_bt.formats.yaml import writer
 
 
 def number(value: float, digits: int = 4) -> str:
@@ -16,15 +13,9 @@ def number(value: float, digits: int = 4) -> str:
     return "0" if text in ("-0", "") else text
 
 
-@cache
 def scalar(value: str) -> str:
     """A name or a path as YAML takes it: quoted where it would be read as anything else."""
-    yaml = YAML(typ="safe", pure=True)
-    try:
-        plain = all(yaml.load(text) == [value] for text in (f"[{value}]", f"- {value}"))
-    except YAMLError:
-        plain = False
-    return value if plain else json.dumps(value, ensure_ascii=False)
+    return writer.scalar(value, flow=True)
 
 
 def listed(names: Iterable[str]) -> str:
