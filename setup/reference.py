@@ -20,6 +20,8 @@ PUBLIC = (
     "momantu_bt",
     "momantu_bt.activity",
     "momantu_bt.claim",
+    "momantu_bt.descriptions.quantities",
+    "momantu_bt.descriptions.tunables",
     "momantu_bt.diagnosis",
     "momantu_bt.errors",
     "momantu_bt.failure",

@@ -12,7 +12,7 @@ from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue import AUTOREMAP, NODES, SUBTREE, XML_CONDITIONS, NodeSpec
 from momantu_bt.tree.files.scalars import CannotWrite, port_text
 from momantu_bt.tree.files.xml.ports import DESCRIPTION, DISABLED, NOTE, PREFIX, RESERVED
-from momantu_bt.tree.files.xml.text import attribute, is_xml
+from momantu_bt.tree.files.xml.text import attribute, fits_in_xml
 from momantu_bt.tree.files.xml.values import WireError, attribute_value
 from momantu_bt.tree.model import (
     Document,
@@ -50,7 +50,7 @@ def plain(value: PortValue, port: str, type_: ValueType) -> str | None:
     except WireError:
         return None
     same = found == value and _type(found) is _type(value)
-    return text if same and is_xml(text) else None
+    return text if same and fits_in_xml(text) else None
 
 
 def port_attribute(name: str, value: PortValue, type_: ValueType) -> str:

@@ -12,7 +12,7 @@ _ESCAPES = {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;"}
 _ESCAPES |= {"\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}
 
 
-def is_xml(text: str) -> bool:
+def fits_in_xml(text: str) -> bool:
     """Whether XML has all the characters of a text."""
     return NOT_TEXT.search(text) is None
 
