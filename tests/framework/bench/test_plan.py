@@ -113,6 +113,13 @@ def test_what_an_episode_is_made_of_names_what_was_changed(small: str, tmp_path:
     assert difference(before, made(file)) == ("the file small.yaml",)
 
 
+def test_the_file_of_faults_counts_too(small: str) -> None:
+    file = Path(small)
+    before = made(file)
+    file.with_suffix(".faults.yaml").write_text("momantu_bt: 1\nbegins: {camera.dead: Check}\n")
+    assert difference(before, made(file)) == ("the file small.faults.yaml",)
+
+
 def test_the_code_of_plug_ins_counts_byte_for_byte(stalling: str, tmp_path: Path) -> None:
     before = made(Path(stalling))
     assert "the code of stall_plugins" in before
@@ -120,4 +127,6 @@ def test_the_code_of_plug_ins_counts_byte_for_byte(stalling: str, tmp_path: Path
     source = tmp_path / "site" / "stall_plugins.py"
     source.write_text(source.read_text() + "\n")
     module._code.cache_clear()
-    assert difference(before, made(Path(stalling))) == ("the code of stall_plugins",)
+    changed = made(Path(stalling))
+    module._code.cache_clear()
+    assert difference(before, changed) == ("the code of stall_plugins",)
