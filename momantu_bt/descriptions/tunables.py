@@ -15,9 +15,9 @@ from typing import Any, TypeVar, get_args, get_origin
 from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic.fields import FieldInfo
 
-from momantu_bt.descriptions.findings import problems_at
 from momantu_bt.descriptions.quantities import Measured
 from momantu_bt.descriptions.reading import KeyProblem, Reading
+from momantu_bt.descriptions.validation import problems_at
 from momantu_bt.descriptions.wording import said
 from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.places import KeyPath

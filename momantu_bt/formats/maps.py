@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image, UnidentifiedImageError
+from PIL import UnidentifiedImageError
 
 from momantu_bt.errors import MomantuError
 from momantu_bt.formats.files import write_whole
@@ -23,6 +23,10 @@ from momantu_bt.formats.places import excerpt
 from momantu_bt.formats.yaml.errors import YamlRules
 from momantu_bt.formats.yaml.reader import YamlSyntaxError, compose
 from momantu_bt.formats.yaml.values import plain_value
+from momantu_bt.lazy import lazily
+
+with lazily():
+    from PIL import Image
 
 FREE, OCCUPIED, UNKNOWN = 0, 1, 2
 """What a cell can be."""

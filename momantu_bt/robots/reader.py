@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from momantu_bt.descriptions.findings import checked
 from momantu_bt.descriptions.reading import Reading, read_text
+from momantu_bt.descriptions.validation import checked
 from momantu_bt.robot import RobotDescription
 from momantu_bt.robot_parts import BaseLimits
 from momantu_bt.robot_simulation import JointGains, PlanarDrive, SimulationModel

@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
 
-from momantu_bt.descriptions.findings import checked
 from momantu_bt.descriptions.quantities import JointPosition, JointSpeed, Length
 from momantu_bt.descriptions.reading import DescriptionError, Reading, read_text
+from momantu_bt.descriptions.validation import checked
 
 FILE = Path("thing.yaml")
 

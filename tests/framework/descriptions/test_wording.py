@@ -12,7 +12,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import BaseModel, ConfigDict, Field
 
-from momantu_bt.descriptions.findings import checked
 from momantu_bt.descriptions.reading import (
     MOST_BYTES,
     MOST_ERRORS,
@@ -20,6 +19,7 @@ from momantu_bt.descriptions.reading import (
     Reading,
     read_text,
 )
+from momantu_bt.descriptions.validation import checked
 from momantu_bt.formats.places import Place
 
 FILE = Path("thing.yaml")

@@ -8,9 +8,9 @@ from typing import ClassVar
 
 from pydantic import ValidationError
 
-from momantu_bt.descriptions.findings import checked
 from momantu_bt.descriptions.reading import DescriptionError, KeyProblem, Reading, read_text
 from momantu_bt.descriptions.tunables import tunable_problems
+from momantu_bt.descriptions.validation import checked
 from momantu_worlds.scenes.file.references import dangling
 from momantu_worlds.scenes.file.world import WorldFile
 

@@ -23,7 +23,7 @@ def checked(reading: Reading, model: type[Model], error: type[DescriptionError])
     try:
         return model.model_validate(reading.plain)
     except ValidationError as trouble:
-        found = _Findings(reading, model, error.what).problems(trouble)
+        found = _Located(reading, model, error.what).problems(trouble)
         raise error(reading.path, reading.text, found) from None
 
 
@@ -32,11 +32,11 @@ def problems_at(reading: Reading, keys: KeyPath, model: type[BaseModel]) -> list
     try:
         model.model_validate(reading.value(keys))
     except ValidationError as trouble:
-        return _Findings(reading, model, str(keys[-1]), keys).problems(trouble)
+        return _Located(reading, model, str(keys[-1]), keys).problems(trouble)
     return []
 
 
-class _Findings:
+class _Located:
     """Turns pydantic's findings into problems at their places."""
 
     def __init__(
