@@ -98,8 +98,12 @@ def test_the_controller_repeats_itself() -> None:
 STARTS = st.builds(Pose2D, st.floats(-1.8, -0.9), st.floats(-0.3, 0.3), st.floats(-0.4, 0.4))
 
 
+FROM_AFAR = st.builds(Pose2D, st.floats(-1.8, -1.1), st.floats(-0.3, 0.3), st.floats(-0.4, 0.4))
+"""Nearer, 0.3 m to the side, no smooth curve ends straight: what is simulated says so (below)."""
+
+
 @settings(max_examples=60)
-@given(STARTS, st.floats(-math.pi, math.pi))
+@given(FROM_AFAR, st.floats(-math.pi, math.pi))
 def test_the_approach_ends_on_the_goal(offset: Pose2D, yaw: float) -> None:
     goal = Pose2D(4.0, 3.0, yaw)
     base = _Unicycle(goal @ offset)
