@@ -25,6 +25,8 @@ from momantu_bt.plugins import Group
 from momantu_bt.record.versions import LIBRARIES
 from momantu_bt.robots.meshes import MESHES
 from momantu_bt.robots.plugins import ROBOTS
+from momantu_bt.tree.catalogue import NODES
+from momantu_bt.tree.catalogue.nodes import BEHAVIOURS, PLUGINS
 from momantu_bt.tree.check.named_world import NO_WORLD, world_of
 from momantu_bt.tree.files.settings import Given
 from momantu_bt.tree.model import Document
@@ -148,6 +150,8 @@ def _packages(document: Document, world: str, robot: str | None) -> Iterator[str
     """Packages with code that takes part: this one, and those of the plug-ins."""
     wanted: dict[Group[Any], Iterable[str | None]] = {
         SKILLS: skills_in(document),
+        PLUGINS: _spellings(document),
+        BEHAVIOURS: _spellings(document),
         WORLDS: (world,),
         ROBOTS: (robot,),
         SERVICES: SERVICES,
@@ -157,6 +161,12 @@ def _packages(document: Document, world: str, robot: str | None) -> Iterator[str
         having = group.installed()
         found |= {having[name].module.partition(".")[0] for name in names if name in having}
     yield from sorted(found)
+
+
+def _spellings(document: Document) -> set[str]:
+    """Nodes of the language that a document has, by their spellings."""
+    nodes = (node for tree in document.trees.values() for node in tree.root.walk())
+    return {NODES[node.type].yaml[0] for node in nodes if node.type in NODES}
 
 
 @cache

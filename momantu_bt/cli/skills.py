@@ -14,7 +14,9 @@ from momantu_bt.cli.skills_pages import pages
 from momantu_bt.cli.skills_palette import print_palette
 from momantu_bt.cli.skills_schema import schema
 from momantu_bt.cli.skills_test import promises
+from momantu_bt.tree.catalogue import SPELLED
 from momantu_bt.tree.plugins import SKILLS
+from momantu_bt.tree.show.node_page import node_data, node_text
 from momantu_bt.tree.show.skill_page import as_data, as_text
 
 skills = typer.Typer(rich_markup_mode=None, invoke_without_command=True)
@@ -47,10 +49,14 @@ def list_all(
 
 @skills.command("show", help="Show a skill's ports, what it uses, how it can fail, and examples.")
 def show_one(
-    name: Annotated[str, typer.Argument(help="The skill's name, as in trees.")],
+    name: Annotated[str, typer.Argument(help="The name of a skill or of a node, as in trees.")],
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,
 ) -> None:
-    """Show one skill."""
+    """Show one skill, or a node of the language."""
+    if name in SPELLED and name not in SKILLS:
+        spec = SPELLED[name]
+        typer.echo(json.dumps(node_data(spec), indent=2) if as_json else node_text(spec))
+        return
     skill = SKILLS.load(name)
     if as_json:
         typer.echo(json.dumps(as_data(name, skill), indent=2))

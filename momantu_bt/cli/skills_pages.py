@@ -9,7 +9,9 @@ import typer
 
 from momantu_bt.errors import ExitCode
 from momantu_bt.formats.files import write_whole
+from momantu_bt.tree.catalogue import NODES, plugged_in
 from momantu_bt.tree.plugins import SKILLS
+from momantu_bt.tree.show.node_page import node_markdown
 from momantu_bt.tree.show.skill_page import pages as pages_of
 
 
@@ -23,11 +25,16 @@ def pages(
 ) -> ExitCode:
     """Write a page of Markdown per skill, and an index, from what `skills show` knows.
 
+    Nodes of other packages get a page each as well.
+
     Examples:
       momantu-bt skills pages docs/skills
     """
     skills = {name: SKILLS.load(name) for name in names or SKILLS}
     for file, text in pages_of(skills).items():
         write_whole(folder / file, text, folders=True)
-    typer.echo(f"{len(skills)} pages and an index in {folder}")
+    specs = [NODES[type_] for type_ in plugged_in() if names is None]
+    for spec in specs:
+        write_whole(folder / f"{spec.yaml[0]}.md", node_markdown(spec), folders=True)
+    typer.echo(f"{len(skills) + len(specs)} pages and an index in {folder}")
     return ExitCode.SUCCESS

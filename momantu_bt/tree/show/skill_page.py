@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from momantu_bt.skill import MISSING, Port, Skill
+from momantu_bt.tree.catalogue.spec import NodeSpec
 from momantu_bt.tree.show.skill_example import xml_example, yaml_example
 from momantu_bt.values.types import label
 
@@ -15,11 +16,7 @@ _HEADINGS = (("in", "Inputs"), ("out", "Outputs"))
 
 def as_text(name: str, skill: type[Skill]) -> str:
     """For the terminal."""
-    lines = [f"{name}: {_doc(skill)}"]
-    for heading, ports in _by_direction(skill):
-        lines += ["", heading]
-        lines += [f"  {port.name}: {kind(port)}{_default(port)}. {port.doc}" for port in ports]
-    lines += [f"  exactly one of {', '.join(group)}" for group in skill.one_of]
+    lines = [f"{name}: {_doc(skill)}", *port_lines(skill)]
     lines += ["", f"Uses      {', '.join(sorted(skill.uses)) or 'no actuator'}"]
     lines += [f"Needs     {', '.join(skill.needs) or 'no service'}"]
     if skill.failures:
@@ -35,7 +32,7 @@ def as_data(name: str, skill: type[Skill]) -> dict[str, Any]:
     return {
         "name": name,
         "doc": _doc(skill),
-        "ports": [_plain(port) for port in skill.ports.values()],
+        "ports": [port_data(port) for port in skill.ports.values()],
         "one_of": [list(group) for group in skill.one_of],
         "uses": sorted(skill.uses),
         "needs": list(skill.needs),
@@ -49,12 +46,7 @@ def as_markdown(name: str, skill: type[Skill]) -> str:
     parts = [f"# {name}", _doc(skill)]
     for heading, example in _examples(name, skill):
         parts.append(f"```{heading.lower()}\n{example}\n```")
-    for heading, ports in _by_direction(skill):
-        rows = [_row(port) for port in ports]
-        columns = ["Port", "Type", *(["Default"] if heading == "Inputs" else []), "Meaning"]
-        parts.append(f"## {heading}")
-        parts.append(_table(columns, rows))
-    parts += [f"Exactly one of `{'`, `'.join(group)}` is given." for group in skill.one_of]
+    parts += port_tables(skill)
     if skill.failures:
         parts.append("## Failure codes")
         codes = [[f"`{code}`", sentence] for code, sentence in skill.failures.items()]
@@ -63,6 +55,24 @@ def as_markdown(name: str, skill: type[Skill]) -> str:
     needs = ", ".join(f"`{need}`" for need in skill.needs)
     parts.append(f"It commands {uses}" + (f" and needs the service {needs}." if needs else "."))
     return "\n\n".join(parts) + "\n"
+
+
+def port_lines(owner: type[Skill] | NodeSpec) -> Iterator[str]:
+    """The ports of a skill or a node, for the terminal."""
+    for heading, ports in _by_direction(owner):
+        yield from ("", heading)
+        yield from (f"  {port.name}: {kind(port)}{_default(port)}. {port.doc}" for port in ports)
+    yield from (f"  exactly one of {', '.join(group)}" for group in owner.one_of)
+
+
+def port_tables(owner: type[Skill] | NodeSpec) -> Iterator[str]:
+    """The same as paragraphs of Markdown."""
+    for heading, ports in _by_direction(owner):
+        rows = [_row(port) for port in ports]
+        columns = ["Port", "Type", *(["Default"] if heading == "Inputs" else []), "Meaning"]
+        yield f"## {heading}"
+        yield _table(columns, rows)
+    yield from (f"Exactly one of `{'`, `'.join(group)}` is given." for group in owner.one_of)
 
 
 def pages(skills: Mapping[str, type[Skill]]) -> dict[str, str]:
@@ -90,9 +100,9 @@ def _doc(skill: type[Skill]) -> str:
     return inspect.getdoc(skill) or ""
 
 
-def _by_direction(skill: type[Skill]) -> Iterator[tuple[str, list[Port]]]:
+def _by_direction(owner: type[Skill] | NodeSpec) -> Iterator[tuple[str, list[Port]]]:
     for direction, heading in _HEADINGS:
-        ports = [port for port in skill.ports.values() if port.direction == direction]
+        ports = [port for port in owner.ports.values() if port.direction == direction]
         if ports:
             yield heading, ports
 
@@ -123,7 +133,8 @@ def _table(columns: list[str], rows: list[list[str]]) -> str:
     return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
 
 
-def _plain(port: Port) -> dict[str, Any]:
+def port_data(port: Port) -> dict[str, Any]:
+    """A port for programs."""
     return {
         "name": port.name,
         "direction": port.direction,

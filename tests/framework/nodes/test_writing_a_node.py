@@ -14,6 +14,7 @@ import pytest
 
 import momantu_bt
 from momantu_bt import plugins
+from momantu_bt.bench.made_of import made_of
 from momantu_bt.cli import main
 from momantu_bt.engine.build import build
 from momantu_bt.engine.context import RunContext
@@ -21,6 +22,7 @@ from momantu_bt.py_trees_bridge.view import view
 from momantu_bt.testing import ManualClock
 from momantu_bt.tree.catalogue import NODES, SPELLED
 from momantu_bt.tree.load import load
+from momantu_bt.tree.registry import Registry
 
 PAGE = Path(__file__).resolve().parents[3] / "docs" / "writing_a_node.md"
 FILE = re.compile(r"Save as `([\w/.]+)`:\n\n```\w+\n(.*?)```", re.DOTALL)
@@ -90,6 +92,23 @@ def test_editors_know_it(package, capsys):
     assert {"cooldown", "race"} <= set(schema["$defs"]["mapping"]["properties"])
     assert main(["skills", "--xml-model"]) == 0
     assert 'ID="Cooldown"' in capsys.readouterr().out
+
+
+def test_its_page_says_what_it_takes(package, tmp_path, capsys):
+    assert main(["skills", "show", "cooldown"]) == 0
+    shown = capsys.readouterr().out
+    assert "pause: number in s, at least 0, required. how long after an end" in shown
+    assert "In XML    Cooldown" in shown
+    assert main(["skills", "show", "race", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["children"] == [1, None]
+    assert main(["skills", "pages", str(tmp_path / "pages")]) == 0
+    page = (tmp_path / "pages" / "cooldown.md").read_text(encoding="utf-8")
+    assert "| `pause` | number in s, at least 0 | required | how long after an end |" in page
+
+
+def test_a_benchs_rows_know_its_package(package):
+    made = made_of(load("tree.yaml").document, Registry.installed(), world="none")
+    assert "the code of pace_nodes" in made
 
 
 def test_py_trees_displays_draw_it(package):

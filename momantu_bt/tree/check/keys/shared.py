@@ -125,14 +125,16 @@ def call_of(context: Context, node: Node) -> Call:
 def _own_keys(context: Context, node: Node, keys: TreeKeys) -> None:
     signature = context.signature(node)
     ports = signature.ports if signature is not None else {}
+    spec = signature.spec if signature is not None else None
+    removed = spec.removes if spec is not None else None
     for name, value in node.ports.items():
         local = {each.key for each in _references(value) if each.scope is Scope.LOCAL}
         keys.mentioned |= local
         port = ports.get(name)
         if port is None or port.direction == "out":
             # an unknown node may write what it names
-            keys.written |= local if node.type != "UnsetBlackboard" else set()
-        if node.type == "UnsetBlackboard":
+            keys.written |= local if removed is None else set()
+        if removed is not None:
             keys.removed |= local
     for script in scripts_of(context, node):
         keys.mentioned |= {v.key for v in (*script.reads, *script.writes)}

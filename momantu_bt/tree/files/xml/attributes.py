@@ -125,7 +125,7 @@ class AttributeWriter:
         if spec is not None and name in spec.keys and isinstance(value, Literal):
             reserved = True  # a bare word there names a key
         text = None if reserved else plain(value, name, type_)
-        if node.type == "UnsetBlackboard":
+        if spec is not None and spec.removes == name:
             text = _unset_key(value, text)
         if text is not None:
             return attribute(shown, text)
