@@ -48,7 +48,9 @@ def places(scenario: Scenario) -> Iterator[FindingAtKeys]:
         room = ground.room_at(at)
         if room < robot.half_width - ground.cell:
             near = ground.blocking(at, lambda body: body.startswith(UNKNOWN))
-            beside = f"{100 * room:.0f} cm beside {near}" if room > 0 else f"in {near or 'nothing'}"
+            beside = f"{100 * room:.0f} cm beside {near}" if room > 0 else f"in {near}"
+            if not near:
+                beside = "beyond the floor"
             yield FindingAtKeys(
                 Severity.ERROR,
                 "place-blocked",
@@ -110,7 +112,7 @@ def surfaces(scenario: Scenario) -> Iterator[FindingAtKeys]:
             yield FindingAtKeys(
                 Severity.ERROR,
                 "surface-height",
-                f"{name} is {height:.2f} m high; {robot.name}'s hand does not get there",
+                f"{name} is {height:.2f} m high; {robot.name}'s hand cannot reach that height",
                 f"make it {_heights(scenario)} high, or choose another robot",
                 place,
                 about=(name,),
@@ -150,4 +152,4 @@ def _heights(scenario: Scenario) -> str:
 
 def _way(scenario: Scenario) -> str:
     wide = 2 * scenario.robot.half_width
-    return f"leave a way of at least {100 * wide + 10:.0f} cm everywhere between them"
+    return f"leave a passage of at least {100 * wide + 10:.0f} cm between them"

@@ -38,7 +38,7 @@ def goals(scenario: Scenario) -> Iterator[FindingAtKeys]:
         yield FindingAtKeys(
             Severity.ERROR,
             "goal-met",
-            f"{goal.item} stands {_where(goal)} before anything is done",
+            f"{goal.item} already stands {_where(goal)} at the start",
             "begin with the item elsewhere, or demand less `goal.distance`",
             ("goal",),
             about=(),
@@ -57,8 +57,8 @@ def goals(scenario: Scenario) -> Iterator[FindingAtKeys]:
         yield FindingAtKeys(
             Severity.ERROR,
             "goal-out-of-reach",
-            f"every free spot for {goal.item} {_where(goal)} is {_meters(far)} from where "
-            f"{scenario.robot.name} gets; its arm reaches {scenario.robot.reach[2]:g} m",
+            f"every free spot for {goal.item} {_where(goal)} is {_meters(far)} from the floor that "
+            f"{scenario.robot.name} can reach; its arm reaches {scenario.robot.reach[2]:g} m",
             "move the tag nearer to the edge",
             ("goal",),
             about=(),
@@ -92,8 +92,8 @@ def _item(scenario: Scenario, item: Body) -> Iterator[FindingAtKeys]:
         yield FindingAtKeys(
             Severity.ERROR,
             "item-out-of-reach",
-            f"{item.name} is {_meters(far)} from where {robot.name} gets; its arm reaches "
-            f"{robot.reach[2]:g} m",
+            f"{item.name} is {_meters(far)} from the floor that {robot.name} can reach; its arm "
+            f"reaches {robot.reach[2]:g} m",
             "move it nearer to an edge",
             place,
             about=(item.name,),

@@ -40,7 +40,7 @@ def tags(scenario: Scenario) -> Iterator[FindingAtKeys]:
                 yield FindingAtKeys(
                     Severity.ERROR,
                     "tag-unseen",
-                    f"nobody can see {body.name}: {why}",
+                    f"the camera cannot see {body.name}: {why}",
                     cure,
                     scenario.place(body.name),
                     about=(body.name,),
@@ -61,7 +61,7 @@ def _hidden(scenario: Scenario, tag: Body) -> tuple[str, str] | None:
     stands = scenario.stands_near(middle, RINGS[-1] + RING)
     if len(stands) == 0:
         near = f" within {RINGS[-1]:g} m of it"
-        return f"{scenario.robot.name} gets nowhere{near}", "move it to where the robot gets"
+        return f"{scenario.robot.name} cannot get{near}", "move it to where the robot can get"
     before, blockers = False, Counter[str]()
     for ring in RINGS:
         eyes = _eyes(scenario, stands, middle, ring)
@@ -72,7 +72,10 @@ def _hidden(scenario: Scenario, tag: Body) -> tuple[str, str] | None:
             if _seen(scenario, eyes[facing], points, tag.name, blockers):
                 return None
     if not before:
-        return "it looks where the robot never is", "turn it, or hang it the other way round"
+        return (
+            "it faces away from where the robot can get",
+            "turn it, or hang it the other way round",
+        )
     blocker = min(blockers, key=lambda name: (-blockers[name], name))
     return f"{blocker} hides it", f"move the tag or {blocker}"
 

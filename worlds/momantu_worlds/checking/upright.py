@@ -42,7 +42,7 @@ def upright(scenario: Scenario) -> Iterator[FindingAtKeys]:
                 scenario,
                 body,
                 "in-the-air",
-                f"{body.name} begins {100 * float(fall[nearest]):.1f} cm above {below[nearest]}",
+                f"{body.name} starts {100 * float(fall[nearest]):.1f} cm above {below[nearest]}",
                 "it would fall when the episode begins; set it down on something",
                 float(fall[nearest]),
             )

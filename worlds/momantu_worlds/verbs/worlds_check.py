@@ -35,7 +35,7 @@ def check(
     """Find what makes a world unusable.
 
     Looked for, without a simulator: overlaps, tables and places that the robot does not get to,
-    narrow doors, tags that nobody can see, starts in collision, things that do not stand, goals
+    narrow doors, tags that no camera can see, starts in collision, things that do not stand, goals
     that are met already or never can be.
 
     Exit code 0: nothing is wrong; 1: something is, and every finding is printed with its place,
