@@ -12,7 +12,7 @@ from momantu_bt.cli.help import help_of
 from momantu_bt.cli.schema_file import Out, put_schema
 from momantu_bt.errors import ExitCode
 from momantu_bt.faults.catalogue import kinds
-from momantu_bt.faults.pages import as_data, as_parameters, as_table, as_text
+from momantu_bt.faults.pages import as_data, as_parameters, as_table, as_text, as_words
 from momantu_bt.faults.schema import faults_schema
 from momantu_bt.faults.spec import parse_fault
 from momantu_bt.faults.tree_page import HEAD, tree_rows
@@ -43,7 +43,7 @@ def every(
     if context.invoked_subcommand is not None:
         return
     if markdown:
-        typer.echo(f"{as_table()}\n\n{as_parameters()}")
+        typer.echo(f"{as_table()}\n\n{as_words()}\n\n{as_parameters()}")
     else:
         _list(as_json, tree)
 

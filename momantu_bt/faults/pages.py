@@ -14,6 +14,7 @@ from momantu_bt.faults.moments import usual_phases
 from momantu_bt.faults.phase import START
 from momantu_bt.faults.reasons import installed_skills
 from momantu_bt.skill import Port
+from momantu_bt.symptom import Symptom
 from momantu_bt.values.types import label
 
 _PLACES = {
@@ -86,6 +87,14 @@ def as_parameters() -> str:
         parameters = "<br>".join(_parameter(port) for port in kind.parameters)
         lines.append(f"| `{kind.name}` | {_phases(kind)} | {parameters} |")
     return "\n".join(lines)
+
+
+def as_words() -> str:
+    """The activities and symptoms that skills can declare, in Markdown."""
+    lines = ["| activity | what the skill does |", "|---|---|"]
+    lines += [f"| `{each.name}` | {each.value} |" for each in Activity if each not in _FIRST]
+    lines += ["", "| symptom | what is wrong |", "|---|---|"]
+    return "\n".join([*lines, *(f"| `{each.name}` | {each.value} |" for each in Symptom)])
 
 
 def _rows(kind: FaultKind) -> Iterator[Row]:

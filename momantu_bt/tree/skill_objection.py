@@ -15,6 +15,7 @@ from momantu_bt.tree.catalogue import MODIFIERS, NODES, SPELLED
 from momantu_bt.tree.catalogue.words import WORDS_OF_TREES
 from momantu_bt.values.kinds import is_type
 
+_DECLARED = tuple(each for each in Activity if each not in (Activity.ANY, Activity.ANSWER))
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
 
 
@@ -88,8 +89,9 @@ def _activities(kind: type[Skill]) -> str | None:
     if not isinstance(kind.activities, Mapping):
         return f"{said} is not a mapping, such as {{Activity.DRIVE: ''}}"
     for activity, behind in kind.activities.items():
-        if activity not in tuple(Activity) or activity in (Activity.ANY, Activity.ANSWER):
-            return f"{said}: {activity!r} is not an activity that a skill declares"
+        if activity not in _DECLARED:
+            valid = ", ".join(f"Activity.{each.name}" for each in _DECLARED)
+            return f"{said}: {activity!r} is not an activity that a skill declares; valid: {valid}"
         if not isinstance(behind, str) or behind[:1] not in ("", "/", "+"):
             return f"{said}: {behind!r} is not '', '/PHASE' or '+3 s'"
     return None

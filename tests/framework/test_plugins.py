@@ -108,7 +108,7 @@ BROKEN = {
         "    failures", '    activities = {"any": ""}\n    failures'
     ),
     "activities: 'closing' is not '', '/PHASE' or '+3 s'": GOOD.replace(
-        "    failures", '    activities = {"grasp": "closing"}\n    failures'
+        "    failures", '    activities = {"grasps an object": "closing"}\n    failures'
     ),
     "symptoms: 'FAR' is not among its failures: TOO_FAR": GOOD.replace(
         "    failures", '    symptoms = {"FAR": set()}\n    failures'

@@ -9,7 +9,7 @@ import pytest
 
 from momantu_bt.cli import main
 from momantu_bt.faults.catalogue import kinds
-from momantu_bt.faults.pages import as_parameters, as_table, as_text
+from momantu_bt.faults.pages import as_parameters, as_table, as_text, as_words
 from momantu_bt.faults.spec import parse_fault
 
 PAGE = Path(__file__).parents[3] / "docs" / "faults.md"
@@ -17,7 +17,7 @@ PAGE = Path(__file__).parents[3] / "docs" / "faults.md"
 
 def test_the_page_has_the_tables_as_they_are_now():
     page = PAGE.read_text(encoding="utf-8")
-    for table in (as_table(), as_parameters()):
+    for table in (as_table(), as_words(), as_parameters()):
         assert table in page, "run `momantu-bt faults --markdown` and put its tables into the page"
 
 
