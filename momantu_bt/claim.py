@@ -19,7 +19,7 @@ from momantu_bt.messages import ObjectClass
 
 @dataclass(frozen=True, slots=True)
 class ObjectAt:
-    """Such an object stands with the centre of its box within `tolerance` m of the pose's origin.
+    """An object of this class stands with its box's centre within `tolerance` m of the pose.
 
     asked: its category, and those of its sizes that were asked for.
     """
@@ -31,7 +31,7 @@ class ObjectAt:
 
 @dataclass(frozen=True, slots=True)
 class ObjectOn:
-    """Such an object stands on the site's surface of that name (None: on any)."""
+    """An object of this class stands on the named surface of the site (None: on any)."""
 
     asked: ObjectClass
     surface: str | None = None
@@ -49,7 +49,7 @@ class TagAt:
 
 @dataclass(frozen=True, slots=True)
 class TagOn:
-    """The AprilTag of that id lies uncovered on the site's surface of that name (None: on any)."""
+    """The AprilTag with this id lies uncovered on the named surface of the site (None: on any)."""
 
     tag_id: int
     surface: str | None = None
@@ -119,7 +119,7 @@ class GripperOpen:
 
 @dataclass(frozen=True, slots=True)
 class SetDown:
-    """Something that can be brought stands upright there, and not between the fingers.
+    """A loose object stands upright there, and not between the fingers.
 
     odom_from_object: the centre of its box, within `tolerance` m.
     """
@@ -163,10 +163,10 @@ Claim: TypeAlias = Sentence | tuple[Sentence, ...]
 
 @runtime_checkable
 class Judge(Protocol):
-    """A world that can tell whether a sentence is true."""
+    """A world that can judge whether a claim is true."""
 
     def judge(self, sentence: Sentence, odom_from_base: Transform) -> bool | None:
-        """Whether it is true of this instant; None when this world cannot tell.
+        """Whether the claim is true at this moment; None when this world cannot judge it.
 
         odom_from_base: the robot's odometry of this instant, as skills see it.
         """

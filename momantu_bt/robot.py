@@ -222,7 +222,7 @@ class Robot(Protocol):
 
     @property
     def description(self) -> RobotDescription:
-        """What the robot is."""
+        """The robot's description."""
         ...
 
     def state(self) -> RobotState:

@@ -56,7 +56,7 @@ class Surface:
 
 @dataclass(frozen=True, slots=True)
 class Site:
-    """All that the robot is told about where it is.
+    """Everything that the robot is told about its surroundings.
 
     map_file: map_server's YAML of the floor plan; overhang_file: the same format, for known
     furniture that the laser's plane does not meet. start: the rough pose in the map where the
@@ -156,7 +156,7 @@ class World(Protocol):
 
     @property
     def site(self) -> Site:
-        """What the robot is told of this episode."""
+        """The site of this episode."""
         ...
 
     @property
@@ -203,12 +203,12 @@ class AboutWorld(Protocol):
     """An entry of a world that can say more of itself than its site does."""
 
     def about(self) -> Mapping[str, Mapping[str, str]]:
-        """Sections (tags, goal, what varies …), in each a line of words by what it is about."""
+        """Sections (tags, goal, variation …), each with a line of text per subject."""
         ...
 
 
 class WorldEntry(Protocol):
-    """What an entry point of `momantu_bt.worlds` names: cheap to import and to ask.
+    """The object that an entry point of `momantu_bt.worlds` names; light to import.
 
     site: the nominal site, read without a simulator, for the checker and `show`.
     open: build the episode of a seed. Raises WorldError when it cannot.
@@ -221,7 +221,7 @@ class WorldEntry(Protocol):
 
     @property
     def default_robot(self) -> str:
-        """The robot that is used when nobody names one."""
+        """The robot to use when no other is named."""
         ...
 
     def site(self) -> Site:

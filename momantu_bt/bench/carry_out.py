@@ -47,7 +47,7 @@ class Ended:
 
 
 def carry_out(work: Sequence[tuple[Plan, Store]], engine: Engine, watcher: Watcher) -> Ended:
-    """Run what has no row yet, turn about, and add each row to its store as it comes.
+    """Run the missing episodes, the trees in turn, and add each row to its store when it ends.
 
     Raises:
         OutputError: a row cannot be written; those before it are.
@@ -83,7 +83,7 @@ def _turn_about(asked: Sequence[Sequence[EpisodeSpec]]) -> list[EpisodeSpec]:
 
 
 def _take(row: Row, plan: Plan, store: Store, ended: Ended) -> None:
-    """Keep a row, and its record if that is wanted; one that was refused is not kept."""
+    """Store a row, and its record if wanted; a refused episode is not stored."""
     if row["ended"] == REFUSED:
         ended.refused_in_a_row.append(row)
         ended.refused.append(row)

@@ -26,13 +26,13 @@ _COLUMNS = {
 
 @dataclass(slots=True)
 class Claimed:
-    """One skill. counts: those of a report, added up. lies: its ends that truth denies."""
+    """One skill. counts: the sums of a report's counts. lies: its false claims."""
 
     counts: Counter[str] = field(default_factory=Counter)
     lies: list[dict[str, Any]] = field(default_factory=list)
 
     def add(self, seed: int, told: Mapping[str, Any]) -> None:
-        """What one episode says of it."""
+        """Add the counts of one episode."""
         self.counts.update({name: count for name, count in told.items() if name != _LIES})
         self.lies += [{"seed": seed, **lie} for lie in told.get(_LIES, ())]
 

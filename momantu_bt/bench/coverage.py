@@ -51,7 +51,7 @@ class _Counted:
     handlers: list[Point] = field(default_factory=list)
 
     def add(self, told: dict[str, Any]) -> None:
-        """What one episode says of one of its occurrences."""
+        """Add what one episode says about one of its occurrences."""
         self.node.count += told.get("runs", 0)
         for name, (asked, held) in told.get("conditions", {}).items():
             self.guards[name].asked += asked

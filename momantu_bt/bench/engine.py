@@ -26,7 +26,7 @@ class Engine(Protocol):
         ...
 
     def run(self, specs: Iterable[EpisodeSpec]) -> Generator[Row, None, None]:
-        """Rows in the order in which episodes end; each episode that is asked for has one.
+        """Rows in the order in which episodes end; each requested episode has one.
 
         A row whose `ended` is "refused" is of an episode that could not begin; `output` says why.
         Closing the generator, or an exception in it, ends everything that runs.

@@ -45,7 +45,7 @@ _KEPT = (
 
 
 class Refused(MomantuError):
-    """The episode cannot be what was asked for; nothing was started."""
+    """The episode cannot be run as requested; nothing was started."""
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -122,7 +122,7 @@ def _check(spec: EpisodeSpec, document: Document, registry: Registry) -> None:
 
 
 def _tries(node: TreeNode) -> int:
-    """How often a node began its first child anew after a failure."""
+    """How often a node restarted its first child after a failure."""
     spec = NODES.get(node.model.type)
     if spec is None or not spec.retries or not node.kids:
         return 0
@@ -130,7 +130,7 @@ def _tries(node: TreeNode) -> int:
 
 
 def row_of(report: Report, tries: int) -> Row:
-    """What a row keeps of a report."""
+    """The fields of a report that a row stores."""
     told: dict[str, Any] = report.as_dict()
     row = {name: told[name] for name in _KEPT}
     row["tries"] = tries

@@ -74,7 +74,7 @@ def _joined(first: float, second: float, phi: float) -> float:
 
 
 def quantile(values: Sequence[float], share: float) -> float:
-    """The value below which that share of them lies, linear between neighbours; NaN of none."""
+    """The quantile of values at a share, linear between neighbours; NaN without values."""
     if not values:
         return math.nan
     ordered = sorted(values)

@@ -105,7 +105,7 @@ def _digests(what: str, files: Mapping[str, Path]) -> dict[str, str]:
 
 
 def foreign(made: Mapping[str, str]) -> tuple[str, ...]:
-    """What this machine has otherwise than `made` says: a sentence each."""
+    """The differences between this machine and `made`, a sentence each."""
     packages = [name.removeprefix(_CODE) for name in made if name.startswith(_CODE)]
     here = _of_machine(packages)
     there = {name: made[name] for name in made if name in here or name in LIBRARIES.values()}
@@ -121,7 +121,7 @@ def key_of(made: Mapping[str, str], seed: int, fault: str | None) -> str:
 
 
 def difference(made: Mapping[str, str], other: Mapping[str, str]) -> tuple[str, ...]:
-    """Names of what differs, such as `the file bring_object.yaml`."""
+    """The names of differing inputs, such as `the file bring_object.yaml`."""
     names = {**made, **other}
     return tuple(name for name in names if made.get(name) != other.get(name))
 
@@ -187,7 +187,7 @@ def _code(package: str) -> str:
 
 
 def _files(folder: Path, beside: tuple[str, ...]) -> list[Path]:
-    """What lies in a package, but for what Python and editors leave behind."""
+    """The files of a package, without those that Python and editors leave behind."""
     found = []
     for path in sorted(folder.rglob("*")):
         parts = path.relative_to(folder).parts

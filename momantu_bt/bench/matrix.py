@@ -21,7 +21,7 @@ _NOT_HAPPENED = (Outcome.NOT_MET, Outcome.IMPOSSIBLE)
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """One fault. seeds: by what became of it. why: why it cannot happen, "" where it can."""
+    """One fault. seeds: by outcome. why: why it cannot happen, "" if it can."""
 
     demand: Demand
     seeds: Mapping[Outcome, Sequence[int]]
@@ -55,13 +55,13 @@ class Line:
 
 @dataclass(frozen=True, slots=True)
 class Matrix:
-    """Lines in the order in which the faults were asked for."""
+    """Lines in the order of the requested faults."""
 
     lines: tuple[Line, ...]
 
     @classmethod
     def of(cls, demands: Sequence[Demand], rows: Sequence[Row]) -> Matrix:
-        """What the rows say of these faults."""
+        """The outcomes of these faults in the rows."""
         found: dict[str, dict[Outcome, list[int]]] = {demand.fault: {} for demand in demands}
         why = dict.fromkeys(found, "")
         for demand in demands:
@@ -108,7 +108,7 @@ def matrix_text(matrix: Matrix) -> str:
 
 
 def _to_look_at(matrix: Matrix) -> Iterator[str]:
-    """Seeds of what should not be, so that they can be run again; and what cannot be."""
+    """Seeds of unwanted outcomes, to run them again; and faults that cannot happen."""
     for how in (Outcome.UNSAFE, Outcome.WRONG_REASON):
         for line in matrix.lines:
             if seeds := line.seeds.get(how):

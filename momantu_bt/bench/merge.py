@@ -19,7 +19,7 @@ DECIDED += ("tries", "incidents", "claims", "faults", "outcome")
 
 @dataclass(frozen=True, slots=True)
 class Conflict:
-    """One episode that ended differently in two folders. fields: in what."""
+    """One episode that ended differently in two folders. fields: those that differ."""
 
     seed: int
     fault: str | None

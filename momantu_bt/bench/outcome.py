@@ -15,7 +15,7 @@ from momantu_bt.faults.spec import parse_fault
 
 
 class Outcome(StrEnum):
-    """What became of an episode with a fault."""
+    """The outcome of an episode with a fault."""
 
     RECOVERED = "recovered"
     """the tree succeeded all the same, and no referee denies it"""
@@ -37,7 +37,7 @@ def succeeded(row: Row) -> bool:
 
 
 def outcome(row: Row, demand: Demand) -> Outcome:
-    """What became of the fault of a row, by what is demanded of its kind."""
+    """The outcome of a row's fault, by the requirements of its kind."""
     if row["ended"] == IMPOSSIBLE:
         return Outcome.IMPOSSIBLE
     if row["ended"] != REPORT:
@@ -57,7 +57,7 @@ def outcome(row: Row, demand: Demand) -> Outcome:
 
 
 def outcome_of(row: Row) -> Outcome | None:
-    """What became of a row's fault, None without one."""
+    """The outcome of a row's fault, None without one."""
     return None if row["fault"] is None else outcome(row, row_of(parse_fault(row["fault"])))
 
 

@@ -85,7 +85,7 @@ class Paired:
 
 
 def paired_text(paired: Paired, name_a: str, name_b: str) -> str:
-    """The table of pairs and what follows from it."""
+    """The table of pairs, its p-value and its interval."""
     both, only_a, only_b, neither = paired.counts
     width = max(len(name_a), len(name_b)) + len(" succeeded")
     low, high = paired.interval

@@ -44,7 +44,7 @@ class Parcel:
         return cls(names[document.file], texts, {name: shown for shown, name in names.items()})
 
     def unpack(self, folder: Path) -> Path:
-        """Write the files into an empty folder; where the main one lies then."""
+        """Write the files into an empty folder; returns the path of the main one."""
         (folder / _PROJECT).touch()
         for name, text in self.texts.items():
             path = folder / name
@@ -62,5 +62,5 @@ class Parcel:
 
 
 def _quoted(path: str) -> str:
-    """As it stands within a text of JSON."""
+    """A text as it is written inside a JSON string."""
     return json.dumps(path, ensure_ascii=False)[1:-1]

@@ -19,7 +19,7 @@ RECORDS = "records"
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """Episodes of one tree: pairs of seed and fault (None: without), and what they are made of."""
+    """Episodes of one tree: pairs of seed and fault (None: without one), and their inputs."""
 
     episodes: tuple[tuple[int, str | None], ...]
     made_of: Mapping[str, str]
@@ -33,7 +33,7 @@ class Wanted:
         return Wanted(self.episodes[number - 1 :: of], self.made_of)
 
     def present(self, rows: Mapping[str, Row]) -> list[Row]:
-        """Their rows, in their order, where there are any."""
+        """The rows of these episodes that exist, in their order."""
         keys = map(self.key, self.episodes)
         return [rows[key] for key in keys if key in rows]
 
@@ -49,7 +49,7 @@ class Wanted:
         ]
 
     def others(self, rows: Iterable[Row]) -> dict[tuple[str, ...], int]:
-        """How many rows are of something else, by the names of what differs."""
+        """The number of rows with other inputs, by the names of the differing inputs."""
         found: dict[tuple[str, ...], int] = {}
         for row in rows:
             differs = difference(self.made_of, row["made_of"])
@@ -64,7 +64,7 @@ class Wanted:
         return Wanted(tuple(dict.fromkeys((*other.episodes, *self.episodes))), self.made_of)
 
     def write(self, folder: Path) -> None:
-        """Keep it in a folder of results, for merging and for telling what is missing.
+        """Write the plan into a folder of results, for merging and for reporting what is missing.
 
         Raises:
             OutputError: it cannot be written.

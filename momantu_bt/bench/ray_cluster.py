@@ -34,7 +34,7 @@ _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 @contextmanager
 def cluster(address: str | None, jobs: int) -> Iterator[Any]:
-    """Ray, connected; disconnected at the end, and what was started here ended.
+    """A connection to Ray; at the end it disconnects, and ends what it has started.
 
     address: None for a cluster of this machine alone, with `jobs` workers, that nobody else can
     use; `"auto"` or HOST:PORT for one that runs.
@@ -96,7 +96,7 @@ def _connect(ray: Any, address: str) -> None:
 
 
 def _check(address: str) -> None:
-    """Whether it is an address, and somebody listens there: Ray itself would try for minutes."""
+    """Whether something listens at an address: Ray itself would try for minutes."""
     if address == AUTO:
         return
     host, _, port = address.rpartition(":")
@@ -135,7 +135,7 @@ def _folder() -> Iterator[str]:
 
 @contextmanager
 def _environment(settings: Mapping[str, str]) -> Iterator[None]:
-    """Environment variables for a while; what is started then has them for good."""
+    """Set environment variables for a while; processes started then keep them."""
     before = {name: os.environ.get(name) for name in settings}
     os.environ.update(settings)
     try:
@@ -150,7 +150,7 @@ def _environment(settings: Mapping[str, str]) -> Iterator[None]:
 
 @contextmanager
 def _handlers_kept() -> Iterator[None]:
-    """Ray takes SIGTERM for itself when it connects: whoever had it gets it back."""
+    """Restore the handler of SIGTERM, which Ray replaces when it connects."""
     before = {number: signal.getsignal(number) for number in _SIGNALS}
     try:
         yield

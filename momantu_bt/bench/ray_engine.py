@@ -51,7 +51,7 @@ class RayEngine:
 
     @property
     def workers(self) -> int:
-        """How many episodes run at a time; 0 until the cluster has told how large it is."""
+        """How many episodes run at a time; 0 until the cluster has reported its size."""
         return self._workers
 
     def running(self) -> tuple[EpisodeSpec, ...]:
@@ -115,7 +115,7 @@ class RayEngine:
         return row
 
     def _cancel(self, ray: Any) -> None:
-        """End what runs: workers are asked to, and those that do not are ended."""
+        """End all episodes: workers are asked to stop, and those that do not are killed."""
         references = list(self._tasks)
         self._tasks.clear()
         for force, grace in ((False, _GRACE), (True, _GRACE)):

@@ -13,7 +13,7 @@ Row: TypeAlias = dict[str, Any]
 
 @dataclass(frozen=True, slots=True)
 class EpisodeSpec:
-    """What one episode is a pure function of, and where its record goes.
+    """The inputs of one episode, and where its record goes.
 
     key: names the episode wherever it runs. tree: path of its file. world, robot: as asked for.
     values: keys of the root's board, raw as in a file. max_time: simulated seconds. referee:
@@ -46,7 +46,7 @@ class EpisodeSpec:
         return asdict(self)
 
     def row(self) -> Row:
-        """What a row says of its episode before anything has happened."""
+        """The fields of a row that are known before its episode starts."""
         return {
             "key": self.key,
             "tree": PurePath(self.tree).name,

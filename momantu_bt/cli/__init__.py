@@ -97,11 +97,11 @@ def _options(
 
 
 def _never() -> None:
-    """Stand for a verb that was not asked for."""
+    """A placeholder for a verb that was not given."""
 
 
 def _other_error(error: Exception) -> ExitCode:
-    """Tell a command line that cannot be understood, or a mistake in the program."""
+    """Report a wrong command line, or a mistake in the program."""
     usage = usage_message(error)
     if usage is not None:
         notice(usage)

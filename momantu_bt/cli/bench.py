@@ -143,7 +143,7 @@ class _Options:
 def _bench(
     plan: Plan, document: Document, demands: Sequence[Demand], options: _Options
 ) -> ExitCode:
-    """Run what is missing, then say what all of it comes to."""
+    """Run the missing episodes, then print the results of all."""
     part = plan.wanted.shard(*bench_setup.shard_of(options.shard))
     engine = bench_setup.engine_of(*options.engine)
     if options.report is not None:

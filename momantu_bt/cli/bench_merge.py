@@ -21,7 +21,7 @@ from momantu_bt.formats.files import check_writable
 
 
 def merge_folders(words: Sequence[str], out: Path | None, report: Path | None) -> ExitCode:
-    """Join folders in another one, and say what all of it comes to.
+    """Merge folders into another one, and print the results of all.
 
     Exit code 0: every episode that any of them was to run has a row; 1: some are missing, or
     differ between two folders.

@@ -83,7 +83,7 @@ class Progress:
 
 
 class LiveProgress(Progress):
-    """The same on a terminal: one line that is drawn anew; only what failed stays above it."""
+    """Progress on a terminal: one line that is redrawn; failures stay above it."""
 
     def begin(self, rows: Sequence[Row], waiting: int, engine: Engine) -> None:
         """Begin to draw."""
@@ -114,7 +114,7 @@ class LiveProgress(Progress):
 
 
 def progress() -> Progress:
-    """What fits to where the output goes."""
+    """The kind of progress that suits the output."""
     return LiveProgress() if sys.stdout.isatty() else Progress()
 
 

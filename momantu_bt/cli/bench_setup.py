@@ -93,7 +93,7 @@ def demands_of(tree: str, faults: Sequence[str], patterns: str | None) -> tuple[
 
 
 def check_faults(faults: Sequence[str], document: Document, how: HowToRun) -> None:
-    """Refuse faults that the tree cannot have; what only the world knows, an episode will tell.
+    """Refuse faults that the tree cannot have; an episode checks what only the world knows.
 
     Raises:
         FaultError: the tree has nothing of the kind, or its phase occurs nowhere.
@@ -144,7 +144,7 @@ def engine_of(name: str, jobs: int | None, address: str | None) -> Engine:
 
 
 def say_others(plan: Plan, store: Store) -> None:
-    """Tell how many rows of the folder are left out, and why."""
+    """Print how many rows of the folder are left out, and why."""
     for names, count in plan.wanted.others(store.rows.values()).items():
         rows = "1 row is" if count == 1 else f"{count} rows are"
         typer.echo(f"{rows} left out: {' and '.join(names)} changed since", err=True)
@@ -156,13 +156,13 @@ def keep_plan(plan: Plan, store: Store) -> None:
 
 
 def say_missing(missing: Sequence[str]) -> None:
-    """Tell which episodes have no row."""
+    """Print which episodes have no row."""
     if missing:
         typer.echo(f"missing: {'; '.join(missing)}; the same command goes on there", err=True)
 
 
 def say_refused(ended: Ended) -> None:
-    """Tell which episodes could not begin."""
+    """Print which episodes could not begin."""
     for row in ended.refused[-1:]:
         notice(
             f"{len(ended.refused)} episodes could not begin; of seed {row['seed']}: {row['output']}"

@@ -96,7 +96,7 @@ class Breakpoints:
                 going = self._obey(said.split(), run, node)
 
     def _obey(self, words: list[str], run: Executor, node: TreeNode) -> bool:
-        """Do what the person says; whether the run goes on."""
+        """Carry out a person's command; returns whether the run goes on."""
         verb = _command(words[0]) if words else "step" if self._stepping else "continue"
         if verb in ("continue", "step"):
             self._stepping = verb == "step"
@@ -151,7 +151,7 @@ def _above(node: TreeNode) -> Iterator[TreeNode]:
 
 
 def _ports(node: TreeNode) -> Iterator[tuple[str, str]]:
-    """Each port as it is written, and what it reads now."""
+    """Each port as it is written, with its current value."""
     for name, written in node.model.ports.items():
         words, read = value_text(written), _reader(node, name)
         yield name, words if read is None else _and_value(words, read)
@@ -186,7 +186,7 @@ def _short(value: Any, widest: int | None = WIDEST) -> str:
 
 
 def _board(run: Executor, node: TreeNode) -> Board:
-    """What the node sees: the board of the tree that it is in."""
+    """The blackboard that the node sees: that of its tree."""
     inside = next((above for above in _above(node) if isinstance(above, SubTree)), None)
     return run.built.board if inside is None else inside.board
 

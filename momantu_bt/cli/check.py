@@ -69,7 +69,7 @@ def check(
 
 @dataclass(frozen=True, slots=True)
 class _FileChecked:
-    """What is known of one file. unread: why it could not be opened."""
+    """The result for one file. unread: why it could not be opened."""
 
     tree: str
     ok: bool
@@ -86,7 +86,7 @@ class _FileChecked:
 
 
 def _checked(tree: str, world: str | None, robot: str | None, *, quiet: bool) -> _FileChecked:
-    """Check one file, and unless quiet say what is found."""
+    """Check one file, and unless quiet print the findings."""
     try:
         if is_faults_file(Path(tree)):
             return _checked_faults(Path(tree), quiet=quiet)

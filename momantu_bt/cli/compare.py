@@ -89,7 +89,7 @@ def compare(
 
 
 def _compare(plans: list[Plan], engine: Engine, out: Path, report: Path | None) -> ExitCode:
-    """Run what is missing of both, turn about, then say how they differ."""
+    """Run the missing episodes of both in turn, then print how they differ."""
     names = [Path(plan.tree).stem for plan in plans]
     if names[0] == names[1]:
         names[1] += "-2"

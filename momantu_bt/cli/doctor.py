@@ -30,7 +30,7 @@ def doctor(
     ] = False,
     output: Annotated[Path, typer.Option(help="The folder for reports and videos.")] = Path(),
 ) -> ExitCode:
-    """Look at Python, packages, Vulkan, memory and folders, and name the cure for what is wrong.
+    """Check Python, packages, Vulkan, memory and folders, and name the cure for each problem.
 
     Exit code 0: nothing is wrong; 1: something is.
 

@@ -13,7 +13,7 @@ from momantu_bt.plugins import Group
 
 
 def listing(group: Group[Any], about: Callable[[Any], str], as_json: bool) -> None:
-    """Print every plug-in of an entry point group with what `about` says of it.
+    """Print every plug-in of an entry-point group with what `about` returns for it.
 
     One that is broken is listed with the reason.
     """

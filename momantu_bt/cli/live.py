@@ -41,7 +41,7 @@ class LiveTree:
         self._live.start()
 
     def ticked(self, run: Executor) -> None:
-        """Remember what happened, and draw when it is time."""
+        """Remember this tick, and draw when it is due."""
         self._changes.ticked(run)
         del self._said[:-LAST]
         now = time.perf_counter()
@@ -51,7 +51,7 @@ class LiveTree:
 
     @contextmanager
     def paused(self) -> Iterator[None]:
-        """Leave the picture standing for what a person reads and types; go on below it."""
+        """Leave the picture in place while a person reads and types; go on below it."""
         self._live.stop()
         try:
             yield

@@ -10,7 +10,7 @@ from momantu_bt.record.recording import Recording
 
 
 def open_record(folder: Path) -> Recording:
-    """The record in a folder; says so when it was cut off.
+    """The record in a folder; prints a notice when it was cut off.
 
     Raises:
         RecordError: no record can be read, or it ends before the first tick.

@@ -79,7 +79,7 @@ def replay(
 
 
 def _chosen(timeline: Timeline, at: float | None, node: str | None, failure: int | None) -> int:
-    """The index of the moment that is asked for; the last one where none is.
+    """The index of the requested moment; the last one by default.
 
     Raises:
         SeekError: the record has no such moment.

@@ -48,7 +48,7 @@ def show(stepper: Stepper, told: list[tuple[int, str]], console: Console) -> Non
 
 
 def picture(stepper: Stepper, told: list[tuple[int, str]], size: ConsoleDimensions) -> Group:
-    """Header, tree, blackboard or keys where they are wanted, what was said; as high as `size`."""
+    """Header, tree, blackboard or keys if wanted, and the last lines; as high as `size`."""
     below = [*_failures(stepper, size.width), *_said(stepper, told), _last_line(stepper)]
     below = below[-max(1, size.height - 2) :]
     room = max(1, size.height - 1 - len(below))
@@ -69,7 +69,7 @@ def _header(stepper: Stepper) -> Text:
 
 
 def _tree(stepper: Stepper, room: int) -> list[Text]:
-    """As many lines of the tree as there is room for, around what runs deepest."""
+    """As many lines of the tree as fit, around the deepest running node."""
     lines = tree_lines(stepper.moment.root)
     running = [n for n, line in enumerate(lines) if line.status == RUNNING.value]
     at = max(running, key=lambda number: lines[number].depth, default=0)
@@ -97,7 +97,7 @@ def _failures(stepper: Stepper, width: int) -> list[Text]:
 
 
 def _said(stepper: Stepper, told: list[tuple[int, str]]) -> list[Text]:
-    """The last lines up to this moment; those of this tick stand out."""
+    """The last lines up to this moment; those of this tick are highlighted."""
     until = [(index, line) for index, line in told if index <= stepper.index][-SAID:]
     return [_thin(line, "" if index == stepper.index else "dim") for index, line in until]
 

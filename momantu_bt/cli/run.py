@@ -134,7 +134,7 @@ class NotStarted(MomantuError):
 
 @dataclass(frozen=True, slots=True)
 class _Shown:
-    """What a person sees of the run, meanwhile and afterwards.
+    """The output for a person, during and after the run.
 
     view_port: of the view in a browser; None without one. terminal: where somebody answers.
     breaks: nodes to stop before.
@@ -149,7 +149,7 @@ class _Shown:
 
 
 def _run(tree: str, options: RunOptions, shown: _Shown) -> Report:
-    """Check what was asked for, run, and say how it ended."""
+    """Check the arguments, run, and print how it ended."""
     prepared = preparing.prepare(tree, options)
     stops = _breakpoints(shown, prepared)
     for path in (shown.report, shown.video):
@@ -163,7 +163,7 @@ def _run(tree: str, options: RunOptions, shown: _Shown) -> Report:
 
 
 def _breakpoints(shown: _Shown, prepared: Prepared) -> Breakpoints | None:
-    """Where a person wants to stop, who must be there for it."""
+    """The breakpoints, which need a person at the terminal."""
     if not shown.breaks:
         return None
     if shown.terminal is None:
@@ -174,7 +174,7 @@ def _breakpoints(shown: _Shown, prepared: Prepared) -> Breakpoints | None:
 
 
 def _watch(run: Executor, shown: _Shown, stops: Breakpoints | None) -> list[Observer]:
-    """Observers of what the user asked to see; those opened are closed when one cannot be."""
+    """The requested observers; if one cannot be opened, the others are closed."""
     observers: list[Observer] = []
     with ExitStack() as stack:
 

@@ -18,7 +18,7 @@ Out: TypeAlias = Annotated[
 
 
 def put_schema(schema: Mapping[str, Any], out: Path | None, what: str) -> ExitCode:
-    """Print or write a schema, and say how a file of its kind names it. what: "a tree"."""
+    """Print or write a schema, and print how a file refers to it. what: "a tree"."""
     text = json.dumps(schema, indent=2) + "\n"
     if out is None:
         typer.echo(text, nl=False)

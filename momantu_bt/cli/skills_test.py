@@ -27,7 +27,7 @@ def promises(
     ] = 20,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,
 ) -> ExitCode:
-    """Run skills in a scripted room, without a simulator, and say what is wrong with them.
+    """Test skills in a scripted room, without a simulator.
 
     Ports, codes, docs, clocks and random numbers; halting at each tick, starting again, dead
     sensors, and the same run twice. Exit code 1 when one does not pass.

@@ -21,7 +21,7 @@ from momantu_bt.cli.verbs import COMMANDS
 
 
 def with_subverbs(verb: Any, name: str, given: Sequence[str]) -> Any:
-    """The verb, and if it is a group of commands, what others add to it; itself it stays as it is.
+    """The verb; if it is a group of commands, a copy with the sub-verbs of other packages.
 
     Of a name that the verb has itself, the verb's own command counts.
 
@@ -60,7 +60,7 @@ def add_command(app: typer.Typer, name: str, command: Any) -> None:
 
 
 def summary(entry: EntryPoint) -> str:
-    """The first line of what a command says of itself, else which package it is from.
+    """The first line of a command's docstring, or else the package it comes from.
 
     The command's module is read, not run.
     """
@@ -69,7 +69,7 @@ def summary(entry: EntryPoint) -> str:
 
 
 def _names(app: typer.Typer) -> set[str]:
-    """What the app can do before others add to it."""
+    """The app's own sub-verbs."""
     commands = [
         command.name or command.callback.__name__
         for command in app.registered_commands
@@ -109,4 +109,4 @@ def _source(module: str) -> Path | None:
 
 
 def _never() -> None:
-    """Stand for a sub-verb that was not asked for."""
+    """A placeholder for a sub-verb that was not given."""

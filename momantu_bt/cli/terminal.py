@@ -19,7 +19,7 @@ LONGEST = 4096
 
 
 class Display(Protocol):
-    """What is drawn on the terminal meanwhile."""
+    """Whatever draws on the terminal meanwhile."""
 
     def paused(self) -> AbstractContextManager[None]:
         """While it is entered, nothing is drawn."""
@@ -27,7 +27,7 @@ class Display(Protocol):
 
 
 class Terminal:
-    """Implements `Person`. display: what must not be drawn while the person reads and types."""
+    """Implements `Person`. display: pauses while the person reads and types."""
 
     def __init__(self) -> None:
         self.display: Display | None = None
@@ -79,7 +79,7 @@ class Terminal:
 
 
 def is_interactive() -> bool:
-    """Whether somebody sits at both ends of the terminal."""
+    """Whether standard input and output are both a terminal."""
     return sys.stdin.isatty() and sys.stdout.isatty()
 
 

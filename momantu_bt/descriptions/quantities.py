@@ -60,7 +60,7 @@ class Measured:
     def __get_pydantic_json_schema__(
         self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
     ) -> dict[str, Any]:
-        """What an editor is told of it."""
+        """The JSON Schema of the quantity, for editors."""
         one = rf"{NUMBER}\s*(?:{'|'.join(map(re.escape, self.units))})"
         text = {"type": "string", "pattern": rf"^\s*{one}(?:\s*{one})*\s*$"}
         bounds = {"exclusiveMinimum": self.gt, "minimum": self.ge}

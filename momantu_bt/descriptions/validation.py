@@ -28,7 +28,7 @@ def checked(reading: Reading, model: type[Model], error: type[DescriptionError])
 
 
 def problems_at(reading: Reading, keys: KeyPath, model: type[BaseModel]) -> list[KeyProblem]:
-    """What a model objects to in the part of a file that stands at some keys."""
+    """The validation errors of a model for the part of a file at some keys."""
     try:
         model.model_validate(reading.value(keys))
     except ValidationError as trouble:
@@ -109,7 +109,7 @@ class _Located:
         return self._reading.value((*self._keys, *place))
 
     def _unknown_kind(self, place: KeyPath, finding: dict[str, Any]) -> KeyProblem:
-        """What kinds there are of a thing whose kind is missing or unknown."""
+        """The valid kinds, for a value whose kind is missing or unknown."""
         key = str(finding["ctx"]["discriminator"]).strip("'")
         union = _inner(self._schema_at(place[:-1]), place[-1])
         members = (union, *union.get("anyOf", ()))  # what may be left out is one of nothing and it
@@ -127,7 +127,7 @@ class _Located:
         return ".".join(str(part) for part in whole) or f"the {self._what}"
 
     def _unknown_key(self, name: str, place: KeyPath) -> str:
-        """Says what would have been right beside an unknown key."""
+        """The valid keys, for an unknown key."""
         near = self._nearest(name, place[:-1])
         hint = f"did you mean {near!r}? Keys" if near else "keys"
         known = ", ".join(self._known_keys(place[:-1]))
@@ -147,7 +147,7 @@ class _Located:
         return here
 
     def _resolved(self, schema: dict[str, Any], data: Any) -> dict[str, Any]:
-        """What a schema stands for: a reference followed, of a union the member that is meant."""
+        """Resolve a schema: follow references, and choose the meant member of a union."""
         if "$ref" in schema:
             found: dict[str, Any] = self._schema["$defs"][schema["$ref"].rsplit("/", 1)[-1]]
             return found
@@ -162,7 +162,7 @@ class _Located:
 
 
 def _inner(schema: dict[str, Any], part: str | int) -> dict[str, Any]:
-    """The schema of what stands under a key or an index."""
+    """The schema of the value under a key or an index."""
     candidates = [schema.get("properties", {}).get(part)]
     candidates += schema.get("patternProperties", {}).values()
     candidates += [schema.get("additionalProperties"), schema.get("items")]

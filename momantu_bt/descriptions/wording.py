@@ -15,7 +15,7 @@ _Say: TypeAlias = Callable[[dict[str, Any]], str]
 
 
 def said(finding: dict[str, Any], keys: Sequence[str]) -> str:
-    """What is wrong with a value. keys: those that it may have, if it is to be a mapping."""
+    """The problem of a value. keys: the valid ones, if a mapping is expected."""
     say = _WORDS.get(finding["type"])
     if say is not None:
         return say(finding)

@@ -28,7 +28,7 @@ _NO_LIBRARY = re.compile(r"(?P<file>\S+\.so[.\d]*): cannot open shared object fi
 
 
 def import_cure(name: str, reason: str) -> str:
-    """What helps against an import error: a package of the system, or the module once more."""
+    """The cure for an import error: a system package, or reinstalling the module."""
     library = _NO_LIBRARY.search(reason)
     if library is not None:
         return f"install the system's package that holds {library['file']}"
@@ -52,7 +52,7 @@ def import_errors(names: Iterable[str]) -> dict[str, str]:
 
 
 def _attempt(names: list[str]) -> tuple[dict[str, str], str]:
-    """What was tried (reason, or "" where it worked), and why the process ended."""
+    """The result of each import (the reason, or "" if it worked), and why the process ended."""
     try:
         result = subprocess.run(
             [sys.executable, "-c", _PROGRAM, *names],

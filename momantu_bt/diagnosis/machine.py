@@ -41,7 +41,7 @@ def python_version(version: tuple[int, ...]) -> Diagnosis:
 
 
 def memory(available: float | None) -> Diagnosis:
-    """Is there enough memory for one run; `available` in bytes, None where nobody knows."""
+    """Whether there is enough memory for one run; `available` in bytes, None if unknown."""
     if available is None:
         return Diagnosis("memory", True, "this system does not say how much is free")
     ok = available >= MEMORY_NEEDED
@@ -50,7 +50,7 @@ def memory(available: float | None) -> Diagnosis:
 
 
 def available_memory() -> float | None:
-    """Bytes that a new process can have: what is free, or what the container's limit leaves."""
+    """Bytes that a new process can have: free memory, or what the container's limit leaves."""
     amounts: list[float] = []
     try:
         lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()

@@ -14,7 +14,7 @@ Hook = Callable[[], Iterable[Diagnosis]]
 
 
 def plugins(groups: Iterable[Group[Any]]) -> Iterator[Diagnosis]:
-    """Load every plug-in, count those that load, and collect what they say of themselves."""
+    """Load every plug-in, count those that load, and collect their diagnoses."""
     hooks: dict[int, tuple[str, Hook]] = {}
     for group in groups:
         loaded: list[str] = []
@@ -38,7 +38,7 @@ def plugins(groups: Iterable[Group[Any]]) -> Iterator[Diagnosis]:
 
 
 def asked(name: str, hook: Hook) -> Iterator[Diagnosis]:
-    """What one plug-in says; a hook that raises is itself a finding."""
+    """The diagnoses of one plug-in; a hook that raises is itself a finding."""
     try:
         yield from hook()
     except Exception as error:

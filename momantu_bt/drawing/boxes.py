@@ -38,7 +38,7 @@ SKILL = "skill"
 
 @dataclass(frozen=True, slots=True)
 class Box:
-    """One node of a tree with what is around it.
+    """One node of a tree with its decorators.
 
     number: unique in the picture. kind: control, decorator, leaf, skill or subtree. parent: the
     number of the box above it; role: what it is to that ("then", "on TOO_FAR"), or "".
@@ -66,7 +66,7 @@ class Thread:
 
 @dataclass(frozen=True, slots=True)
 class TreePicture:
-    """One tree. title: its name, with what it takes and gives."""
+    """One tree. title: its name, its inputs and its outputs."""
 
     name: str
     title: str

@@ -24,7 +24,7 @@ class Marked:
 
 
 def difference(first: Document, second: Document) -> list[Marked]:
-    """What leads from the first to the second; nothing where they say the same.
+    """The changes from the first to the second; nothing if they mean the same.
 
     A node that says the same elsewhere is one changed line, where the second has it. Where nothing
     below a node differs, that is left out ("…").
@@ -148,7 +148,7 @@ def _head(tree: Tree) -> str:
 
 
 def _changes(left: Unit, right: Unit) -> Iterator[str]:
-    """What differs between two nodes themselves, in words."""
+    """The differences between two nodes themselves, in words."""
     old, new = left.node, right.node
     if left.role != right.role:
         yield f"was {left.role or 'a child'}"

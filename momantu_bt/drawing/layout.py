@@ -28,7 +28,7 @@ LANE = 12.0
 
 @dataclass(frozen=True, slots=True)
 class Placed:
-    """A box with its rectangle. lines: what stands in it. role: lines of text above it."""
+    """A box with its rectangle. lines: the text in it. role: lines of text above it."""
 
     box: Box
     x: float
@@ -56,7 +56,7 @@ class Plug:
 
 @dataclass(frozen=True, slots=True)
 class Lane:
-    """One wire: a vertical stretch at x with what is plugged into it."""
+    """One wire: a vertical line at x, and the ports connected to it."""
 
     key: str
     x: float
@@ -65,7 +65,7 @@ class Lane:
 
 @dataclass(frozen=True, slots=True)
 class Outline:
-    """One tree. y: where its title stands."""
+    """One tree. y: the position of its title."""
 
     tree: TreePicture
     y: float

@@ -22,7 +22,7 @@ MOST_COMPARED = 250_000
 
 @dataclass(eq=False, slots=True)
 class Unit:
-    """A node with its decorators, outermost first. role: what it is to its parent.
+    """A node with its decorators, outermost first. role: its role for its parent.
 
     digest: the same for units that say the same, with everything below; own: without that.
     size: how many units it is, with everything below.

@@ -25,7 +25,7 @@ VALUES = "values"
 
 @dataclass(frozen=True, slots=True)
 class End:
-    """One end of a wire. said: a node in the file's words, or who else it is.
+    """One end of a wire. said: a node in the file's words, or another source.
 
     node: None if it is not a node. tree: the tree that it stands in.
     """

@@ -17,7 +17,7 @@ from momantu_bt.robot import Robot, RobotDescription, SensorReading
 
 @dataclass(frozen=True, slots=True)
 class Issued:
-    """One thing told to the robot: a goal for an actuator, or (None) to stop it."""
+    """One command to the robot: a goal for an actuator, or None to stop it."""
 
     actuator: str
     goal: ActuatorGoal | None
@@ -89,7 +89,7 @@ class Actuators:
 
 
 class Lease:
-    """A `Robot` that lets its skill command what it declares, while nobody else owns it."""
+    """A `Robot` that lets its skill command the actuators it declares, unless another owns one."""
 
     def __init__(self, book: Actuators, owner: str, allowed: frozenset[str]) -> None:
         self.owner = owner
@@ -99,7 +99,7 @@ class Lease:
 
     @property
     def description(self) -> RobotDescription:
-        """What the robot is."""
+        """The robot's description."""
         return self._robot.description
 
     def state(self) -> RobotState:

@@ -49,7 +49,7 @@ class Cell:
 
 
 class ReadOnlyCell(Cell):
-    """A key that the engine publishes, such as `@battery`: its value is asked when read.
+    """A key that the engine publishes, such as `@battery`: its value is computed when read.
 
     It counts as written whenever it is found to be another object than the last time.
     """
@@ -64,7 +64,7 @@ class ReadOnlyCell(Cell):
 
     @property
     def value(self) -> Any:
-        """What it is now."""
+        """The current value."""
         return self._ask()
 
     @value.setter
@@ -168,7 +168,7 @@ class _Overlay(Board):
 
 
 def written(journal: Journal) -> list[tuple[Cell, Any]]:
-    """Each write with what it put there: what the next one of its cell found, or what is now."""
+    """Each write with its value: what the next write to its cell found, or the current value."""
     after: dict[Cell, Any] = {}
     found = []
     for cell, before in reversed(journal):

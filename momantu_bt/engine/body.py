@@ -13,7 +13,7 @@ from momantu_bt.world import Site
 
 @dataclass(frozen=True, slots=True)
 class Body:
-    """What skills need beside their inputs; a run without a world has none."""
+    """What skills need beside their inputs; absent in a run without a world."""
 
     actuators: Actuators
     frames: FrameBuffer

@@ -157,7 +157,7 @@ class _Builder:
     def _given(
         self, tree: Tree, values: Mapping[str, PortValue], outer: Board, inner: Board
     ) -> dict[str, tuple[Cell, Reader]]:
-        """What is written to inner keys at each start: everything but plain wires, and defaults."""
+        """The values written to inner keys at each start: all but plain wires, and defaults."""
         given: dict[str, tuple[Cell, Reader]] = {}
         for name, value in values.items():
             if not _is_wire(value):

@@ -38,7 +38,7 @@ def with_beside(failures: list[FailureValue]) -> FailureValue:
 
 
 def running_as_cause(node: TreeNode, seconds: float) -> FailureValue:
-    """What ran deepest below a node, as the cause of the failure that ends it."""
+    """The deepest running node below a node, as the cause of the failure that ends it."""
     running = [n for n in (node, *node.below) if n.shown is RUNNING]
     deepest = max(running, key=lambda n: n.depth, default=node)
     doing = f" ({deepest.note})" if deepest.note else ""

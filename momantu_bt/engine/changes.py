@@ -11,7 +11,7 @@ from momantu_bt.failure import FailureValue
 
 
 class SeenNode(Protocol):
-    """What those who watch a run see of a node; every `TreeNode` has it."""
+    """A node as observers of a run see it; every `TreeNode` implements it."""
 
     name: str
     label: str
@@ -20,12 +20,12 @@ class SeenNode(Protocol):
 
     @property
     def role(self) -> Role:
-        """What it is to a person."""
+        """Its role for a reader."""
         ...
 
     @property
     def note(self) -> str:
-        """What to say beside it while it runs."""
+        """The text beside it while it runs."""
         ...
 
     @property

@@ -55,12 +55,12 @@ class Conditions:
         return held
 
     def after(self, status: Status) -> None:
-        """Run what follows SUCCESS or FAILURE."""
+        """Run the scripts after SUCCESS or FAILURE."""
         self._run("on_success" if status is SUCCESS else "on_failure")
         self._run("after")
 
     def halted(self) -> None:
-        """Run what follows a halt."""
+        """Run the scripts after a halt."""
         self._run("on_halt")
 
     def _run(self, name: str) -> None:

@@ -21,7 +21,7 @@ class Decorator(TreeNode):
         return self.kids[0]
 
     def execute(self) -> Status:
-        """Tick, then clear the child's end, so that its conditions are asked anew."""
+        """Tick, then clear the child's end, so that its conditions are asked again."""
         new = super().execute()
         child = self.kids[0]
         if child.state is SUCCESS or child.state is FAILURE:

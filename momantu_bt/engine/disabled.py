@@ -7,7 +7,7 @@ from momantu_bt.engine.status import SKIPPED, Status
 
 
 class Disabled(TreeNode):
-    """Always SKIPPED, and never started; what is below it in the file is not built."""
+    """Always SKIPPED, and never started; the nodes below it are not built."""
 
     def execute(self) -> Status:
         """SKIPPED; this does not count as a run."""

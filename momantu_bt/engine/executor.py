@@ -183,7 +183,7 @@ class Executor:
         )
 
     def _come_to_rest(self, status: str) -> Verdict | None:
-        """Halt all, stop all, let the world go on until all stands; then ask the referee."""
+        """Halt the tree, stop the actuators, let the world come to rest; then ask the referee."""
         self.context.changes.clear()
         self.context.writes.clear()
         try:

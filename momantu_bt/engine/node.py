@@ -33,7 +33,7 @@ class BuildError(MomantuError):
 
 
 class _Top:
-    """What stands above the root: it never starts anew."""
+    """The parent of the root: it never restarts."""
 
     runs = 0
 
@@ -43,7 +43,7 @@ _TOP = _Top()
 
 @dataclass(frozen=True, slots=True)
 class Parts:
-    """What a node is made of; nodes take the values of their ports from it.
+    """The parts that a node is built from, such as its children and its ports.
 
     kids: its children, those of handlers after the others. answers: codes of each handler, and
     its node; None just tries again. caught: the cell that handlers see as `$failure`.
@@ -130,16 +130,16 @@ class TreeNode:
         """Forget progress (indices, counts, timers): the node is being halted."""
 
     def renew(self) -> None:
-        """Forget what outlasts an end (RoundRobin's place): a recovery starts from scratch."""
+        """Forget what outlasts an end (RoundRobin's position): a recovery starts from scratch."""
 
     @property
     def note(self) -> str:
-        """What a person should see beside the name while it runs: a phase, a count of tries."""
+        """The text beside the name while it runs: a phase, a count of tries."""
         return ""
 
     @property
     def role(self) -> Role:
-        """What it is to a person."""
+        """Its role for a reader."""
         return Role.PLAIN
 
     @property
@@ -225,7 +225,7 @@ class TreeNode:
         return self._shown
 
     def show(self, status: Status) -> None:
-        """Change what people see and note it in the journal; RUNNING again for a new `note`."""
+        """Change the shown status and note it in the journal; RUNNING again for a new `note`."""
         self._shown = status
         self._shown_in_run = self._above.runs
         note = self.note if status is RUNNING else ""

@@ -46,7 +46,7 @@ class SkillSession(Protocol):
 
 
 class Surroundings(Protocol):
-    """What of a run the start of a skill needs; see `RunContext`."""
+    """The part of a run that the start of a skill needs; see `RunContext`."""
 
     @property
     def clock(self) -> Clock:
@@ -65,7 +65,7 @@ class Surroundings(Protocol):
 
 
 class SkillNode(SeenNode, Protocol):
-    """A node that runs a skill. path: where it stands in the tree. runs: its starts so far."""
+    """A node that runs a skill. path: its position in the tree. runs: its starts so far."""
 
     kind: type[Skill]
     path: str
@@ -83,7 +83,7 @@ class SkillNode(SeenNode, Protocol):
 
 
 class Outside:
-    """The outside as it is: skills run on the robot, questions are asked."""
+    """The real outside: skills run on the robot, questions go to a person."""
 
     def runs_skills(self, body: Body | None) -> bool:
         """Whether a tree may have skills."""
@@ -105,10 +105,10 @@ class Outside:
         return Session(leaf.kind, inputs, lease, surroundings)
 
     def stepped(self, leaf: SkillNode, session: SkillSession, status: Status) -> None:
-        """A leaf's skill has made a step; what it gave is not on the blackboard yet."""
+        """A leaf's skill has made a step; its outputs are not on the blackboard yet."""
 
     def ask(self, key: str, ask: Callable[[], T]) -> T:
-        """What `ask` answers. key: names what is asked, such as `battery`."""
+        """The answer of `ask`. key: the name of the question, such as `battery`."""
         return ask()
 
 

@@ -9,7 +9,7 @@ from typing import Protocol
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """What a tree wants to know. choices: the answers it takes, any text where there are none.
+    """A question of a tree. choices: the valid answers; without any, every text is valid.
 
     default: what counts when nobody answers; None: then there is no answer.
     """
@@ -42,10 +42,10 @@ class Interrupted(Exception):
 
 
 class Person(Protocol):
-    """Somebody who can be asked."""
+    """A person who answers questions."""
 
     def ask(self, question: Question, complaint: str) -> str | None:
-        """What the person says, or None when nobody answers.
+        """The person's answer, or None when nobody answers.
 
         complaint: why the previous answer was refused, empty at first.
 
@@ -56,7 +56,7 @@ class Person(Protocol):
 
 
 class Scripted:
-    """Says its answers in turn, and nothing after the last; without any it is nobody."""
+    """A scripted person: gives its answers in turn, and none after the last."""
 
     def __init__(self, answers: Iterable[str | bool] = ()) -> None:
         self._answers = iter(answers)
@@ -68,7 +68,7 @@ class Scripted:
 
 
 def answer(person: Person, question: Question) -> str | None:
-    """Ask until the answer is one; the default, or None, when nobody answers.
+    """Ask until an answer is valid; the default, or None, when nobody answers.
 
     Raises:
         Interrupted: the run is to end.

@@ -45,7 +45,7 @@ def wire(reference: Reference) -> str:
 
 
 def _wire_reader(port: Port, reference: Reference, board: Board) -> Reader:
-    """Values are immutable: while the cell holds the same one, what the port takes is the same."""
+    """Reads a cell and caches the converted value until the cell holds another one."""
     cell = cell_of(reference, board)
     last: Any = MISSING
     fitted: Any = None
@@ -148,7 +148,7 @@ def _default_reader(port: Port) -> Reader:
 
 
 class Output:
-    """An output of a node that is wired. cell: what it is wired to."""
+    """An output of a node that is wired. cell: the cell it writes to."""
 
     def __init__(self, port: Port, cell: Cell) -> None:
         self.port = port

@@ -6,7 +6,7 @@ from enum import Enum
 
 
 class Role(Enum):
-    """How a node is drawn and told of, whatever it does."""
+    """How a node is drawn and described."""
 
     ACT = "act"
     """It does something: a skill, a wait, a question."""

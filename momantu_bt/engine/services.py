@@ -22,7 +22,7 @@ class ServiceCycleError(MomantuError):
 
 
 def in_order(names: Iterable[str], service_of: ServiceFinder) -> dict[str, type[Service]]:
-    """The named services and all that they need, each after what it needs.
+    """The named services and those that they need, each after its needs.
 
     Raises:
         ServiceCycleError: they need each other in a circle.
@@ -62,7 +62,7 @@ class Services:
         seed: int,
         other: Callable[[str], Any] | None = None,
     ) -> None:
-        """Start each one, what it needs first. other: how they find each other."""
+        """Start each one, its needs first. other: how they find each other."""
         for name, service in self.running.items():
             service.start(
                 ServiceContext(

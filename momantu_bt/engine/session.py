@@ -27,7 +27,7 @@ CLOCK_SLACK = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class SkillContext:
-    """What a skill instance has besides the robot."""
+    """What a skill instance gets besides the robot."""
 
     clock: Clock
     random: np.random.Generator
@@ -95,7 +95,7 @@ class Session:
         return self.status
 
     def halt(self) -> None:
-        """End it wherever it is and stop what it owns; safe to call twice and at any time."""
+        """End it at any point and stop the actuators it owns; safe to call twice."""
         generator, self._generator = self._generator, None
         self._waiting = None
         if generator is not None:
@@ -185,7 +185,7 @@ class Session:
             )
 
     def _admit_live_outputs(self) -> None:
-        """Others read these while the skill runs: what does not fit fails at once.
+        """Live outputs, which others read while the skill runs: a wrong value fails at once.
 
         Raises:
             Failure: WRONG_TYPE.

@@ -9,7 +9,7 @@ from momantu_bt.skill import Skill
 
 
 def declared(kind: type[Skill], failure: Failure) -> FailureValue:
-    """What a skill raised, with its cause; SKILL_ERROR where it does not declare the code."""
+    """A failure that a skill raised, with its cause; SKILL_ERROR if the code is undeclared."""
     if failure.code in kind.failures or failure.code in ENGINE_CODES:
         return _with_cause(failure.value, _cause(failure))
     codes = ", ".join(kind.failures) or "none"
@@ -19,7 +19,7 @@ def declared(kind: type[Skill], failure: Failure) -> FailureValue:
 def skill_error(
     kind: type[Skill], error: Exception, sentence: str = "", cause: FailureValue | None = None
 ) -> FailureValue:
-    """An exception of a skill. sentence: what it did, where the exception does not say it."""
+    """An exception of a skill. sentence: what the skill did, if the exception does not say it."""
     text = "".join(traceback.format_exception(error))
     said = sentence or f"raised {type(error).__name__}: {error}"
     cause = error.value if isinstance(error, Failure) else cause

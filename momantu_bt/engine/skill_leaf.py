@@ -38,7 +38,7 @@ class SkillLeaf(TreeNode):
 
     @property
     def role(self) -> Role:
-        """What the robot does."""
+        """Its role for a reader: something that the robot does."""
         return Role.ACT
 
     @property

@@ -129,7 +129,7 @@ class BehaviourLeaf(TreeNode):
 
     @property
     def role(self) -> Role:
-        """What the robot does."""
+        """What the robot does in this step."""
         return Role.ACT
 
     @property

@@ -35,7 +35,7 @@ class ReportedNode(Protocol):
 
     @property
     def role(self) -> Role:
-        """What it is to a person."""
+        """Its role for a reader."""
         ...
 
     @property

@@ -21,12 +21,12 @@ class Shown(Protocol):
 
     @property
     def role(self) -> Role:
-        """What it is to a person."""
+        """Its role for a reader."""
         ...
 
     @property
     def note(self) -> str:
-        """What to say beside it while it runs."""
+        """The text beside it while it runs."""
         ...
 
     @property

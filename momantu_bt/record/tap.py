@@ -23,7 +23,7 @@ class Tap:
 
     @property
     def description(self) -> RobotDescription:
-        """What the robot is."""
+        """The robot's description."""
         return self._robot.description
 
     def state(self) -> RobotState:

@@ -70,7 +70,7 @@ class ScriptedRobot:
 
     @property
     def description(self) -> RobotDescription:
-        """What the robot is."""
+        """The robot's description."""
         return self._description
 
     def now(self) -> float:

@@ -34,7 +34,7 @@ __all__ = [
 
 
 class Spelling(StrEnum):
-    """What a tree file is written in."""
+    """The spelling of a tree file."""
 
     YAML = "yaml"
     XML = "xml"
@@ -46,13 +46,13 @@ class Spelling(StrEnum):
 
 
 def spelling_of(path: Path) -> Spelling | None:
-    """What a file's suffix says; None where it says nothing."""
+    """The spelling that a file's suffix means; None for any other suffix."""
     known = {".yaml": Spelling.YAML, ".yml": Spelling.YAML, ".xml": Spelling.XML}
     return known.get(path.suffix.lower())
 
 
 def document_spelling(document: Document) -> Spelling:
-    """What a document was read from."""
+    """The spelling that a document was read from."""
     xml = is_xml(document.file, document.source[document.file])
     return Spelling.XML if xml else Spelling.YAML
 
@@ -117,7 +117,7 @@ def _read_again(
 
 
 def meaning(document: Document) -> object:
-    """What counts when two documents are compared, the types of their values with it.
+    """The content of a document for comparisons, with the types of its values.
 
     Python's own `==` takes `true` for 1, and 1 for 1.0. Of nodes it has a list for each tree, in
     the order of the file and with the number of their children, so that deep ones can be compared.

@@ -26,7 +26,7 @@ FAILURE_KEY = "failure"
 
 
 def handler_codes(text: str, place: Place, problems: Problems) -> tuple[str, ...]:
-    """What a handler is for (`A | B`), without what cannot be a code, which is reported."""
+    """The codes of a handler (`A | B`); an invalid code is reported and left out."""
     codes = tuple(part.strip() for part in text.split("|"))
     wrong = dict.fromkeys(code for code in codes if not _HANDLER_CODE.fullmatch(code))
     for code in wrong:

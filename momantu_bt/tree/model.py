@@ -171,7 +171,7 @@ class Include:
 
 @dataclass(frozen=True, slots=True)
 class NodeModel:
-    """What a file says of a kind of node, for an editor's palette; nothing here reads it.
+    """A file's model of a kind of node, for an editor's palette; it has no effect here.
 
     kind: "Action", "Condition", "Control" or "Decorator". ports: types and defaults as written.
     editable: as an editor set it, None where it did not. metadata: pairs of name and value, one

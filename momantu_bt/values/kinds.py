@@ -67,7 +67,7 @@ class Anything(_Kind):
 
 
 class Unknown(_Kind):
-    """What cannot be checked, such as a type variable or a protocol: every value fits."""
+    """A type that cannot be checked, such as a type variable or a protocol: every value fits."""
 
     __slots__ = ()
 
@@ -143,7 +143,7 @@ class Fixed(_Kind):
 
 @dataclass(frozen=True, slots=True)
 class QueueOf(_Kind):
-    """What a `Queue` takes; as a value it is a tuple."""
+    """The items of a `Queue`; as a value it is a tuple."""
 
     item: ValueKind
 

@@ -52,7 +52,7 @@ class SapienWorld:
 
     @property
     def site(self) -> Site:
-        """What the robot is told of this episode."""
+        """The site of this episode."""
         return self._episode.site
 
     @property

@@ -33,7 +33,7 @@ class Layer:
 
     @property
     def description(self) -> RobotDescription:
-        """What the robot is."""
+        """The robot's description."""
         return self.inner.description
 
     def state(self) -> RobotState:

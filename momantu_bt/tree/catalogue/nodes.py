@@ -22,7 +22,7 @@ _Installed: TypeAlias = tuple[tuple[str, EntryPoint], ...]
 
 
 class NodeClass(Protocol):
-    """What the language knows of a node's class; the engine makes nodes of it."""
+    """A node's class as the language knows it; the engine makes nodes of it."""
 
     spec: ClassVar[NodeSpec]
 
@@ -56,7 +56,7 @@ class _Tables:
 
 
 class Table(Mapping[K, V]):
-    """One of the tables. It is read when it is first asked: nodes are imported then."""
+    """A table of nodes that is read, and its nodes imported, at its first use."""
 
     def __init__(self, read: Callable[[_Tables], Mapping[K, V]]) -> None:
         self._read = read
@@ -122,7 +122,7 @@ def _built_in() -> Mapping[str, type[NodeClass]]:
 
 @lru_cache(maxsize=4)
 def _read(nodes: _Installed, behaviours: _Installed) -> _Tables:
-    """A plug-in that is broken is left out; `load` of its group says why to who uses it."""
+    """All installed nodes without the broken ones; `load` of their group raises the reason."""
     classes = dict(_built_in())
     for name, _ in nodes:
         with suppress(PluginError):

@@ -88,7 +88,7 @@ def _bad_spec(spec: NodeSpec) -> str | None:
 
 
 def bad_port(name: str, port: Port) -> str | None:
-    """What is wrong with a port of a node; None when nothing is."""
+    """The problem of a node's port; None when it is right."""
     if port.name in ("child", "children"):
         return f"the port {name}.{port.name} would hide what stands below the node; rename it"
     if not isinstance(port.doc, str) or not port.doc.strip():

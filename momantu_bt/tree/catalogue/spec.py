@@ -14,7 +14,7 @@ from momantu_bt.tree.model import Node
 
 
 class Kind(StrEnum):
-    """What a node is to its parent and to its children."""
+    """The kind of a node: control node, decorator or leaf."""
 
     CONTROL = "control"
     DECORATOR = "decorator"
@@ -112,7 +112,7 @@ class NodeSpec:
 
 
 class Further(TypedDict, total=False):
-    """What `control`, `decorator` and `leaf` take besides; see `NodeSpec`."""
+    """Further arguments of `control`, `decorator` and `leaf`; see `NodeSpec`."""
 
     first: str | None
     children: tuple[int, int | None]
@@ -167,7 +167,7 @@ def leaf(
     *ports: Port,
     **further: Unpack[Further],
 ) -> NodeSpec:
-    """A node without children; its first port is what a bare value means."""
+    """A node without children; a bare value goes to its first port."""
     spellings = (yaml,) if isinstance(yaml, str) else yaml
     further.setdefault("first", ports[0].name if ports else None)
     further.setdefault("flow", as_written)

@@ -53,7 +53,7 @@ def check(
     robot: str | None = None,
     reading: Problems | None = None,
 ) -> Checked:
-    """Check a document, which stays as it is.
+    """Check a document, without changing it.
 
     world, robot: named on the command line, instead of the file's and the world's own.
     reading: problems that reading the file has found; they come back with the rest.
@@ -112,7 +112,7 @@ def _check_tree_name(context: Context, tree: Tree) -> None:
 
 
 def _root_keys(context: Context) -> Mapping[str, Key | None]:
-    """Every name that `$@name` can mean; what is known of a value that nothing overwrites."""
+    """Every name that `$@name` can have, with what is known about values nothing overwrites."""
     document = context.document
     names: dict[str, Key | None] = dict.fromkeys(context.registry.services)
     names[ROBOT_KEY] = Key(RobotState, _start(document))

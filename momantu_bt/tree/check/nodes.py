@@ -174,7 +174,7 @@ def _check_one_of(context: Context, node: Node, signature: Signature) -> None:
 
 
 def _check_values(context: Context, node: Node, signature: Signature) -> None:
-    """What the node itself says of its values."""
+    """The node's own checks of its values."""
     objection = None if signature.spec is None else signature.spec.objection
     found = None if objection is None else objection(node)
     if found is not None:

@@ -61,7 +61,7 @@ class Context:
     _xml_files: dict[str, bool] = field(default_factory=dict)
 
     def signature(self, node: Node) -> Signature | None:
-        """What this node takes and gives; None where it is unknown or broken."""
+        """The signature of this node; None if it is unknown or broken."""
         spec = NODES.get(node.type)
         if spec is not None:
             said = node.type if self.is_xml(node.place) else spec.yaml[0]
@@ -119,7 +119,7 @@ class Context:
         return self._skills[name]
 
     def names_of(self, kind: str) -> tuple[str, ...] | None:
-        """Valid values of an input with `names=kind`; None when nobody knows them."""
+        """Valid values of an input with `names=kind`; None when they are unknown."""
         if kind == "named_pose":
             return None if self.description is None else tuple(self.description.named_poses)
         if self.site is None:
@@ -146,7 +146,7 @@ def report_unknown_node(context: Context, node: Node) -> None:
 
 
 def _why_broken(context: Context, name: str) -> str | None:
-    """Why the plug-in of this name cannot be used; None where there is none."""
+    """Why the plug-in of this name cannot be used; None if it can."""
     spelled = {type_of(spelling): spelling for spelling in PLUGINS}
     try:
         if name in PLUGINS or name in spelled:

@@ -144,7 +144,7 @@ def _check_overlap(context: Context, parallel: Node, of_node: dict[int, Uses]) -
 
 
 def _uses(context: Context, node: Node, of_node: dict[int, Uses], of_tree: dict[str, Uses]) -> Uses:
-    """Actuators that a node or something below it commands, each with the first who does."""
+    """The actuators that a node or one below it commands, each with the first such node."""
     if node.disabled:
         return {}
     if node.type == SUBTREE:

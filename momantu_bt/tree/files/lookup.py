@@ -19,11 +19,11 @@ _PACKAGE = Path(__file__).resolve().parents[2]
 
 
 class TreeNotFound(MomantuError):
-    """No file and no bundled tree of that name; the message says what there is."""
+    """There is no file and no bundled tree of this name; the message lists those that exist."""
 
 
 def bundled_folder() -> Path | None:
-    """Where the bundled trees lie: in the installed package, or in the checkout beside it."""
+    """The folder of the bundled trees: in the installed package, or in the checkout."""
     for folder in (_PACKAGE / "trees", _PACKAGE.parent / "trees"):
         if folder.is_dir():
             return folder
@@ -50,12 +50,12 @@ def tree_files(folder: Path) -> list[Path]:
 
 
 def is_faults_file(path: Path) -> bool:
-    """Whether a file tells of faults in the tree beside it."""
+    """Whether a file describes faults in the tree beside it."""
     return path.name.endswith(FAULTS_SUFFIX)
 
 
 def faults_file(tree: Path) -> Path:
-    """Where a tree's faults stand; the file need not exist."""
+    """The path of a tree's file of faults; it need not exist."""
     return tree.with_suffix(FAULTS_SUFFIX)
 
 

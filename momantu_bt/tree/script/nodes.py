@@ -175,7 +175,7 @@ def _names(value: Any) -> tuple[str, ...]:
 
 
 def truth(value: Any) -> bool:
-    """What a condition's value means: a number other than 0, a text that is not empty.
+    """Whether a condition's value is true: a number other than 0, a text that is not empty.
 
     Raises:
         ScriptError: the value is neither.

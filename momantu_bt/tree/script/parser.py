@@ -53,7 +53,7 @@ class Script:
 
 
 def script_of(found: list[Token], text: str, *, strict: bool = False) -> Script:
-    """The script that tokens make. strict: refuse what seems to say something else than it does.
+    """The script that tokens form. strict: refuse what is easily misread.
 
     Raises:
         ScriptSyntaxError: with the offset of the first thing that is wrong.

@@ -25,7 +25,7 @@ from momantu_bt.values.kinds import ValueType, kind_of
 
 
 class Kind(Enum):
-    """What an operand is, as far as operators care."""
+    """The type of an operand, as far as operators need it."""
 
     NUMBER = auto()
     TEXT = auto()

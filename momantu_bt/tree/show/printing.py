@@ -81,14 +81,14 @@ def text(node: Node, around: list[Node] | None = None) -> str:
 
 
 def extra_texts(node: Node, around: list[Node] | None = None) -> list[str]:
-    """What is wrapped around a node, innermost first, and its conditions, in words."""
+    """The decorators of a node, innermost first, and its conditions, in words."""
     extras = [_in_words(outer) for outer in reversed(around or [])]
     extras += [f"{name} {script_text(script)}" for name, script in node.conditions.items()]
     return [*extras, "disabled"] if node.disabled else extras
 
 
 def heading(tree: Tree) -> str:
-    """A tree's name, what it takes and what it gives."""
+    """A tree's name, its inputs and its outputs."""
     words = tree.name
     for direction, verb in (("in", "takes"), ("inout", "shares"), ("out", "gives")):
         ports = [p for p in tree.ports.values() if p.direction == direction]
@@ -98,7 +98,7 @@ def heading(tree: Tree) -> str:
 
 
 def _roles(node: Node) -> list[str]:
-    """What each child is to the node."""
+    """The role of each child for the node."""
     spec = NODES.get(node.type)
     if spec is None or spec.handlers:
         return []
@@ -108,7 +108,7 @@ def _roles(node: Node) -> list[str]:
 
 
 def title(node: Node) -> str:
-    """What a node is, after its name where it has one."""
+    """A node's type and ports, after its name if it has one."""
     spec = NODES.get(node.type)
     if spec is None:
         said = node.target or node.type

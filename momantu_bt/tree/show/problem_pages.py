@@ -20,7 +20,7 @@ class UnknownCode(MomantuError):
 
 
 def pages_folder() -> Path:
-    """Where the pages lie: in the installed package, or in the checkout's docs."""
+    """The folder of the pages: in the installed package, or in the checkout's docs."""
     bundled = _PACKAGE / "problems"
     return bundled if bundled.is_dir() else _PACKAGE.parent / "docs" / "problems"
 

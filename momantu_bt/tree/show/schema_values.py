@@ -33,7 +33,7 @@ WIRE: Schema = {"type": "string", "pattern": r"^\$", "description": "a key"}
 
 
 def value_schema(port: Port, names: Names) -> Schema:
-    """What a port takes: a key, or a value of its type."""
+    """The schema of a port's value: a key, or a value of its type."""
     found: Schema = {"description": _about(port)}
     if port.direction == "out":
         return found | {"type": "string", "pattern": r"^\$"}

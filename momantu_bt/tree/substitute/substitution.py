@@ -31,7 +31,7 @@ from momantu_bt.values.words import ConversionError
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """What a node does instead of itself at one start.
+    """The outcome that replaces a node at one start.
 
     delay: seconds of the world's clock before its end. times: how often; None: always.
     outputs: values by port.
@@ -47,7 +47,7 @@ class Result:
 
 @dataclass(frozen=True, slots=True)
 class Substitution:
-    """What a file of rules makes of one document.
+    """The effect of a file of rules on one document.
 
     values: keys of the root's board in the place of what services publish. source: the file's
     text, by its name.
@@ -58,7 +58,7 @@ class Substitution:
     source: Mapping[str, str] = field(default_factory=dict)
 
     def of(self, node: Node) -> tuple[Result, ...]:
-        """What a node does at its starts, in turn; then it is itself."""
+        """The outcomes that replace a node at its starts, in turn; then it runs itself."""
         return self.results.get(id(node), ())
 
     def replaces(self, node: Node) -> bool:
@@ -116,7 +116,7 @@ def reached(document: Document, replaced: Mapping[int, tuple[Result, ...]]) -> I
 
 
 def names(node: Node) -> list[str]:
-    """What a node can be called by: its own name, its tree, its type or skill."""
+    """The names that can mean a node: its own name, its tree's, its type or skill."""
     spec = NODES.get(node.type)
     spellings = spec.yaml if spec is not None else ()
     said = (node.name, node.target, node.type if node.type != SUBTREE else None, *spellings)

@@ -91,7 +91,7 @@ class SimulatedRobot:
 
     @property
     def description(self) -> RobotDescription:
-        """What the robot is."""
+        """The robot's description."""
         return self._description
 
     def state(self) -> RobotState:

@@ -90,7 +90,7 @@ class KeyChanges:
 
 
 def _types(node: Node, port: Port, signature: Signature) -> list[ValueType]:
-    """What an output of a node may be."""
+    """The possible values of a node's output."""
     copies = signature.spec.copies if signature.spec is not None else {}
     given = node.ports.get(copies.get(port.name, ""))
     if isinstance(given, Literal):

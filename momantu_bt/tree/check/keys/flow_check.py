@@ -67,7 +67,7 @@ class _KeyCheck:
         self.watched()
 
     def walking(self, into: Callable[[Node, Known], After]) -> Walk:
-        """What flows ask."""
+        """What a node's flow asks."""
         removed, rewritten = self.changes.removed, self.changes.rewritten
         return Walk(into, removed, rewritten, self.outputs, self.script_at)
 
@@ -117,7 +117,7 @@ class _KeyCheck:
             )
 
     def at_any_tick(self, node: Node, before: Known) -> Known:
-        """What a node reads with its wires: again while its children run, and what those leave."""
+        """The wires that a node reads: again while its children run, and after them."""
         wired = any(isinstance(value, Reference) for value in node.ports.values())
         if not wired or not node.children:
             return before
@@ -214,7 +214,7 @@ class _KeyCheck:
         return known.having_all(found)
 
     def outputs(self, node: Node, before: Known) -> Known:
-        """What is known once the outputs of a node have been written."""
+        """What is known after the outputs of a node have been written."""
         signature = self.context.signature(node)
         if signature is None:
             return before
@@ -311,7 +311,7 @@ class _KeyCheck:
             self.reads.seen.add(written.key)
 
     def in_script(self, key: str, place: Place) -> Place:
-        """Where in a script a key stands."""
+        """The place of a key in a script."""
         shown = key if self.context.is_xml(place) else f"${key}"
         return within(place, shown, self.context.document.source)
 

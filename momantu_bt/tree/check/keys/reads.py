@@ -125,7 +125,7 @@ class KeyReads:
         self.context.problems.error("read-before-write", place, message, hint)
 
     def of_call(self, call: Call, inside: TreeKeys, before: Known) -> None:
-        """What a tree that is run needs, and attributes that it never mentions."""
+        """The keys that a tree needs, and attributes that it never mentions."""
         for name, place in inside.needed.items():
             reference = call.outside(name)
             if reference is not None:
@@ -145,7 +145,7 @@ class KeyReads:
         self.seen.update(call.local(inside.mentioned))
 
     def report_needed(self) -> None:
-        """Keys that the main tree reads: nobody outside gives them a value."""
+        """Keys that the main tree reads and nothing outside writes."""
         mine = self.keys[self.tree.name]
         for name, place in mine.needed.items():
             self._report_needed(name, place, mine)

@@ -69,7 +69,7 @@ class Call:
 
 @dataclass(slots=True)
 class TreeKeys:
-    """What is known of a tree's keys, for whoever runs it.
+    """What is known about a tree's keys, for its callers.
 
     mentioned: all that it reads or writes, itself or by a tree below that shares them; written
     and removed: what it may write and take away. shared: keys that some node wires from outside,
@@ -87,7 +87,7 @@ class TreeKeys:
     failure: frozenset[str] = frozenset()
 
     def goes_out(self, key: str) -> bool:
-        """Whether somebody outside may read the key."""
+        """Whether anything outside may read the key."""
         return key in self.shared or (self.remapped and not _PRIVATE.match(key))
 
 

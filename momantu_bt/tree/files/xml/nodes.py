@@ -144,7 +144,7 @@ class NodeReader:
             node.condition_places["ID"] = identity.place
 
     def _ports_of(self, skill: str) -> Mapping[str, Port] | None:
-        """A skill's ports; None where nobody knows it."""
+        """A skill's ports; None if it is not installed."""
         if skill not in self._skills:
             try:
                 self._skills[skill] = self.registry.skills[skill].ports

@@ -65,7 +65,7 @@ class PortReader:
         self._one_time()
 
     def of_skill(self, ports: Mapping[str, Port] | None) -> None:
-        """A skill, or with None a node that nobody knows."""
+        """A skill, or with None an unknown node."""
         known = ports or {}
         self._read(lambda port: known[port].type if port in known else object)
 

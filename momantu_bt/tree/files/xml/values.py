@@ -38,11 +38,11 @@ _BOOLS = {"True": True, "TRUE": True, "1": True, "False": False, "FALSE": False,
 
 
 class WireError(ValueError):
-    """A text in braces that names no key; the message says what would."""
+    """A text in braces does not name a key; the message says what would."""
 
 
 def attribute_value(text: str, port: str, type_: ValueType) -> PortValue:
-    """What an attribute without prefix means.
+    """The value of an attribute without prefix.
 
     port: its name, for `{=}`. type_: the port's; `object` where nobody knows it.
 

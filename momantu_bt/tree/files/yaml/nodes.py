@@ -131,5 +131,5 @@ def _has_child(value: Raw) -> bool:
 
 
 def _has_children(value: Entries) -> bool:
-    """Whether it is a control node that nobody knows here."""
+    """Whether it is an unknown control node."""
     return any(key.text == "children" and isinstance(raw, Items) for key, raw in value.entries)

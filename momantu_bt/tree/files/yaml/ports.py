@@ -66,6 +66,6 @@ def is_empty(value: Raw) -> bool:
 
 
 def _near_control(node: Node) -> str | None:
-    """What a mistyped node with a list of others was meant to be."""
+    """The node that was probably meant by an unknown name with a list."""
     controls = [name for name, spec in SPELLED.items() if spec.kind is Kind.CONTROL]
     return None if node.type in (SUBTREE, *NODES) else nearest(node.type, controls)
