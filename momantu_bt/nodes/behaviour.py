@@ -153,8 +153,8 @@ class BehaviourLeaf(TreeNode):
         self._at_work = False
         if status != SUCCESS.value:
             return self.fail(self.declaration.failure, self._feedback or f"returned {status}")
-        for name, cell in self.outputs.items():
-            cell.write(outputs[name])
+        for name, output in self.outputs.items():
+            output.cell.store(outputs[name])
         return SUCCESS
 
     def clear(self) -> None:
@@ -218,10 +218,10 @@ class BehaviourLeaf(TreeNode):
     def _given(self, running: Behaviour) -> dict[str, Any]:
         """The outputs that are wired."""
         found = {}
-        for name in self.outputs:
+        for name, output in self.outputs.items():
             on_board = self.declaration.through is Through.BLACKBOARD
             value = Blackboard.get(name) if on_board else getattr(running, name)
-            found[name] = admit_output(value, self.spec.ports[name])
+            found[name] = admit_output(value, output.port)
         return found
 
 
