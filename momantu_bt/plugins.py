@@ -157,6 +157,11 @@ class Group(Mapping[str, T]):
         raise PluginError(f"there is no {self.what} file {path}{there}")
 
 
+def installed_names(group: str) -> tuple[str, ...]:
+    """Names of the plug-ins of an entry point group; nothing is imported."""
+    return tuple(_installed(entry_points, group))
+
+
 def packages() -> frozenset[str]:
     """Top-level packages that give plug-ins of any kind."""
     groups = (group for group in entry_points().groups if group.startswith(PREFIX))

@@ -42,7 +42,11 @@ MISSING: Any = _Missing()
 """The default of an input that a tree must give."""
 
 NAMES = ("place", "surface", "named_pose")
-"""What a text input may name, so that the checker knows the valid values."""
+"""What a text input may name, so that the checker knows the valid values.
+
+The name of an entry point group, such as `momantu_bt.detectors`, is possible too: the input names
+one of its plug-ins.
+"""
 
 
 class Clock(Protocol):
@@ -136,8 +140,9 @@ class _PortDescriptor:
         least: float | None = None,
         most: float | None = None,
     ) -> None:
-        if names is not None and names not in NAMES:
-            raise TypeError(f"names={names!r}; valid: {', '.join(NAMES)}")
+        if names is not None and names not in NAMES and "." not in names:
+            valid = f"{', '.join(NAMES)}, or the name of an entry point group"
+            raise TypeError(f"names={names!r}; valid: {valid}")
         if least is not None and most is not None and least > most:
             raise TypeError(f"least={least:g} is more than most={most:g}")
         self.default, self.doc, self.unit, self.live = default, doc, unit, live

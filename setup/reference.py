@@ -40,6 +40,7 @@ PUBLIC = (
     "momantu_bt.robot_parts",
     "momantu_bt.robot_simulation",
     "momantu_bt.robots",
+    "momantu_bt.detector",
     "momantu_bt.service",
     "momantu_bt.skill",
     "momantu_bt.symptom",

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 
 from momantu_bt.activity import Activity
 from momantu_bt.claim import Claim, ObjectAt, ObjectOn
+from momantu_bt.detector import ObjectDetector, View
 from momantu_bt.failure import FailureValue
 from momantu_bt.geometry import Array
 from momantu_bt.lazy import lazily
@@ -14,18 +16,16 @@ from momantu_bt.robot import CAMERA_CARRIER, Robot
 from momantu_bt.service import Localization, PlanningScene, Snapshot
 from momantu_bt.skill import Failure, In, Needs, Out, Run, Skill, compute
 from momantu_bt.symptom import Symptom
+from momantu_skills.perception.objects.detectors import DETECTORS
 
 with lazily():
     from momantu_skills.gaze import surveys
     from momantu_skills.perception.camera import pictures
     from momantu_skills.perception.geometry import regions
-    from momantu_skills.perception.objects import detector
 
 
 LOOKS = 3
 """Fewest looks over a surface before a thing is said not to be there."""
-BUDGET = 0.1
-"""s granted to making sense of one look together with those before it."""
 EXACT = 0.02
 """m that a found thing may be off and still be got hold of, with fingers 0.1 m apart."""
 
@@ -41,6 +41,7 @@ class DetectObject(Skill):
     object: ObjectClass = In(doc="what to find: its category and the sizes that are known")
     on: str = In(names="surface", doc="the surface that it stands on")
     views: int = In(2, least=1, doc="from how many angles to see it before it counts as measured")
+    detector: str = In("geometric", names=DETECTORS.name, doc="what finds it in the pictures")
     found: DetectedObject = Out(doc="the best match; pose in odom, stamped")
     failures = {
         "OBJECT_NOT_FOUND": "no object on the surface is the requested one; data lists those found",
@@ -58,8 +59,7 @@ class DetectObject(Skill):
     def __init__(self) -> None:
         """Start with nothing seen."""
         super().__init__()
-        self._detector: detector.ObjectDetector = detector.GeometricDetector()
-        self._views: list[pictures.View] = []
+        self._views: list[View] = []
 
     def run(self, robot: Robot) -> Run:
         """Look and measure until the thing was seen in enough looks, or none is left."""
@@ -67,15 +67,17 @@ class DetectObject(Skill):
         region = regions.surface_region(corners)
         pending = surveys.looks_over(self, robot, corners, LOOKS)
         snapshots: list[Snapshot] = []
-        result: detector.Detections | None = None
+        finder = DETECTORS.load(self.detector)()
+        result: tuple[DetectedObject, ...] | None = None
         best: DetectedObject | None = None
         while pending:
             snapshot = yield from surveys.glance(self, robot, self.planning_scene, pending.pop(0))
             if snapshot is None:
                 continue
             snapshots.append(snapshot)
-            result = yield from compute(partial(self._measure, snapshots, region), budget=BUDGET)
-            best = None if result is None else self._asked_of(result)
+            work = partial(self._measure, finder, snapshots, region)
+            result = yield from compute(work, budget=finder.budget)
+            best = None if result is None else _asked_of(result, finder.accepted)
             if best is None:
                 continue
             if len(snapshots) >= self.views:
@@ -85,7 +87,7 @@ class DetectObject(Skill):
         if result is None:
             raise self._unseen(len(snapshots))
         if best is None:
-            raise self._not_found(result.things)
+            raise self._not_found(result)
         self.found = best
 
     def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
@@ -95,15 +97,15 @@ class DetectObject(Skill):
         return ObjectOn(self.object, self.on) if failure.code == "OBJECT_NOT_FOUND" else None
 
     def _measure(
-        self, snapshots: list[Snapshot], region: regions.SurfaceRegion
-    ) -> detector.Detections | None:
+        self,
+        finder: ObjectDetector,
+        snapshots: list[Snapshot],
+        region: regions.SurfaceRegion,
+    ) -> tuple[DetectedObject, ...] | None:
         for snapshot in snapshots[len(self._views) :]:
             self._views.append(pictures.see(snapshot, region, self.planning_scene))
         low, high = region.support_heights
-        return self._detector.detect(self._views, low, high, self.object)
-
-    def _asked_of(self, result: detector.Detections) -> DetectedObject | None:
-        return next((t for t in result.things if t.score >= self._detector.accepted), None)
+        return finder.detect(self._views, low, high, self.object)
 
     def _corners(self) -> Array:
         surface = self.site.surfaces.get(self.on)
@@ -133,3 +135,8 @@ class DetectObject(Skill):
             f"no {self.object.category} as asked on {self.on}; {there}",
             seen=seen,
         )
+
+
+def _asked_of(things: Sequence[DetectedObject], accepted: float) -> DetectedObject | None:
+    """The best thing whose score is good enough."""
+    return next((thing for thing in things if thing.score >= accepted), None)

@@ -264,9 +264,15 @@ _KINDS = {
 
 
 def check_name(context: Context, name: str, place: Place, kind: str) -> None:
-    """A place, surface or named pose by name, where the world or robot is known."""
+    """A place, surface, named pose or plug-in by name, where the valid names are known."""
     valid = context.names_of(kind)
     if valid is None or name in valid:
+        return
+    if kind not in _KINDS:
+        message = f"no plug-in of {kind} is called {name!r}"
+        context.problems.error(
+            "unknown-plugin", place, message, valid_names(name, valid, "installed")
+        )
         return
     one, several = _KINDS[kind]
     where = "the robot" if kind == "named_pose" else "the world"

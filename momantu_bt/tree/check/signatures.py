@@ -8,7 +8,7 @@ from typing import Any
 
 from momantu_bt.formats.names import nearest, valid_names
 from momantu_bt.formats.places import Place
-from momantu_bt.plugins import PluginError
+from momantu_bt.plugins import PluginError, installed_names
 from momantu_bt.robot import RobotDescription
 from momantu_bt.skill import Port, Skill
 from momantu_bt.tree.catalogue import AUTOREMAP, NODES, SUBTREE, NodeSpec
@@ -120,6 +120,8 @@ class Context:
 
     def names_of(self, kind: str) -> tuple[str, ...] | None:
         """Valid values of an input with `names=kind`; None when they are unknown."""
+        if "." in kind:
+            return installed_names(kind)
         if kind == "named_pose":
             return None if self.description is None else tuple(self.description.named_poses)
         if self.site is None:

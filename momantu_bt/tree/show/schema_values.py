@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, TypeAlias
 
 from momantu_bt.formats.units import units_of
+from momantu_bt.plugins import installed_names
 from momantu_bt.skill import MISSING, Port
 from momantu_bt.tree.files.yaml.words import BTCPP
 from momantu_bt.values import kinds
@@ -40,6 +41,8 @@ def value_schema(port: Port, names: Names) -> Schema:
     if port.type is ScriptText:
         return found | SCRIPT
     known = names.get(port.names or "")
+    if port.names is not None and "." in port.names:
+        known = installed_names(port.names)
     literal = {"enum": list(known)} if known else _of(kind_of(port.type), port.unit, _DEEPEST)
     if port.default is not MISSING and isinstance(port.default, bool | int | float | str):
         found["default"] = port.default

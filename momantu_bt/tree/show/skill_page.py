@@ -89,7 +89,9 @@ def pages(skills: Mapping[str, type[Skill]]) -> dict[str, str]:
 def kind(port: Port) -> str:
     """A port's type, what it names, its unit and its range, in words."""
     words = label(port.type)
-    if port.names is not None:
+    if port.names is not None and "." in port.names:
+        words += f", a plug-in of `{port.names}`"
+    elif port.names is not None:
         words += f", a {port.names.replace('_', ' ')}"
     if port.unit is not None:
         words += f" in {port.unit}"

@@ -76,6 +76,12 @@ class Say(Skill):
     pace: float = In(1.0, unit="Hz", doc="how fast")
 
 
+class Save(Skill):
+    """Write down what the world is like, in one of the formats that are read."""
+
+    kind: str = In(doc="the format", names="momantu_bt.world_files")
+
+
 class Count(Skill):
     """Give a number, and a list of poses."""
 
@@ -106,7 +112,7 @@ def _robot() -> SimpleNamespace:
 
 @pytest.fixture(scope="session")
 def registry() -> Registry:
-    """Eight skills, the world `rooms`, the robot `toy`, the service `localization`."""
+    """Nine skills, the world `rooms`, the robot `toy`, the service `localization`."""
     skills: dict[str, type[Skill]] = {
         "navigate": Navigate,
         "detect_object": DetectObject,
@@ -115,6 +121,7 @@ def registry() -> Registry:
         "reset_pose": ResetPose,
         "say": Say,
         "count": Count,
+        "save": Save,
         "relocalize": Relocalize,
     }
     rooms = SimpleNamespace(name="rooms", default_robot="toy", site=_site)

@@ -120,6 +120,12 @@ def test_unknown_surface(expect: Expect) -> None:
     expect("unknown-surface", body, hint="surfaces: table_a, table_b")
 
 
+def test_unknown_plugin(expect: Expect, fine: Fine) -> None:
+    """An input may name a plug-in of any group; here, what reads world files."""
+    fine(main("- save: yaml"))
+    expect("unknown-plugin", main("- save: «yamml»"), hint="did you mean yaml?")
+
+
 def test_unknown_named_pose(expect: Expect) -> None:
     expect("unknown-named-pose", main("- reset_pose: «hom»"), hint="did you mean home?")
 

@@ -6,9 +6,10 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import pytest
-from momantu_skills.perception.camera.pictures import View, see
+from momantu_skills.perception.camera.pictures import see
 from momantu_skills.perception.geometry.regions import Region, disc
 
+from momantu_bt.detector import View
 from momantu_bt.geometry import Transform
 from momantu_bt.service import Snapshot
 from momantu_bt.testing import ScriptedRobot

@@ -2,30 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from momantu_bt.geometry import Array
+from momantu_bt.detector import View
 from momantu_bt.service import PlanningScene, Snapshot
 from momantu_skills.perception.camera.cloud import points_from_depth
 from momantu_skills.perception.geometry.regions import Region
 
 STRIDE = 2
 """Pixels between two samples: a can 1 m away still has 700 points."""
-
-
-@dataclass(frozen=True, slots=True)
-class View:
-    """A snapshot and its points (n, 3) in odom, m: in the region asked, the robot taken out."""
-
-    snapshot: Snapshot
-    points: Array
-
-    @property
-    def camera(self) -> Array:
-        """Where the camera was, (3,) in odom, m."""
-        return self.snapshot.odom_from_camera.position
 
 
 def see(snapshot: Snapshot, region: Region, scene: PlanningScene, stride: int = STRIDE) -> View:

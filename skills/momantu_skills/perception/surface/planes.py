@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from momantu_bt.detector import View
 from momantu_bt.geometry import Array, Transform, quaternion_from_axis_angle
-from momantu_skills.perception.camera.pictures import View
 from momantu_skills.perception.geometry.grids import Grid, Mask, closed, largest_component
 from momantu_skills.perception.geometry.regions import convex_hull
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from momantu_bt.detector import View
 from momantu_bt.frames import ODOM
 from momantu_bt.geometry import Array, Pose, Transform, quaternion_from_axis_angle
 from momantu_bt.messages import SupportPlane
-from momantu_skills.perception.camera.pictures import View
 from momantu_skills.perception.geometry.regions import SurfaceRegion
 from momantu_skills.perception.surface.planes import Support, measure_support
 from momantu_skills.perception.surface.segment import SegmentConfig, Thing, headroom, things_on

@@ -1,18 +1,18 @@
-"""The detector: from views of a surface to the objects on it, scored against a request."""
+"""The geometric detector: from views of a surface to the objects on it, best match first."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import ClassVar
 
 import numpy as np
 
+from momantu_bt.detector import View
 from momantu_bt.frames import ODOM
 from momantu_bt.geometry import Array, Pose, Transform, quaternion_from_axis_angle
 from momantu_bt.messages import DetectedObject, ObjectClass
-from momantu_skills.perception.camera.pictures import View
 from momantu_skills.perception.objects.matching import MatchConfig, score
 from momantu_skills.perception.objects.shapes import Shape, describe
 from momantu_skills.perception.objects.splitting import split
@@ -25,33 +25,6 @@ SIMPLE_BEYOND = 0.15
 """Share of points outside the form up to which it is one thing: a mug's handle has a tenth."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Detections:
-    """support: the surface as measured. things: everything on it, best score first."""
-
-    support: Support
-    things: tuple[DetectedObject, ...]
-
-
-class ObjectDetector(Protocol):
-    """Finds things on a surface. A learned detector may take the place of the geometric one."""
-
-    def detect(
-        self, views: Sequence[View], low: float, high: float, asked: ObjectClass
-    ) -> Detections | None:
-        """Everything that stands on the surface between the heights `low` and `high` (m, odom).
-
-        None when no view shows such a surface. Scores say how well each thing is `asked`; one
-        below `accepted` is another thing.
-        """
-        ...
-
-    @property
-    def accepted(self) -> float:
-        """Score from which on a thing is the asked one."""
-        ...
-
-
 @dataclass(frozen=True)
 class GeometricDetector:
     """Measures the plane, groups what stands on it, and fits cylinders and boxes."""
@@ -60,6 +33,9 @@ class GeometricDetector:
     segments: SegmentConfig = field(default_factory=SegmentConfig)
     matches: MatchConfig = field(default_factory=MatchConfig)
 
+    budget: ClassVar[float] = 0.1
+    """s granted to making sense of one look together with those before it."""
+
     @property
     def accepted(self) -> float:
         """Score from which on a thing is the asked one."""
@@ -67,7 +43,7 @@ class GeometricDetector:
 
     def detect(
         self, views: Sequence[View], low: float, high: float, asked: ObjectClass
-    ) -> Detections | None:
+    ) -> tuple[DetectedObject, ...] | None:
         """See `ObjectDetector.detect`."""
         support = measure_support(views, low, high, self.planes)
         if support is None:
@@ -77,7 +53,7 @@ class GeometricDetector:
         shapes = [shape for thing in things for shape in self._shapes(thing, eyes, asked)]
         found = [self._object(shape, support, asked) for shape in shapes]
         found.sort(key=lambda thing: -thing.score)
-        return Detections(support, tuple(found))
+        return tuple(found)
 
     def _shapes(self, thing: Thing, eyes: Array, asked: ObjectClass) -> list[Shape]:
         """The thing as a whole, or its parts where it is several that touch."""
