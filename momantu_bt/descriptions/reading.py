@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, ClassVar, TypeAlias
 
 from momantu_bt.errors import MomantuError
+from momantu_bt.formats import text
 from momantu_bt.formats.places import KeyPath, Place, excerpt
 from momantu_bt.formats.problems import Problem
 from momantu_bt.formats.yaml.errors import YamlRules
@@ -52,17 +53,17 @@ def read_text(path: Path, error: type[DescriptionError]) -> str:
     """The text of a file.
 
     Raises:
-        DescriptionError: it cannot be read, or is too long; of the class `error`.
+        DescriptionError: it cannot be read, is too long or not UTF-8; of the class `error`.
     """
     try:
-        data = path.read_bytes()
+        return text.read_text(path, str(path), f"{error.what} file", MOST_BYTES)
     except OSError as trouble:
         message = f"the {error.what} file cannot be read: {trouble.strerror}"
         raise error(path, "", [KeyProblem("", message, Place(str(path)))]) from trouble
-    if len(data) > MOST_BYTES:
-        message = f"the {error.what} file has {len(data)} bytes; at most {MOST_BYTES}"
-        raise error(path, "", [KeyProblem("", message, Place(str(path)))])
-    return data.decode("utf-8", errors="replace")
+    except text.TextError as trouble:
+        found = trouble.problem
+        problem = KeyProblem(found.code, found.message, found.place, found.hint)
+        raise error(path, "", [problem]) from None
 
 
 class Reading:

@@ -75,7 +75,7 @@ def test_a_missing_file_and_a_huge_one_are_refused(tmp_path: Path) -> None:
     with pytest.raises(DescriptionError, match="cannot be read: No such file"):
         read_text(tmp_path / "none.yaml", DescriptionError)
     (tmp_path / "big.yaml").write_bytes(b"#" * 1_000_001)
-    with pytest.raises(DescriptionError, match="1000001 bytes; at most"):
+    with pytest.raises(DescriptionError, match="has 1000001 bytes; a description file has at most"):
         read_text(tmp_path / "big.yaml", DescriptionError)
 
 

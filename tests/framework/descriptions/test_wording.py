@@ -143,10 +143,13 @@ def test_files_that_cannot_be_read_are_told(tmp_path: Path) -> None:
         read_text(tmp_path / "none.yaml", DescriptionError)
     large = tmp_path / "large.yaml"
     large.write_bytes(b"#" * (MOST_BYTES + 1))
-    with pytest.raises(DescriptionError, match=f"has {MOST_BYTES + 1} bytes; at most {MOST_BYTES}"):
+    with pytest.raises(DescriptionError, match=f"has {MOST_BYTES + 1} bytes; a description file"):
         read_text(large, DescriptionError)
     large.write_bytes(b"#" * MOST_BYTES)
     assert len(read_text(large, DescriptionError)) == MOST_BYTES
+    large.write_bytes(b"a: 1\nb: \xff\n")
+    with pytest.raises(DescriptionError, match=r"large\.yaml:2:4: the file is not UTF-8 text"):
+        read_text(large, DescriptionError)
 
 
 def test_what_is_wrong_elsewhere_is_told_at_the_nearest_place() -> None:
