@@ -77,7 +77,7 @@ class Canvas:
 
     def text(
         self,
-        words: str,
+        content: str,
         near: Point,
         color: Rgb,
         size: int = 13,
@@ -91,7 +91,7 @@ class Canvas:
         """
         larger = float(np.clip(self.scale / SMALL_SCALE, 1.0, LARGEST))
         font = _font(round(size * larger) * SMOOTH)
-        left, top, right, bottom = font.getbbox(words)
+        left, top, right, bottom = font.getbbox(content)
         wide, high = right - left, bottom - top
         x, y = self._at(near)
         x, y = x - wide / 2, y - high / 2 - above * SMOOTH
@@ -108,7 +108,7 @@ class Canvas:
         self._written.append(box)
         self._draw.text(
             (box[0] - left, box[1] - top),
-            words,
+            content,
             color,
             font,
             stroke_width=round(1.5 * SMOOTH),

@@ -143,11 +143,11 @@ def _draw_frame(draw: ImageDraw.ImageDraw, view: _View, place: Transform) -> Non
             draw.line([start, end], fill=color, width=3)
 
 
-def _write(draw: ImageDraw.ImageDraw, view: _View, place: Transform, words: str) -> None:
+def _write(draw: ImageDraw.ImageDraw, view: _View, place: Transform, text: str) -> None:
     at = view.pixel(place.position)
     if at is not None:
         font = ImageFont.load_default(15)
-        draw.text((at[0] + 6, at[1] + 4), words, INK, font, stroke_width=3, stroke_fill=PAPER)
+        draw.text((at[0] + 6, at[1] + 4), text, INK, font, stroke_width=3, stroke_fill=PAPER)
 
 
 def _camera(
@@ -173,10 +173,10 @@ def _taken(camera: ViewCamera, base_from_view: Transform, width: int) -> Image.I
     return Image.fromarray(pixels).resize((width, HEIGHT), Image.Resampling.LANCZOS)
 
 
-def _titled(words: str, picture: Image.Image) -> Image.Image:
+def _titled(text: str, picture: Image.Image) -> Image.Image:
     titled = Image.new("RGB", (picture.width, picture.height + LINE), PAPER)
     titled.paste(picture, (0, LINE))
-    ImageDraw.Draw(titled).text((4, 4), words, INK, ImageFont.load_default(20))
+    ImageDraw.Draw(titled).text((4, 4), text, INK, ImageFont.load_default(20))
     return titled
 
 

@@ -42,7 +42,7 @@ def world_schema() -> dict[str, Any]:
     made = WorldFile.model_json_schema(mode="validation")
     for part, schema in {"WorldFile": made, **made["$defs"]}.items():
         for key, inner in schema.get("properties", {}).items():
-            words = description_of(part, key)
-            if words is not None:
-                inner["description"] = words
+            description = description_of(part, key)
+            if description is not None:
+                inner["description"] = description
     return editor_schema(made, "momantu-bt world file")

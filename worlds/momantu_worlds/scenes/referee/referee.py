@@ -32,13 +32,13 @@ ON_TOP = 0.005
 
 
 @dataclass(slots=True)
-class Worst:
+class Peak:
     """The largest value so far, and the name of what had it."""
 
     value: float = 0.0
     what: str = ""
 
-    def see(self, value: float, what: str) -> None:
+    def record(self, value: float, what: str) -> None:
         """Record a value; the largest counts."""
         if value > self.value:
             self.value, self.what = value, what
@@ -60,7 +60,7 @@ class Referee:
             for body in episode.bodies
             if not body.static and body.name != self._goal.item
         }
-        self._shift, self._tilt, self._bump = Worst(), Worst(), Worst()
+        self._shift, self._tilt, self._bump = Peak(), Peak(), Peak()
         self._rest = episode.body(self._goal.item).map_from_body
         self._rest_since = self._now = 0.0
         self._touching: frozenset[str] = frozenset()
@@ -78,8 +78,8 @@ class Referee:
             self._rest, self._rest_since = pose, now
         for name, before in self._others.items():
             pose = self._truth.pose(name)
-            self._shift.see(_moved(before, pose), name)
-            self._tilt.see(tilt(pose), name)
+            self._shift.record(_moved(before, pose), name)
+            self._tilt.record(tilt(pose), name)
 
     def relocated(self, name: str) -> None:
         """A body was moved by a fault, not by the robot."""
@@ -111,7 +111,7 @@ class Referee:
             if item in pair:
                 touching.add(pair[pair[0] == item])
             elif contact.first in links and contact.second not in links:
-                self._bump.see(contact.force, f"{contact.first} on {contact.second}")
+                self._bump.record(contact.force, f"{contact.first} on {contact.second}")
         # a body that has fallen asleep reports no contacts: what it last touched still holds
         if touching:
             self._touching = frozenset(touching)

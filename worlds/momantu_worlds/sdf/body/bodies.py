@@ -56,7 +56,7 @@ class BodyMaker:
     """Makes the bodies of one import, each with a unique name."""
 
     def __init__(self, shaping: Shaping, ground: Ground, deviations: Deviations) -> None:
-        self._shaping, self._ground, self._findings = shaping, ground, deviations
+        self._shaping, self._ground, self._deviations = shaping, ground, deviations
         self._names: set[str] = set()
 
     def body(self, model: PlacedModel, group: Group) -> Iterator[ImportedBody]:
@@ -66,20 +66,20 @@ class BodyMaker:
         parts = list(joined(self._parts(model, group, at)))
         if not parts:
             if any(self._had_shapes(placed) for placed in group.links):
-                self._findings.dropped(
+                self._deviations.dropped(
                     first.link.place, first.subject, "a body of which no shape is left", "left out"
                 )
             return
         still = group.still or not any(part.collision for part in parts)
         if still and not group.still:
-            self._findings.changed(
+            self._deviations.changed(
                 first.link.place, first.subject, "it can move but not be touched", "it stays there"
             )
         mass = None if still else sum(placed.link.mass for placed in group.links)
         title = first.subject if len(group.links) == 1 else "/".join(first.path)
         if not still and len(parts) > MOST_PARTS:
             what = f"{len(parts)} parts of one loose body"
-            self._findings.dropped(
+            self._deviations.dropped(
                 first.link.place, first.subject, what, f"the first {MOST_PARTS} are kept"
             )
             parts = parts[:MOST_PARTS]
@@ -128,14 +128,16 @@ class BodyMaker:
         if not given:
             return None
         friction = min(given)
-        kept = float(np.clip(friction, *FRICTION))
+        used = float(np.clip(friction, *FRICTION))
         first = group.links[0]
-        if kept != friction or max(given) != friction:
-            said = f"friction {max(given):g}" + (
+        if used != friction or max(given) != friction:
+            given_text = f"friction {max(given):g}" + (
                 f" to {friction:g}" if max(given) > friction else ""
             )
-            self._findings.changed(first.link.place, first.subject, said, f"{kept:g} for all of it")
-        return kept
+            self._deviations.changed(
+                first.link.place, first.subject, given_text, f"{used:g} for all of it"
+            )
+        return used
 
     def _name(self, model: PlacedModel, group: Group) -> str:
         """The outermost model's name if that is one body, else the innermost's, and the link's."""
@@ -147,9 +149,9 @@ class BodyMaker:
         link = [] if len(own) == len(inner.links) else [first.link.name]
         return self.unique("_".join([first.path[-1], *link]))
 
-    def unique(self, said: str) -> str:
+    def unique(self, title: str) -> str:
         """A name as world files have them, that nothing else has."""
-        stem = plain_name(said)
+        stem = plain_name(title)
         name, count = stem, 2
         while name in self._names:
             name, count = f"{stem}_{count}", count + 1
@@ -165,9 +167,9 @@ def _frame_of(model: PlacedModel, group: Group) -> Transform:
     return next(one for one in model.everything() if one.path == first.path).world_from_model
 
 
-def plain_name(said: str) -> str:
+def plain_name(title: str) -> str:
     """Small letters, digits and underscores, beginning with a letter."""
-    name = re.sub(r"[^a-z0-9]+", "_", said.lower()).strip("_")[:_LONGEST].rstrip("_")
+    name = re.sub(r"[^a-z0-9]+", "_", title.lower()).strip("_")[:_LONGEST].rstrip("_")
     if not name:
         return "body"
     return name if name[0].isalpha() else f"body_{name}"

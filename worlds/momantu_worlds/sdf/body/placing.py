@@ -52,8 +52,8 @@ def _place(
         world_from_model = state.pose or world_from_model
         scale = state.scale
         if scale != (1.0, 1.0, 1.0):
-            said = "a state with scale {:g} {:g} {:g}".format(*scale)
-            deviations.changed(state.place, "/".join(path), said, "its shapes are scaled")
+            what = "a state with scale {:g} {:g} {:g}".format(*scale)
+            deviations.changed(state.place, "/".join(path), what, "its shapes are scaled")
     saved = {} if state is None else state.links
     links = tuple(
         PlacedLink(

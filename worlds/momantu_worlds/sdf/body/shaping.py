@@ -176,8 +176,8 @@ class Shaping:
     def _few(self, pieces: Sequence[Piece], shape: Shape, subject: str) -> Sequence[Piece]:
         few = reduced(pieces)
         if count(few) < count(pieces):
-            said = f"{count(pieces)} triangles"
-            self.deviations.changed(shape.place, subject, said, f"{count(few)} are kept")
+            what = f"{count(pieces)} triangles"
+            self.deviations.changed(shape.place, subject, what, f"{count(few)} are kept")
         return few
 
     def _convex(

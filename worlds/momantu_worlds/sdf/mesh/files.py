@@ -78,9 +78,9 @@ def read_mesh(mesh: MeshFile, *, heed_up: bool = False) -> ReadMesh:
         up = "Y_UP"  # glTF 2.0 knows no other, and Gazebo turns it
     elif heed_up and notes.up:
         up = notes.up
-    said = notes.up if notes.up != "Z_UP" else ""
+    other_up = notes.up if notes.up != "Z_UP" else ""
     return ReadMesh(
-        _shaped(pieces, Z_FROM[up] * notes.meter, mesh), said, tuple(companions.missing)
+        _shaped(pieces, Z_FROM[up] * notes.meter, mesh), other_up, tuple(companions.missing)
     )
 
 

@@ -108,21 +108,21 @@ def list_leftovers(
 
 def described(element: Element) -> str:
     """An element in a few words: its tag, its name and its type."""
-    said = [f"{k}='{element.attributes[k]}'" for k in ("name", "type") if k in element.attributes]
-    return f"<{' '.join((element.tag, *said))}>"
+    named = [f"{k}='{element.attributes[k]}'" for k in ("name", "type") if k in element.attributes]
+    return f"<{' '.join((element.tag, *named))}>"
 
 
 def _says_nothing(element: Element) -> bool:
     if element.tag in NEUTRAL:
         values = NEUTRAL[element.tag]
-        return values is None or element.text.lower() in values or not any(_words(element))
+        return values is None or element.text.lower() in values or not any(_texts(element))
     if element.tag in NOTHING_AT_ZERO:
-        numbers = [word for text in _words(element) for word in text.split()[:COLORS]]
+        numbers = [word for text in _texts(element) for word in text.split()[:COLORS]]
         return all(re.fullmatch(r"[-+]?0*\.?0*(e[-+]?\d+)?", word) for word in numbers)
-    return not element.attributes and not any(_words(element))
+    return not element.attributes and not any(_texts(element))
 
 
-def _words(element: Element) -> Iterator[str]:
+def _texts(element: Element) -> Iterator[str]:
     """All texts and attributes within an element."""
     waiting = list(element.children)
     yield element.text

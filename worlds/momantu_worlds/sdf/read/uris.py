@@ -161,9 +161,9 @@ def version_of(root: Element) -> tuple[int, int]:
         raise root.error(f"the file begins with <{root.tag}>; expected <sdf version='1.6'>{hint}")
     version = _version_of(root)
     if version < OLDEST or version > NEWEST:
-        said = root.attributes.get("version", "")
+        written = root.attributes.get("version", "")
         raise root.error(
-            f"SDF version {said!r} is not read; expected {oldest} to {newest} "
+            f"SDF version {written!r} is not read; expected {oldest} to {newest} "
             "(`gz sdf --convert FILE` writes a newer one)"
         )
     return version

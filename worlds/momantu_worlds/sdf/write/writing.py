@@ -144,11 +144,11 @@ def _site(site: Proposal) -> Iterator[str]:
     if site.objects:
         yield "  objects:"
         for name, sizes in site.objects.items():
-            said = (
+            entries = (
                 f"{key}: {value if isinstance(value, str) else _number(value)}"
                 for key, value in sizes.items()
             )
-            yield f"    {name}: {{{', '.join(said)}}}"
+            yield f"    {name}: {{{', '.join(entries)}}}"
 
 
 def _planar(pose: Pose2D) -> str:
