@@ -38,7 +38,7 @@ class PluginClash(PluginError):
 
 @dataclass(frozen=True, slots=True)
 class Files(Generic[T]):
-    """How plug-ins of a group are read from files, beside those that are installed.
+    """Reads plug-ins of a group from files, in addition to the installed ones.
 
     usual: the file's name in a folder that stands for it. read: gives the plug-in that a file
     describes, and raises PluginError for a kind of file that is not read.
@@ -49,7 +49,7 @@ class Files(Generic[T]):
 
 
 class Group(Mapping[str, T]):
-    """The plug-ins of one entry point group, by name; each is imported when it is asked for.
+    """The plug-ins of one entry-point group, by name; each is imported at its first use.
 
     Where the group has `files`, a path stands in the place of a name. `group[name]` raises KeyError
     when there is none and PluginError when it is broken; `load` tells both in words.
@@ -124,11 +124,11 @@ class Group(Mapping[str, T]):
         return self.files is not None and ("/" in name or name.endswith(ENDINGS))
 
     def absolute(self, name: str | None) -> str | None:
-        """The same plug-in, wherever the process that is told of it works."""
+        """A name of the same plug-in that is valid in any working directory."""
         return str(Path(name).absolute()) if name is not None and self.is_path(name) else name
 
     def near_file(self, name: str) -> str | None:
-        """What to write instead of a file's bare name; None when no such file is near."""
+        """The path to write instead of a file's bare name; None when there is no such file."""
         if self.files is not None:
             for file in (f"{name}.yaml", f"{name}.yml", f"{name}/{self.files.usual}"):
                 if Path(file).is_file():

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class RunTree(Protocol):
-    """What the fixture `run_tree` is."""
+    """The type of the fixture `run_tree`."""
 
     def __call__(
         self,

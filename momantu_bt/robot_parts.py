@@ -34,7 +34,7 @@ class Part(BaseModel):
 
 
 class ActuatorKind(StrEnum):
-    """What goals an actuator takes: BaseVelocity, joint goals, or GripperCommand."""
+    """The goals that an actuator takes: BaseVelocity, joint goals, or GripperCommand."""
 
     BASE = "base"
     JOINTS = "joints"
@@ -204,7 +204,7 @@ class EndEffector(Part):
         return self
 
     def positions(self, width: float) -> dict[str, float]:
-        """Where each finger joint stands at an opening, m; beyond the table it goes on straight."""
+        """The position of each finger joint at an opening, m; extrapolated beyond the table."""
         return {
             joint: _on_line([w for w, _ in rows], [p for _, p in rows], width)
             for joint, rows in self.opening.items()
@@ -236,7 +236,7 @@ def _on_line(xs: Sequence[float], ys: Sequence[float], x: float) -> float:
 
 
 class BaseLimits(Part):
-    """How fast the base may go and change its speed."""
+    """The base's limits of speed and acceleration."""
 
     linear: LinearSpeed
     """Greatest speed ahead."""

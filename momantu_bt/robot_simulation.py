@@ -66,7 +66,7 @@ class Linkage(Part):
 
 
 class Cuts(Part):
-    """Where a mesh is cut by planes across x, y and z of its own frame, m."""
+    """The planes across x, y and z of its own frame at which a mesh is cut, m."""
 
     x: tuple[Length, ...] = ()
     """Planes across x."""
@@ -77,7 +77,7 @@ class Cuts(Part):
 
 
 class Contacts(Part):
-    """What touches what, and how."""
+    """Which links touch what, and their friction."""
 
     floor_links: tuple[str, ...] = ()
     """Links that are not checked against the floor: the base and its wheels."""

@@ -20,7 +20,7 @@ from momantu_bt.world import Site
 
 @dataclass(frozen=True, slots=True)
 class ServiceContext:
-    """What a service gets when the run begins.
+    """What a service receives at the beginning of the run.
 
     parameters: the site's entry for this service. random: seeded from run seed and service name.
     """
@@ -63,7 +63,7 @@ class Service:
 
 
 class Localization(Protocol):
-    """Where the robot is in the map, and how sure that is."""
+    """The robot's pose in the map, and how certain it is."""
 
     @property
     def map_from_base(self) -> Pose2D:
@@ -91,7 +91,7 @@ class Localization(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class HeldObject:
-    """What is believed to be between the fingers, and its pose in the grasp frame."""
+    """The object believed to be between the fingers, and its pose in the grasp frame."""
 
     object: DetectedObject
     grasp_from_object: Transform
@@ -108,11 +108,11 @@ class Snapshot:
 
 
 class KnowsHeld(Protocol):
-    """What the robot holds, as believed."""
+    """The object that the robot believes to hold."""
 
     @property
     def held(self) -> HeldObject | None:
-        """What is held, judged anew at each update from gripper width and effort."""
+        """The held object, judged again at each update from gripper width and effort."""
         ...
 
 
@@ -140,7 +140,7 @@ class PlanningScene(KnowsHeld, Protocol):
         ...
 
     def is_robot(self, points: Array, state: RobotState) -> Any:
-        """(n,) bool: which points (n, 3) in base frame lie on the robot or on what it holds."""
+        """(n,) bool: which points (n, 3) in the base frame are on the robot or its held object."""
         ...
 
 

@@ -32,7 +32,7 @@ def ensure_shared_library(name: str, carriers: Iterable[str]) -> None:
 
 
 def _folders(packages: Iterable[str]) -> list[Path]:
-    """Where packages lie; nothing is imported."""
+    """The folders of packages; nothing is imported."""
     found = [importlib.util.find_spec(package) for package in packages]
     return [
         Path(folder)

@@ -262,14 +262,14 @@ class Skill:
 
     @classmethod
     def rehearsal(cls, seed: int) -> Mapping[str, Any]:
-        """What `momantu-bt skills test` runs it with: arguments of `momantu_bt.testing.run_skill`.
+        """Arguments of `momantu_bt.testing.run_skill` with which `momantu-bt skills test` runs it.
 
         Made anew at each call. What it leaves out, such as inputs, is made from the ports' types.
         """
         return {}
 
     def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
-        """What its end says about the world, for a judge; None when it says nothing.
+        """What its end claims about the world, for a judge; None when it claims nothing.
 
         Called once after the skill has ended, and only where somebody judges; it reads no sensor
         and commands nothing. failure: None asks what SUCCESS says. Otherwise it is how the skill

@@ -12,7 +12,7 @@ from enum import StrEnum
 
 
 class Symptom(StrEnum):
-    """What has gone wrong, as far as the robot can tell; the value says it."""
+    """What has gone wrong, as far as the robot can tell, in words."""
 
     NOT_SEEN = "what should be there is not seen"
     OBJECT_GONE = "the object that is looked for is not where it should be"

@@ -134,11 +134,11 @@ class View(Protocol):
 
     @property
     def url(self) -> str:
-        """Where to look."""
+        """The address to open in a browser."""
         ...
 
     def update(self) -> None:
-        """Show the world as it is now."""
+        """Show the current world."""
         ...
 
     def close(self) -> None:

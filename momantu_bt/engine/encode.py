@@ -42,7 +42,7 @@ def _find_writer(kind: Any) -> _Writer:
 
 
 _writer: Callable[[Any], _Writer] = cache(_find_writer)
-"""How values of a type are written, which is found once."""
+"""The writer for values of a type, cached."""
 
 
 def _float(value: float, out: list[bytes]) -> None:

@@ -95,7 +95,7 @@ class Catching(TreeNode):
 
     @property
     def note(self) -> str:
-        """What it does about a failure while it does it."""
+        """Its note while it runs: how it handles a failure."""
         if self.handling is None or self.first is None:
             return ""
         handler = self.handling.node
@@ -179,7 +179,7 @@ class Recover(Catching):
 
     @property
     def role(self) -> Role:
-        """Its tries are told."""
+        """Its note: the number of tries."""
         return Role.RECOVERY
 
     def step(self) -> Status:

@@ -129,7 +129,7 @@ class Switch6(Switch):
 
 
 def is_case(value: Any, case: Any) -> bool:
-    """Whether a value is the one that a case names: equal as it is, as text or as a number.
+    """Whether a value matches a case: equal as it is, as text or as a number.
 
     A text that reads as a number is one. Numbers are equal within `EPSILON`; `true` is not one.
     """

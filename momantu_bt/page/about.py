@@ -17,7 +17,7 @@ _VERDICTS = {None: "", True: ", the referee agrees", False: ", the referee denie
 
 
 def about(recording: Recording) -> dict[str, Any]:
-    """Title, outcome, facts in the head, details beneath, and a warning where there is one."""
+    """The head of the page: title, outcome, facts, details, and perhaps a warning."""
     told, report = recording.about, recording.report
     facts = [(name, told.get(name)) for name in ("seed", "world", "robot")]
     facts.append(("simulated", f"{_sim_time(recording):.2f} s"))
@@ -53,7 +53,7 @@ def _cut_off() -> dict[str, str]:
 
 
 def _outcome(recording: Recording, report: Mapping[str, Any]) -> dict[str, str]:
-    """kind: good where the tree succeeded and nobody denies it."""
+    """kind: good if the tree succeeded and no referee denies it."""
     status, success = report["status"], report["success"]
     sentence = ""
     if status == FAILURE:

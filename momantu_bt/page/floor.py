@@ -22,7 +22,7 @@ _SMALLEST = 4.0
 
 
 def floor(recording: Recording) -> dict[str, Any]:
-    """All lengths in m, angles in rad, in the map's frame, or in odom where nobody knows the map.
+    """Lengths in m, angles in rad, in the map's frame, or in odom without a map.
 
     image: the floor plan and where it lies. path: columns t, x, y, yaw. scenes: columns t and
     items, all objects that are believed in from t on; one that is in the hand has no x and y.
@@ -44,7 +44,7 @@ def floor(recording: Recording) -> dict[str, Any]:
 
 
 def _site(recording: Recording) -> Site:
-    """What the robot was told; nothing where the record does not say."""
+    """The site of the run; empty if the record does not have it."""
     text = recording.files.get(SITE)
     try:
         found = None if text is None else from_json(json.loads(text))
@@ -59,7 +59,7 @@ def _surface(name: str, surface: Any) -> dict[str, Any]:
 
 
 def _path(recording: Recording) -> dict[str, list[float]]:
-    """The base over time; before anybody knows where odom lies in the map it is left out."""
+    """The base over time, from the moment at which odom's pose in the map is known."""
     rows = [(time, message) for time, message in _messages(recording, "/pose")]
     frame = MAP if any(message["frame_id"] == MAP for _, message in rows) else ODOM
     columns: dict[str, list[float]] = {"t": [], "x": [], "y": [], "yaw": []}
@@ -74,7 +74,7 @@ def _path(recording: Recording) -> dict[str, list[float]]:
 
 
 def _scenes(recording: Recording) -> dict[str, list[Any]]:
-    """What is believed to be where, whenever that changes."""
+    """The believed objects and their poses, at each change."""
     updates: list[tuple[float, int, Mapping[str, Any]]] = [
         *((time, 0, message) for time, message in _messages(recording, "/tf")),
         *((time, 1, message) for time, message in _messages(recording, "/objects")),
@@ -98,7 +98,7 @@ def _scenes(recording: Recording) -> dict[str, list[Any]]:
 
 
 def _newest(transforms: Sequence[Mapping[str, Any]], before: Pose2D) -> Pose2D:
-    """Where odom lies in the map."""
+    """The pose of odom in the map."""
     for each in transforms:
         if each["parent_frame_id"] == MAP and each["child_frame_id"] == ODOM:
             return _planar(each["translation"], each["rotation"])

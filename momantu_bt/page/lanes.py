@@ -72,7 +72,7 @@ def _mark(tick: int, words: str) -> dict[str, Any]:
 
 
 def _incidents(recording: Recording) -> Iterator[dict[str, Any]]:
-    """What was dangerous, by the referee."""
+    """The incidents that the referee saw."""
     for incident in (recording.report or {}).get("incidents", ()):
         words = f"{incident['kind']}: {incident['sentence']}"
         yield _mark(_tick_at(recording, incident["time"]), words)

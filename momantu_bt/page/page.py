@@ -84,7 +84,7 @@ def _script() -> str:
 
 
 def _policy(style: str, script: str) -> str:
-    """What the browser may do: show pictures that the page holds, run this script; no network."""
+    """The content policy: show the page's own pictures, run its script, use no network."""
     return (
         f"default-src 'none'; img-src data:; style-src {_digest(style)}; "
         f"script-src {_digest(script)}"

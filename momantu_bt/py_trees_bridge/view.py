@@ -57,7 +57,7 @@ class NodeView(Behaviour):
 
     @property
     def feedback_message(self) -> str:
-        """What the node says beside its name: its note while it runs, or why it failed."""
+        """The text beside its name: its note while it runs, or its failure."""
         if self.node.shown is FAILURE:
             return str(self.node.failure or "")
         return self.node.note if self.node.shown is RUNNING else ""

@@ -25,7 +25,7 @@ class ReportedNode(Protocol):
 
     @property
     def name(self) -> str:
-        """What it is called."""
+        """Its name."""
         ...
 
     @property
@@ -60,11 +60,11 @@ class ChangeLines:
         self._notes: dict[int, str] = {}
 
     def ticked(self, run: Executor) -> None:
-        """Tell this tick's changes."""
+        """Print this tick's changes."""
         self.tell(run.context.now, run.context.changes)
 
     def tell(self, now: float, changes: Iterable[StatusChange]) -> None:
-        """Tell the changes of one tick of a run or of a record."""
+        """Print the changes of one tick of a run or of a record."""
         for node, status, note, failure in _parents_first(changes):
             if node.role is Role.RECOVERY:
                 self._tell_note(now, node, note)
@@ -104,7 +104,7 @@ def _parents_first(changes: Iterable[StatusChange]) -> Iterator[StatusChange]:
 
 
 def _level(node: ReportedNode) -> int:
-    """How many subtrees it is in."""
+    """The number of subtrees around it."""
     level, above = 0, node.above
     while above is not None:
         level, above = level + (above.role is Role.TREE), above.above

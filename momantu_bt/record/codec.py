@@ -36,7 +36,7 @@ dumps: Callable[[Any], str] = json.JSONEncoder(separators=(",", ":"), allow_nan=
 
 @dataclass(frozen=True, slots=True)
 class Opaque:
-    """What stands for a value that JSON cannot hold, or whose type is not installed here."""
+    """A placeholder for a value that JSON cannot hold, or whose type is not installed."""
 
     type: str
     text: str
@@ -98,7 +98,7 @@ def _to_json(value: Any, depth: int) -> Any:
 
 @cache
 def _writer(kind: type[Any]) -> Callable[[Any, int], dict[str, Any]]:
-    """How values of a type are written, which is found once."""
+    """The writer for values of a type, cached."""
     for test, write in _WRITERS:
         if issubclass(kind, test):
             return write

@@ -38,7 +38,7 @@ class ViewObserver:
         self._ticks = 0
 
     def ticked(self, run: Executor) -> None:
-        """Show the world as it is."""
+        """Show the current world."""
         self._ticks += 1
         if self._ticks % FRAME_EVERY == 1:
             self._view.update()

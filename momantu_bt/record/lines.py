@@ -41,7 +41,7 @@ class Shown(Protocol):
 
     @property
     def depth(self) -> int:
-        """How many nodes are around it."""
+        """Its depth in the tree."""
         ...
 
     @property
@@ -97,12 +97,12 @@ def _below(node: Shown) -> tuple[Shown, ...]:
 
 
 def _note(node: Shown) -> str:
-    """What it is at; a note that was left behind by an end says nothing."""
+    """Its current note; a note from before its end is dropped."""
     return node.note if node.shown is RUNNING else ""
 
 
 def running_text(root: Shown) -> str:
-    """What runs deepest: `navigate table_a, follow`; or how the tree ended."""
+    """The deepest running node: `navigate table_a, follow`; or how the tree ended."""
     if root.shown is SUCCESS or root.shown is FAILURE:
         return root.shown.value
     running = (node for node in _all(root) if node.shown is RUNNING)

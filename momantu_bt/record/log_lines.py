@@ -23,7 +23,7 @@ class LogLines:
         self._said: dict[int, FailureValue] = {}
 
     def write(self, run: Executor, file: McapFile) -> None:
-        """What has been said since the last tick."""
+        """The messages since the last tick."""
         now = run.context.now
         for text in self._remarks:
             self._line(file, now, _WARNING, text, "momantu-bt", "")

@@ -120,5 +120,5 @@ class McapFile:
 
     @property
     def removed(self) -> bool:
-        """Whether somebody has deleted the file meanwhile."""
+        """Whether the file has been deleted meanwhile."""
         return not self.path.exists()

@@ -16,7 +16,7 @@ LIBRARY = "momantu-bt"
 
 
 def header_record() -> bytes:
-    """The first record: no profile, and who wrote it."""
+    """The first record: no profile, and the library that wrote it."""
     return _record(HEADER, _text("") + _text(LIBRARY))
 
 

@@ -37,7 +37,7 @@ class Objects:
         self._held: HeldObject | None = None
 
     def write(self, run: Executor, file: McapFile) -> None:
-        """What has appeared or gone since the last tick."""
+        """The objects that appeared or disappeared since the last tick."""
         due = self._due(run.context.now)
         if not due and not run.context.writes:
             return
@@ -65,7 +65,7 @@ class Objects:
 
 
 def _believed(run: Executor) -> HeldObject | None:
-    """What the first service that knows of it believes to be held, where that can be drawn."""
+    """The held object as the first service that publishes it believes, if it can be drawn."""
     knowing = (each for each in run.services.running.values() if offers(each, KnowsHeld))
     held = getattr(next(knowing, None), "held", None)
     return held if isinstance(held, HeldObject) and _drawable(held.object) else None

@@ -64,7 +64,7 @@ class Recorder:
     # while the run is made
 
     def tap(self, robot: Robot) -> Robot:
-        """The robot, of which what is read is kept."""
+        """The robot, wrapped so that its readings are kept for the record."""
         self._tap = Tap(robot)
         return self._tap
 

@@ -55,7 +55,7 @@ class FalseClaim:
 
 @dataclass(frozen=True, slots=True)
 class SkillClaims:
-    """What one skill's ends claimed, against ground truth.
+    """The claims of one skill's ends, compared with ground truth.
 
     runs: how often it ended. judged_successes, judged_failures: of how many ends something was
     claimed that the world could judge. false_successes: SUCCESS that is denied; false_failures:
@@ -74,7 +74,7 @@ class SkillClaims:
 
 @dataclass(frozen=True, slots=True)
 class FaultReport:
-    """One fault that was asked for: as it is written, with the phase that was meant.
+    """One requested fault, as it is written, with its resolved phase.
 
     began: s; None when its phase never came. ended: s; None when it was not mended.
     """
@@ -126,7 +126,7 @@ class Report:
 
     @property
     def exit_code(self) -> ExitCode:
-        """What the command line exits with."""
+        """The exit code of the command line."""
         if self.status == ERROR:
             return ExitCode.INTERNAL
         if self.status == INTERRUPTED:

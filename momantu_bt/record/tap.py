@@ -11,7 +11,7 @@ _SLACK = 1e-6
 
 
 class Tap:
-    """Implements `Robot` by another one. It never reads a sensor that nobody asked for.
+    """Wraps a `Robot` and keeps its readings. It reads no sensor by itself.
 
     taken: pictures and scans by sensor, at most one each EVERY seconds, until somebody empties it.
     """

@@ -120,7 +120,7 @@ def _parting(left: Recording, right: Recording) -> Parting | None:
 
 
 def _without_time(line: str) -> str:
-    """What follows `12.35 s `."""
+    """The line without its time."""
     return line.partition(" s ")[2] if line != NOTHING else line
 
 

@@ -21,7 +21,7 @@ _WIDEST = 200
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """Where two runs part. left, right: in words, what the first and the second one have.
+    """The point where two runs part. left, right: what the first and the second have there.
 
     kind: "tree", "time", "robot state", "published value", "status", "note", "failure", "write",
     "command" or "end". where: the node with its place, or the cell, key or actuator; empty where

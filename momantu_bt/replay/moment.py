@@ -35,7 +35,7 @@ class ShownNode:
 
     @property
     def depth(self) -> int:
-        """How many nodes are around it."""
+        """Its depth in the tree."""
         return self.info.depth
 
     @property

@@ -27,7 +27,7 @@ def moment_lines(moment: Moment) -> Iterator[str]:
 
 
 def failures_of(moment: Moment) -> list[FailureValue]:
-    """What failed in this tick, each as far up as it went."""
+    """The failures of this tick, each at the topmost node it reached."""
     failed: dict[int, FailureValue] = {}
     for change in moment.tick.changes:
         if change.status == FAILURE.value and change.failure is not None:

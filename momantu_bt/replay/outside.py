@@ -34,7 +34,7 @@ class RecordedOutside(Outside):
         self._is_last = False
 
     def load(self, tick: TickRecord, *, last: bool) -> None:
-        """What is told in a tick. last: the run was over after it, interrupted perhaps."""
+        """Load the record of a tick. last: the run ended after it, perhaps interrupted."""
         self._steps, self._answers, self._is_last = {}, {}, last
         for step in tick.steps:
             self._steps.setdefault(step.node, deque()).append(step)
@@ -42,7 +42,7 @@ class RecordedOutside(Outside):
             self._answers.setdefault(key, deque()).append(value)
 
     def unheard(self) -> tuple[str, int | None] | None:
-        """What the tree did not ask for, though it did in the run: what, and of which node."""
+        """The recorded steps and answers that the tree did not ask for, with their nodes."""
         for node, steps in self._steps.items():
             if steps:
                 return f"a step of its skill, to {_words(steps[0])}", node
@@ -91,7 +91,7 @@ class _RecordedSession:
         self.outputs: dict[str, Any] = {}
 
     def step(self, live_inputs: Mapping[str, Any] | None = None) -> Status:
-        """What the skill did in this tick."""
+        """The recorded step of the skill in this tick."""
         step = self._outside.step(self._node)
         self.phase, self.failure = step.phase, step.failure
         self.outputs |= step.outputs

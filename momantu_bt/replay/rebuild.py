@@ -35,7 +35,7 @@ class RebuildError(MomantuError):
 
 @dataclass(frozen=True, slots=True)
 class Rebuilt:
-    """What was run: the checked document and what nodes did instead of themselves."""
+    """The tree of a run: the checked document and its substitutions."""
 
     document: Document
     substitution: Substitution

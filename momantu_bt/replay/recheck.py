@@ -29,7 +29,7 @@ _SERVICES = "/service/"
 
 @dataclass(frozen=True, slots=True)
 class Recheck:
-    """What came of it. ticks: how many were the same. difference: where the first other one is.
+    """The result. ticks: the number of equal ticks. difference: the first differing one.
 
     In the difference, `left` is the record's and `right` what the tree does here.
     """
@@ -71,7 +71,7 @@ class _Clock:
 
 
 class _Replica:
-    """The tree of a record, built anew."""
+    """The tree of a record, built again."""
 
     def __init__(self, recording: Recording, made: Rebuilt, registry: Registry) -> None:
         self._nodes = recording.nodes

@@ -44,7 +44,7 @@ def run_lines(recording: Recording) -> Iterator[tuple[int, str]]:
 
 
 def ending(recording: Recording) -> str:
-    """How the run ended, in one line; of a record that was cut off, where that is."""
+    """How the run ended, in one line; for a record that was cut off, where."""
     data = recording.report
     if data is None:
         last = recording.ticks[-1].now if recording.ticks else 0.0

@@ -30,7 +30,7 @@ class Statuses:
         self.failures: list[FailureValue | None] = [None] * len(nodes)
 
     def copy(self) -> Statuses:
-        """The same, to be brought forward by itself."""
+        """A copy that can be advanced on its own."""
         twin = Statuses(())
         twin._above = self._above
         twin._last, twin._runs = list(self._last), list(self._runs)
@@ -47,7 +47,7 @@ class Statuses:
             self._at_work[node] = self._last[node] is RUNNING
 
     def shown(self) -> list[Status]:
-        """What each node shows now: IDLE where one above it has begun anew."""
+        """The shown status of each node: IDLE below a node that has restarted."""
         found: list[Status] = []
         stale: list[bool] = []
         for node, above in enumerate(self._above):
@@ -80,6 +80,6 @@ class Statuses:
             node = self._above[node]
 
     def _is_repeated(self, node: int, status: Status, above: int) -> bool:
-        """Whether a line says again what stood there: then the node above has begun anew."""
+        """Whether a change repeats the current status: then the node above has restarted."""
         again = status is not RUNNING and status is self._last[node]
         return again and self._seen_in[node] == self._runs[above]

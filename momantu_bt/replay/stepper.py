@@ -84,13 +84,13 @@ class Stepper:
 
     @property
     def view(self) -> tuple[object, ...]:
-        """What a picture of it depends on."""
+        """The state that a picture depends on."""
         switches = self.playing, self.shows_board, self.shows_keys
         return (self.index, self.speed, self.said, self.prompt, *switches)
 
     @property
     def prompt(self) -> str | None:
-        """What is being asked for, with what was typed so far."""
+        """The current prompt, with the text typed so far."""
         return f"{_PROMPTS[self._asking]}{self._typed}" if self._asking else None
 
     def press(self, key: str) -> None:
@@ -166,7 +166,7 @@ class Stepper:
         self.leaving = True
 
     def _type(self, key: str) -> None:
-        """A key while something is asked for; Enter takes it, Escape leaves it."""
+        """A key during a prompt; Enter confirms, Escape cancels."""
         if key == "enter":
             asked, self._asking = self._asking, ""
             self._take(asked, self._typed.strip())

@@ -32,7 +32,7 @@ class Timeline:
         self._built = lru_cache(maxsize=8)(self._build)
 
     def __len__(self) -> int:
-        """How many moments there are."""
+        """The number of moments."""
         return len(self.recording.ticks)
 
     def moment(self, index: int) -> Moment:
@@ -58,7 +58,7 @@ class Timeline:
 
 
 class _State:
-    """What is known after some tick."""
+    """The state after some tick."""
 
     def __init__(self, statuses: Statuses, labels: list[str], notes: dict[int, str]) -> None:
         self.statuses = statuses
@@ -72,7 +72,7 @@ class _State:
         return cls(Statuses(recording.nodes), [node.label for node in recording.nodes], {})
 
     def copy(self) -> _State:
-        """The same, to be changed by itself."""
+        """A copy that can be changed on its own."""
         twin = _State(self.statuses.copy(), list(self.labels), dict(self.notes))
         twin.board = dict(self.board)
         return twin

@@ -92,7 +92,7 @@ def _is_whole(robot: RobotFile, parts: list[LoadedPart]) -> bool:
 
 
 def _unfit(part: LoadedPart) -> Iterator[PartError]:
-    """What is wrong with a part by itself."""
+    """The problems of a single part."""
     wrong = list(wrong_structure(part))
     if wrong:
         yield from (PartError(("parts", part.name), message) for message in wrong)

@@ -21,7 +21,7 @@ DENSITY = 500.0
 
 
 def inertia_problems(root: etree._Element, file: str = "") -> list[Problem]:
-    """What is wrong with the mass or inertia of a URDF's links, in their order, at their lines.
+    """The problems of masses and inertias of a URDF's links, each at its line.
 
     An error: physics would have to invent something. A warning: it is only unlikely.
     file: the URDF's name in the places.

@@ -189,7 +189,7 @@ def _twice(tag: str, name: str, owner: str, part: LoadedPart) -> str:
 
 
 def _root_from_link(part: LoadedPart, root: str, link: str) -> Transform:
-    """Where a link lies below its part's root, over fixed joints alone."""
+    """The pose of a link below its part's root, through fixed joints only."""
     place: KeyPath = ("mounts", part.name, "link")
     names = [str(each.get("name")) for each in part.root.findall("link")]
     within = f"{part.source.namespace}_{link}"

@@ -40,7 +40,7 @@ def read_robot(path: Path) -> RobotDescription:
 
 
 def read_robot_file(path: Path) -> RobotFile:
-    """What a robot file says, its parts not looked at; `path` and errors as of `read_robot`."""
+    """A robot file without its parts; `path` and errors as in `read_robot`."""
     return _read(path)[1]
 
 

@@ -58,7 +58,7 @@ class PartSource(Part):
 
 
 class Attachment(Part):
-    """Where something is fixed: a pose in the frame of a link."""
+    """A mounting pose in the frame of a link."""
 
     on: str
     """The link that it is fixed to, by its name in the whole robot."""
@@ -76,7 +76,7 @@ class Mount(Attachment):
 
 
 class Drive(Part):
-    """How a simulator moves the base."""
+    """The drive of the base in a simulator."""
 
     kind: Literal["planar"] = "planar"
     """planar: on virtual joints x, y and yaw, driven by velocity."""

@@ -21,7 +21,7 @@ _INERTIA = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 
 def wrong_structure(part: LoadedPart) -> Iterator[str]:
-    """What is wrong with a URDF, each with file and line."""
+    """The problems of a URDF, each with file and line."""
     links = [str(link.get("name")) for link in part.root.findall("link")]
     for tag in ("link", "joint"):
         seen: set[str] = set()

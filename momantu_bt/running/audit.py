@@ -28,7 +28,7 @@ class Auditor:
         context.skill_ended = self._ended
 
     def claims(self) -> Mapping[str, SkillClaims]:
-        """What was counted so far, by the skills' names in the tree, in the order of first ends."""
+        """The counts so far, by the skills' names in the tree, in the order of their first ends."""
         return dict(self._claims)
 
     def _ended(self, leaf: SkillNode, session: SkillSession) -> None:
@@ -57,7 +57,7 @@ class Auditor:
         self._claims[name] = replace(count, runs=count.runs + 1)
 
     def _judged(self, leaf: SkillNode, session: SkillSession) -> tuple[Claim | None, bool | None]:
-        """What the skill claims, and whether it is so; None where nobody can tell."""
+        """The skill's claim, and whether it is true; None if it cannot be judged."""
         skill = session.skill if isinstance(session, Session) else None
         body = self._context.body
         if self._judge is None or skill is None or body is None:
@@ -76,7 +76,7 @@ class Auditor:
             return None, None
 
     def _all(self, sentences: tuple[Sentence, ...], odom_from_base: Transform) -> bool | None:
-        """Whether all are true: False when one is not, else None when of one nobody can tell."""
+        """Whether all are true: False if one is false, otherwise None if one cannot be judged."""
         assert self._judge is not None
         answers = [self._judge.judge(sentence, odom_from_base) for sentence in sentences]
         if False in answers:

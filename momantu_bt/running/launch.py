@@ -44,7 +44,7 @@ Watch: TypeAlias = Callable[[Executor], Sequence[Observer]]
 
 
 class LaunchError(MomantuError):
-    """The run cannot begin as it was asked for; nothing was started."""
+    """The run cannot begin as requested; nothing was started."""
 
 
 def launch(prepared: Prepared, watch: Watch | None = None) -> Report:
@@ -90,7 +90,7 @@ def launch(prepared: Prepared, watch: Watch | None = None) -> Report:
 
 
 def assemble(prepared: Prepared, stack: ExitStack) -> Executor:
-    """A run that somebody else ticks: `begin`, then `tick` until it ends, or `stop`.
+    """A run that the caller ticks: `begin`, then `tick` until it ends, or `stop`.
 
     stack: closes what is opened here.
 

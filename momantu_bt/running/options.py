@@ -60,6 +60,6 @@ class RunOptions:
         return world if world is None or isinstance(world, str) else world.name
 
     def recorded(self) -> dict[str, Any]:
-        """What a record keeps of it, beside the seed and the texts of files."""
+        """The options that a record stores, beside the seed and the texts of files."""
         chosen = {name: getattr(self, name) for name in _RECORDED}
         return {**chosen, "world": self.world_name}

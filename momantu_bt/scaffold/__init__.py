@@ -27,7 +27,7 @@ _HERE = Path(__file__).parent
 
 
 class CannotCreate(MomantuError):
-    """The package cannot be made as asked; the message says why. Nothing was written."""
+    """The package cannot be made; the message says why. Nothing was written."""
 
 
 def new_skill(name: str, into: Path) -> Path:

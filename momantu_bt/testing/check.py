@@ -59,7 +59,7 @@ def assert_skill(skill: type[Skill], example: Example | None = None, **options: 
 
 
 def _distinct(found: list[Problem]) -> list[Problem]:
-    """Each line told once by each rule: what the source tells, running it would tell again."""
+    """The findings without duplicates: one for each line and rule."""
     first: dict[tuple[str, object], Problem] = {}
     for finding in found:
         nowhere = finding.place == NOWHERE

@@ -60,7 +60,7 @@ def _finding(rule: str, called: str, place: Place) -> Problem:
 
 
 def _imports(tree: ast.Module) -> dict[str, str]:
-    """What names at the module's and its functions' tops stand for, as dotted names."""
+    """The dotted names that imported names stand for, in the module and its functions."""
     names: dict[str, str] = {}
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):

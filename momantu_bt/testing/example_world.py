@@ -144,7 +144,7 @@ def _write_map(folder: Path) -> Path:
 
 
 def _covered(block: Block, points: Array) -> Array:
-    """Which points (rows, columns, 2) of the floor lie under a block."""
+    """Which points (rows, columns, 2) of the floor are under a block."""
     turned = Pose2D(block.centre[0], block.centre[1], block.yaw)
     c, s = math.cos(turned.yaw), math.sin(turned.yaw)
     away = points - np.array([turned.x, turned.y])

@@ -50,7 +50,7 @@ class Take:
 
     @property
     def ticks(self) -> int:
-        """How often it was stepped."""
+        """The number of its steps."""
         return 0 if self.result is None else self.result.ticks
 
     @property
@@ -64,7 +64,7 @@ class Take:
         return bool(self.escaped) or self.code in (SKILL_ERROR, WRONG_TYPE)
 
     def difference(self, other: Take) -> str:
-        """What two runs differ in, empty where in nothing."""
+        """The differences between two runs; empty if there are none."""
         mine, its = self.result, other.result
         if mine is None or its is None:
             return "" if mine is its else "how they end"
@@ -82,7 +82,7 @@ class Take:
         return ""
 
     def findings(self, when: str = "") -> Iterator[Problem]:
-        """What this run shows to be wrong."""
+        """The findings of this run."""
         said = f" {when}" if when else ""
         if self.escaped:
             yield Problem("escapes", f"raises {self.escaped}{said}: nothing but Failure may leave")
@@ -105,7 +105,7 @@ def _error(failure: FailureValue, said: str) -> Problem:
 
 
 def _last_line(traceback: str) -> Place:
-    """Where it was raised."""
+    """The place where it was raised."""
     lines = [line.strip() for line in traceback.splitlines() if line.strip().startswith("File ")]
     if not lines:
         return NOWHERE
@@ -115,7 +115,7 @@ def _last_line(traceback: str) -> Place:
 
 @dataclass
 class Rehearsals:
-    """Makes everything a run needs anew, each time alike; `close` ends the worlds."""
+    """Makes everything that a run needs, the same each time; `close` ends the worlds."""
 
     skill: type[Skill]
     example: Callable[[int], Mapping[str, Any]] | None
@@ -146,7 +146,7 @@ class Rehearsals:
         return self._take(arguments)
 
     def halted(self, tick: int, *, restart: bool, whole: Take) -> Iterator[Problem]:
-        """Halt it at a tick, twice; then let time pass, and perhaps start it anew."""
+        """Halt it at a tick, twice; then let time pass, and perhaps start it again."""
         arguments = self._arguments()
         robot = _scripted(arguments["world"].robot)
         found: list[Problem] = []

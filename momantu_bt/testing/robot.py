@@ -94,7 +94,7 @@ class ScriptedRobot:
         )
 
     def read(self, sensor: str) -> SensorReading:
-        """What the test scripted for the sensor.
+        """The scripted reading of the sensor.
 
         Raises:
             KeyError: the robot has no such sensor, or the test scripted nothing for it.

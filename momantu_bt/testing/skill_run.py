@@ -47,7 +47,7 @@ class SkillResult:
         return None if self.failure is None else self.failure.code
 
     def claim(self) -> Claim | None:
-        """What its end says about the world; None when it says nothing, or was halted."""
+        """What its end claims about the world; None when it claims nothing, or was halted."""
         if self.skill is None or self.status == "HALTED":
             return None
         return self.skill.claim(self.robot, self.failure)

@@ -16,7 +16,7 @@ _GIVEN = {"port_values", "services", "clock", "random", "frames", "site"}
 
 
 def documented(skill: type[Skill]) -> Iterator[Problem]:
-    """What a plug-in needs to be loaded at all, and sentences that a person can read."""
+    """The rules for loading a plug-in, and the presence of explanations."""
     wrong = skill_objection("a_skill", skill)
     if wrong is not None:
         yield Problem("docs", wrong)

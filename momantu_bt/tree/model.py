@@ -138,7 +138,7 @@ class PortDeclaration:
     comments: tuple[str, ...] = field(default=(), compare=False)
 
     def port(self) -> Port:
-        """What a skill would declare; KeyError when its type has no such name."""
+        """The port as a skill would declare it; KeyError when no type has its name."""
         default: Any = MISSING if self.default is None else None
         if isinstance(self.default, Literal):
             default = self.default.value

@@ -119,7 +119,7 @@ def _choice(value: Any, kind: kinds.Choice) -> Any:
 
 
 def _option(value: Any, kind: kinds.Either) -> Any:
-    """As the first option that leaves it as it is, else as the first that takes it."""
+    """Convert to the first option that keeps the value unchanged, or else that accepts it."""
     found = []
     for option in kind.options:
         try:

@@ -28,7 +28,7 @@ _BOOLS = {"true": True, "1": True, "false": False, "0": False}
 
 
 def convert(value: Any, port: Port) -> Any:
-    """A value as the port's type, immutable; one that is so already is returned as it is.
+    """A value as the port's type, immutable; one that already fits is returned unchanged.
 
     Numbers with units become SI numbers, mappings become the port's dataclass, lists tuples.
 

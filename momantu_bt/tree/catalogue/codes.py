@@ -20,7 +20,7 @@ ANY_NODE: Codes = frozenset({FAILED, INPUT_MISSING, WRONG_TYPE, SCRIPT_ERROR})
 
 @dataclass(frozen=True, slots=True)
 class Failing:
-    """What is known below a node.
+    """What is known about the nodes below a node.
 
     children: codes of its children. handlers: codes of what its handlers run. named: the codes
     that its port `code` can hold.

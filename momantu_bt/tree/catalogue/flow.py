@@ -30,7 +30,7 @@ class After:
 
 @dataclass(frozen=True, slots=True)
 class Walk:
-    """What a flow asks of the nodes below it, and of the checker.
+    """What a flow asks about the nodes below it, and of the checker.
 
     into: what is known after each end that a node can have. removed: keys of the tree's board that
     nodes, or something below them, may take away. rewritten: keys that they write, as far as it is
@@ -93,7 +93,7 @@ def anywhere(walk: Walk, node: Node, before: Known) -> After:
 
 
 def as_child(walk: Walk, node: Node, before: Known) -> After:
-    """What the first child leaves."""
+    """What is known after the first child."""
     return walk(node.children[0], before) if node.children else After(before, before)
 
 
@@ -110,7 +110,7 @@ def perhaps(walk: Walk, node: Node, before: Known) -> After:
 
 
 def unsure(walk: Walk, node: Node, before: Known) -> After:
-    """Nobody says how the children run: they run in any order, any number of times, or never."""
+    """The flow of an unknown node: its children run in any order, any number of times, or never."""
     known = before.lacking(walk.removed(node)).rewritten(walk.rewritten(node))
     for child in node.children:
         walk(child, known)

@@ -30,7 +30,7 @@ class Key:
     either: tuple[Key, ...] = ()
 
     def misfits(self, type_: ValueType) -> Iterator[Key]:
-        """What of it cannot be right where a value of a type is expected."""
+        """The possible values that do not fit an expected type."""
         for key in self.either or (self,):
             if not assignable(key.type, type_):
                 yield key
@@ -48,7 +48,7 @@ class Known:
         return self.keys is not None
 
     def get(self, name: str) -> Key | None:
-        """What is known of a key."""
+        """What is known about a key."""
         return None if self.keys is None else self.keys.get(name)
 
     def having(self, name: str, key: Key) -> Known:
@@ -89,7 +89,7 @@ NEVER = Known(None)
 
 
 def meet(*points: Known) -> Known:
-    """What holds whichever of these points was passed."""
+    """What is known if any one of these points was passed."""
     reached = [point.keys for point in points if point.keys is not None]
     if not reached:
         return NEVER
@@ -101,7 +101,7 @@ def meet(*points: Known) -> Known:
 
 
 def both(*points: Known) -> Known:
-    """What is known where all of these points were passed; later ones count where they differ."""
+    """What is known after all of these points; where they differ, the later one counts."""
     if not all(point.reached for point in points):
         return NEVER
     return Known({name: key for point in points for name, key in (point.keys or {}).items()})

@@ -33,7 +33,7 @@ def check_handlers(context: Context, order: list[Tree]) -> None:
 
 
 def _handled(tree: Tree) -> dict[int, Codes]:
-    """What `$failure.code` can be, for each node within a handler; the innermost handler counts."""
+    """The possible `$failure.code` for each node in a handler; the innermost handler counts."""
     found: dict[int, Codes] = {}
     for node in tree.root.walk():
         for handler in node.handlers:

@@ -225,7 +225,7 @@ def _check_port(context: Context, node: Node, name: str, signature: Signature) -
 def _check_key(
     context: Context, value: PortValue, place: Place, port: Port, signature: Signature
 ) -> None:
-    """What is written, or looked at as a key, is a key, and a whole one."""
+    """Check that ports which write or watch a key are given a whole key."""
     doing = "written" if port.direction == "out" else "watched"
     if isinstance(value, Reference):
         if value.fields:

@@ -98,7 +98,7 @@ class Context:
         return f"{{{key}}}" if self.is_xml(place) else f"${key}"
 
     def tree_signature(self, tree: Tree) -> Signature:
-        """What a subtree takes and gives. An unknown type counts as `any`; `tree_ports` says so."""
+        """The ports of a subtree. An unknown type counts as `any`; `tree_ports` reports it."""
         if tree.name not in self._trees:
             ports: dict[str, Port] = {}
             for name, declaration in tree.ports.items():

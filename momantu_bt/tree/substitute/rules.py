@@ -60,13 +60,13 @@ class Rule:
     used: bool = False
 
     def place_of(self, key: str) -> Place:
-        """Where a key's value stands, or the rule where it has none."""
+        """The place of a key's value, or of the rule without one."""
         return self.places.get(key, self.place)
 
 
 @dataclass(slots=True)
 class RuleFile:
-    """What a file of rules says. values: keys of the root's board that services would publish."""
+    """A file of rules. values: keys of the root's blackboard that services would publish."""
 
     rules: list[Rule] = field(default_factory=list)
     values: dict[str, Any] = field(default_factory=dict)

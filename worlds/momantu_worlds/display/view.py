@@ -56,7 +56,7 @@ class BrowserView:
 
     @property
     def url(self) -> str:
-        """Where to look."""
+        """The address to open in a browser."""
         return f"http://{HOST}:{self._port}"
 
     @property
@@ -65,7 +65,7 @@ class BrowserView:
         return tuple(self._frames)
 
     def update(self) -> None:
-        """Show the world as it is now."""
+        """Show the current world."""
         truth = self._simulator.truth
         with self._server.atomic():
             self._come_and_go()

@@ -72,7 +72,7 @@ class _KeyCheck:
         return Walk(into, removed, rewritten, self.outputs, self.script_at)
 
     def report_unread(self) -> None:
-        """What is written and read nowhere; any tree may read what the main one has."""
+        """Keys that are written and never read; any tree may read those of the main tree."""
         mine, seen = self.reads.keys[self.tree.name], self.reads.seen
         if self.tree.name == self.context.document.main:
             seen = seen | self.reads.seen_on_root
@@ -234,7 +234,7 @@ class _KeyCheck:
         return after
 
     def handed_on(self, node: Node, signature: Signature, spec: NodeSpec, before: Known) -> Known:
-        """What a node with children writes for them: what the inputs that it copies have."""
+        """The keys that a node writes for its children, from the inputs that it copies."""
         after = before
         for name, value in node.ports.items():
             source = node.ports.get(spec.copies.get(name, ""))
@@ -305,7 +305,7 @@ class _KeyCheck:
         return self.script_keys(script, before, place)
 
     def written_by_script(self, written: Written) -> None:
-        """What a script computes in the main tree may be a result: the report shows it."""
+        """Whether a script's key may be a result: the report shows those of the main tree."""
         self.reads.written.append(written)
         if self.tree.name == self.context.document.main:
             self.reads.seen.add(written.key)

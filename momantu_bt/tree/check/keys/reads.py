@@ -108,7 +108,7 @@ class KeyReads:
         return key
 
     def _unwritten(self, name: str, before: Known, place: Place) -> None:
-        """A key without a value: whoever runs the tree may give it one, otherwise it is wrong."""
+        """A key without a value: an error, unless a caller of the tree may give it one."""
         declared = self.tree.ports.get(name)
         from_outside = self.tree.open if declared is None else declared.direction == "inout"
         if from_outside:

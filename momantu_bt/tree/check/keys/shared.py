@@ -57,7 +57,7 @@ class Call:
         return found
 
     def place(self, key: str) -> Place:
-        """Where the key is given; the node's where it is not said."""
+        """The place where the key is given, or else the node's."""
         return self.node.port_places.get(key, self.node.place)
 
     def _value(self, key: str) -> PortValue | None:
@@ -92,7 +92,7 @@ class TreeKeys:
 
 
 def shared_keys(context: Context, order: list[Tree]) -> dict[str, TreeKeys] | None:
-    """What each tree mentions, writes and removes; None, reported, where there are too many keys.
+    """The keys that each tree mentions, writes and removes; None, reported, if too many.
 
     order: trees after those that they run.
     """

@@ -80,7 +80,7 @@ def _type(value: PortValue) -> type:
 
 @dataclass(frozen=True, slots=True)
 class AttributeWriter:
-    """Writes attributes. registry: whose skills' port types tell texts from numbers."""
+    """Writes attributes. registry: the port types of its skills tell texts from numbers."""
 
     document: Document
     registry: Registry

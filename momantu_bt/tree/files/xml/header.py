@@ -31,7 +31,7 @@ def is_root(root: Element, problems: Problems) -> bool:
 
 
 def check_header(root: Element, problems: Problems) -> None:
-    """Report versions that are not read, and attributes and parts that nobody knows."""
+    """Report unsupported versions, and unknown attributes and parts."""
     _check_format(root, problems)
     for each in root.attributes:
         if each.space == OURS:

@@ -41,7 +41,7 @@ _CPP_LIST = re.compile(r"std::(?:vector|deque|list)<([^<>,]+)(?:,.*)?>")
 
 @dataclass(slots=True)
 class Models:
-    """What a file's TreeNodesModel says. trees: ports by tree; leaves: all other models."""
+    """A file's TreeNodesModel. trees: ports by tree; leaves: all other models."""
 
     trees: dict[str, dict[str, PortDeclaration]] = field(default_factory=dict)
     leaves: list[NodeModel] = field(default_factory=list)

@@ -96,7 +96,7 @@ class TreesReader:
                 tree.ports, tree.open = ports, False
 
     def _report_models_of_nothing(self, root: Element, known: Mapping[str, Tree]) -> None:
-        """A model of a tree that nobody has: a slip, or of another file where no name is near."""
+        """A model of an unknown tree: a slip, or, if no name is similar, of another file."""
         for section in root.children:
             for model in section.children if section.name == "TreeNodesModel" else ():
                 identity = model.get("ID")

@@ -104,7 +104,7 @@ def _plain(text: str) -> Any:
 
 
 def flow_value(text: str, port: str, place: Place, problems: Problems) -> PortValue | None:
-    """What an attribute of ours means: YAML on one line; None where a problem was reported.
+    """The value of a prefixed attribute: YAML on one line; None if a problem was reported.
 
     place: of the text in the file; its own problems are placed within it where it is as long as
     it is written, without entities.

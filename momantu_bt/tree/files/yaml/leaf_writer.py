@@ -38,7 +38,7 @@ class LeafWriter:
         return [f"{lead}{key}:{remark}", *self.ports(node, pad + STEP)]
 
     def text(self, node: Node, *, flow: bool = False) -> str:
-        """What follows a leaf's `key:` on its line; empty where it has no ports."""
+        """The text after a leaf's `key:` on its line; empty if it has no ports."""
         if self._is_bare(node):
             ((name, value),) = node.ports.items()
             return self.port(node, name, value, flow=flow)

@@ -105,7 +105,7 @@ class NodeWriter:
         return [heading, _Body(node, pad, piece.taken)]
 
     def _inside(self, node: Node) -> str:
-        """What follows the key of a short node within braces; empty where there is nothing."""
+        """The text after the key of a short node in braces; may be empty."""
         if not node.children:
             return self.leaves.text(node, flow=True)
         child = node.children[0]

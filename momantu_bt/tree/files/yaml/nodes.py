@@ -91,7 +91,7 @@ class NodeReader:
         return node
 
     def _refused(self, key: Scalar) -> Node | None:
-        """What cannot be a node's name, reported; None where it can."""
+        """A broken node for an invalid name, which is reported; None if the name is valid."""
         name = key.text
         if name == AGAIN:
             message = "`again` stands alone, as a handler of `recover`"

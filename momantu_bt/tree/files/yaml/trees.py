@@ -21,7 +21,7 @@ from momantu_bt.tree.problems import Problems
 def read_trees(
     entry: tuple[Scalar, Raw] | None, place: Place, outside: Mapping[str, Tree], problems: Problems
 ) -> dict[str, Tree] | None:
-    """What stands under `trees:`; None, and a problem, where there is no tree.
+    """The value under `trees:`; None, and a problem, if there is no tree.
 
     place: of the whole file. outside: trees of the files that it includes.
     """

@@ -55,7 +55,7 @@ class PlanningSceneService(Service):
 
     @property
     def held(self) -> HeldObject | None:
-        """What is held, judged anew at each update from gripper width and effort."""
+        """The held object, judged again at each update from gripper width and effort."""
         return self.holding.held
 
     @property
@@ -112,7 +112,7 @@ class PlanningSceneService(Service):
         return self.scene.footprint(state, self.held, below)
 
     def is_robot(self, points: Array, state: RobotState) -> Any:
-        """(n,) bool: which points (n, 3) in base frame lie on the robot or on what it holds."""
+        """(n,) bool: which points (n, 3) in the base frame are on the robot or its held object."""
         return self.scene.is_robot(points, state, self.held)
 
 
