@@ -141,10 +141,8 @@ def recorded_tick(document: Document, folder: Path) -> Tick:
     context = built.root.context
     run = Executor(built, context, NoWorld())
     run.fingerprint = Fingerprint()
-    recorder = Recorder(folder / "record", print)
-    recorder.listen(context)
+    recorder = Recorder(folder / "record", context.events, print)
     recorder.begin(document, run, RunOptions().recorded(), {})
-    run.observers = [recorder]
 
     def tick() -> None:
         context.begin_tick()

@@ -16,10 +16,9 @@ import typer
 
 from momantu_bt.cli.terminal import Terminal
 from momantu_bt.engine.blackboard import Board
-from momantu_bt.engine.executor import Executor
+from momantu_bt.engine.executor import Executor, NodeStarting
 from momantu_bt.engine.node import TreeNode
 from momantu_bt.engine.ports import Inputs
-from momantu_bt.engine.status import RUNNING, Status
 from momantu_bt.engine.subtree import SubTree
 from momantu_bt.errors import InputError
 from momantu_bt.failure import Failure
@@ -61,26 +60,18 @@ class Breakpoints:
         nodes = list(reached(document, substitution.results))
         self._models = {id(node) for text in wanted for node in _named(text, nodes)}
         self._terminal = terminal
-        self._stepping = self._quitting = False
+        self._stepping = False
 
     def attach(self, run: Executor) -> None:
-        """Wrap every node of a run that has not begun."""
-        for node in run.built.nodes:
-            setattr(node, "execute", self._wrapped(run, node, node.execute))  # noqa: B010
+        """Stop where nodes of a run start that has not begun."""
+        run.context.events.subscribe(NodeStarting, lambda event: self._starting(run, event.node))
 
-    def _wrapped(
-        self, run: Executor, node: TreeNode, execute: Callable[[], Status]
-    ) -> Callable[[], Status]:
-        def stop_or_execute() -> Status:
-            stops = self._stepping or id(node.model) in self._models
-            if stops and node.state is not RUNNING and not self._quitting:
-                begun = time.perf_counter()
-                with run.context.watchdog.paused():
-                    self._stop(run, node)
-                run.context.waited += time.perf_counter() - begun
-            return RUNNING if self._quitting else execute()
-
-        return stop_or_execute
+    def _starting(self, run: Executor, node: TreeNode) -> None:
+        if self._stepping or id(node.model) in self._models:
+            begun = time.perf_counter()
+            with run.context.watchdog.paused():
+                self._stop(run, node)
+            run.context.waited += time.perf_counter() - begun
 
     def _stop(self, run: Executor, node: TreeNode) -> None:
         """Show where the run is, and obey until it is to go on."""
@@ -91,7 +82,6 @@ class Breakpoints:
             while not going:
                 said = self._terminal.try_read(PROMPT)
                 if said is None:
-                    self._quitting = True
                     return
                 going = self._obey(said.split(), run, node)
 
@@ -102,7 +92,6 @@ class Breakpoints:
             self._stepping = verb == "step"
             return True
         if verb == "quit":
-            self._quitting = True
             signal.raise_signal(signal.SIGINT)
             return True
         for line in _answer(verb, words[1:], run, node):

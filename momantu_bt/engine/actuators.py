@@ -8,7 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import NamedTuple
 
+from momantu_bt.engine.events import Events
 from momantu_bt.engine.sensor_check import SensorCheck
 from momantu_bt.failure import ACTUATOR_BUSY, Failure
 from momantu_bt.messages import ActuatorGoal, RobotState
@@ -23,11 +25,19 @@ class Issued:
     goal: ActuatorGoal | None
 
 
+class SensorRead(NamedTuple):
+    """Somebody read a sensor; nobody has judged yet whether the reading can be relied on."""
+
+    sensor: str
+    reading: SensorReading
+
+
 class Actuators:
     """The ownership book of one run."""
 
-    def __init__(self, robot: Robot) -> None:
+    def __init__(self, robot: Robot, events: Events | None = None) -> None:
         self.robot = robot
+        self._events = events or Events()
         self.issued: list[Issued] = []
         """What was told to the robot since the list was last emptied."""
         self._owners: dict[str, Lease] = {}
@@ -64,6 +74,7 @@ class Actuators:
 
     def _read(self, sensor: str) -> SensorReading:
         reading = self.robot.read(sensor)
+        self._events.tell(SensorRead(sensor, reading))
         self._sensors.check(sensor, reading, self.robot.state())
         return reading
 

@@ -4,14 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import NamedTuple, TypeVar
 
 from momantu_bt.engine.blackboard import Journal
 from momantu_bt.engine.body import Body
 from momantu_bt.engine.changes import Change
-from momantu_bt.engine.outside import Outside, SkillNode, SkillSession
+from momantu_bt.engine.events import Events
+from momantu_bt.engine.outside import Answered, Outside, Refused
 from momantu_bt.engine.person import Person, Scripted
 from momantu_bt.engine.watchdog import Watchdog
+from momantu_bt.failure import Failure
 from momantu_bt.skill import Clock
+
+T = TypeVar("T")
+
+
+class Remarked(NamedTuple):
+    """Something that a person should read, and that never influences the run."""
+
+    text: str
 
 
 @dataclass(slots=True)
@@ -20,10 +31,10 @@ class RunContext:
 
     now: seconds of the world's clock at this tick. tick: its number, from 1.
     writes: cells written in this tick, with what they held before. changes: of statuses.
-    remark: tells a person something that never influences the run. person: answers questions.
+    person: answers questions.
     waited: seconds of wall time that the run has spent waiting for a person.
     outside: whatever comes from beyond the tree comes through it. watchdog: ends what hangs.
-    skill_ended: told of each skill that ended, at that instant; it changes nothing.
+    events: what happens, for those who watch.
     """
 
     clock: Clock
@@ -33,11 +44,10 @@ class RunContext:
     tick: int = 0
     writes: Journal = field(default_factory=list)
     changes: list[Change] = field(default_factory=list)
-    remark: Callable[[str], None] = print
     person: Person = field(default_factory=Scripted)
     waited: float = 0.0
     outside: Outside = field(default_factory=Outside)
-    skill_ended: Callable[[SkillNode, SkillSession], None] | None = None
+    events: Events = field(default_factory=Events)
     watchdog: Watchdog = field(default_factory=Watchdog)
 
     def begin_tick(self) -> None:
@@ -46,3 +56,21 @@ class RunContext:
         self.tick += 1
         self.writes.clear()
         self.changes.clear()
+
+    def remark(self, text: str) -> None:
+        """Tell those who watch something that a person should read."""
+        self.events.tell(Remarked(text))
+
+    def ask(self, key: str, ask: Callable[[], T]) -> T:
+        """What `ask` answers, by way of the outside. key: names what is asked.
+
+        Raises:
+            Failure: there is no answer.
+        """
+        try:
+            answer = self.outside.ask(key, ask)
+        except Failure as failure:
+            self.events.tell(Answered(key, Refused(failure.value)))
+            raise
+        self.events.tell(Answered(key, answer))
+        return answer

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import time
 import traceback
-from collections.abc import Callable, Sequence
-from typing import Any, Protocol
+from collections.abc import Callable
+from typing import Any, NamedTuple, Protocol
 
 from momantu_bt.engine import ending
 from momantu_bt.engine.build import Built
@@ -38,14 +38,6 @@ class Stepper(Protocol):
         ...
 
 
-class Director(Protocol):
-    """Begins and ends faults between two ticks."""
-
-    def act(self, context: RunContext, settling: bool) -> None:
-        """Before the world steps on. settling: the tree has ended, and nothing begins any more."""
-        ...
-
-
 class Observer(Protocol):
     """Sees each tick and changes nothing."""
 
@@ -58,11 +50,28 @@ class Observer(Protocol):
         ...
 
 
+class Stepping(NamedTuple):
+    """The world is about to step on. settling: the tree has ended, and the robot comes to rest."""
+
+    settling: bool
+
+
+class Ticked(NamedTuple):
+    """A tick is over, or a step while everything comes to rest; the journals still hold it."""
+
+    run: Executor
+
+
+class NodeStarting(NamedTuple):
+    """A node that is not running is about to be ticked."""
+
+    node: TreeNode
+
+
 class Executor:
     """Runs one tree once.
 
-    settling: the tree has ended and the robot comes to rest. director: who begins and ends
-    faults between ticks; None in a run without any. state: what the robot reported last.
+    settling: the tree has ended and the robot comes to rest. state: what the robot reported last.
     """
 
     def __init__(
@@ -73,19 +82,15 @@ class Executor:
         *,
         world: World | None = None,
         services: Services | None = None,
-        observers: Sequence[Observer] = (),
         max_time: float = 600.0,
         realtime: bool = False,
-        director: Director | None = None,
     ) -> None:
         self.built = built
         self.context = context
         self.world = world
         self.services = services or Services({}, None)
-        self.observers = list(observers)
         self.fingerprint = Fingerprint()
         self.settling = False
-        self.director = director
         self._stepper = stepper
         self._max_time = max_time
         self._realtime = realtime
@@ -94,10 +99,15 @@ class Executor:
         self._world_is_sound = True
         self._failure: FailureValue | None = None
 
+    def show_to(self, observer: Observer) -> None:
+        """Show each tick to an observer."""
+        self.context.events.subscribe(Ticked, lambda event: observer.ticked(event.run))
+
     def run(self, interrupts: Interrupts) -> Ending:
         """From the first tick to the last; nothing but an interrupt's second signal escapes."""
         started = time.perf_counter()
         interrupts.patient = True
+        self._tell_starts(interrupts)
         try:
             status = self._until_end(interrupts, started)
         except KeyboardInterrupt:
@@ -111,6 +121,23 @@ class Executor:
         if self._error is not None:
             status = ending.ERROR
         return Ending(status, self._failure, verdict, sim_time, wall_time, ticks, self._error)
+
+    def _tell_starts(self, interrupts: Interrupts) -> None:
+        """Have nodes tell when they start, if anybody hears it; an interrupt holds the tree."""
+        if not self.context.events.heard(NodeStarting):
+            return
+        for node in self.built.nodes:
+            setattr(node, "execute", self._telling(node, node.execute, interrupts))  # noqa: B010
+
+    def _telling(
+        self, node: TreeNode, execute: Callable[[], Status], interrupts: Interrupts
+    ) -> Callable[[], Status]:
+        def tell_and_execute() -> Status:
+            if node.state is not RUNNING and not interrupts.requested:
+                self.context.events.tell(NodeStarting(node))
+            return RUNNING if interrupts.requested else execute()
+
+        return tell_and_execute
 
     def _until_end(self, interrupts: Interrupts, started: float) -> str:
         self.begin()
@@ -130,8 +157,8 @@ class Executor:
 
     def _step(self) -> None:
         """Step the world; it is known to be sound when it comes back."""
-        if self.director is not None and self._error is None:
-            self.director.act(self.context, self.settling)
+        if self._error is None:
+            self.context.events.tell(Stepping(self.settling))
         self.context.watchdog.beat()
         self._world_is_sound = False
         self._stepper.step()
@@ -168,8 +195,7 @@ class Executor:
             [(change.node.index, change.status.value) for change in context.changes],
             self._written(),
         )
-        for observer in self.observers:
-            observer.ticked(self)
+        context.events.tell(Ticked(self))
         issued.clear()
 
     def _written(self) -> list[tuple[str, Any]]:

@@ -14,7 +14,7 @@ from momantu_bt.engine.body import Body
 from momantu_bt.engine.changes import SeenNode
 from momantu_bt.engine.session import Session, SkillContext
 from momantu_bt.engine.status import Status
-from momantu_bt.failure import Failure, FailureValue
+from momantu_bt.failure import FailureValue
 from momantu_bt.skill import Clock, Skill
 from momantu_bt.world import seeded
 
@@ -104,22 +104,31 @@ class Outside:
         lease = body.actuators.lease(leaf.name, leaf.kind.uses)
         return Session(leaf.kind, inputs, lease, surroundings)
 
-    def stepped(self, leaf: SkillNode, session: SkillSession, status: Status) -> None:
-        """A leaf's skill has made a step; its outputs are not on the blackboard yet."""
-
     def ask(self, key: str, ask: Callable[[], T]) -> T:
         """The answer of `ask`. key: the name of the question, such as `battery`."""
         return ask()
 
 
-class Step(NamedTuple):
-    """One step of one skill. outputs: the values, by port, that are new since its last step."""
+class SkillStepped(NamedTuple):
+    """A leaf's skill has made a step; what it gave is not on the blackboard yet."""
 
     leaf: SkillNode
+    session: SkillSession
     status: Status
-    phase: str
-    failure: FailureValue | None
-    outputs: Mapping[str, Any]
+
+
+class SkillEnded(NamedTuple):
+    """A leaf's skill has ended by itself; what it gave is not on the blackboard yet."""
+
+    leaf: SkillNode
+    session: SkillSession
+
+
+class Answered(NamedTuple):
+    """Something outside was asked. key: as in `Outside.ask`. answer: `Refused` for a failure."""
+
+    key: str
+    answer: Any
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,42 +136,3 @@ class Refused:
     """A question was answered with a failure."""
 
     failure: FailureValue
-
-
-class Heard(Outside):
-    """The outside as it is, and what it said since `clear`, in its order.
-
-    steps: of skills. reads: each answer with its key; `Refused` where it was a failure.
-    """
-
-    def __init__(self) -> None:
-        self.steps: list[Step] = []
-        self.reads: list[tuple[str, Any]] = []
-        self._given: dict[SkillNode, dict[str, Any]] = {}
-
-    def clear(self) -> None:
-        """A new tick begins."""
-        self.steps.clear()
-        self.reads.clear()
-
-    def begin(self, leaf: SkillNode, inputs: Mapping[str, Any]) -> SkillSession:
-        """Start a leaf's skill; all that it writes is new."""
-        self._given[leaf] = {}
-        return super().begin(leaf, inputs)
-
-    def stepped(self, leaf: SkillNode, session: SkillSession, status: Status) -> None:
-        """Keep the step."""
-        given, outputs = self._given[leaf], session.outputs
-        new = {n: v for n, v in outputs.items() if n not in given or given[n] is not v}
-        given.update(new)
-        self.steps.append(Step(leaf, status, session.phase, session.failure, new))
-
-    def ask(self, key: str, ask: Callable[[], T]) -> T:
-        """Keep the answer."""
-        try:
-            answer = ask()
-        except Failure as failure:
-            self.reads.append((key, Refused(failure.value)))
-            raise
-        self.reads.append((key, answer))
-        return answer

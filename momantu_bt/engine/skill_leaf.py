@@ -6,7 +6,7 @@ from typing import Any
 
 from momantu_bt.engine.label import label
 from momantu_bt.engine.node import Parts, TreeNode
-from momantu_bt.engine.outside import SkillSession
+from momantu_bt.engine.outside import SkillEnded, SkillSession, SkillStepped
 from momantu_bt.engine.role import Role
 from momantu_bt.engine.session import SLOW_STEP
 from momantu_bt.engine.status import FAILURE, RUNNING, SUCCESS, Status
@@ -64,14 +64,14 @@ class SkillLeaf(TreeNode):
             status = session.step(live)
         finally:
             watchdog.end_step()
-        self.context.outside.stepped(self, session, status)
+        events = self.context.events
+        events.tell(SkillStepped(self, session, status))
         self._note_time(session)
         if status is RUNNING:
             self._write(session, self._live_out)
             return RUNNING
         self.session = None
-        if self.context.skill_ended is not None:
-            self.context.skill_ended(self, session)
+        events.tell(SkillEnded(self, session))
         if status is SUCCESS:
             self._write(session, list(self.outputs))
             return SUCCESS

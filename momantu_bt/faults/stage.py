@@ -10,6 +10,7 @@ from pathlib import Path
 
 from momantu_bt.engine.build import Built
 from momantu_bt.engine.context import RunContext
+from momantu_bt.engine.executor import Stepping
 from momantu_bt.fault import Effect, Fault, FaultError, FaultyWorld
 from momantu_bt.fault_kind import FaultKind, Where
 from momantu_bt.faults import robot as at_robot
@@ -103,16 +104,16 @@ class Stage:
                 kind = effect.wrapped(kind)
         return kind
 
-    def director(self, built: Built, context: RunContext, document: Document) -> Director | None:
-        """Who lets the faults happen; None where there are none."""
+    def direct(self, built: Built, context: RunContext, document: Document) -> None:
+        """Let the faults happen between the ticks of the run."""
         if not self._planned:
-            return None
+            return
         staged = [
             Staged(one.fault, PhaseWatch(one.phase, built.nodes, document), effect)
             for one, effect in zip(self._planned, self._effects, strict=True)
         ]
-        self._director = Director(staged, built.nodes, context.remark)
-        return self._director
+        director = self._director = Director(staged, built.nodes, context.remark)
+        context.events.subscribe(Stepping, lambda event: director.act(context, event.settling))
 
     def reports(self) -> tuple[FaultReport, ...]:
         """What became of each fault, in the order in which they were given."""

@@ -84,7 +84,7 @@ class _Heard:
     def ask(self, question: Question, complaint: str) -> str | None:
         """What the person says."""
         context = self._context
-        return context.outside.ask(PERSON, lambda: context.person.ask(question, complaint))
+        return context.ask(PERSON, lambda: context.person.ask(question, complaint))
 
 
 class Ask(_Asking):

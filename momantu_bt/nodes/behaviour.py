@@ -144,9 +144,7 @@ class BehaviourLeaf(TreeNode):
         if begins:
             inputs = self.inputs.all()
             self.label = label(self.model, inputs)
-        said = self.context.outside.ask(
-            f"behaviour {self.index}", lambda: self._ticked(begins, inputs)
-        )
+        said = self.context.ask(f"behaviour {self.index}", lambda: self._ticked(begins, inputs))
         status, self._feedback, outputs = said
         if status == RUNNING.value:
             return RUNNING

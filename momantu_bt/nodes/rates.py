@@ -122,7 +122,7 @@ class DistanceController(_Paced):
         self.origin = self._position()
 
     def _position(self) -> Array | None:
-        return self.context.outside.ask(POSITION, self._position_now)
+        return self.context.ask(POSITION, self._position_now)
 
     def _position_now(self) -> Array | None:
         body = self.context.body
@@ -194,7 +194,7 @@ class SpeedController(_Paced):
         return float(min(max(slow + share * (fast - slow), slow), fast))
 
     def _speed(self) -> float:
-        return self.context.outside.ask(SPEED, self._speed_now)
+        return self.context.ask(SPEED, self._speed_now)
 
     def _speed_now(self) -> float:
         body = self.context.body

@@ -12,9 +12,9 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from momantu_bt.engine.context import RunContext
-from momantu_bt.engine.executor import Executor
-from momantu_bt.engine.outside import Heard
+from momantu_bt.engine.context import Remarked
+from momantu_bt.engine.events import Events
+from momantu_bt.engine.executor import Executor, Ticked
 from momantu_bt.formats.files import OutputError, write_whole
 from momantu_bt.formats.maps import read_map
 from momantu_bt.record.about import files_of, nodes_data, run_data
@@ -22,6 +22,7 @@ from momantu_bt.record.channel import Channel, stamp_of
 from momantu_bt.record.codec import dumps
 from momantu_bt.record.floor_plan import grid_text
 from momantu_bt.record.folder import LOG, REPORT, prepare_folder
+from momantu_bt.record.heard import Heard
 from momantu_bt.record.log_lines import LogLines
 from momantu_bt.record.mcap_file import McapFile
 from momantu_bt.record.objects import Objects
@@ -30,10 +31,8 @@ from momantu_bt.record.published import Published
 from momantu_bt.record.report import Report
 from momantu_bt.record.schemas import END, FILE, NODES, RUN, Schema
 from momantu_bt.record.sensors import Sensors
-from momantu_bt.record.tap import Tap
 from momantu_bt.record.ticks import Ticks
 from momantu_bt.record.viewer_schemas import GRID
-from momantu_bt.robot import Robot
 from momantu_bt.tree.model import Document
 
 MOST_TICKS, MOST_SECONDS = 10, 0.1
@@ -41,13 +40,15 @@ MOST_TICKS, MOST_SECONDS = 10, 0.1
 
 
 class Recorder:
-    """One record. First `tap` and `listen` while the run is made, then `begin`, then `finish`.
+    """One record: hears the run's events from the start, then `begin`, then `finish`.
+
+    remark: tells a person what goes wrong with the record itself.
 
     Raises:
         OutputError: the folder cannot be written, or holds a record already.
     """
 
-    def __init__(self, folder: Path, remark: Callable[[str], None]) -> None:
+    def __init__(self, folder: Path, events: Events, remark: Callable[[str], None]) -> None:
         prepare_folder(folder)
         self._folder = folder
         self._remark = remark
@@ -55,29 +56,12 @@ class Recorder:
         self._broken = False
         self._stamp = 0
         self._flushed = time.monotonic()
-        self._tap: Tap | None = None
-        self._heard = Heard()
+        self._heard = Heard(events)
+        self._sensors = Sensors(events)
         self._remarks: list[str] = []
+        events.subscribe(Remarked, lambda event: self._remarks.append(event.text))
         self._ticks: Ticks | None = None
         self._others: Sequence[Channel] = ()
-
-    # while the run is made
-
-    def tap(self, robot: Robot) -> Robot:
-        """The robot, wrapped so that its readings are kept for the record."""
-        self._tap = Tap(robot)
-        return self._tap
-
-    def listen(self, context: RunContext) -> None:
-        """Hear what comes to the tree from outside, and remarks."""
-        context.outside = self._heard
-        context.remark = self._noted
-
-    def _noted(self, text: str) -> None:
-        self._remarks.append(text)
-        self._remark(text)
-
-    # while it lasts
 
     def begin(
         self,
@@ -91,13 +75,11 @@ class Recorder:
         options, substitution: as in `run_data` and `files_of`.
         """
         self._guarded(self._open, document, run, options, substitution)
+        run.context.events.subscribe(Ticked, lambda event: self._ticked(event.run))
 
-    def ticked(self, run: Executor) -> None:
+    def _ticked(self, run: Executor) -> None:
         """Write the tick; hand it to the operating system when anything changed or it is time."""
         self._guarded(self._write, run)
-
-    def close(self) -> None:
-        """The last tick is over; the report is still to come."""
 
     def finish(self, report: Report) -> None:
         """Write how the run ended, in the log and as a file of its own."""
@@ -144,20 +126,22 @@ class Recorder:
         self._ticks.write(run, file)
         others: list[Channel] = [LogLines(file, self._remarks)]
         body = run.context.body
-        if body is not None and self._tap is not None:
-            others += [Poses(file, body), Published(self._noted), Objects(file)]
-            others.append(Sensors(self._tap))
-            self._write_map(file, body.site.map_file)
+        if body is not None:
+            others += [Poses(file, body), Published(run.context.remark), Objects(file)]
+            others.append(self._sensors)
+            self._write_map(file, body.site.map_file, run.context.remark)
         self._others = others
         file.flush()
 
-    def _write_map(self, file: McapFile, map_file: Path | None) -> None:
+    def _write_map(
+        self, file: McapFile, map_file: Path | None, remark: Callable[[str], None]
+    ) -> None:
         if map_file is None:
             return
         try:
             text = grid_text(read_map(map_file))
         except ValueError as error:
-            self._noted(f"the record has no map: {error}")
+            remark(f"the record has no map: {error}")
             return
         file.add(file.channel("/map", "foxglove.Grid", GRID), 0, text)
 

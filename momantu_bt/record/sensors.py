@@ -8,6 +8,8 @@ import math
 
 import numpy as np
 
+from momantu_bt.engine.actuators import SensorRead
+from momantu_bt.engine.events import Events
 from momantu_bt.engine.executor import Executor
 from momantu_bt.geometry import Transform
 from momantu_bt.lazy import lazily
@@ -16,13 +18,15 @@ from momantu_bt.record.channel import stamp_of, time_text
 from momantu_bt.record.codec import dumps
 from momantu_bt.record.mcap_file import McapFile
 from momantu_bt.record.poses import pose_text
-from momantu_bt.record.tap import Tap
 from momantu_bt.record.viewer_schemas import IMAGE, SCAN
 
 with lazily():
     from PIL import Image
 
 
+EVERY = 1.0
+"""Simulated seconds between two kept readings of one sensor."""
+_SLACK = 1e-6
 WIDTH = 320
 """Pixels that a kept picture is at most wide."""
 QUALITY = 70
@@ -30,18 +34,30 @@ _NOWHERE = pose_text(Transform())
 
 
 class Sensors:
-    """Writes what the tap has taken, with the stamps of the readings."""
+    """Writes readings with their stamps: of each sensor that was read, one each EVERY seconds."""
 
-    def __init__(self, tap: Tap) -> None:
-        self._tap = tap
+    def __init__(self, events: Events) -> None:
+        self._due: dict[str, float] = {}
+        self._taken: dict[str, CameraImage | LaserScan] = {}
+        events.subscribe(SensorRead, self._take)
+
+    def _take(self, event: SensorRead) -> None:
+        sensor, reading = event
+        if reading.stamp >= self._due.get(sensor, reading.stamp) - _SLACK and isinstance(
+            reading, CameraImage | LaserScan
+        ):
+            self._due[sensor] = reading.stamp + EVERY
+            self._taken[sensor] = reading
+
+    def taken(self) -> dict[str, CameraImage | LaserScan]:
+        """Readings by sensor since it was last asked."""
+        taken, self._taken = self._taken, {}
+        return taken
 
     def write(self, run: Executor, file: McapFile) -> None:
         """Every reading that was taken in this tick."""
-        if not self._tap.taken:
-            return
-        taken, stamp = dict(self._tap.taken), stamp_of(run.context.now)
-        self._tap.taken.clear()
-        for name, reading in taken.items():
+        stamp = stamp_of(run.context.now)
+        for name, reading in self.taken().items():
             if isinstance(reading, CameraImage):
                 channel = file.channel(f"/camera/{name}", "foxglove.CompressedImage", IMAGE)
                 file.add(channel, stamp, _image_text(reading))

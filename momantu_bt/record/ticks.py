@@ -10,12 +10,12 @@ from momantu_bt.engine.actuators import Issued
 from momantu_bt.engine.blackboard import Journal, written
 from momantu_bt.engine.changes import Change
 from momantu_bt.engine.executor import Executor
-from momantu_bt.engine.outside import Heard, Step
 from momantu_bt.failure import FailureValue
 from momantu_bt.messages import ActuatorGoal
 from momantu_bt.record.captions import Captions
 from momantu_bt.record.channel import stamp_of
 from momantu_bt.record.codec import dumps, to_json, to_text
+from momantu_bt.record.heard import Heard, Step
 from momantu_bt.record.mcap_file import McapFile
 from momantu_bt.record.schemas import TICK
 

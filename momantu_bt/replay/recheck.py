@@ -77,7 +77,7 @@ class _Replica:
         self._nodes = recording.nodes
         self._clock = _Clock()
         self._outside = RecordedOutside()
-        self._context = RunContext(self._clock, remark=lambda text: None, outside=self._outside)
+        self._context = RunContext(self._clock, outside=self._outside)
         board = Board(self._context.writes)
         for key in _published(recording):
             board.publish(ReadOnlyCell(key, self._asking(key)))

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from momantu_bt.claim import Claim, Judge, Sentence
 from momantu_bt.engine.context import RunContext
-from momantu_bt.engine.outside import SkillNode, SkillSession
+from momantu_bt.engine.outside import SkillEnded, SkillNode, SkillSession
 from momantu_bt.engine.session import Session
 from momantu_bt.geometry import Transform
 from momantu_bt.record.report import FalseClaim, SkillClaims
@@ -17,7 +17,7 @@ from momantu_bt.world import World
 class Auditor:
     """Hears of each skill that ends, asks it what it claims, and the world whether that is so.
 
-    It listens to `context.skill_ended`. Nothing in the run depends on it: what goes wrong here is
+    It hears `SkillEnded`. Nothing in the run depends on it: what goes wrong here is
     remarked on, and does not count as a claim. Without a `Judge`, nothing is judged.
     """
 
@@ -25,13 +25,14 @@ class Auditor:
         self._context = context
         self._judge = world if isinstance(world, Judge) else None
         self._claims: dict[str, SkillClaims] = {}
-        context.skill_ended = self._ended
+        context.events.subscribe(SkillEnded, self._ended)
 
     def claims(self) -> Mapping[str, SkillClaims]:
         """The counts so far, by the skills' names in the tree, in the order of their first ends."""
         return dict(self._claims)
 
-    def _ended(self, leaf: SkillNode, session: SkillSession) -> None:
+    def _ended(self, event: SkillEnded) -> None:
+        leaf, session = event
         name, failure = leaf.skill_name, session.failure
         count = self._claims.get(name, SkillClaims())
         claim, truth = self._judged(leaf, session)

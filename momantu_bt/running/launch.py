@@ -13,8 +13,9 @@ from momantu_bt.engine.actuators import Actuators
 from momantu_bt.engine.blackboard import Board, ReadOnlyCell
 from momantu_bt.engine.body import Body
 from momantu_bt.engine.build import build, skills_in
-from momantu_bt.engine.context import RunContext
+from momantu_bt.engine.context import Remarked, RunContext
 from momantu_bt.engine.ending import ERROR
+from momantu_bt.engine.events import Events
 from momantu_bt.engine.executor import Executor, Observer
 from momantu_bt.engine.interrupts import Interrupts
 from momantu_bt.engine.no_world import NoWorld
@@ -68,17 +69,17 @@ def launch(prepared: Prepared, watch: Watch | None = None) -> Report:
         interrupts = stack.enter_context(Interrupts())
         executor, stage, recorder = _assembled(prepared, stack)
         auditor = Auditor(executor.context, executor.world) if options.audit else None
-        if watch is not None:
-            executor.observers = list(watch(executor))
+        observers = [] if watch is None else list(watch(executor))
         if recorder is not None:
             recorder.begin(document, executor, options.recorded(), prepared.substitution.source)
-            executor.observers.insert(0, recorder)
+        for observer in observers:
+            executor.show_to(observer)
         started = time.perf_counter() - begun
         try:
             with executor.context.watchdog:
                 ending = executor.run(interrupts)
         finally:
-            trouble = _close(executor.observers)
+            trouble = _close(observers)
         if trouble is not None:
             ending = replace(ending, status=ERROR, error=ending.error or trouble)
         report = report_of(document.file, executor, ending, started, stage.reports())
@@ -105,18 +106,20 @@ def _assembled(prepared: Prepared, stack: ExitStack) -> tuple[Executor, Stage, R
     kinds = {name: registry.skills[name] for name in skills_in(document, prepared.substitution)}
     needed = _services(kinds, registry)
     planned = _planned(prepared, kinds)
-    recorder = _recorder(options, stack)
+    events = Events()
+    recorder = _recorder(options, events, stack)
+    events.subscribe(Remarked, lambda event: options.remark(event.text))
     world = _open(prepared, kinds, needed)
     if world is not None and world is not options.world:
         stack.callback(world.close)
     stage = Stage(planned, world, options.seed, stack)
-    return _executor(prepared, kinds, needed, stage, recorder), stage, recorder
+    return _executor(prepared, kinds, needed, stage, events), stage, recorder
 
 
-def _recorder(options: RunOptions, stack: ExitStack) -> Recorder | None:
+def _recorder(options: RunOptions, events: Events, stack: ExitStack) -> Recorder | None:
     if options.record is None:
         return None
-    recorder = Recorder(options.record, options.remark)
+    recorder = Recorder(options.record, events, options.remark)
     stack.callback(recorder.release)
     return recorder
 
@@ -212,23 +215,20 @@ def _executor(
     kinds: Mapping[str, type[Skill]],
     needed: Mapping[str, type[Service]],
     stage: Stage,
-    recorder: Recorder | None,
+    events: Events,
 ) -> Executor:
     document, options, substitution = prepared.document, prepared.options, prepared.substitution
     stepper = stage.world if stage.world is not None else NoWorld()
     context = RunContext(
         stepper,
         seed=options.seed,
-        remark=options.remark,
         person=options.person,
         watchdog=Watchdog(options.patience),
+        events=events,
     )
-    if recorder is not None:
-        recorder.listen(context)
     services = Services({}, None)
     if stage.robot is not None and stage.site is not None:
-        robot = stage.robot if recorder is None else recorder.tap(stage.robot)
-        actuators = Actuators(robot)
+        actuators = Actuators(stage.robot, events)
         services = Services({name: kind() for name, kind in needed.items()}, actuators)
         frames = FrameBuffer(stage.robot.description.kinematics())
         context.body = Body(actuators, frames, stage.site, services.running)
@@ -237,6 +237,7 @@ def _executor(
         board.set(key, natural(value))
     skills = {name: stage.skill(kind) for name, kind in kinds.items()}
     built = build(document, context, skills.__getitem__, board, substitution)
+    stage.direct(built, context, document)
     return Executor(
         built,
         context,
@@ -245,7 +246,6 @@ def _executor(
         services=services,
         max_time=options.max_time,
         realtime=options.realtime,
-        director=stage.director(built, context, document),
     )
 
 
@@ -264,4 +264,4 @@ def _board(
 
 
 def _asking(context: RunContext, key: str, ask: Callable[[], Any]) -> Callable[[], Any]:
-    return lambda: context.outside.ask(key, ask)
+    return lambda: context.ask(key, ask)

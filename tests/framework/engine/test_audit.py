@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from momantu_bt.claim import BaseAt, Claim, GripperOpen, Holding, Sentence
+from momantu_bt.engine.context import Remarked
 from momantu_bt.engine.executor import Executor
 from momantu_bt.failure import FailureValue
 from momantu_bt.geometry import Pose2D, Transform
@@ -114,7 +115,7 @@ def test_a_claim_that_breaks_or_moves_the_robot_is_no_claim(
     said: list[str] = []
 
     def listen(run: Executor) -> tuple[()]:
-        run.context.remark = said.append
+        run.context.events.subscribe(Remarked, lambda event: said.append(event.text))
         return ()
 
     count = audited(world, what, watch=listen)

@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from momantu_bt.engine.conditions import Conditions
+from momantu_bt.engine.context import Remarked
 from momantu_bt.engine.status import IDLE, RUNNING
 from momantu_bt.nodes.precondition import Precondition
 from momantu_bt.nodes.sequences import Sequence
@@ -160,7 +161,7 @@ def test_a_script_that_breaks_after_a_success_makes_it_a_failure(bench, when):
 
 def test_a_script_that_breaks_after_a_halt_is_remarked_on_and_the_halt_goes_on(bench):
     said = []
-    bench.context.remark = said.append
+    bench.context.events.subscribe(Remarked, lambda event: said.append(event.text))
     node = conditioned(bench, "R", on_halt="nobody += 1")
     parent = bench.node(Sequence, [node])
     bench.tick(parent)

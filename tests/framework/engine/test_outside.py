@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from momantu_bt.engine.outside import PERSON, POSITION, Heard, Refused
+from momantu_bt.engine.outside import PERSON, POSITION, Refused
+from momantu_bt.record.heard import Heard
 from momantu_bt.service import Service
 from momantu_bt.skill import Failure, In, Needs, Out, Run, Skill
 
@@ -58,7 +59,7 @@ class Keeper:
     """An observer that keeps all that is heard, tick by tick."""
 
     def __init__(self, run):
-        self.heard = run.context.outside = Heard()
+        self.heard = Heard(run.context.events)
         self.steps, self.reads, self.failures = [], [], []
 
     def ticked(self, run):

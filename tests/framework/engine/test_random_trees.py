@@ -295,7 +295,8 @@ def executed(new_bench, spec, prepare=lambda plant: None):
     stepper = NoWorld()
     bench.context.clock = stepper
     built = Built(plant.root, plant.nodes, bench.board)
-    run = Executor(built, bench.context, stepper, observers=[seen], max_time=1.0)
+    run = Executor(built, bench.context, stepper, max_time=1.0)
+    run.show_to(seen)
     return plant, run.run(Interrupts()), run.fingerprint.hexdigest(), seen.ticks
 
 

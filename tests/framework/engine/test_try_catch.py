@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from momantu_bt.engine.context import Remarked
 from momantu_bt.engine.ports import Inputs
 from momantu_bt.engine.status import IDLE
 from momantu_bt.failure import INPUT_MISSING, Failure
@@ -43,7 +44,7 @@ def test_a_halt_while_it_cleans_up_does_not_begin_anew(bench):
 
 def test_a_halt_goes_through_though_nobody_knows_whether_to_clean_up(bench):
     remarks = []
-    bench.context.remark = remarks.append
+    bench.context.events.subscribe(Remarked, lambda event: remarks.append(event.text))
     node = bench.node(TryCatch, ["R", "S"])
 
     def missing():

@@ -5,43 +5,35 @@ import math
 
 import pytest
 
-from momantu_bt.failure import Failure
+from momantu_bt.engine.actuators import Actuators, SensorRead
+from momantu_bt.engine.events import Events
 from momantu_bt.frames import ODOM
 from momantu_bt.geometry import Pose, Transform
-from momantu_bt.messages import BaseVelocity, DetectedObject, WrenchReading
+from momantu_bt.messages import DetectedObject, WrenchReading
 from momantu_bt.record.codec import Opaque
 from momantu_bt.record.recorder import Recorder
-from momantu_bt.record.tap import Tap
+from momantu_bt.record.sensors import Sensors
 from momantu_bt.record.ticks import Ticks
 from momantu_bt.service import HeldObject, Service
 from momantu_bt.skill import Needs, Out, Run, Skill
 
 
-def test_a_tap_is_the_robot(seeing_robot):
-    tap = Tap(seeing_robot)
-    assert tap.description is seeing_robot.description
-    tap.command("base", BaseVelocity(0.2, 0.0))
-    tap.stop("base")
-    assert [goal for _, _, goal in seeing_robot.commands] == [BaseVelocity(0.2, 0.0), None]
-    seeing_robot.readings["wrench"] = WrenchReading(0.0, "gripper_link", None, None)
-    assert tap.read("wrench") is seeing_robot.readings["wrench"]
-    assert tap.taken == {}
-    seeing_robot.dead.add("laser")
-    with pytest.raises(Failure, match="SENSOR_DEAD"):
-        tap.read("laser")
-    with pytest.raises(KeyError, match="no sensor"):
-        tap.read("nose")
-
-
-def test_a_tap_keeps_one_reading_a_second_of_each_sensor(seeing_robot):
-    tap, kept = Tap(seeing_robot), []
+def test_one_reading_a_second_of_each_sensor_is_kept(seeing_robot):
+    events, kept = Events(), []
+    sensors, lease = Sensors(events), Actuators(seeing_robot, events).lease("nobody", ())
     for _ in range(50):
         for sensor in ("camera", "laser"):
-            tap.read(sensor)
-        kept += [(name, round(reading.stamp, 2)) for name, reading in tap.taken.items()]
-        tap.taken.clear()
+            lease.read(sensor)
+        kept += [(name, round(reading.stamp, 2)) for name, reading in sensors.taken().items()]
         seeing_robot.advance(0.05)
     assert kept == [(name, at) for at in (0.0, 1.0, 2.0) for name in ("camera", "laser")]
+
+
+def test_what_is_no_picture_and_no_scan_is_not_kept(seeing_robot):
+    events = Events()
+    sensors = Sensors(events)
+    events.tell(SensorRead("wrench", WrenchReading(0.0, "gripper_link", None, None)))
+    assert sensors.taken() == {}
 
 
 class Broken(Service):
