@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 
 from momantu_bt.fault import FaultError
+from momantu_bt.faults.director import Director
 from momantu_bt.faults.site import wrong_site
 from momantu_bt.faults.skills.outputs import without_numbers
 from momantu_bt.faults.spec import parse_fault
 from momantu_bt.formats.maps import FREE, OCCUPIED, read_map
 from momantu_bt.geometry import Transform
-from momantu_bt.record.film import FilmObserver
 from momantu_bt.skill import Run, Skill
 from momantu_bt.testing import ExampleWorld, ScriptedWorld, scripted_site
 from momantu_bt.world import TICK
@@ -355,20 +355,22 @@ def test_a_killed_process_leaves_nothing_but_its_signal(tmp_path):
     assert not report.exists()
 
 
-def test_an_observer_sees_the_tick_before_a_fault_changes_anything(run_tree):
-    seen = []
+def test_an_observer_sees_the_tick_before_a_fault_changes_anything(run_tree, monkeypatch):
+    told, act = [], Director.act
 
-    class Watching(FilmObserver):
-        def __init__(self):
-            pass
+    def acting(director, context, settling=False):
+        act(director, context, settling)
+        told.append((round(context.now, 3), director.reports()[0].began))
 
+    class Watching:
         def ticked(self, run):
-            seen.append((run.context.now, run.director.reports()[0].began))
+            told.append((round(run.context.now, 3), "seen"))
 
         def close(self):
             pass
 
+    monkeypatch.setattr(Director, "act", acting)
     run_tree(DRIVE, "base.stuck@0.5 s", watch=lambda run: [Watching()])
-    began = {round(now, 3): began for now, began in seen}
-    assert began[0.5] is None
-    assert began[0.55] == ticks(10)
+    at = told.index((0.5, "seen"))
+    assert told[at - 1] == (0.45, None)
+    assert told[at + 1] == (0.5, ticks(10))

@@ -120,7 +120,7 @@ def test_an_error_of_the_recorder_itself_ends_only_the_record(record_run, monkey
 
 
 def _telling(init, said):
-    def made(self, folder, remark):
-        init(self, folder, said.append)
+    def made(self, folder, events, remark):
+        init(self, folder, events, said.append)
 
     return made
