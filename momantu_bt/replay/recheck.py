@@ -83,7 +83,7 @@ class _Replica:
             board.publish(ReadOnlyCell(key, self._asking(key)))
         given = {key: literal.value for key, literal in made.document.values.items()}
         for key, value in (given | dict(made.substitution.values)).items():
-            board.set(key, natural(value))
+            board.cell(key).store(natural(value))
         self._built = build(
             made.document, self._context, registry.skills.__getitem__, board, made.substitution
         )

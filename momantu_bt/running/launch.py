@@ -234,7 +234,7 @@ def _executor(
         context.body = Body(actuators, frames, stage.site, services.running)
     board = _board(context, document, services, stage.robot)
     for key, value in substitution.values.items():
-        board.set(key, natural(value))
+        board.cell(key).store(natural(value))
     skills = {name: stage.skill(kind) for name, kind in kinds.items()}
     built = build(document, context, skills.__getitem__, board, substitution)
     stage.direct(built, context, document)
@@ -259,7 +259,7 @@ def _board(
     if robot is not None:
         board.publish(ReadOnlyCell(ROBOT_KEY, _asking(context, ROBOT_KEY, robot.state)))
     for key, literal in document.values.items():
-        board.set(key, natural(literal.value))
+        board.cell(key).store(natural(literal.value))
     return board
 
 
