@@ -114,6 +114,18 @@ def test_tests_exist(page: Path) -> None:
     )
 
 
+def test_what_registers_an_addition_stands_in_its_file() -> None:
+    page = " ".join((ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8").split())
+    named = re.findall(r"`(\w+)`(?: or `(\w+)`)? in `([\w/]+\.py)`", page)
+    assert len(named) >= 8
+    for *names, path in named:
+        text = (ROOT / path).read_text(encoding="utf-8")
+        assert all(re.search(rf"\b{name}\b", text) for name in names if name), f"{names}: {path}"
+    groups = set(re.findall(r"`pyproject.toml`: `([\w.]+)`", page))
+    project = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+    assert {group for group in groups if f'"{group}"' not in project} == set()
+
+
 def test_the_tables_of_files_are_those_of_the_files() -> None:
     spec = importlib.util.spec_from_file_location("file_tables", ROOT / "setup" / "file_tables.py")
     assert spec is not None

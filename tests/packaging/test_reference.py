@@ -84,5 +84,7 @@ def test_the_page_lists_the_groups_of_entry_points() -> None:
     table = page.partition("## Entry points")[2].partition("\n## ")[0]
     listed = re.findall(r"^\| `([\w.]+)` \|", table, re.MULTILINE)
     groups = r'Group(?:\[[^=]*\])?\(\s*"(momantu_bt\.\w+)"'
-    sources = [path.read_text(encoding="utf-8") for path in (ROOT / "momantu_bt").rglob("*.py")]
+    packages = ("momantu_bt", "skills", "worlds")
+    files = [path for package in packages for path in (ROOT / package).rglob("*.py")]
+    sources = [path.read_text(encoding="utf-8") for path in files]
     assert sorted(listed) == sorted(found for text in sources for found in re.findall(groups, text))
