@@ -10,7 +10,7 @@ from momantu_worlds.sapien.simulator import Simulator
 from momantu_worlds.scenes.file.world import WorldFile
 from momantu_worlds.scenes.loading import draw_episode
 
-PAGE = (Path(__file__).resolve().parents[3] / "docs" / "worlds.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).resolve().parents[4] / "docs" / "worlds.md").read_text(encoding="utf-8")
 
 
 @pytest.fixture

@@ -13,7 +13,7 @@ from momantu_worlds.scenes.loading import draw_episode
 from momantu_bt.messages import ObjectClass
 from momantu_bt.tree.load import read_values
 
-TREES = Path(__file__).parents[3] / "trees"
+TREES = Path(__file__).parents[4] / "trees"
 NAMES = ("small_flat", "warehouse")
 SEEDS = range(8)
 
