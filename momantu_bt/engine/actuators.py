@@ -74,7 +74,7 @@ class Actuators:
 
     def _read(self, sensor: str) -> SensorReading:
         reading = self.robot.read(sensor)
-        self._events.tell(SensorRead(sensor, reading))
+        self._events.publish(SensorRead(sensor, reading))
         self._sensors.check(sensor, reading, self.robot.state())
         return reading
 

@@ -59,7 +59,7 @@ class RunContext:
 
     def remark(self, text: str) -> None:
         """Tell those who watch something that a person should read."""
-        self.events.tell(Remarked(text))
+        self.events.publish(Remarked(text))
 
     def ask(self, key: str, ask: Callable[[], T]) -> T:
         """What `ask` answers, by way of the outside. key: names what is asked.
@@ -70,7 +70,7 @@ class RunContext:
         try:
             answer = self.outside.ask(key, ask)
         except Failure as failure:
-            self.events.tell(Answered(key, Refused(failure.value)))
+            self.events.publish(Answered(key, Refused(failure.value)))
             raise
-        self.events.tell(Answered(key, answer))
+        self.events.publish(Answered(key, answer))
         return answer

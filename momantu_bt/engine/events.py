@@ -1,8 +1,9 @@
-"""What happens in a run, told at the instant at which it happens to everybody who subscribes.
+"""The stream of events of a run: each event reaches its subscribers at the moment it happens.
 
-Kinds of events stand beside what tells them: `Ticked`, `Stepping` and `NodeStarting` in
+Kinds of events are defined beside their publishers: `Ticked`, `Stepping` and `NodeStarting` in
 `executor.py`, `SkillStepped`, `SkillEnded` and `Answered` in `outside.py`, `Remarked` in
-`context.py`, `SensorRead` in `actuators.py`. A subscriber only looks: the run is the same without.
+`context.py`, `SensorRead` in `actuators.py`. A subscriber only observes: the run is the same
+without it.
 """
 
 from __future__ import annotations
@@ -16,21 +17,21 @@ E = TypeVar("E")
 class Events:
     """The stream of one run. Events of one kind reach their subscribers in order of subscription.
 
-    What a subscriber raises, ends the run: who must not disturb it catches its own errors.
+    An exception of a subscriber ends the run: one that must not disturb the run catches its own.
     """
 
     def __init__(self) -> None:
         self._subscribers: dict[type, list[Callable[[Any], None]]] = {}
 
-    def subscribe(self, kind: type[E], hear: Callable[[E], None]) -> None:
-        """Call `hear` with each event of a kind from now on."""
-        self._subscribers.setdefault(kind, []).append(hear)
+    def subscribe(self, kind: type[E], callback: Callable[[E], None]) -> None:
+        """Call `callback` with each event of a kind from now on."""
+        self._subscribers.setdefault(kind, []).append(callback)
 
-    def heard(self, kind: type) -> bool:
-        """Whether anybody hears events of a kind."""
+    def has_subscribers(self, kind: type) -> bool:
+        """Whether a kind of events has subscribers."""
         return kind in self._subscribers
 
-    def tell(self, event: object) -> None:
-        """Tell an event to whoever has subscribed to its kind."""
-        for hear in self._subscribers.get(type(event), ()):
-            hear(event)
+    def publish(self, event: object) -> None:
+        """Call the subscribers of the event's kind."""
+        for callback in self._subscribers.get(type(event), ()):
+            callback(event)

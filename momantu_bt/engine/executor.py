@@ -124,7 +124,7 @@ class Executor:
 
     def _tell_starts(self, interrupts: Interrupts) -> None:
         """Have nodes tell when they start, if anybody hears it; an interrupt holds the tree."""
-        if not self.context.events.heard(NodeStarting):
+        if not self.context.events.has_subscribers(NodeStarting):
             return
         for node in self.built.nodes:
             setattr(node, "execute", self._telling(node, node.execute, interrupts))  # noqa: B010
@@ -134,7 +134,7 @@ class Executor:
     ) -> Callable[[], Status]:
         def tell_and_execute() -> Status:
             if node.state is not RUNNING and not interrupts.requested:
-                self.context.events.tell(NodeStarting(node))
+                self.context.events.publish(NodeStarting(node))
             return RUNNING if interrupts.requested else execute()
 
         return tell_and_execute
@@ -158,7 +158,7 @@ class Executor:
     def _step(self) -> None:
         """Step the world; it is known to be sound when it comes back."""
         if self._error is None:
-            self.context.events.tell(Stepping(self.settling))
+            self.context.events.publish(Stepping(self.settling))
         self.context.watchdog.beat()
         self._world_is_sound = False
         self._stepper.step()
@@ -195,7 +195,7 @@ class Executor:
             [(change.node.index, change.status.value) for change in context.changes],
             self._written(),
         )
-        context.events.tell(Ticked(self))
+        context.events.publish(Ticked(self))
         issued.clear()
 
     def _written(self) -> list[tuple[str, Any]]:

@@ -65,13 +65,13 @@ class SkillLeaf(TreeNode):
         finally:
             watchdog.end_step()
         events = self.context.events
-        events.tell(SkillStepped(self, session, status))
+        events.publish(SkillStepped(self, session, status))
         self._note_time(session)
         if status is RUNNING:
             self._write(session, self._live_out)
             return RUNNING
         self.session = None
-        events.tell(SkillEnded(self, session))
+        events.publish(SkillEnded(self, session))
         if status is SUCCESS:
             self._write(session, list(self.outputs))
             return SUCCESS

@@ -61,9 +61,9 @@ class ChangeLines:
 
     def ticked(self, run: Executor) -> None:
         """Print this tick's changes."""
-        self.tell(run.context.now, run.context.changes)
+        self.print_changes(run.context.now, run.context.changes)
 
-    def tell(self, now: float, changes: Iterable[StatusChange]) -> None:
+    def print_changes(self, now: float, changes: Iterable[StatusChange]) -> None:
         """Print the changes of one tick of a run or of a record."""
         for node, status, note, failure in _parents_first(changes):
             if node.role is Role.RECOVERY:

@@ -22,10 +22,10 @@ from momantu_bt.record.channel import Channel, stamp_of
 from momantu_bt.record.codec import dumps
 from momantu_bt.record.floor_plan import grid_text
 from momantu_bt.record.folder import LOG, REPORT, prepare_folder
-from momantu_bt.record.heard import Heard
 from momantu_bt.record.log_lines import LogLines
 from momantu_bt.record.mcap_file import McapFile
 from momantu_bt.record.objects import Objects
+from momantu_bt.record.outside_log import OutsideLog
 from momantu_bt.record.poses import Poses
 from momantu_bt.record.published import Published
 from momantu_bt.record.report import Report
@@ -56,7 +56,7 @@ class Recorder:
         self._broken = False
         self._stamp = 0
         self._flushed = time.monotonic()
-        self._heard = Heard(events)
+        self._outside = OutsideLog(events)
         self._sensors = Sensors(events)
         self._remarks: list[str] = []
         events.subscribe(Remarked, lambda event: self._remarks.append(event.text))
@@ -122,7 +122,7 @@ class Recorder:
         for text in files_of(document, substitution, run):
             _add(file, "/files", "momantu.File", FILE, text)
         _add(file, "/nodes", "momantu.Nodes", NODES, nodes_data(run))
-        self._ticks = Ticks(file, self._heard, run)
+        self._ticks = Ticks(file, self._outside, run)
         self._ticks.write(run, file)
         others: list[Channel] = [LogLines(file, self._remarks)]
         body = run.context.body

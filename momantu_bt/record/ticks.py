@@ -15,8 +15,8 @@ from momantu_bt.messages import ActuatorGoal
 from momantu_bt.record.captions import Captions
 from momantu_bt.record.channel import stamp_of
 from momantu_bt.record.codec import dumps, to_json, to_text
-from momantu_bt.record.heard import Heard, Step
 from momantu_bt.record.mcap_file import McapFile
+from momantu_bt.record.outside_log import OutsideLog, Step
 from momantu_bt.record.schemas import TICK
 
 AGAIN = '{"$again":true}'
@@ -26,11 +26,11 @@ _MOST_TEXTS = 10_000
 
 
 class Ticks:
-    """Writes `/tick`. heard: what came from outside since the last tick."""
+    """Writes `/tick`. outside: what reached the tree from outside since the last tick."""
 
-    def __init__(self, file: McapFile, heard: Heard, run: Executor) -> None:
+    def __init__(self, file: McapFile, outside: OutsideLog, run: Executor) -> None:
         self._channel = file.channel("/tick", "momantu.Tick", TICK)
-        self._heard = heard
+        self._outside = outside
         self._captions = Captions(run)
         self._steps: dict[tuple[int, str, str], str] = {}
         self._changes: dict[tuple[int, str, str], str] = {}
@@ -49,11 +49,11 @@ class Ticks:
             parts.append(f'"changes":[{",".join(map(self._change, context.changes))}]')
         if context.writes:
             parts.append(f'"writes":[{",".join(self._written(context.writes))}]')
-        if self._heard.reads:
-            parts.append(f'"reads":[{",".join(map(self._value_read, self._heard.reads))}]')
-        if self._heard.steps:
-            parts.append(f'"steps":[{",".join(map(self._step, self._heard.steps))}]')
-        self._heard.clear()
+        if self._outside.reads:
+            parts.append(f'"reads":[{",".join(map(self._value_read, self._outside.reads))}]')
+        if self._outside.steps:
+            parts.append(f'"steps":[{",".join(map(self._step, self._outside.steps))}]')
+        self._outside.clear()
         notes, labels = self._captions.new(run)
         if notes:
             parts.append(f'"notes":{dumps(notes)}')

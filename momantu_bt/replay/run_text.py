@@ -35,7 +35,7 @@ def run_lines(recording: Recording) -> Iterator[tuple[int, str]]:
     for index, tick in enumerate(recording.ticks):
         for node, label in tick.labels:
             nodes[node].label = label
-        lines.tell(
+        lines.print_changes(
             tick.now,
             [(nodes[c.node], Status(c.status), c.note, c.failure) for c in tick.changes],
         )

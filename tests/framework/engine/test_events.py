@@ -36,11 +36,11 @@ def test_events_reach_those_who_subscribed_to_their_kind_in_turn() -> None:
     events, heard = Events(), []
     events.subscribe(One, lambda event: heard.append(("first", event.value)))
     events.subscribe(One, lambda event: heard.append(("second", event.value)))
-    events.tell(One(1))
-    events.tell(Other(2))
+    events.publish(One(1))
+    events.publish(Other(2))
     assert heard == [("first", 1), ("second", 1)]
-    assert events.heard(One)
-    assert not events.heard(Other)
+    assert events.has_subscribers(One)
+    assert not events.has_subscribers(Other)
 
 
 def test_a_run_tells_starts_steps_and_ends_in_order_and_is_the_same_unheard(run_yaml) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from momantu_bt.engine.outside import PERSON, POSITION, Refused
-from momantu_bt.record.heard import Heard
+from momantu_bt.record.outside_log import OutsideLog
 from momantu_bt.service import Service
 from momantu_bt.skill import Failure, In, Needs, Out, Run, Skill
 
@@ -59,14 +59,14 @@ class Keeper:
     """An observer that keeps all that is heard, tick by tick."""
 
     def __init__(self, run):
-        self.heard = Heard(run.context.events)
+        self.log = OutsideLog(run.context.events)
         self.steps, self.reads, self.failures = [], [], []
 
     def ticked(self, run):
-        self.steps.append([(s.status.value, s.phase, dict(s.outputs)) for s in self.heard.steps])
-        self.reads.append(list(self.heard.reads))
-        self.failures += [s.failure.code for s in self.heard.steps if s.failure is not None]
-        self.heard.clear()
+        self.steps.append([(s.status.value, s.phase, dict(s.outputs)) for s in self.log.steps])
+        self.reads.append(list(self.log.reads))
+        self.failures += [s.failure.code for s in self.log.steps if s.failure is not None]
+        self.log.clear()
 
     def close(self):
         pass

@@ -16,7 +16,7 @@ from momantu_bt.formats.files import OutputError, check_writable, write_whole
 from momantu_bt.geometry import Pose2D
 from momantu_bt.record.failure_text import failure_line
 from momantu_bt.record.folder import prepare_folder
-from momantu_bt.record.report import Lie, NodeReport, Report, SkillClaims
+from momantu_bt.record.report import FalseClaim, NodeReport, Report, SkillClaims
 
 FIELDS = {
     "tree": str,
@@ -94,7 +94,7 @@ REPORTS = st.builds(
     fingerprint=st.just("0" * 64),
     error=st.none() | st.just("Traceback …"),
     claims=st.none()
-    | st.just({"pick": SkillClaims(2, 1, 1, 1, lies=(Lie(0.1, "t:1", None, "held"),))}),
+    | st.just({"pick": SkillClaims(2, 1, 1, 1, lies=(FalseClaim(0.1, "t:1", None, "held"),))}),
 )
 
 

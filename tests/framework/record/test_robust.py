@@ -32,7 +32,7 @@ def test_one_reading_a_second_of_each_sensor_is_kept(seeing_robot):
 def test_what_is_no_picture_and_no_scan_is_not_kept(seeing_robot):
     events = Events()
     sensors = Sensors(events)
-    events.tell(SensorRead("wrench", WrenchReading(0.0, "gripper_link", None, None)))
+    events.publish(SensorRead("wrench", WrenchReading(0.0, "gripper_link", None, None)))
     assert sensors.taken() == {}
 
 

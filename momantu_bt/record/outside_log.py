@@ -1,4 +1,4 @@
-"""What reached a tree from outside in a tick, in its order, for the record."""
+"""The log of what reached a tree from outside in a tick, in its order, for the record."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Step(NamedTuple):
     outputs: Mapping[str, Any]
 
 
-class Heard:
+class OutsideLog:
     """Keeps steps of skills and answers to questions until `clear`.
 
     reads: each answer with its key; `Refused` where it was a failure.
