@@ -1,7 +1,7 @@
-"""Bring a headless Chromium for the tests of HTML pages, where there is none: `make test` runs it.
+"""Fetch a headless Chromium for the tests of HTML pages, if there is no browser: for `make test`.
 
-Without root, out of the machine's own package mirror, into the user's cache folder, and only once.
-Where that cannot be done (no apt, no network), it says so and exits with 0: those tests are
+It comes from the machine's own package mirror, without root, into the user's cache folder, once.
+If that is impossible (no apt, no network), the script says so and exits with 0: those tests are
 skipped then.
 """
 
@@ -18,7 +18,7 @@ from momantu_worlds.vulkan.apt import AptError, PrivateApt, this_system
 from momantu_bt.formats.cache import cache_folder
 
 VARIABLE = "MOMANTU_BROWSER"
-"""Names another browser."""
+"""The environment variable that names another browser."""
 NAMES = ("chromium-headless-shell", "chromium", "google-chrome", "google-chrome-stable")
 PACKAGES = ("chromium-headless-shell", "fonts-dejavu-core")
 FOLDER = "browser"
@@ -42,18 +42,18 @@ PROBE_SECONDS = 60.0
 
 
 def main() -> None:
-    """Bring it, unless there is one."""
+    """Fetch a browser, unless there is one."""
     if find_browser() is not None:
         return
     print("Fetching a headless browser for the tests of HTML pages (100 MB, no root)", flush=True)
     try:
         fetch(cache_folder() / FOLDER)
     except (AptError, OSError, subprocess.SubprocessError) as error:
-        print(f"  there is none ({error}); those tests are skipped")
+        print(f"  no browser could be fetched ({error}); the tests of HTML pages are skipped")
 
 
 def find_browser() -> str | None:
-    """What starts a browser: `$MOMANTU_BROWSER`, one on PATH, or the one that this file brings."""
+    """The command of a browser: `$MOMANTU_BROWSER`, one on PATH, or the one fetched before."""
     brought = cache_folder() / FOLDER / FOLDER
     found = [os.environ.get(VARIABLE), *map(shutil.which, NAMES)]
     found.append(str(brought) if brought.is_file() else None)
@@ -83,7 +83,7 @@ def fetch(folder: Path) -> None:
 
 
 def probe(launcher: Path) -> None:
-    """Let it read a page; SubprocessError when it cannot."""
+    """Let the browser read a page; SubprocessError when it cannot."""
     command = [
         str(launcher),
         "--no-sandbox",
@@ -95,7 +95,7 @@ def probe(launcher: Path) -> None:
         command, capture_output=True, text=True, timeout=PROBE_SECONDS, check=True
     ).stdout
     if "it-works" not in said:
-        raise subprocess.SubprocessError("it was fetched, but shows nothing")
+        raise subprocess.SubprocessError("the browser was fetched, but shows no page")
 
 
 if __name__ == "__main__":

@@ -51,7 +51,7 @@ def main() -> None:
         _call([str(VENV_PYTHON), "-m", "momantu_skills.warm_up"])
         STAMP.write_text(wanted, encoding="utf-8")
     if _call([str(VENV_PYTHON), "-m", "momantu_worlds.vulkan.install", "--quiet"]) != 0:
-        raise SetupError("everything but rendering is installed; see the line above")
+        raise SetupError("everything except rendering is installed; see the line above")
 
 
 def _wanted() -> str:
@@ -118,9 +118,14 @@ def _bring_pip() -> None:
             command = [str(VENV_PYTHON), str(wheel / "pip"), "install", "--no-index", str(wheel)]
             failed = _call(command, quiet=True) != 0
     except (apt.AptError, OSError, StopIteration) as error:
-        raise SetupError(f"pip is missing ({error}); install `python3-venv`, then again") from error
+        raise SetupError(
+            f"pip is missing ({error}); install `python3-venv`, then run `make setup` again"
+        ) from error
     if failed:
-        raise SetupError("pip could not be put into .venv; install `python3-venv`, then again")
+        raise SetupError(
+            "pip could not be installed into .venv; install `python3-venv`, then run "
+            "`make setup` again"
+        )
 
 
 def _install_packages() -> None:
@@ -137,7 +142,7 @@ def _install_packages() -> None:
         [*pip, "--no-deps", "--force-reinstall", pinned],
     ):
         if _call(command) != 0:
-            raise SetupError("pip failed, see above; run `make setup` again once that is mended")
+            raise SetupError("pip failed, see above; fix that, then run `make setup` again")
 
 
 def _pinned(package: str) -> str:
@@ -172,4 +177,4 @@ if __name__ == "__main__":
     except SetupError as problem:
         sys.exit(f"make setup: {problem}")
     except KeyboardInterrupt:
-        sys.exit("make setup: interrupted; running it again goes on")
+        sys.exit("make setup: interrupted; run it again to continue")

@@ -80,6 +80,6 @@ def test_where_it_cannot_be_had_it_is_said_and_nothing_is_left(
     for name, value in wrong.items():
         monkeypatch.setattr(Apt, name, value)
     setup.main()
-    assert "those tests are skipped" in capsys.readouterr().out
+    assert "tests of HTML pages are skipped" in capsys.readouterr().out
     assert setup.find_browser() is None
     assert list(tmp_path.iterdir()) == []
