@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from rich.console import Console, ConsoleDimensions
 
 from momantu_bt.cli.replay_screen import picture
-from momantu_bt.replay.run_text import told
+from momantu_bt.replay.run_text import run_lines
 from momantu_bt.replay.stepper import Stepper
 from momantu_bt.replay.timeline import Timeline
 
@@ -43,7 +43,7 @@ def timeline(recorded):
 def drawn(stepper, width, height):
     """The lines of the window."""
     console = Console(width=width, height=height, file=StringIO(), color_system=None)
-    lines = list(told(stepper.timeline.recording))
+    lines = list(run_lines(stepper.timeline.recording))
     group = picture(stepper, lines, ConsoleDimensions(width, height))
     return ["".join(part.text for part in line) for line in console.render_lines(group, pad=False)]
 
