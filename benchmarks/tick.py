@@ -38,12 +38,12 @@ from momantu_bt.engine.build import Built, build
 from momantu_bt.engine.context import RunContext
 from momantu_bt.engine.executor import Executor
 from momantu_bt.engine.fingerprint import Fingerprint
-from momantu_bt.engine.no_world import NoWorld
 from momantu_bt.formats.places import Place
 from momantu_bt.record.recorder import Recorder
 from momantu_bt.running.options import RunOptions
 from momantu_bt.testing import ManualClock
 from momantu_bt.tree.model import Document, Literal, Node, PortValue, Reference, Tree
+from momantu_bt.world_plugins import NoWorld
 
 Tick: TypeAlias = Callable[[], object]
 

@@ -1,4 +1,4 @@
-"""Worlds by name: installed ones, and files in the place of a name."""
+"""Worlds by name: installed ones, files in the place of a name, and `none`."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from momantu_bt.plugins import Files, Group, PluginError
-from momantu_bt.world import WorldEntry
+from momantu_bt.world import TICK, WorldEntry
 
 WORLD_FILES: Group[Callable[[Path], WorldEntry]] = Group(
     "momantu_bt.world_files", "reader of world files"
@@ -42,3 +42,18 @@ def _read_world(path: Path) -> WorldEntry:
 WORLDS: Group[WorldEntry] = Group(
     "momantu_bt.worlds", "world", _world, Files("world.yaml", _read_world)
 )
+
+
+class NoWorld:
+    """The world `none`: a clock without a robot, a site and a referee."""
+
+    def __init__(self) -> None:
+        self._ticks = 0
+
+    def now(self) -> float:
+        """Seconds since the run began."""
+        return self._ticks * TICK
+
+    def step(self) -> None:
+        """Advance by one tick."""
+        self._ticks += 1

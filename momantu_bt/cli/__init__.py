@@ -8,21 +8,24 @@ Exit codes: 0 the tree succeeded and no referee denies it; 1 it failed, or somet
 from __future__ import annotations
 
 import os
+import re
 import sys
 from collections.abc import Sequence
+from typing import Any
 
 import typer
 
 import momantu_bt.threads  # noqa: F401 - before numpy, which the next imports load
 from momantu_bt.cli.notices import notice
 from momantu_bt.cli.subverbs import add_command, with_subverbs
-from momantu_bt.cli.usage import usage_message
 from momantu_bt.cli.verbs import COMMANDS, VERBS, built_in
 from momantu_bt.errors import ExitCode, MomantuError
 from momantu_bt.version import __version__
 
 TRACEBACK = "MOMANTU_BT_TRACEBACK"
 """Environment variable: set to anything, internal errors come with their traceback."""
+_UNKNOWN = re.compile(r"No such command '(?P<word>.*)'\.(?P<nearest> Did you mean)?")
+"""What click says of a name that a group of commands does not have, with typer's addition."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -102,7 +105,7 @@ def _never() -> None:
 
 def _other_error(error: Exception) -> ExitCode:
     """Report a wrong command line, or a mistake in the program."""
-    usage = usage_message(error)
+    usage = _usage_message(error)
     if usage is not None:
         notice(usage)
         return ExitCode.WRONG_INPUT
@@ -110,3 +113,28 @@ def _other_error(error: Exception) -> ExitCode:
         raise error
     notice(f"internal error: {type(error).__name__}: {error} (set {TRACEBACK}=1 for the traceback)")
     return ExitCode.INTERNAL
+
+
+def _usage_message(error: Any) -> str | None:
+    """One line of the message and of whose help to read; None for other errors.
+
+    error: one of typer's usage errors, of whichever click typer was built with: they have
+    `format_message()`, and `ctx` of the command that they happened in.
+    """
+    if getattr(error, "format_message", None) is None:
+        return None
+    message, context = str(error.format_message()), getattr(error, "ctx", None)
+    path = "momantu-bt" if context is None else context.command_path
+    message += "" if message.endswith((".", "?", "!")) else "."
+    unknown = _UNKNOWN.match(message)
+    if unknown is not None and context is not None and context.parent is not None:
+        message += _instead(path, sorted(context.command.list_commands(context)), unknown)
+    return f"{message} See {path} --help."
+
+
+def _instead(path: str, known: list[str], unknown: re.Match[str]) -> str:
+    """`momantu-bt worlds my_flat` wants to see a world, `worlds chek …` to check one."""
+    can = f" {path} knows {', '.join(known)}."
+    if "show" not in known or unknown["nearest"]:
+        return can
+    return f"{can} To see one: {path} show {unknown['word']}."

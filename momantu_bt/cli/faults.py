@@ -13,8 +13,8 @@ from momantu_bt.cli.schema_file import Out, put_schema
 from momantu_bt.errors import ExitCode
 from momantu_bt.faults.catalogue import kinds
 from momantu_bt.faults.pages import as_data, as_parameters, as_table, as_text, as_words
-from momantu_bt.faults.schema import faults_schema
 from momantu_bt.faults.spec import parse_fault
+from momantu_bt.faults.tree_file import faults_schema
 from momantu_bt.faults.tree_page import HEAD, tree_rows
 from momantu_bt.tree.load import load
 from momantu_bt.tree.registry import Registry

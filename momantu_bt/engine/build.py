@@ -9,11 +9,10 @@ from typing import TypeAlias, TypeGuard, cast
 from momantu_bt.engine.blackboard import Board, Cell
 from momantu_bt.engine.conditions import Conditions
 from momantu_bt.engine.context import RunContext
-from momantu_bt.engine.disabled import Disabled
 from momantu_bt.engine.node import BuildError, Parts, TreeNode
 from momantu_bt.engine.ports import Reader, cell_of, reader
 from momantu_bt.engine.skill_leaf import SkillLeaf
-from momantu_bt.engine.substituted import Substituted
+from momantu_bt.engine.substituted import Disabled, Substituted
 from momantu_bt.engine.subtree import SubTree
 from momantu_bt.skill import Port, Skill
 from momantu_bt.tree.catalogue import AUTOREMAP, NODE_CLASSES, NODES, SUBTREE

@@ -1,4 +1,4 @@
-"""A node that a rule of a test replaces: it does what the rule says, not what it is."""
+"""Nodes that stand in for those of the file: replaced by a rule of a test, or disabled."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from momantu_bt.tree.substitute.substitution import Result
 
 
 class Substituted(TreeNode):
-    """Gives the results in turn, each as often as it says; then its child, the node itself.
+    """Gives the results that a rule of a test names, each as often as it says; then runs its child.
 
-    Conditions are this node's; the child has none of its own.
+    The child is the node itself. Conditions are this node's; the child has none of its own.
     """
 
     def __init__(
@@ -81,3 +81,17 @@ class Substituted(TreeNode):
         if status.completed:
             child.reset()
         return self.fail_with(self.failure_of(child)) if status is FAILURE else status
+
+
+class Disabled(TreeNode):
+    """A node that the tree file disables: always SKIPPED, never started, nothing built below."""
+
+    def execute(self) -> Status:
+        """SKIPPED; this does not count as a run."""
+        status = super().execute()
+        self.runs = 0
+        return status
+
+    def step(self) -> Status:
+        """SKIPPED."""
+        return SKIPPED

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import signal
 import tempfile
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
@@ -19,7 +21,6 @@ from momantu_bt.faults.catalogue import kinds
 from momantu_bt.faults.director import Director, Staged
 from momantu_bt.faults.phase import START, Phase, parse_phase
 from momantu_bt.faults.phases import check_phase, usual_phase
-from momantu_bt.faults.process import Killed
 from momantu_bt.faults.skills import skill_fault
 from momantu_bt.faults.skills.victim import SkillFault
 from momantu_bt.faults.tree_file import TreeFaults, tree_faults
@@ -147,3 +148,14 @@ def _of_world(fault: Fault, world: World) -> Effect:
         hint = valid_names(fault.name, having, "faults of the world's own")
         raise FaultError(f"the world {world.name} cannot make {fault.name}; {hint}")
     return world.effect(fault)
+
+
+class Killed:
+    """`process.killed`. Implements `Effect`."""
+
+    def begin(self) -> None:
+        """End the process at once; nobody is told."""
+        os.kill(os.getpid(), signal.SIGKILL)
+
+    def end(self) -> None:
+        """Nothing is left to mend."""

@@ -1,4 +1,4 @@
-"""Fault rows of one tree: `my_tree.faults.yaml` beside `my_tree.yaml`.
+"""Read the fault rows of one tree: `my_tree.faults.yaml` beside `my_tree.yaml`; its JSON Schema.
 
 momantu_bt: 1
 begins:                        # when a fault begins in this tree, unless @PHASE says otherwise
@@ -13,13 +13,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
+from typing import Any
 
+from momantu_bt.descriptions.schema import DIALECT
 from momantu_bt.fault import FaultError
 from momantu_bt.fault_kind import Where
 from momantu_bt.faults.catalogue import kinds
-from momantu_bt.faults.phase import START, parse_phase
+from momantu_bt.faults.phase import FORMS, START, parse_phase
 from momantu_bt.faults.phases import check_phase
-from momantu_bt.faults.spec import FaultSyntaxError, parse_fault
+from momantu_bt.faults.spec import FORM, FaultSyntaxError, parse_fault
 from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.places import Place
 from momantu_bt.formats.problems import errors
@@ -30,6 +32,7 @@ from momantu_bt.tree.files.port_values import drop_duplicates
 from momantu_bt.tree.files.side_file import top_values
 from momantu_bt.tree.files.syntax import compose
 from momantu_bt.tree.files.text import read_text
+from momantu_bt.tree.language import VERSION
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.problems import Problems, TreeError
 from momantu_bt.tree.substitute.substitution import Substitution
@@ -156,3 +159,33 @@ def _is_fault(item: Scalar, document: Document, problems: Problems) -> bool:
         problems.error("wrong-value", place, error.reason)
         return False
     return fault.phase is None or _is_phase(fault.phase, place, document, problems)
+
+
+def faults_schema() -> dict[str, Any]:
+    """The schema of `my_tree.faults.yaml`, with the faults that are installed."""
+    phases = {
+        name: {"type": "string", "description": f"{kind.doc} It begins at: {FORMS}"}
+        for name, kind in kinds().items()
+        if kind.place is not Where.SITE
+    }
+    return {
+        "$schema": DIALECT,
+        "title": "momantu-bt file of faults beside a tree",
+        "type": "object",
+        "properties": {
+            "momantu_bt": {"const": VERSION, "description": "the version of the language"},
+            "begins": {
+                "type": "object",
+                "description": "when faults begin in this tree",
+                "properties": phases,
+                "additionalProperties": False,
+            },
+            "rows": {
+                "type": "array",
+                "description": "faults that `bench --faults` runs besides",
+                "items": {"type": "string", "description": FORM},
+            },
+        },
+        "required": ["momantu_bt"],
+        "additionalProperties": False,
+    }

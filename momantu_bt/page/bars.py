@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from momantu_bt.failure import FailureValue
-from momantu_bt.page.codes import FAILURE, IDLE, RUNNING, SKIPPED
+from momantu_bt.page.statuses import FAILURE, IDLE, RUNNING, SKIPPED
 from momantu_bt.record.recording import ChangeRecord, Recording, TickRecord
 
 

@@ -9,15 +9,15 @@ from typing import Any
 
 from momantu_bt.page.about import about
 from momantu_bt.page.board import board
-from momantu_bt.page.cameras import cameras
-from momantu_bt.page.codes import FAILURE, IDLE, RUNNING, SKIPPED, STATUS_NUMBERS
 from momantu_bt.page.failures import failure_rows
 from momantu_bt.page.floor import floor
 from momantu_bt.page.lanes import lanes
-from momantu_bt.page.rows import rows_above
-from momantu_bt.page.statuses import shown
+from momantu_bt.page.statuses import FAILURE, IDLE, RUNNING, SKIPPED, STATUS_NUMBERS, shown
 from momantu_bt.page.tables import Texts
-from momantu_bt.record.recording import Recording
+from momantu_bt.record.lines import is_frame
+from momantu_bt.record.recording import NodeInfo, Recording
+
+_CAMERA = "/camera/"
 
 
 def page_data(recording: Recording) -> dict[str, Any]:
@@ -42,7 +42,7 @@ def page_data(recording: Recording) -> dict[str, Any]:
         "labels": _labels(recording),
         "failures": failures,
         "lanes": lanes(recording, failures),
-        "cameras": cameras(recording),
+        "cameras": _cameras(recording),
         "floor": floor(recording),
         **board(recording),
     }
@@ -65,7 +65,7 @@ def _nodes(recording: Recording) -> dict[str, list[Any]]:
     """Columns by node. row, above: see `rows_above`. file: -1 where the record has it not."""
     places = [node.place.rpartition(":") for node in recording.nodes]
     runs, failures = _counts(recording)
-    own, above = rows_above(recording.nodes)
+    own, above = _rows_above(recording.nodes)
     return {
         "name": [node.name for node in recording.nodes],
         "type": [node.type for node in recording.nodes],
@@ -107,3 +107,33 @@ def _counts(recording: Recording) -> tuple[list[int], list[int]]:
         failed[change.node] += change.status == FAILURE
     count = len(recording.nodes)
     return [runs[node] for node in range(count)], [failed[node] for node in range(count)]
+
+
+def _cameras(recording: Recording) -> list[dict[str, Any]]:
+    """Per camera: name, times (s) and images, each an address that holds the picture itself."""
+    found = []
+    for topic in recording.topics():
+        if not topic.startswith(_CAMERA):
+            continue
+        times, images = [], []
+        for time, message in recording.messages(topic):
+            times.append(round(time, 4))
+            images.append(f"data:image/{message['format']};base64,{message['data']}")
+        found.append({"name": topic.removeprefix(_CAMERA), "times": times, "images": images})
+    return found
+
+
+def _rows_above(nodes: Sequence[NodeInfo]) -> tuple[list[int], list[int]]:
+    """By node: the node in whose row it is shown, and the one whose row is above that, or -1."""
+    own: list[int] = []
+    above: list[int] = []
+    for node in nodes:
+        if node.parent is None:
+            own.append(node.index)
+            above.append(-1)
+            continue
+        around = own[node.parent]
+        framed = is_frame(node.role, nodes[node.parent].role)
+        own.append(around if framed else node.index)
+        above.append(above[around] if framed else around)
+    return own, above

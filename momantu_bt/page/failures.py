@@ -7,7 +7,7 @@ from pathlib import PurePath
 from typing import Any
 
 from momantu_bt.failure import FailureValue
-from momantu_bt.page.codes import FAILURE
+from momantu_bt.page.statuses import FAILURE
 from momantu_bt.page.tables import value_text
 from momantu_bt.record.failure_text import tries_text
 from momantu_bt.record.recording import NodeInfo, Recording, TickRecord

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from momantu_bt.page.bars import Bar, bars
-from momantu_bt.page.codes import FAILURE, IDLE, RUNNING, STATUS_NUMBERS, SUCCESS
+from momantu_bt.page.statuses import FAILURE, IDLE, RUNNING, STATUS_NUMBERS, SUCCESS
 from momantu_bt.record.recording import Recording
 from momantu_bt.tree.catalogue import NODES
 

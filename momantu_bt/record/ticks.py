@@ -8,11 +8,11 @@ from typing import Any
 
 from momantu_bt.engine.actuators import Issued
 from momantu_bt.engine.blackboard import Journal, written
-from momantu_bt.engine.changes import Change
+from momantu_bt.engine.changes import Change, SeenNode
 from momantu_bt.engine.executor import Executor
+from momantu_bt.engine.status import IDLE, RUNNING
 from momantu_bt.failure import FailureValue
 from momantu_bt.messages import ActuatorGoal
-from momantu_bt.record.captions import Captions
 from momantu_bt.record.channel import stamp_of
 from momantu_bt.record.codec import dumps, to_json, to_text
 from momantu_bt.record.mcap_file import McapFile
@@ -144,3 +144,33 @@ def _keep(texts: dict[tuple[int, str, str], str], key: tuple[int, str, str], tex
     if len(texts) >= _MOST_TEXTS:
         texts.clear()
     texts[key] = text
+
+
+class Captions:
+    """`new` gives, tick by tick, what differs from what a reader of the record knows."""
+
+    def __init__(self, run: Executor) -> None:
+        self._running: dict[int, SeenNode] = {}
+        self._notes: dict[int, str] = {}
+        self._labels = {node.index: node.label for node in run.built.nodes}
+
+    def new(self, run: Executor) -> tuple[list[tuple[int, str]], list[tuple[int, str]]]:
+        """Notes and lines that are new, each with its node's index."""
+        labels: list[tuple[int, str]] = []
+        for node, status, note, _ in run.context.changes:
+            index = node.index
+            if status is RUNNING:
+                self._running[index] = node
+            else:
+                self._running.pop(index, None)
+            self._notes[index] = note
+            if status is not IDLE and node.label != self._labels[index]:
+                self._labels[index] = node.label
+                labels.append((index, node.label))
+        notes: list[tuple[int, str]] = []
+        for index, node in self._running.items():
+            note = node.note
+            if note != self._notes[index]:
+                self._notes[index] = note
+                notes.append((index, note))
+        return notes, labels

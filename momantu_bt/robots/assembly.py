@@ -2,25 +2,29 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from lxml import etree
 
+from momantu_bt.formats.cache import kept_folder
+from momantu_bt.formats.files import write_whole
 from momantu_bt.formats.places import KeyPath
 from momantu_bt.formats.problems import errors
 from momantu_bt.robot_simulation import BaseJoints
-from momantu_bt.robots.cache import keep_urdf
 from momantu_bt.robots.errors import PartError
 from momantu_bt.robots.inertia import inertia_problems
 from momantu_bt.robots.joining import KEPT, VIRTUAL_JOINTS, Joining
 from momantu_bt.robots.limits import complete_limits
 from momantu_bt.robots.meshes import locate_meshes, replace_meshes, users_folder, write_paths
-from momantu_bt.robots.naming import add_namespace
 from momantu_bt.robots.parts import LoadedPart, load_part, shown
 from momantu_bt.robots.robot_file import RobotFile
 from momantu_bt.robots.structure import root_link, wrong_structure
+
+_DIGITS = 16
+"""Of the hash in the name of an assembled URDF in the cache."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,13 +62,13 @@ def assemble(robot: RobotFile, folder: Path) -> Assembled:
     for part, found in zip(parts, meshes, strict=True):
         write_paths(part, found)
         if part.source.namespace is not None:
-            add_namespace(part.root, part.source.namespace)
+            _add_namespace(part.root, part.source.namespace)
     joining = Joining(robot, parts)
     _raise(list(joining.join()))
     complete_limits(joining.root.findall("joint"), limits)
     etree.cleanup_namespaces(joining.root)
     etree.indent(joining.root)
-    path = keep_urdf(robot.name, etree.tostring(joining.root, encoding="utf-8"))
+    path = _keep_urdf(robot.name, etree.tostring(joining.root, encoding="utf-8"))
     return Assembled(joining.root, path, (), files, joints)
 
 
@@ -122,3 +126,35 @@ def _meshes(parts: list[LoadedPart], folder: Path) -> list[Mapping[str, Path]]:
 def _raise(troubles: list[PartError]) -> None:
     if troubles:
         raise ExceptionGroup("the robot cannot be assembled", troubles)
+
+
+def _keep_urdf(name: str, text: bytes) -> Path:
+    """Write a URDF whole or not at all, under a name that its text decides; its path.
+
+    Raises:
+        OSError: neither the user's cache nor the folder of temporary files can be written.
+    """
+    path = kept_folder("robots") / f"{name}-{hashlib.sha256(text).hexdigest()[:_DIGITS]}.urdf"
+    if not path.is_file() or path.read_bytes() != text:
+        write_whole(path, text)
+    return path
+
+
+def _add_namespace(root: etree._Element, namespace: str) -> None:
+    """Rename every link, joint and material of a URDF in place."""
+    for element, attribute in _names(root):
+        element.set(attribute, f"{namespace}_{element.get(attribute)}")
+
+
+def _names(root: etree._Element) -> Iterator[tuple[etree._Element, str]]:
+    """Every place where a URDF defines or uses a name: (element, attribute)."""
+    for tag in ("link", "joint", "material"):
+        for element in root.findall(tag):
+            yield element, "name"
+    for joint in root.findall("joint"):
+        for tag, attribute in (("parent", "link"), ("child", "link"), ("mimic", "joint")):
+            for element in joint.findall(tag):
+                yield element, attribute
+    for material in root.findall("link/visual/material"):
+        if material.get("name"):
+            yield material, "name"

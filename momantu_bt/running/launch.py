@@ -18,7 +18,6 @@ from momantu_bt.engine.ending import ERROR
 from momantu_bt.engine.events import Events
 from momantu_bt.engine.executor import Executor, Observer
 from momantu_bt.engine.interrupts import Interrupts
-from momantu_bt.engine.no_world import NoWorld
 from momantu_bt.engine.services import Services, in_order
 from momantu_bt.engine.watchdog import Watchdog
 from momantu_bt.errors import MomantuError
@@ -40,6 +39,7 @@ from momantu_bt.tree.model import Document
 from momantu_bt.tree.registry import Registry
 from momantu_bt.values.convert import natural
 from momantu_bt.world import World
+from momantu_bt.world_plugins import NoWorld
 
 Watch: TypeAlias = Callable[[Executor], Sequence[Observer]]
 

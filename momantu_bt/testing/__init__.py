@@ -7,13 +7,12 @@ assert_skill(Nod)
 
 from momantu_bt.formats.problems import Problem
 from momantu_bt.testing.check import assert_skill, check_skill
-from momantu_bt.testing.clock import ManualClock
 from momantu_bt.testing.description import small_robot
 from momantu_bt.testing.example_world import ExampleWorld
 from momantu_bt.testing.eye_in_hand import eye_in_hand_robot
 from momantu_bt.testing.robot import ScriptedRobot
 from momantu_bt.testing.skill_run import SkillResult, run_skill
-from momantu_bt.testing.world import ScriptedWorld, scripted_site
+from momantu_bt.testing.world import ManualClock, ScriptedWorld, scripted_site
 
 __all__ = [
     "ExampleWorld",

@@ -1,8 +1,9 @@
-"""A world without physics: it advances a scripted robot's clock, and has a site."""
+"""A world without physics, its site, and a clock that the test advances."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from momantu_bt.geometry import Pose2D
@@ -94,3 +95,18 @@ class _TextVideo:
 
     def close(self) -> None:
         self._file.close()
+
+
+@dataclass(slots=True)
+class ManualClock:
+    """A clock that the test advances. time: seconds since the run began."""
+
+    time: float = 0.0
+
+    def now(self) -> float:
+        """Seconds since the run began."""
+        return self.time
+
+    def advance(self, seconds: float) -> None:
+        """Let time pass."""
+        self.time += seconds

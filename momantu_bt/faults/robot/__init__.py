@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import TypeAlias
 
 from momantu_bt.fault import Fault, FaultError
-from momantu_bt.faults.robot import arm, base, camera, gripper, laser, odometry, sensors
+from momantu_bt.faults.robot import arm, base, camera, gripper, odometry, sensors
 from momantu_bt.faults.robot.layer import Layer
 from momantu_bt.robot import Robot
 
@@ -23,7 +23,7 @@ LAYERS: Mapping[str, LayerType] = MappingProxyType(
         "camera.shifted": camera.Shifted,
         "laser.dead": sensors.DeadLaser,
         "laser.stuck": sensors.StuckLaser,
-        "laser.blocked": laser.Blocked,
+        "laser.blocked": sensors.BlockedLaser,
         "odometry.slip": odometry.Slip,
         "odometry.bias": odometry.Bias,
         "base.stuck": base.Stuck,

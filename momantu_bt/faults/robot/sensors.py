@@ -1,13 +1,16 @@
-"""Faulty sensors: they do not answer, or repeat their last reading."""
+"""Faulty sensors: they do not answer, repeat their last reading, or are partly covered."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from typing import Any, ClassVar
 
+import numpy as np
+
 from momantu_bt.failure import SENSOR_DEAD, Failure
 from momantu_bt.fault import Fault
 from momantu_bt.faults.robot.layer import Layer
+from momantu_bt.messages import LaserScan, frozen
 from momantu_bt.robot import CameraSensor, LaserSensor, Robot, SensorReading
 
 
@@ -99,3 +102,17 @@ class StuckLaser(_Repeating):
     """`laser.stuck`."""
 
     sensor = LaserSensor
+
+
+class BlockedLaser(SensorLayer):
+    """`laser.blocked`: the beams of a sector give the least range."""
+
+    sensor = LaserSensor
+
+    def altered(self, sensor: str, reading: LaserScan) -> LaserScan:
+        """The scan with the sector blocked."""
+        angles = reading.angle_min + reading.angle_increment * np.arange(len(reading.ranges))
+        away = np.abs((angles - self.number("at") + np.pi) % (2.0 * np.pi) - np.pi)
+        blocked = away <= self.number("width") / 2.0
+        ranges = np.where(blocked, reading.range_min, reading.ranges)
+        return replace(reading, ranges=np.asarray(frozen(ranges)))

@@ -6,10 +6,13 @@ import ctypes
 import math
 import time
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import fields, is_dataclass, replace
+from typing import Any
 
-from momantu_bt.faults.skills.outputs import without_numbers
+import numpy as np
+
 from momantu_bt.faults.skills.victim import SkillFault
+from momantu_bt.geometry import Transform
 from momantu_bt.skill import Compute, Skill
 
 _MUTEX = 128
@@ -91,3 +94,22 @@ def _outputs(skill: Skill) -> Iterator[tuple[str, object]]:
     for port in skill.ports.values():
         if port.direction == "out" and port.name in skill.port_values:
             yield port.name, skill.port_values[port.name]
+
+
+def without_numbers(value: Any) -> Any:
+    """The same value, each float in it NaN; whole numbers have no NaN and stay.
+
+    A transform keeps its turn: one of no length is refused where it is made.
+    """
+    if isinstance(value, float):
+        return math.nan
+    if isinstance(value, Transform):
+        return Transform((math.nan,) * 3, value.quaternion)
+    if isinstance(value, np.ndarray) and value.dtype.kind == "f":
+        return np.full_like(value, math.nan)
+    if type(value) in (list, tuple):
+        return type(value)(without_numbers(item) for item in value)
+    if is_dataclass(value) and not isinstance(value, type):
+        parts = {f.name: without_numbers(getattr(value, f.name)) for f in fields(value) if f.init}
+        return replace(value, **parts)
+    return value

@@ -14,7 +14,6 @@ from momantu_bt.engine.build import Built
 from momantu_bt.engine.decorator import Decorator
 from momantu_bt.engine.executor import Executor
 from momantu_bt.engine.interrupts import Interrupts
-from momantu_bt.engine.no_world import NoWorld
 from momantu_bt.engine.status import FAILURE, IDLE, RUNNING
 from momantu_bt.nodes.branches import IfThenElse, WhileDoElse
 from momantu_bt.nodes.fallbacks import AsyncFallback, Fallback, RoundRobin
@@ -36,6 +35,7 @@ from momantu_bt.nodes.sequences import AsyncSequence, Sequence, SequenceWithMemo
 from momantu_bt.nodes.switch import Switch2
 from momantu_bt.nodes.timing import Delay, Timeout
 from momantu_bt.nodes.try_catch import TryCatch
+from momantu_bt.world_plugins import NoWorld
 
 ANY_NUMBER = (
     Sequence,

@@ -14,7 +14,7 @@ import pytest
 from momantu_bt.fault import FaultError
 from momantu_bt.faults.director import Director
 from momantu_bt.faults.site import wrong_site
-from momantu_bt.faults.skills.outputs import without_numbers
+from momantu_bt.faults.skills.modes import without_numbers
 from momantu_bt.faults.spec import parse_fault
 from momantu_bt.formats.maps import FREE, OCCUPIED, read_map
 from momantu_bt.geometry import Transform
