@@ -1,4 +1,4 @@
-"""What a detector of objects gets and gives; `detect_object` takes one by name."""
+"""What a detector of objects gets and gives; a skill takes one by name."""
 
 from __future__ import annotations
 
