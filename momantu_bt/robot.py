@@ -104,7 +104,7 @@ class RobotDescription(Part):
     urdf: Path
     """One URDF of the whole robot; absolute."""
     mesh_directories: tuple[Path, ...] = ()
-    """Where `package://` addresses are looked up."""
+    """The folders in which `package://` addresses are searched."""
     base_frame: str = "base_link"
     """On the floor, x forward."""
     footprint: Annotated[tuple[tuple[Length, Length], ...], Field(min_length=3)]

@@ -62,7 +62,7 @@ class DetectObject(Skill):
         self._views: list[View] = []
 
     def run(self, robot: Robot) -> Run:
-        """Look and measure until the thing was seen in enough looks, or none is left."""
+        """Look and measure until the object was seen in enough views, or no view is left."""
         corners = self._corners()
         region = regions.surface_region(corners)
         pending = surveys.looks_over(self, robot, corners, LOOKS)
@@ -138,5 +138,5 @@ class DetectObject(Skill):
 
 
 def _asked_of(things: Sequence[DetectedObject], accepted: float) -> DetectedObject | None:
-    """The best thing whose score is good enough."""
+    """The best object whose score is good enough."""
     return next((thing for thing in things if thing.score >= accepted), None)

@@ -117,7 +117,7 @@ class DetectPlane(Skill):
         return surfaces.surroundings(seen, region, near, base, radius)
 
     def _radius(self) -> float:
-        """Of the circle that what needs room fits in, whichever way it is turned, m."""
+        """The radius of the circle that the object to place fits in, however it is turned, m."""
         held = self.planning_scene.held
         if self.size is not None:
             across = (*self.size[:2], *self.size[:1])[:2]

@@ -70,7 +70,7 @@ class FindAprilTag(Skill):
         raise self._not_seen(others)
 
     def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
-        """It lies where it was measured; or it lies on the surface where it was not seen."""
+        """The tag lies where it was measured; after a failure: it lies on the surface after all."""
         if failure is None:
             return TagAt(self.tag_id, self.tag_pose.transform, EXACT, SQUARE)
         unseen = failure.code == "TAG_NOT_SEEN" and self.on in self.site.surfaces

@@ -69,7 +69,7 @@ class ResetPose(Skill):
     def _way(
         self, arm: Arm, goal: Array
     ) -> Generator[str | Compute, Any, Sequence[JointTrajectory]]:
-        """The way to the pose; with something in the hand, where the camera has looked."""
+        """The path to the pose; with a held object, only where the camera has looked."""
         held = self.planning_scene.held
         if held is None:
             return (yield from compute(lambda: arm.route([goal], held), THINKING))
@@ -103,12 +103,12 @@ class ResetPose(Skill):
         return poses[self.pose]
 
     def _head(self, robot: Robot) -> str | None:
-        """What carries the camera, unless that is the arm itself, or nothing."""
+        """The actuator of the camera, unless that is the arm, or there is none."""
         carrier = robot.description.resolve_use(CAMERA_CARRIER)
         return None if carrier == ARM else carrier
 
     def _camera_goal(self, robot: Robot, wanted: dict[str, float]) -> JointPositions | None:
-        """Where the pose wants the camera's joints, where they are not the arm's."""
+        """The pose's positions of the camera's joints, if those are not the arm's."""
         carrier = self._head(robot)
         if carrier is None:
             return None

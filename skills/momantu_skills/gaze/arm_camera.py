@@ -103,7 +103,7 @@ def gaze(
 def plan_gaze(
     arm: Arm, point_odom: Array, within: float, around: tuple[Obstacle, ...] = ()
 ) -> list[JointTrajectory]:
-    """The way to the quickest good posture whose camera sees a point (3,) in odom.
+    """The path to the quickest good posture whose camera sees a point (3,) in odom.
 
     within: rad off the optical axis at which the point may lie, where the axis itself is hidden
     by what the hand holds. around: solids to keep away from, beside what the scene knows.

@@ -71,7 +71,7 @@ def _reach_out(
 
 
 def _turn(skill: Skill, robot: Robot, carrier: str, point: Array, within: float) -> Run:
-    """Turn what carries the camera, a joint or two that meet nothing on their way."""
+    """Turn the joints of a head, which meet no obstacle."""
     description = robot.description
     goal = _goal(skill, robot, carrier, point, within)
     deadline = skill.clock.now() + 2.0 * _travel(description, robot.state(), goal) + PATIENCE

@@ -70,7 +70,7 @@ def around(skill: Skill, robot: Robot) -> list[Array]:
 
 
 def beside(thing: Array, camera: Array, count: int) -> Array:
-    """Where to look (3,) for the `count`-th further view of a thing at (3,): at it, then beside."""
+    """The point (3,) to look at for the `count`-th further view of an object at (3,)."""
     if count == 1:
         return thing
     away = thing[:2] - camera[:2]

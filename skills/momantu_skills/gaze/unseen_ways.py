@@ -46,7 +46,7 @@ def planned_in_sight(
     way: Callable[[P], Sequence[JointTrajectory]],
     thinking: float,
 ) -> Generator[str | Compute, Any, P]:
-    """A plan whose way was looked at where it leads unseen, as far as the camera can be turned.
+    """A plan whose unseen stretches have been looked at, as far as the camera can be turned.
 
     way: of a plan, one trajectory after the other. thinking: s that one planning is given. A
     camera that the hand carries is brought to where it sees the way, and the plan begins there.
@@ -74,7 +74,7 @@ def planned_in_sight(
 
 
 def blind_spot(arm: Arm, transit: Sequence[JointTrajectory]) -> Array | None:
-    """The middle (3,), in odom, of where a way leads unseen over surfaces or near what is known.
+    """The middle (3,), in odom, of an unseen stretch over surfaces or near known obstacles.
 
     None: nowhere.
     """

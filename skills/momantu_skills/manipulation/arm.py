@@ -152,7 +152,7 @@ class Arm:
         start: Array,
         goals: Sequence[Array],
     ) -> Array | None:
-        """A path on which what is held stays upright, or any path where there is no such one."""
+        """A path on which the held object stays upright, or else any path."""
         if not world.free(start):
             return None
         found = self.planner.path(start, goals, self._upright(world, held, start, goals))
@@ -171,7 +171,7 @@ class Arm:
         return follow(self.robot, self.skill.clock, ARM, trajectory, phase, until)
 
     def settle(self) -> Generator[str, None, None]:
-        """Wait until the arm stands still: whoever had it before may have been cut off."""
+        """Wait until the arm stands still: its last motion may have been cut off."""
         last = self.joints
         for _ in range(SETTLE_TICKS):
             yield "settling"
@@ -181,7 +181,7 @@ class Arm:
             last = now
 
     def reversed(self, trajectory: JointTrajectory, speed: float | None = None) -> JointTrajectory:
-        """The way back along a trajectory, from where the arm is to its start.
+        """The path back along a trajectory, from where the arm is to its start.
 
         speed: of the hand, m/s; that of lifting if None.
         """

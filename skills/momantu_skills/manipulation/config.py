@@ -57,7 +57,7 @@ class SceneConfig(Tunables):
 
 @dataclass(frozen=True)
 class PlanningConfig:
-    """How motions are searched. Searches end by counting, never by a clock."""
+    """How motions are searched. A search ends after a count of steps, never by a clock."""
 
     step: float = 0.06
     """Scaled rad between two collision checks of a motion; the hand then moves about 4 cm."""

@@ -166,7 +166,7 @@ class TagSighting:
 
 
 def search(snapshot: Snapshot, tag_id: int, edge: float) -> tuple[set[int], TagSighting | None]:
-    """Ids of all tags in a picture, and where the asked one is, when it can be measured."""
+    """The ids of all tags in a picture, and the requested tag's pose, if it can be measured."""
     tags = find_tags(snapshot.image)
     if tag_id not in tags:
         return set(tags), None

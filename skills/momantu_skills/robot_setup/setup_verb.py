@@ -73,7 +73,7 @@ def _text(found: proposal.Proposal, folder: Path) -> tuple[str, tuple[str, ...]]
 
 
 def _read_again(path: Path) -> str:
-    """What the reader says to the file; empty when it takes it."""
+    """The reader's problems with the file; empty if it accepts it."""
     try:
         read_robot(path)
     except RobotFileError as error:

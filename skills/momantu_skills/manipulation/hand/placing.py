@@ -33,7 +33,7 @@ SPOT_PENALTY = 0.5
 
 @dataclass(frozen=True, eq=False)
 class PlacePlan:
-    """What to execute. odom_from_object: where it will stand.
+    """The motions of setting down. odom_from_object: where the object will stand.
 
     lower: down past the surface, for a hand that feels it; blind: to just above it, for others.
     """
@@ -53,7 +53,7 @@ class _Candidate:
 
 
 def plan_place(arm: Arm, held: HeldObject, spots: Sequence[Pose]) -> PlacePlan:
-    """A spot, a turn, the way above it and the way down.
+    """A spot, a turn, the path above it and the path down.
 
     Raises:
         Failure: NO_PLACE_POSE when the hand cannot set it down upright on any spot, NO_PLAN when

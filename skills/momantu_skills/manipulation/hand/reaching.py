@@ -47,7 +47,7 @@ class Reach:
 
 @dataclass(frozen=True, eq=False)
 class PickPlan:
-    """What to execute. transit: trajectories to the pre-grasp, one after the other."""
+    """The motions of a grasp. transit: trajectories to the pre-grasp, one after the other."""
 
     grasp: Grasp
     transit: list[JointTrajectory]
@@ -57,7 +57,7 @@ class PickPlan:
 
 
 def plan_pick(arm: Arm, thing: DetectedObject, lift: float) -> PickPlan:
-    """Grasp, approach, lift and the way to them.
+    """Grasp, approach, lift and the path to them.
 
     Raises:
         Failure: NO_GRASP when no grasp can be reached, NO_PLAN when none of those that can has a
@@ -187,7 +187,7 @@ class _Check:
         )
 
     def summary(self) -> str:
-        """How many postures failed where, for a message."""
+        """The number of postures that failed at each step, for a message."""
         counts = ", ".join(f"{n} at {where}" for where, n in self.lost.items() if n)
         return counts or "no posture of the arm reaches any of them"
 

@@ -15,7 +15,7 @@ from momantu_bt.geometry import Transform
 
 
 class UrdfSource(Protocol):
-    """What a URDF is read with; a robot's description is one."""
+    """What reading a URDF needs; a robot's description is one."""
 
     @property
     def urdf(self) -> Path:
@@ -29,7 +29,7 @@ class UrdfSource(Protocol):
 
     @property
     def mesh_directories(self) -> tuple[Path, ...]:
-        """Where `package://` addresses are looked up."""
+        """The folders in which `package://` addresses are searched."""
         ...
 
 

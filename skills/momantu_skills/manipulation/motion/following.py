@@ -69,7 +69,7 @@ def follow(
 
 
 class _Delay:
-    """Tells an arm that is late from one that is stuck: how far it got along its trajectory."""
+    """Distinguishes a late arm from a stuck one, by its progress along the trajectory."""
 
     def __init__(self, trajectory: JointTrajectory) -> None:
         self._trajectory = trajectory

@@ -22,7 +22,7 @@ class ArmScene(PlanningScene, Protocol):
 
     @property
     def floor_plan(self) -> site_obstacles.FloorPlan:
-        """What the site's maps know of."""
+        """The obstacles that the site's maps know."""
         ...
 
     def touched(self) -> None:

@@ -40,11 +40,11 @@ class PlanningSceneService(Service):
 
     @cached_property
     def floor_plan(self) -> site_obstacles.FloorPlan:
-        """What the site's maps know of."""
+        """The obstacles that the site's maps know."""
         return site_obstacles.FloorPlan(self.site, self.frames)
 
     def update(self, robot: Robot, now: float) -> None:
-        """Judge anew what is held."""
+        """Judge again what is held."""
         self._state = robot.state()
         self.holding.judge(self._state)
 
@@ -90,7 +90,7 @@ class PlanningSceneService(Service):
         self.scene.add_support(plane)
 
     def _take_over_site(self) -> None:
-        """The site's surfaces, and what hangs over them; none while nobody knows where it is."""
+        """The site's surfaces, and what hangs over them; none while the robot is not localized."""
         self.scene.known = self.scene.overhead = ()
         try:
             odom_from_map = self.frames.lookup(ODOM, MAP)
@@ -144,7 +144,7 @@ class Holding:
         self.last_contact = now
 
     def release(self, now: float) -> None:
-        """What was held has been let go."""
+        """Forget the held object, which has been let go."""
         self.held, self.last_contact = None, now
 
     def judge(self, state: RobotState) -> None:

@@ -58,7 +58,7 @@ class Overhead:
 
 
 def overhead_of(surface: Surface, odom_from_map: Transform) -> tuple[Overhead, ...]:
-    """What the site says that hangs over one of its surfaces."""
+    """What hangs over a surface, according to the site."""
     found = []
     for one in surface.over:
         middle = one.map_from_overhang.transform((one.bottom + one.top) / 2)

@@ -150,7 +150,7 @@ def _wider(outline: Array, by: float) -> Array:
 
 
 def known_support(surface: Surface, odom_from_map: Transform) -> Support:
-    """What the site says of a surface that it names, in odom."""
+    """A surface of the site, in odom."""
     half = np.array(surface.size) / 2
     corners = [(-half[0], -half[1], 0.0), (half[0], -half[1], 0.0), (*half, 0.0)]
     corners.append((-half[0], half[1], 0.0))

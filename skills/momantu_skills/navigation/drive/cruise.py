@@ -101,7 +101,7 @@ def _replanned(vehicle: Vehicle, route: Route, watch: _Watch) -> Generator[Any, 
 
 
 class _Watch:
-    """Keeps time: when to plan anew, and when there is no progress any more."""
+    """Keeps time: when to plan again, and when progress has stopped."""
 
     def __init__(self, vehicle: Vehicle, route: Route) -> None:
         self._vehicle = vehicle
@@ -111,7 +111,7 @@ class _Watch:
         self.planned(route)
 
     def planned(self, route: Route) -> None:
-        """A new plan holds from now on; a longer way is a detour."""
+        """Follow a new plan from now on; a longer path is a detour."""
         self._planned_at = self._vehicle.now()
         to_go = route.to_go(self._vehicle, self._vehicle.pose())
         if to_go > self._best + 1.0:

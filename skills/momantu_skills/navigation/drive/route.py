@@ -117,7 +117,7 @@ def route_to(vehicle: Vehicle, stand: Pose2D) -> Route | None:
 
 
 def no_way(vehicle: Vehicle, stand: Pose2D) -> Failure:
-    """PATH_BLOCKED when the map alone has a way, else NO_PATH."""
+    """PATH_BLOCKED when the map alone has a path, else NO_PATH."""
     pose = vehicle.pose()
     known = _planned(vehicle, stand, known=True)
     where = f"({stand.x:.2f}, {stand.y:.2f})"

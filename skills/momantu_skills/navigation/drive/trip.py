@@ -32,7 +32,7 @@ WALK = 3.0
 
 
 class Destination:
-    """Candidate stands (map) computed anew when asked, and the tolerance to meet.
+    """Candidate stands (map), computed at each request, and the tolerance to meet.
 
     in_odom: the chosen stand stays fixed in odometry's frame, for what was measured from here.
     chosen: the stand of the newest attempt, map; None before the first.

@@ -150,7 +150,7 @@ class Vehicle:
         self._looked = pose
 
     def _gaze_goal(self) -> JointPositions | None:
-        """Where a head looks while driving; an arm, or a camera that is fixed, stays as it is."""
+        """Where a head looks while driving; an arm or a fixed camera does not move."""
         description = self._robot.description
         if self._head is None:
             return None

@@ -84,7 +84,7 @@ class Costmap:
         return np.bincount(flat, minlength=rows * columns).reshape(rows, columns)
 
     def refresh(self, center: Pose2D | None = None, radius: float = 2.5) -> None:
-        """Measure the room anew: everywhere, or within a square about `center`."""
+        """Compute the clearance again: everywhere, or within a square around `center`."""
         rows, columns = self.grid.cells.shape
         window = pad = (slice(0, rows), slice(0, columns))
         if center is not None:

@@ -21,7 +21,7 @@ STEP = 0.5
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Plan:
-    """A way to one goal from everywhere.
+    """Paths to one goal from everywhere.
 
     cost: (rows, columns) metres to the goal, weighted by nearness; `UNREACHED` where it is not
     known. path: (n, 2) map coordinates from the start to the goal. goal: where it leads.

@@ -97,7 +97,7 @@ def disc(centre: Array, radius: float, corners: int = 16) -> Array:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SurfaceRegion(Region):
-    """Where a surface and what stands on it are looked for.
+    """The region in which a surface and its objects are searched.
 
     support_heights: (lowest, highest) z of the surface itself in odom, m.
     """

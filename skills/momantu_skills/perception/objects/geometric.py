@@ -38,7 +38,7 @@ class GeometricDetector:
 
     @property
     def accepted(self) -> float:
-        """Score from which on a thing is the asked one."""
+        """The score from which on an object counts as the requested one."""
         return self.matches.accepted
 
     def detect(
@@ -56,7 +56,7 @@ class GeometricDetector:
         return tuple(found)
 
     def _shapes(self, thing: Thing, eyes: Array, asked: ObjectClass) -> list[Shape]:
-        """The thing as a whole, or its parts where it is several that touch."""
+        """The object as a whole, or its parts if several objects touch."""
         radius = None if asked.diameter is None else asked.diameter / 2
         whole = describe(thing, eyes, radius)
         if whole.misfit <= SIMPLE_MISFIT and whole.beyond <= SIMPLE_BEYOND:
@@ -81,7 +81,7 @@ class GeometricDetector:
 
 
 def _whole(things: list[Thing], eyes: Array) -> list[Thing]:
-    """Things with the pieces put back that lie inside the round form of a larger one.
+    """Objects, with pieces merged that lie inside the round shape of a larger one.
 
     A look over the near rim of a bowl shows its far wall apart from it.
     """

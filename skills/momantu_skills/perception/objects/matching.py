@@ -15,14 +15,14 @@ KNOWN = ("can", "bottle", "mug", "bowl", "box")
 
 @dataclass(frozen=True)
 class MatchConfig:
-    """Sizes are told to a few millimetres, and similar things differ by more than 20 % in one."""
+    """Tolerances: given sizes are right to a few mm; similar objects differ by 20 % in one."""
 
     relative: float = 0.10
     """Largest relative difference of a size: half of what tells similar things apart."""
     absolute: float = 0.006
     """m; difference that measuring alone may cause."""
     accepted: float = 0.5
-    """Score from which on a thing is the asked one."""
+    """The score from which on an object counts as the requested one."""
     category_weight: float = 0.6
     """Factor on the score of a thing of another form; with it nothing reaches `accepted`
     unless all its sizes are nearly exact."""
@@ -46,12 +46,12 @@ def score(shape: Shape, asked: ObjectClass, config: MatchConfig | None = None) -
 
 
 def same_category(shape: Shape, asked: ObjectClass) -> bool:
-    """Whether the form fits the asked category; a category that no form stands for fits all."""
+    """Whether the shape fits the requested category; an unknown category fits all shapes."""
     return asked.category not in KNOWN or shape.category == asked.category
 
 
 def _sizes(shape: Shape, asked: ObjectClass) -> Iterator[tuple[float, float]]:
-    """Pairs of (measured, told) for the sizes that are told."""
+    """Pairs of (measured, given) for the given sizes."""
     across = sorted(shape.size[:2])
     if asked.height is not None:
         yield shape.size[2], asked.height

@@ -36,7 +36,7 @@ BEYOND = 0.008
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """One thing as measured.
+    """One object as measured.
 
     kind: "cylinder" or "box". category: can, bottle, mug, bowl or box, by its form. centre: x, y
     in odom, m. yaw: of a box, rad. size: along its own x, y and up, m. misfit: median distance of
@@ -81,7 +81,7 @@ def _is_round(body: Revolution, rectangle: Rectangle, side: Array) -> bool:
 
 
 def _with_expected(side: Array, body: Revolution, radius: float) -> Revolution:
-    """The fit with the expected radius where the free one cannot tell the difference."""
+    """The fit with the expected radius, if the free fit is not clearly better."""
     difference = abs(body.radius - radius)
     if difference > max(0.15 * radius, 3.0 * body.radius_sigma):
         return body

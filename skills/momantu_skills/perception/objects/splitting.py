@@ -25,7 +25,7 @@ MOST_PARTS = 4
 
 
 def split(thing: Thing, config: SegmentConfig) -> list[Thing]:
-    """The parts of a thing that looks like several; the thing itself when no body is in it."""
+    """The parts of an object that looks like several; the object itself if it does not."""
     rest: list[Thing] = [thing]
     parts: list[Thing] = []
     while rest and len(parts) < MOST_PARTS:

@@ -16,7 +16,7 @@ from momantu_skills.perception.surface.planes import Support
 
 @dataclass(frozen=True)
 class SegmentConfig:
-    """How points above a surface become things. Lengths in m."""
+    """How points above a surface are grouped into objects. Lengths in m."""
 
     floor: float = 0.012
     """Points lower above the surface belong to it: three sigma of the depth noise at 1.6 m."""
@@ -112,7 +112,7 @@ def group(points: Array, config: SegmentConfig) -> list[Thing]:
 
 
 def taken_out(thing: Thing, mask: Mask, config: SegmentConfig) -> Sequence[Thing]:
-    """What remains of a thing, as things of their own, once the points in `mask` are gone."""
+    """The remaining parts of an object without the points in `mask`, as objects of their own."""
     return group(thing.points[~mask], config)
 
 

@@ -60,7 +60,7 @@ def _plane(support: Support, things: Sequence[Thing], near: Array) -> SupportPla
 
 
 def _obstacle(thing: Thing, near: Array) -> tuple[float, float, float, float]:
-    """x, y, radius of the circle around a thing, in the plane's frame, and its height, m."""
+    """x, y, radius of the circle around an object, in the plane's frame, and its height, m."""
     flat = thing.points[:, :2]
     centre = (flat.min(axis=0) + flat.max(axis=0)) / 2
     radius = float(np.percentile(np.linalg.norm(flat - centre, axis=1), 99.0))

@@ -25,7 +25,7 @@ ALWAYS = 0.95
 
 
 class Why(StrEnum):
-    """What is known of a pair of links."""
+    """The class of a pair of links in the self-collision matrix."""
 
     ADJACENT = "adjacent"
     DEFAULT = "default"

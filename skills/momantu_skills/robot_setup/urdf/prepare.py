@@ -54,7 +54,7 @@ class Placed:
     mesh_directories: tuple[Path, ...] = ()
 
     def cut(self) -> BaseUrdf:
-        """What hangs below the base."""
+        """The links below the base."""
         return base_urdf(self)
 
 
@@ -142,7 +142,7 @@ def _mend_joint(joint: etree._Element, notes: _Notes) -> None:
 
 
 def _is_stuck(kind: str, limit: etree._Element) -> bool:
-    """Whether a joint cannot move; a hinge from 0 to 0 is one whose limits nobody gave."""
+    """Whether a joint cannot move; a hinge from 0 to 0 counts as one without limits."""
     if kind not in ("revolute", "prismatic"):
         return False
     room = float(limit.get("upper", "0")) - float(limit.get("lower", "0"))

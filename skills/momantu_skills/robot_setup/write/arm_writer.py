@@ -18,7 +18,7 @@ POSES = {
 
 
 def actuator_lines(proposal: Proposal) -> Iterator[str]:
-    """What moves: base, limbs, grippers, and joints that belong to nothing."""
+    """The actuators: base, limbs, grippers, and remaining joints."""
     limbs = proposal.limbs
     yield "actuators:"
     yield "  base: {kind: base}"
@@ -72,7 +72,7 @@ def limit_lines(proposal: Proposal) -> Iterator[str]:
 
 
 def group_lines(proposal: Proposal) -> Iterator[str]:
-    """What is planned as one: the arms."""
+    """The planning groups: the arms."""
     limbs = [limb for limb in (proposal.limbs.arm, *proposal.limbs.others) if limb is not None]
     if not limbs:
         yield "# FILL IN: groups: {arm: {joints: [shoulder_joint, …], tip: hand_link}}"

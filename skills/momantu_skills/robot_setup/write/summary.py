@@ -12,7 +12,7 @@ from momantu_skills.robot_setup.write.writer import base_frame
 
 
 def lines(proposal: Proposal) -> Iterator[str]:
-    """A line per thing that was looked for: what, what was found, how sure."""
+    """A line for each property: its name, what was found, how reliable it is."""
     skeleton, stand = proposal.prepared.skeleton, proposal.stand
     moving = sum(joint.moving for joint in skeleton.joints.values())
     yield f"{proposal.name}: {len(skeleton.links)} links, {moving} moving joints"

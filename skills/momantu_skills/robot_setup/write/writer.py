@@ -55,7 +55,7 @@ def robot_file(proposal: Proposal, folder: Path) -> str:
 
 
 def missing(proposal: Proposal) -> tuple[str, ...]:
-    """What the person has to fill in before the file can be read."""
+    """The values to fill in before the file can be read."""
     found = []
     if proposal.stand.footprint is None:
         found.append("`footprint`: the base has no collision shape to take it from")
@@ -117,7 +117,7 @@ def _parts(proposal: Proposal, folder: Path) -> Iterator[str]:
 
 
 def _path(source: Path, folder: Path) -> str:
-    """As seen from the folder where both lie near each other, so that they can be moved as one."""
+    """A path relative to the folder if both are close, so that they can be moved together."""
     relative = os.path.relpath(source, folder)
     return relative if relative.count("..") <= MOST_UP else str(source)
 
