@@ -108,12 +108,12 @@ class _Checks:
             if name not in actuators:
                 yield (
                     ("actuators",),
-                    f"skills move an actuator named {name!r} of kind {kind}; there is none",
+                    f"skills move an actuator named {name!r} of kind {kind}; this robot has none",
                 )
             elif actuators[name].kind is not kind:
                 yield ("actuators", name), f"skills take {name!r} for one of kind {kind}"
         if ARM not in groups:
-            yield ("groups",), f"motions are planned for the group {ARM!r}; there is none"
+            yield ("groups",), f"motions are planned for the group {ARM!r}; this robot has none"
         elif ARM in actuators and groups[ARM].joints != actuators[ARM].joints:
             yield (
                 ("groups", ARM, "joints"),

@@ -67,7 +67,7 @@ WRONG: list[tuple[str, str, str]] = [
     ),
     ("  arm: {kind: joints", "  manipulator: {kind: joints", "named 'arm' of kind joints; there"),
     ("base: {kind: base}", "base: {kind: gripper}", "skills take 'base' for one of kind base"),
-    ("groups:\n  arm:", "groups:\n  hand:", "planned for the group 'arm'; there is none"),
+    ("groups:\n  arm:", "groups:\n  hand:", "planned for the group 'arm'; this robot has none"),
     (
         "kind: joints, joints: [arm_turn, arm_bend]",
         "kind: joints, joints: [arm_bend, arm_turn]",
