@@ -65,7 +65,7 @@ WRONG: list[tuple[str, str, str]] = [
         "joint_limits:\n  arm_trn: {velocity: 1, acceleration: 1}\n",
         "no moving joint 'arm_trn'",
     ),
-    ("  arm: {kind: joints", "  manipulator: {kind: joints", "named 'arm' of kind joints; this robot"),
+    ("  arm: {kind: joints", "  manipulator: {kind: joints", "named 'arm' of kind joints; this"),
     ("base: {kind: base}", "base: {kind: gripper}", "skills take 'base' for one of kind base"),
     ("groups:\n  arm:", "groups:\n  hand:", "planned for the group 'arm'; this robot has none"),
     (
