@@ -10,8 +10,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
-from importlib.metadata import EntryPoint, entry_points
+from importlib import metadata
+from importlib.metadata import EntryPoint
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, Generic, TypeAlias, TypeVar
 
 from momantu_bt.errors import MomantuError
@@ -84,12 +86,12 @@ class Group(Mapping[str, T]):
     def __contains__(self, name: object) -> bool:
         return isinstance(name, str) and (self.is_path(name) or name in self.installed())
 
-    def installed(self) -> dict[str, EntryPoint]:
+    def installed(self) -> Mapping[str, EntryPoint]:
         """Entry points by name, in the order of their names; nothing is imported.
 
         Of a name that two packages give different things it holds the first; `load` refuses it.
         """
-        return {name: entries[0] for name, entries in _installed(entry_points, self.name).items()}
+        return _first(entry_points, self.name)
 
     def load(self, name: str) -> T:
         """Import one plug-in by name and check it, or read the file at a path.
@@ -164,16 +166,35 @@ def installed_names(group: str) -> tuple[str, ...]:
 
 def packages() -> frozenset[str]:
     """Top-level packages that give plug-ins of any kind."""
-    groups = (group for group in entry_points().groups if group.startswith(PREFIX))
-    entries = [entry for group in groups for entry in entry_points(group=group)]
+    groups = (group for group in _everything() if group.startswith(PREFIX))
+    entries = [entry for group in groups for entry in entry_points(group)]
     return frozenset(entry.module.partition(".")[0] for entry in entries)
 
 
+def entry_points(group: str) -> Iterable[EntryPoint]:
+    """Entry points of a group, of all installed packages."""
+    return _everything().get(group, ())
+
+
 @cache
-def _installed(find: Callable[..., Iterable[EntryPoint]], group: str) -> _Found:
-    """All that is called so, by name. It does not change while a process runs; asking is slow."""
+def _everything() -> Mapping[str, Iterable[EntryPoint]]:
+    """Entry points by group. They do not change while a process runs; asking is slow."""
+    found = metadata.entry_points()
+    return {group: tuple(found.select(group=group)) for group in found.groups}
+
+
+@cache
+def _first(find: Callable[[str], Iterable[EntryPoint]], group: str) -> Mapping[str, EntryPoint]:
+    """The first of each name."""
+    found = _installed(find, group)
+    return MappingProxyType({name: entries[0] for name, entries in found.items()})
+
+
+@cache
+def _installed(find: Callable[[str], Iterable[EntryPoint]], group: str) -> _Found:
+    """All entry points of a name, by name."""
     found: dict[str, dict[str, EntryPoint]] = {}
-    for entry in sorted(find(group=group), key=lambda e: (e.name, e.value)):
+    for entry in sorted(find(group), key=lambda e: (e.name, e.value)):
         found.setdefault(entry.name, {}).setdefault(entry.value, entry)
     return {name: tuple(entries.values()) for name, entries in found.items()}
 

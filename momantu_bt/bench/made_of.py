@@ -159,7 +159,11 @@ def _packages(document: Document, world: str, robot: str | None) -> Iterator[str
     found = {"momantu_bt"}
     for group, names in wanted.items():
         having = group.installed()
-        found |= {having[name].module.partition(".")[0] for name in names if name in having}
+        found |= {
+            having[name].module.partition(".")[0]
+            for name in names
+            if name is not None and name in having
+        }
     yield from sorted(found)
 
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from importlib.metadata import entry_points
 from typing import Any, TypeVar, get_args, get_origin
 
 from pydantic import BaseModel, ConfigDict, ValidationError
@@ -21,7 +20,7 @@ from momantu_bt.descriptions.validation import problems_at
 from momantu_bt.descriptions.wording import said
 from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.places import KeyPath
-from momantu_bt.plugins import Group
+from momantu_bt.plugins import Group, installed_names
 
 
 class Tunables(BaseModel):
@@ -79,7 +78,7 @@ def tunable_problems(reading: Reading, keys: KeyPath) -> Iterator[KeyProblem]:
         if name in TUNABLES:
             if isinstance(values, dict):
                 yield from problems_at(reading, (*keys, name), TUNABLES.load(name))
-        elif name not in {entry.name for entry in entry_points(group="momantu_bt.services")}:
+        elif name not in installed_names("momantu_bt.services"):
             hint = valid_names(str(name), sorted(TUNABLES), "with tunables")
             message = f"no service or skill {name!r} has tunables; {hint}"
             yield reading.problem((*keys, name), message, key=True)

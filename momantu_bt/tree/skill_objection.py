@@ -24,7 +24,7 @@ def bad_skill_name(name: str) -> str | None:
     if not _NAME.fullmatch(name):
         return f"{name!r} is not a name for a skill: lower-case letters, digits and underscores"
     if name in SPELLED or name in NODES:
-        return f"{name!r} is a node of the language; give the entry point another name"
+        return f"{name!r} is a built-in node, or one of an installed package; give the entry point another name"
     if name in MODIFIERS:
         return f"{name!r} is a modifier of nodes; give the entry point another name"
     if name in WORDS_OF_TREES or keyword.iskeyword(name):

@@ -178,9 +178,15 @@ def stalling(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join(filter(None, [str(folder), path])))
     monkeypatch.syspath_prepend(folder)
     monkeypatch.delitem(sys.modules, "stall_plugins", raising=False)
-    find = plugins.entry_points
-    monkeypatch.setattr(plugins, "entry_points", lambda group: find(group=group))
+    _look_again(monkeypatch)
     return _write(tmp_path / "stalling.yaml", STALLING)
+
+
+def _look_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What has just been installed is found, though entry points are read once a process."""
+    find = plugins.entry_points
+    monkeypatch.setattr(plugins, "_everything", plugins._everything.__wrapped__)
+    monkeypatch.setattr(plugins, "entry_points", lambda group: find(group))
 
 
 TURNING = """
@@ -207,8 +213,7 @@ def turning(stalling: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> I
     _write(facts / "entry_points.txt", "[momantu_bt.skills]\n{} = {}\n".format(*entry))
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(source), os.environ["PYTHONPATH"]]))
     monkeypatch.syspath_prepend(source)
-    find = plugins.entry_points
-    monkeypatch.setattr(plugins, "entry_points", lambda group: find(group=group))
+    _look_again(monkeypatch)
     yield _write(tmp_path / "turning.yaml", TURNING)
     for module in [each for each in sys.modules if each.startswith("turn_round_skill")]:
         del sys.modules[module]
