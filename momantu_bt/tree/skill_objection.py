@@ -12,6 +12,7 @@ from momantu_bt.failure import CODE
 from momantu_bt.skill import Port, Skill
 from momantu_bt.symptom import Symptom
 from momantu_bt.tree.catalogue import MODIFIERS, NODES, SPELLED
+from momantu_bt.tree.catalogue.built_in import BUILT_IN
 from momantu_bt.tree.catalogue.words import WORDS_OF_TREES
 from momantu_bt.values.kinds import is_type
 
@@ -23,8 +24,10 @@ def bad_skill_name(name: str) -> str | None:
     """Why no skill can be called so; None when one can."""
     if not _NAME.fullmatch(name):
         return f"{name!r} is not a name for a skill: lower-case letters, digits and underscores"
-    if name in SPELLED or name in NODES:
-        return f"{name!r} is a built-in node, or one of an installed package; give the entry point another name"
+    taken = SPELLED.get(name) or NODES.get(name)
+    if taken is not None:
+        whose = "a built-in node" if taken.type in BUILT_IN else "the node of another package"
+        return f"{name!r} is {whose}; give the entry point another name"
     if name in MODIFIERS:
         return f"{name!r} is a modifier of nodes; give the entry point another name"
     if name in WORDS_OF_TREES or keyword.iskeyword(name):
