@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from momantu_skills.detect_object import DetectObject
+from scenery.onlooker import SeenScene
 
 from momantu_bt.claim import ObjectAt, ObjectOn
 from momantu_bt.geometry import Pose2D, Transform, quaternion_from_rpy
@@ -91,7 +92,7 @@ def test_the_asked_can_among_similar_cans(detect: Detect) -> None:
     assert found.score > 0.8
 
 
-def test_the_planning_scene_sees_every_look(detect: Detect, seen_scene: Any) -> None:
+def test_the_planning_scene_sees_every_look(detect: Detect, seen_scene: type[SeenScene]) -> None:
     for things in ([can(0.95, 0.15)], []):
         scene = seen_scene()
         detect(things, scene=scene)
@@ -135,7 +136,7 @@ def test_a_can_half_hidden_by_another_is_still_measured(detect: Detect) -> None:
     assert_found(result, 0.95, 0.0)
 
 
-def test_the_robot_itself_is_not_an_object(detect: Detect, seen_scene: Any) -> None:
+def test_the_robot_itself_is_not_an_object(detect: Detect, seen_scene: type[SeenScene]) -> None:
     arm = seen_scene(robot=[((0.8, -0.1, TOP - 0.02), (0.99, 0.1, 1.2))])
     assert detect([can(0.9, 0.0)], scene=arm).code == "OBJECT_NOT_FOUND"
 

@@ -12,6 +12,7 @@ from momantu_skills.detect_plane import DetectPlane
 from momantu_skills.pick import Pick
 from momantu_skills.place import Place
 from momantu_skills.reset_pose import ResetPose
+from scenery.table import SceneOf, Tabletop
 
 from momantu_bt.geometry import Pose, Pose2D, Transform
 from momantu_bt.messages import ObjectClass
@@ -23,7 +24,7 @@ CAN = ObjectClass("can")
 
 
 @pytest.fixture
-def before_table(tabletop: Any, scene_of: Any) -> Any:
+def before_table(tabletop: type[Tabletop], scene_of: SceneOf) -> Any:
     """`before_table(can)`: the robot, and `run(skill, **inputs)` that shares all it knows."""
 
     def build(can: tuple[float, float]) -> Any:

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from momantu_skills.navigate import Navigate
 from momantu_skills.navigation.localize.service import LocalizationService
+from scenery.flat import Flat, FlatSceneOf
+from scenery.table import SceneOf
 
 from momantu_bt.claim import BaseAt, BaseNear
 from momantu_bt.geometry import Pose, Pose2D, Transform, wrap_angle
@@ -21,7 +23,7 @@ FRONT = Pose2D(3.0, 0.2, 0.0)
 
 
 @pytest.fixture
-def drive(flat_scene: Any) -> Drive:
+def drive(flat_scene: FlatSceneOf) -> Drive:
     """`drive(world, in_front_of=…)` with localization and a planning scene."""
 
     def run(world: ScriptedWorld, *, on_tick: Any = None, **inputs: Any) -> SkillResult:
@@ -49,7 +51,7 @@ def _arrived(result: SkillResult, world: Any, goal: Pose2D, slack: float = 0.04)
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_from_random_starts_to_random_goals(flat: Any, drive: Drive, seed: int) -> None:
+def test_from_random_starts_to_random_goals(flat: Flat, drive: Drive, seed: int) -> None:
     random = np.random.default_rng(seed)
     start = Pose2D(random.uniform(-3.2, 0.2), random.uniform(-1.5, 2.2), random.uniform(-3, 3))
     goal = Pose2D(random.uniform(1.8, 2.9), random.uniform(-2.2, 2.2), random.uniform(-3, 3))
@@ -57,17 +59,17 @@ def test_from_random_starts_to_random_goals(flat: Any, drive: Drive, seed: int) 
     _arrived(drive(world, goal=goal), world, goal)
 
 
-def test_in_front_of_a_surface_it_stands_square(flat: Any, drive: Drive) -> None:
+def test_in_front_of_a_surface_it_stands_square(flat: Flat, drive: Drive) -> None:
     world = flat()
     _arrived(drive(world, in_front_of="desk"), world, FRONT)
 
 
-def test_in_front_of_a_place_is_the_place(flat: Any, drive: Drive) -> None:
+def test_in_front_of_a_place_is_the_place(flat: Flat, drive: Drive) -> None:
     world = flat()
     _arrived(drive(world, in_front_of="left"), world, world.site.places["left"])
 
 
-def test_side_is_another_stand_that_looks_at_the_same(flat: Any, drive: Drive) -> None:
+def test_side_is_another_stand_that_looks_at_the_same(flat: Flat, drive: Drive) -> None:
     world = flat(FRONT)
     result = drive(world, in_front_of="desk", side=1)
     assert result.status == "SUCCESS", result.explain()
@@ -76,7 +78,7 @@ def test_side_is_another_stand_that_looks_at_the_same(flat: Any, drive: Drive) -
     assert abs(math.atan2(middle.y, middle.x)) < 0.12
 
 
-def test_within_reach_keeps_what_was_seen_in_odometry(flat: Any, drive: Drive) -> None:
+def test_within_reach_keeps_what_was_seen_in_odometry(flat: Flat, drive: Drive) -> None:
     """The pose is given in odom, which lies elsewhere than the map."""
     world = flat(FRONT)
     can = Pose2D(3.75, 0.5, 0.0)
@@ -91,19 +93,19 @@ def test_within_reach_keeps_what_was_seen_in_odometry(flat: Any, drive: Drive) -
     assert world.robot.nearest > 0.02
 
 
-def test_what_the_map_does_not_know_is_driven_round(flat: Any, drive: Drive) -> None:
+def test_what_the_map_does_not_know_is_driven_round(flat: Flat, drive: Drive) -> None:
     world = flat(hidden=[(-0.9, 0.1, -0.4, 0.6), (2.0, -0.4, 2.3, 0.5)])
     _arrived(drive(world, in_front_of="desk"), world, FRONT)
 
 
-def test_a_desk_that_was_moved_towards_the_robot_is_not_touched(flat: Any, drive: Drive) -> None:
+def test_a_desk_that_was_moved_towards_the_robot_is_not_touched(flat: Flat, drive: Drive) -> None:
     world = flat(desk=(3.5, -0.35, 4.1, 0.85))
     _arrived(drive(world, in_front_of="desk"), world, FRONT, slack=0.12)
 
 
 @pytest.mark.parametrize(("lowest", "over"), [(0.6, False), (0.8, True)])
 def test_only_what_hangs_higher_than_a_surface_reaches_over_it(
-    flat: Any, flat_scene: Any, lowest: float, over: bool
+    flat: Flat, flat_scene: FlatSceneOf, lowest: float, over: bool
 ) -> None:
     """A load sticks out 25 cm before the base; the desk's top is at 0.7 m."""
     world, stick = flat(), 0.25
@@ -119,14 +121,14 @@ def test_only_what_hangs_higher_than_a_surface_reaches_over_it(
     assert world.robot.nearest > 0.02
 
 
-def test_at_the_goal_already_it_hardly_moves(flat: Any, drive: Drive) -> None:
+def test_at_the_goal_already_it_hardly_moves(flat: Flat, drive: Drive) -> None:
     world = flat(FRONT)
     result = drive(world, goal=FRONT)
     assert result.status == "SUCCESS", result.explain()
     assert result.duration < 3.0
 
 
-def test_a_stand_straight_behind_is_backed_into(flat: Any, drive: Drive) -> None:
+def test_a_stand_straight_behind_is_backed_into(flat: Flat, drive: Drive) -> None:
     world = flat(FRONT)
     result = drive(world, goal=Pose2D(2.7, 0.2, 0.0))
     _arrived(result, world, Pose2D(2.7, 0.2, 0.0))
@@ -134,7 +136,7 @@ def test_a_stand_straight_behind_is_backed_into(flat: Any, drive: Drive) -> None
     assert result.duration < 6.0
 
 
-def test_something_that_appears_in_the_doorway_is_waited_for(flat: Any, drive: Drive) -> None:
+def test_something_that_appears_in_the_doorway_is_waited_for(flat: Flat, drive: Drive) -> None:
     """Recovery looks again; meanwhile the way has become free."""
     world = flat()
 
@@ -148,7 +150,7 @@ def test_something_that_appears_in_the_doorway_is_waited_for(flat: Any, drive: D
     _arrived(result, world, FRONT)
 
 
-def test_the_base_brakes_when_halted(flat: Any, flat_scene: Any) -> None:
+def test_the_base_brakes_when_halted(flat: Flat, flat_scene: FlatSceneOf) -> None:
     world = flat()
     services = {"localization": LocalizationService(), "planning_scene": flat_scene(world)}
     result = run_skill(
@@ -158,7 +160,7 @@ def test_the_base_brakes_when_halted(flat: Any, flat_scene: Any) -> None:
     assert world.robot.commands[-1][2] is None or world.robot.commands[-1][2] == BaseVelocity(0, 0)
 
 
-def test_same_seed_same_drive(flat: Any, drive: Drive) -> None:
+def test_same_seed_same_drive(flat: Flat, drive: Drive) -> None:
     ends = []
     for _ in range(2):
         world = flat(believed=Pose2D(-1.9, 0.1, 0.1))
@@ -182,19 +184,19 @@ def test_same_seed_same_drive(flat: Any, drive: Drive) -> None:
         ({"goal": FRONT, "side": -1}, "at least 0"),
     ],
 )
-def test_bad_goal(flat: Any, drive: Drive, inputs: dict[str, Any], says: str) -> None:
+def test_bad_goal(flat: Flat, drive: Drive, inputs: dict[str, Any], says: str) -> None:
     result = drive(flat(), **inputs)
     assert result.code == "BAD_GOAL", result.explain()
     assert says in result.failure.message  # type: ignore[union-attr]
     assert result.duration < 0.2
 
 
-def test_goal_blocked(flat: Any, drive: Drive) -> None:
+def test_goal_blocked(flat: Flat, drive: Drive) -> None:
     result = drive(flat(), goal=Pose2D(3.9, 0.2, 0.0), recovery=False)
     assert result.code == "GOAL_BLOCKED", result.explain()
 
 
-def test_no_path(flat: Any, drive: Drive) -> None:
+def test_no_path(flat: Flat, drive: Drive) -> None:
     """The doorway is closed on the map itself."""
     world = flat(known=[(0.9, 0.3, 1.2, 1.6)])
     result = drive(world, in_front_of="desk", recovery=False)
@@ -202,7 +204,7 @@ def test_no_path(flat: Any, drive: Drive) -> None:
 
 
 @pytest.mark.parametrize("recovery", [False, True])
-def test_path_blocked_ends_in_bounded_time(flat: Any, drive: Drive, recovery: bool) -> None:
+def test_path_blocked_ends_in_bounded_time(flat: Flat, drive: Drive, recovery: bool) -> None:
     """Something that the map does not know closes the doorway."""
     world = flat(hidden=[(0.9, 0.3, 1.2, 1.6)])
     result = drive(world, in_front_of="desk", recovery=recovery)
@@ -212,7 +214,7 @@ def test_path_blocked_ends_in_bounded_time(flat: Any, drive: Drive, recovery: bo
     assert abs(world.robot.linear) < 0.02
 
 
-def test_no_progress_when_the_base_does_not_move(flat: Any, drive: Drive) -> None:
+def test_no_progress_when_the_base_does_not_move(flat: Flat, drive: Drive) -> None:
     world = flat()
     world.robot.frozen.add("base")
     result = drive(world, in_front_of="desk", recovery=False)
@@ -220,7 +222,7 @@ def test_no_progress_when_the_base_does_not_move(flat: Any, drive: Drive) -> Non
     assert result.duration < 20.0
 
 
-def test_not_localized(flat: Any, drive: Drive) -> None:
+def test_not_localized(flat: Flat, drive: Drive) -> None:
     """Told to be in a cupboard's corner of the other room, the scans fit nothing near."""
     world = flat(Pose2D(-2.0, 0.0, 0.0), believed=Pose2D(5.4, -2.4, 2.0))
     result = drive(world, in_front_of="desk")
@@ -228,7 +230,7 @@ def test_not_localized(flat: Any, drive: Drive) -> None:
     assert world.robot.truth == Pose2D(-2.0, 0.0, 0.0)
 
 
-def test_a_pose_in_the_open_is_faced_at_best_reach(flat: Any, drive: Drive) -> None:
+def test_a_pose_in_the_open_is_faced_at_best_reach(flat: Flat, drive: Drive) -> None:
     world = flat(Pose2D(-2.0, 0.0, 0.0))
     spot = Pose(Transform((-0.5, 0.0, 0.3)), "map", 0.0)
     result = drive(world, within_reach_of=spot)
@@ -247,7 +249,7 @@ def _is_at(claim: Any, world: Any) -> bool:
     return math.hypot(off.x, off.y) <= claim.tolerance and abs(off.yaw) <= claim.turn_tolerance
 
 
-def test_arrival_is_claimed_of_the_stand_within_the_tolerances(flat: Any, drive: Drive) -> None:
+def test_arrival_is_claimed_of_the_stand_within_the_tolerances(flat: Flat, drive: Drive) -> None:
     world = flat(FRONT @ Pose2D(-0.4, 0.0, 0.0))
     claim = drive(world, in_front_of="desk").claim()
     assert _is_at(claim, world)
@@ -256,7 +258,7 @@ def test_arrival_is_claimed_of_the_stand_within_the_tolerances(flat: Any, drive:
     assert 0.05 < claim.tolerance < 0.15
 
 
-def test_a_stand_within_reach_is_claimed_of_what_is_reached_for(flat: Any, drive: Drive) -> None:
+def test_a_stand_within_reach_is_claimed_of_what_is_reached_for(flat: Flat, drive: Drive) -> None:
     world = flat(FRONT)
     can = Pose2D(3.75, 0.5, 0.0)
     odom_from_map = world.robot.base @ world.robot.truth.inverse()
@@ -267,7 +269,7 @@ def test_a_stand_within_reach_is_claimed_of_what_is_reached_for(flat: Any, drive
     assert world.robot.truth.distance_to(can) < claim.distance
 
 
-def test_no_progress_would_be_a_false_alarm_on_the_stand(flat: Any, drive: Drive) -> None:
+def test_no_progress_would_be_a_false_alarm_on_the_stand(flat: Flat, drive: Drive) -> None:
     world = flat()
     world.robot.frozen.add("base")
     result = drive(world, in_front_of="desk", recovery=False)
@@ -277,13 +279,13 @@ def test_no_progress_would_be_a_false_alarm_on_the_stand(flat: Any, drive: Drive
     assert _is_at(result.claim(), world)
 
 
-def test_without_a_stand_nothing_is_claimed(flat: Any, drive: Drive) -> None:
+def test_without_a_stand_nothing_is_claimed(flat: Flat, drive: Drive) -> None:
     assert drive(flat(), in_front_of="dusk").claim() is None
     assert drive(flat(), goal=Pose2D(3.9, 0.2, 0.0), recovery=False).claim() is None
 
 
 def test_it_does_not_drive_with_an_arm_stretched_out_that_does_not_fold(
-    stretched_out: ScriptedRobot, scene_of: Any
+    stretched_out: ScriptedRobot, scene_of: SceneOf
 ) -> None:
     scene = scene_of(stretched_out)
     services = {"localization": object(), "planning_scene": scene}
@@ -299,7 +301,7 @@ def test_it_does_not_drive_with_an_arm_stretched_out_that_does_not_fold(
 
 
 def test_a_camera_that_nothing_turns_still_shows_what_the_laser_does_not(
-    flat: Any, drive: Drive
+    flat: Flat, drive: Drive
 ) -> None:
     small = small_robot()
     camera = small.sensors["camera"].model_copy(update={"carrier": None})

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from momantu_skills.pick import Pick
+from scenery.table import SceneOf, Tabletop
 
 from momantu_bt.claim import Holding, ObjectAt
 from momantu_bt.messages import DetectedObject, JointTrajectory, ObjectClass
@@ -26,7 +27,9 @@ def pick(robot: Any, scene: Any, thing: DetectedObject, **more: Any) -> Any:
     )
 
 
-def test_the_can_is_lifted_and_known_to_be_held(tabletop: Any, scene_of: Any) -> None:
+def test_the_can_is_lifted_and_known_to_be_held(
+    tabletop: type[Tabletop], scene_of: SceneOf
+) -> None:
     robot = tabletop()
     before = robot.can
     scene = scene_of(robot)
@@ -41,7 +44,9 @@ def test_the_can_is_lifted_and_known_to_be_held(tabletop: Any, scene_of: Any) ->
 
 
 @pytest.mark.parametrize("can", [(0.65, 0.2), (0.9, -0.2)])
-def test_the_same_seed_moves_the_same_way(tabletop: Any, scene_of: Any, can: Any) -> None:
+def test_the_same_seed_moves_the_same_way(
+    tabletop: type[Tabletop], scene_of: SceneOf, can: Any
+) -> None:
     goals = []
     for _ in range(2):
         robot = tabletop(can)
@@ -52,7 +57,7 @@ def test_the_same_seed_moves_the_same_way(tabletop: Any, scene_of: Any, can: Any
     assert goals[0] == goals[1]
 
 
-def test_a_neighbour_is_not_touched(tabletop: Any, scene_of: Any) -> None:
+def test_a_neighbour_is_not_touched(tabletop: type[Tabletop], scene_of: SceneOf) -> None:
     robot = tabletop((0.75, 0.0))
     robot.others = [Block((0.06, 0.06, 0.2), (0.75, 0.14, robot.table + 0.1))]
     low, high = np.array([0.72, 0.11, 0.72]), np.array([0.78, 0.17, 0.92])
@@ -72,21 +77,23 @@ def test_a_neighbour_is_not_touched(tabletop: Any, scene_of: Any) -> None:
     assert not any(seen)
 
 
-def test_nothing_there(tabletop: Any, scene_of: Any) -> None:
+def test_nothing_there(tabletop: type[Tabletop], scene_of: SceneOf) -> None:
     robot = tabletop()
     thing = robot.detected()
     robot.can = None
     assert pick(robot, scene_of(robot), thing).code == "NOTHING_THERE"
 
 
-def test_an_old_pose_is_stale(tabletop: Any, scene_of: Any) -> None:
+def test_an_old_pose_is_stale(tabletop: type[Tabletop], scene_of: SceneOf) -> None:
     robot = tabletop()
     result = pick(robot, scene_of(robot), robot.detected(stamp=-100.0))
     assert result.code == "STALE_POSE"
     assert "100 s ago" in result.failure.message
 
 
-def test_a_pose_from_before_the_last_contact_is_stale(tabletop: Any, scene_of: Any) -> None:
+def test_a_pose_from_before_the_last_contact_is_stale(
+    tabletop: type[Tabletop], scene_of: SceneOf
+) -> None:
     robot = tabletop()
     thing = robot.detected()
     robot.time = 1.0
@@ -95,7 +102,7 @@ def test_a_pose_from_before_the_last_contact_is_stale(tabletop: Any, scene_of: A
     assert pick(robot, scene, thing).code == "STALE_POSE"
 
 
-def test_a_full_hand_does_not_pick(tabletop: Any, scene_of: Any) -> None:
+def test_a_full_hand_does_not_pick(tabletop: type[Tabletop], scene_of: SceneOf) -> None:
     robot = tabletop()
     thing = robot.detected()
     scene = scene_of(robot)
@@ -105,14 +112,14 @@ def test_a_full_hand_does_not_pick(tabletop: Any, scene_of: Any) -> None:
     assert pick(robot, scene, thing).code == "HAND_FULL"
 
 
-def test_out_of_reach_is_no_grasp(tabletop: Any, scene_of: Any) -> None:
+def test_out_of_reach_is_no_grasp(tabletop: type[Tabletop], scene_of: SceneOf) -> None:
     robot = tabletop((1.2, 0.45))
     result = pick(robot, scene_of(robot), robot.detected())
     assert result.code == "NO_GRASP"
     assert "grasps" in result.failure.message
 
 
-def test_what_is_too_wide_is_no_grasp(tabletop: Any, scene_of: Any) -> None:
+def test_what_is_too_wide_is_no_grasp(tabletop: type[Tabletop], scene_of: SceneOf) -> None:
     robot = tabletop()
     thing = robot.detected()
     wide = DetectedObject("box", thing.pose, (0.2, 0.2, 0.13), "box", 0.9, thing.support_height)
@@ -122,7 +129,7 @@ def test_what_is_too_wide_is_no_grasp(tabletop: Any, scene_of: Any) -> None:
 
 
 def test_no_way_to_any_grasp_is_no_plan(
-    tabletop: Any, scene_of: Any, monkeypatch: pytest.MonkeyPatch
+    tabletop: type[Tabletop], scene_of: SceneOf, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from momantu_skills.manipulation.motion.planner import Planner
 
@@ -131,7 +138,7 @@ def test_no_way_to_any_grasp_is_no_plan(
     assert pick(robot, scene_of(robot), robot.detected()).code == "NO_PLAN"
 
 
-def test_fingers_that_close_on_nothing_miss(tabletop: Any, scene_of: Any) -> None:
+def test_fingers_that_close_on_nothing_miss(tabletop: type[Tabletop], scene_of: SceneOf) -> None:
     robot = tabletop()
     thing = robot.detected()
     robot.can, real = None, robot.can
@@ -143,7 +150,7 @@ def test_fingers_that_close_on_nothing_miss(tabletop: Any, scene_of: Any) -> Non
     assert distance > 0.08
 
 
-def test_what_stays_behind_has_slipped(tabletop: Any, scene_of: Any) -> None:
+def test_what_stays_behind_has_slipped(tabletop: type[Tabletop], scene_of: SceneOf) -> None:
     robot = tabletop()
     robot.slips = True
     scene = scene_of(robot)
@@ -152,7 +159,9 @@ def test_what_stays_behind_has_slipped(tabletop: Any, scene_of: Any) -> None:
     assert robot.gripper_width > 0.09
 
 
-def test_a_hand_that_gets_no_heavier_holds_nothing(tabletop: Any, scene_of: Any) -> None:
+def test_a_hand_that_gets_no_heavier_holds_nothing(
+    tabletop: type[Tabletop], scene_of: SceneOf
+) -> None:
     robot = tabletop()
     robot.weightless = True
     result = pick(robot, scene_of(robot), robot.detected())
@@ -161,7 +170,7 @@ def test_a_hand_that_gets_no_heavier_holds_nothing(tabletop: Any, scene_of: Any)
 
 
 def test_what_seems_not_to_be_held_is_set_back_and_not_dropped(
-    tabletop: Any, scene_of: Any
+    tabletop: type[Tabletop], scene_of: SceneOf
 ) -> None:
     robot = tabletop()
     robot.weightless = True
@@ -172,7 +181,7 @@ def test_what_seems_not_to_be_held_is_set_back_and_not_dropped(
     assert heights == pytest.approx([height], abs=0.01)
 
 
-def test_what_still_stands_there_has_slipped(tabletop: Any, scene_of: Any) -> None:
+def test_what_still_stands_there_has_slipped(tabletop: type[Tabletop], scene_of: SceneOf) -> None:
     robot = tabletop()
     x, y, z = robot.can.position
     robot.others = [Block((0.05, 0.05, 0.13), (x, y, z))]
@@ -182,7 +191,9 @@ def test_what_still_stands_there_has_slipped(tabletop: Any, scene_of: Any) -> No
 
 
 @pytest.mark.parametrize("actuator", ["arm", "gripper"])
-def test_what_does_not_move_is_stuck(tabletop: Any, scene_of: Any, actuator: str) -> None:
+def test_what_does_not_move_is_stuck(
+    tabletop: type[Tabletop], scene_of: SceneOf, actuator: str
+) -> None:
     robot = tabletop()
     robot.frozen.add(actuator)
     robot.gripper_width = 0.03
@@ -191,7 +202,9 @@ def test_what_does_not_move_is_stuck(tabletop: Any, scene_of: Any, actuator: str
     assert result.duration < 30.0
 
 
-def test_it_is_held_upright_in_the_pose_for_carrying(tabletop: Any, scene_of: Any) -> None:
+def test_it_is_held_upright_in_the_pose_for_carrying(
+    tabletop: type[Tabletop], scene_of: SceneOf
+) -> None:
     robot = tabletop()
     scene = scene_of(robot)
     assert pick(robot, scene, robot.detected()).status == "SUCCESS"
@@ -200,7 +213,9 @@ def test_it_is_held_upright_in_the_pose_for_carrying(tabletop: Any, scene_of: An
     assert math.acos(robot.can.rotation[2, 2]) < math.radians(20)
 
 
-def test_success_and_a_missed_grasp_are_about_holding(tabletop: Any, scene_of: Any) -> None:
+def test_success_and_a_missed_grasp_are_about_holding(
+    tabletop: type[Tabletop], scene_of: SceneOf
+) -> None:
     robot = tabletop()
     assert pick(robot, scene_of(robot), robot.detected()).claim() == Holding(True)
     robot = tabletop()
@@ -209,7 +224,9 @@ def test_success_and_a_missed_grasp_are_about_holding(tabletop: Any, scene_of: A
     assert (result.code, result.claim()) == ("SLIPPED", Holding(True))
 
 
-def test_a_full_hand_is_contradicted_by_an_empty_one(tabletop: Any, scene_of: Any) -> None:
+def test_a_full_hand_is_contradicted_by_an_empty_one(
+    tabletop: type[Tabletop], scene_of: SceneOf
+) -> None:
     robot = tabletop()
     thing, scene = robot.detected(), scene_of(robot)
     robot.gripper_width, robot.gripper_effort = 0.07, 45.0
@@ -218,7 +235,9 @@ def test_a_full_hand_is_contradicted_by_an_empty_one(tabletop: Any, scene_of: An
     assert pick(robot, scene, thing).claim() == Holding(False)
 
 
-def test_nothing_there_is_contradicted_by_a_thing_there(tabletop: Any, scene_of: Any) -> None:
+def test_nothing_there_is_contradicted_by_a_thing_there(
+    tabletop: type[Tabletop], scene_of: SceneOf
+) -> None:
     robot = tabletop()
     robot.stays_hidden = True
     thing = robot.detected()
@@ -230,7 +249,9 @@ def test_nothing_there_is_contradicted_by_a_thing_there(tabletop: Any, scene_of:
     assert claim.odom_from_object == thing.pose.transform
 
 
-def test_what_cannot_be_reached_says_nothing_of_the_world(tabletop: Any, scene_of: Any) -> None:
+def test_what_cannot_be_reached_says_nothing_of_the_world(
+    tabletop: type[Tabletop], scene_of: SceneOf
+) -> None:
     robot = tabletop((1.2, 0.45))
     assert pick(robot, scene_of(robot), robot.detected()).claim() is None
 
@@ -245,7 +266,9 @@ class OtherScene:
         return getattr(self._inner, name)
 
 
-def test_any_planning_scene_that_keeps_the_protocol_will_do(tabletop: Any, scene_of: Any) -> None:
+def test_any_planning_scene_that_keeps_the_protocol_will_do(
+    tabletop: type[Tabletop], scene_of: SceneOf
+) -> None:
     robot = tabletop()
     scene = OtherScene(scene_of(robot))
     result = pick(robot, scene, robot.detected())

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
+from momantu_skills.manipulation.scene.service import PlanningSceneService
 from momantu_skills.place import Place
+from scenery.table import SceneOf, Tabletop
 
 from momantu_bt.claim import Holding, SetDown
 from momantu_bt.geometry import Pose, Transform
@@ -24,15 +27,18 @@ def plane(stamp: float = 0.0, height: float = 0.72) -> SupportPlane:
     return SupportPlane(Pose(Transform((0.9, 0.0, height)), "odom", stamp), outline)
 
 
+Carrying = Callable[[], tuple[Tabletop, PlanningSceneService]]
+
+
 def spots(*places: tuple[float, float], height: float = 0.72, stamp: float = 0.0) -> Any:
     return tuple(Pose(Transform((x, y, height)), "odom", stamp) for x, y in places)
 
 
 @pytest.fixture
-def holding(tabletop: Any, scene_of: Any) -> Any:
+def holding(tabletop: type[Tabletop], scene_of: SceneOf) -> Carrying:
     """Fetch in the pose for carrying, with the can in its hand and a scene that knows it."""
 
-    def build() -> tuple[Any, Any]:
+    def build() -> tuple[Tabletop, PlanningSceneService]:
         robot = tabletop(pose="carry")
         thing = robot.detected()
         robot.hold(HAND_FROM_CAN)
@@ -54,7 +60,7 @@ def place(robot: Any, scene: Any, where: Any = None, top: Any = None, **more: An
 
 
 @pytest.mark.parametrize("spot", [(0.65, -0.2), (0.8, 0.15)])
-def test_the_can_stands_on_the_spot(holding: Any, spot: tuple[float, float]) -> None:
+def test_the_can_stands_on_the_spot(holding: Carrying, spot: tuple[float, float]) -> None:
     robot, scene = holding()
     result = place(robot, scene, spots(spot))
     assert result.status == "SUCCESS", result.explain()
@@ -65,13 +71,13 @@ def test_the_can_stands_on_the_spot(holding: Any, spot: tuple[float, float]) -> 
     assert gap > 0.1
 
 
-def test_contact_ends_the_lowering_when_the_surface_is_higher(holding: Any) -> None:
+def test_contact_ends_the_lowering_when_the_surface_is_higher(holding: Carrying) -> None:
     robot, scene = holding()
     result = place(robot, scene, spots((0.7, 0.0), height=0.71), plane(height=0.71))
     assert result.status == "SUCCESS", result.explain()
 
 
-def test_a_later_spot_serves_when_the_first_is_taken(holding: Any) -> None:
+def test_a_later_spot_serves_when_the_first_is_taken(holding: Carrying) -> None:
     robot, scene = holding()
     robot.others = [Block((0.1, 0.1, 0.2), (0.7, 0.0, 0.82))]
     result = place(robot, scene, spots((0.7, 0.0), (0.7, -0.25)))
@@ -79,33 +85,33 @@ def test_a_later_spot_serves_when_the_first_is_taken(holding: Any) -> None:
     assert np.linalg.norm(robot.can.position[:2] - (0.7, -0.25)) < 0.01
 
 
-def test_nothing_held(tabletop: Any, scene_of: Any) -> None:
+def test_nothing_held(tabletop: type[Tabletop], scene_of: SceneOf) -> None:
     robot = tabletop()
     assert place(robot, scene_of(robot)).code == "NOTHING_HELD"
 
 
-def test_an_old_surface_is_stale(holding: Any) -> None:
+def test_an_old_surface_is_stale(holding: Carrying) -> None:
     robot, scene = holding()
     assert place(robot, scene, top=plane(stamp=-100.0)).code == "STALE_POSE"
 
 
-def test_a_surface_from_before_the_last_contact_is_stale(holding: Any) -> None:
+def test_a_surface_from_before_the_last_contact_is_stale(holding: Carrying) -> None:
     robot, scene = holding()
     scene.touched()
     assert place(robot, scene, top=plane(stamp=-1.0)).code == "STALE_POSE"
 
 
-def test_spots_out_of_reach_are_no_place(holding: Any) -> None:
+def test_spots_out_of_reach_are_no_place(holding: Carrying) -> None:
     robot, scene = holding()
     assert place(robot, scene, spots((1.25, 0.6))).code == "NO_PLACE_POSE"
 
 
-def test_no_spots_are_no_place(holding: Any) -> None:
+def test_no_spots_are_no_place(holding: Carrying) -> None:
     robot, scene = holding()
     assert place(robot, scene, ()).code == "NO_PLACE_POSE"
 
 
-def test_no_way_is_no_plan(holding: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_way_is_no_plan(holding: Carrying, monkeypatch: pytest.MonkeyPatch) -> None:
     from momantu_skills.manipulation.motion.planner import Planner
 
     robot, scene = holding()
@@ -113,7 +119,7 @@ def test_no_way_is_no_plan(holding: Any, monkeypatch: pytest.MonkeyPatch) -> Non
     assert place(robot, scene).code == "NO_PLAN"
 
 
-def test_a_surface_that_is_not_felt_is_no_contact(holding: Any) -> None:
+def test_a_surface_that_is_not_felt_is_no_contact(holding: Carrying) -> None:
     robot, scene = holding()
     robot.surface_felt = False
     result = place(robot, scene)
@@ -122,7 +128,7 @@ def test_a_surface_that_is_not_felt_is_no_contact(holding: Any) -> None:
     assert robot.can.position[2] - 0.065 > 0.72
 
 
-def test_a_hand_that_feels_nothing_lets_go_just_above_the_surface(holding: Any) -> None:
+def test_a_hand_that_feels_nothing_lets_go_just_above_the_surface(holding: Carrying) -> None:
     robot, scene = holding()
     seen: list[float] = []
     del robot.description.sensors["wrench"]
@@ -137,7 +143,7 @@ def test_a_hand_that_feels_nothing_lets_go_just_above_the_surface(holding: Any) 
     assert scene.held is None
 
 
-def test_what_falls_on_the_way_is_lost(holding: Any) -> None:
+def test_what_falls_on_the_way_is_lost(holding: Carrying) -> None:
     robot, scene = holding()
 
     def drop(session: Any, world: Any) -> None:
@@ -149,7 +155,7 @@ def test_what_falls_on_the_way_is_lost(holding: Any) -> None:
     assert "on the way" in result.failure.message
 
 
-def test_what_is_gone_from_the_spot_is_lost(holding: Any) -> None:
+def test_what_is_gone_from_the_spot_is_lost(holding: Carrying) -> None:
     robot, scene = holding()
     robot.stays_hidden = True
     result = place(robot, scene)
@@ -158,7 +164,7 @@ def test_what_is_gone_from_the_spot_is_lost(holding: Any) -> None:
 
 
 @pytest.mark.parametrize("slipped", [-0.03, 0.03])
-def test_what_slipped_in_the_hand_stands_a_little_beside(holding: Any, slipped: float) -> None:
+def test_what_slipped_in_the_hand_stands_a_little_beside(holding: Carrying, slipped: float) -> None:
     robot, scene = holding()
     robot.hold(HAND_FROM_CAN @ Transform((0.0, slipped, 0.0)))
     result = place(robot, scene)
@@ -170,21 +176,21 @@ def test_what_slipped_in_the_hand_stands_a_little_beside(holding: Any, slipped: 
     assert np.linalg.norm(claim.odom_from_object.position - robot.can.position) < claim.tolerance
 
 
-def test_what_stands_beside_all_along_is_not_what_was_set_down(holding: Any) -> None:
+def test_what_stands_beside_all_along_is_not_what_was_set_down(holding: Carrying) -> None:
     robot, scene = holding()
     robot.others = [Round((0.7, 0.15, 0.72), 0.13, 0.035)]
     robot.stays_hidden = True
     assert place(robot, scene).code == "LOST"
 
 
-def test_what_lies_there_has_toppled(holding: Any) -> None:
+def test_what_lies_there_has_toppled(holding: Carrying) -> None:
     robot, scene = holding()
     robot.topples = True
     assert place(robot, scene).code == "TOPPLED"
 
 
 @pytest.mark.parametrize("actuator", ["arm", "gripper"])
-def test_what_does_not_move_is_stuck(holding: Any, actuator: str) -> None:
+def test_what_does_not_move_is_stuck(holding: Carrying, actuator: str) -> None:
     robot, scene = holding()
     robot.frozen.add(actuator)
     assert place(robot, scene).code == "ARM_STUCK"
@@ -192,7 +198,7 @@ def test_what_does_not_move_is_stuck(holding: Any, actuator: str) -> None:
 
 @pytest.mark.parametrize("topples", [False, True])
 def test_standing_there_is_claimed_of_the_spot_whether_said_or_denied(
-    holding: Any, topples: bool
+    holding: Carrying, topples: bool
 ) -> None:
     robot, scene = holding()
     robot.topples = topples
@@ -204,11 +210,13 @@ def test_standing_there_is_claimed_of_the_spot_whether_said_or_denied(
     assert claim.odom_from_object.position[2] == pytest.approx(0.72 + 0.065, abs=0.005)
 
 
-def test_nothing_held_is_contradicted_by_something_held(tabletop: Any, scene_of: Any) -> None:
+def test_nothing_held_is_contradicted_by_something_held(
+    tabletop: type[Tabletop], scene_of: SceneOf
+) -> None:
     robot = tabletop()
     assert place(robot, scene_of(robot)).claim() == Holding(True)
 
 
-def test_what_never_got_to_a_spot_claims_nothing(holding: Any) -> None:
+def test_what_never_got_to_a_spot_claims_nothing(holding: Carrying) -> None:
     robot, scene = holding()
     assert place(robot, scene, ()).claim() is None

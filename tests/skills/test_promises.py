@@ -10,6 +10,7 @@ import pytest
 from momantu_skills.manipulation.scene.service import PlanningSceneService
 from momantu_skills.pick import Pick
 from momantu_skills.place import Place
+from scenery.table import Tabletop
 
 from momantu_bt.formats.problems import Severity
 from momantu_bt.geometry import Pose, Transform
@@ -39,7 +40,7 @@ def test_a_bundled_skill_keeps_what_every_skill_promises(name: str) -> None:
     assert [finding.severity for finding in found] == [Severity.HINT] * (name == "place")
 
 
-def test_pick_before_a_can(tabletop: Any) -> None:
+def test_pick_before_a_can(tabletop: type[Tabletop]) -> None:
     def example(seed: int) -> Mapping[str, Any]:
         robot = tabletop()
         return {
@@ -64,7 +65,7 @@ class Holding(PlanningSceneService):
             self.thing = None
 
 
-def test_place_with_a_can_in_the_hand(tabletop: Any) -> None:
+def test_place_with_a_can_in_the_hand(tabletop: type[Tabletop]) -> None:
     def example(seed: int) -> Mapping[str, Any]:
         robot = tabletop(pose="carry")
         scene = Holding()

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from momantu_skills.manipulation.scene.surroundings import Surroundings
 from momantu_skills.release import Release
+from scenery.table import SceneOf, Tabletop
 
 from momantu_bt.claim import GripperOpen, Holding
 from momantu_bt.geometry import Transform
@@ -20,7 +21,7 @@ def release(robot: Any, scene: Any, **inputs: Any) -> Any:
     return run_skill(Release, robot=robot, services=services, frames=scene.frames, inputs=inputs)
 
 
-def test_what_was_held_is_let_go(tabletop: Any, scene_of: Any) -> None:
+def test_what_was_held_is_let_go(tabletop: type[Tabletop], scene_of: SceneOf) -> None:
     robot = tabletop(pose="carry")
     thing = robot.detected()
     robot.hold(Transform())
@@ -35,7 +36,9 @@ def test_what_was_held_is_let_go(tabletop: Any, scene_of: Any) -> None:
     assert scene.last_contact > -1.0
 
 
-def test_an_open_hand_stays_open_and_has_touched_nothing(tabletop: Any, scene_of: Any) -> None:
+def test_an_open_hand_stays_open_and_has_touched_nothing(
+    tabletop: type[Tabletop], scene_of: SceneOf
+) -> None:
     robot = tabletop()
     scene = scene_of(robot)
     result = release(robot, scene)
@@ -44,7 +47,7 @@ def test_an_open_hand_stays_open_and_has_touched_nothing(tabletop: Any, scene_of
     assert result.duration < 1.0
 
 
-def test_a_gripper_that_does_not_open_is_stuck(tabletop: Any, scene_of: Any) -> None:
+def test_a_gripper_that_does_not_open_is_stuck(tabletop: type[Tabletop], scene_of: SceneOf) -> None:
     robot = tabletop()
     robot.gripper_width = 0.03
     robot.frozen.add("gripper")
@@ -55,7 +58,7 @@ def test_a_gripper_that_does_not_open_is_stuck(tabletop: Any, scene_of: Any) -> 
 
 @pytest.mark.parametrize("stuck", [False, True])
 def test_an_open_and_empty_hand_is_claimed_whether_said_or_denied(
-    tabletop: Any, scene_of: Any, stuck: bool
+    tabletop: type[Tabletop], scene_of: SceneOf, stuck: bool
 ) -> None:
     robot = tabletop()
     robot.gripper_width = 0.03
@@ -68,7 +71,9 @@ def test_an_open_and_empty_hand_is_claimed_whether_said_or_denied(
     assert empty == Holding(False)
 
 
-def test_the_open_hand_draws_back_along_its_fingers(tabletop: Any, scene_of: Any) -> None:
+def test_the_open_hand_draws_back_along_its_fingers(
+    tabletop: type[Tabletop], scene_of: SceneOf
+) -> None:
     robot = tabletop(can=None)
     before = robot.odom_from_hand
     result = release(robot, scene_of(robot), back=0.1)
@@ -78,14 +83,16 @@ def test_the_open_hand_draws_back_along_its_fingers(tabletop: Any, scene_of: Any
     assert before.angle_to(robot.odom_from_hand) < 0.05
 
 
-def test_it_stays_where_it_is_without_being_asked(tabletop: Any, scene_of: Any) -> None:
+def test_it_stays_where_it_is_without_being_asked(
+    tabletop: type[Tabletop], scene_of: SceneOf
+) -> None:
     robot = tabletop(can=None)
     before = robot.odom_from_hand
     release(robot, scene_of(robot))
     assert before.position == pytest.approx(robot.odom_from_hand.position, abs=1e-6)
 
 
-def test_it_does_not_draw_back_into_something(tabletop: Any, scene_of: Any) -> None:
+def test_it_does_not_draw_back_into_something(tabletop: type[Tabletop], scene_of: SceneOf) -> None:
     robot = tabletop(can=None)
     scene = scene_of(robot)
     before = robot.odom_from_hand
@@ -97,7 +104,9 @@ def test_it_does_not_draw_back_into_something(tabletop: Any, scene_of: Any) -> N
     assert before.position == pytest.approx(robot.odom_from_hand.position, abs=1e-6)
 
 
-def test_an_arm_that_does_not_come_along_is_stuck(tabletop: Any, scene_of: Any) -> None:
+def test_an_arm_that_does_not_come_along_is_stuck(
+    tabletop: type[Tabletop], scene_of: SceneOf
+) -> None:
     robot = tabletop(can=None)
     robot.frozen.add("arm")
     assert release(robot, scene_of(robot), back=0.1).code == "ARM_STUCK"

@@ -9,6 +9,8 @@ import pytest
 from momantu_skills.navigation.localize.confidence import is_localized
 from momantu_skills.navigation.localize.service import LocalizationService
 from momantu_skills.relocalize import Relocalize
+from scenery.flat import Flat, FlatSceneOf
+from scenery.table import SceneOf
 
 from momantu_bt.claim import BaseAt
 from momantu_bt.geometry import Pose2D
@@ -20,7 +22,7 @@ Relocate = Callable[..., Found]
 
 
 @pytest.fixture
-def relocalize(flat_scene: Any) -> Relocate:
+def relocalize(flat_scene: FlatSceneOf) -> Relocate:
     """`relocalize(world, **inputs)` with localization and a planning scene."""
 
     def run(world: Any, scene: Any = None, **inputs: Any) -> Found:
@@ -38,7 +40,7 @@ def _run(world: Any, scene: Any, on_tick: Any = None, **inputs: Any) -> Found:
     return result, service
 
 
-def test_a_small_error_is_mended_without_moving(flat: Any, relocalize: Relocate) -> None:
+def test_a_small_error_is_mended_without_moving(flat: Flat, relocalize: Relocate) -> None:
     world = flat(Pose2D(-2.0, 0.0, 0.0), believed=Pose2D(-1.8, 0.2, 0.2))
     result, service = relocalize(world)
     assert result.status == "SUCCESS", result.explain()
@@ -54,7 +56,7 @@ def test_a_small_error_is_mended_without_moving(flat: Any, relocalize: Relocate)
     ],
 )
 def test_in_the_wrong_room_it_searches_the_whole_map(
-    flat: Any, relocalize: Relocate, truth: Pose2D, believed: Pose2D
+    flat: Flat, relocalize: Relocate, truth: Pose2D, believed: Pose2D
 ) -> None:
     world = flat(truth, believed=believed)
     result, service = relocalize(world)
@@ -64,14 +66,14 @@ def test_in_the_wrong_room_it_searches_the_whole_map(
     assert world.robot.nearest > 0.0
 
 
-def test_everywhere_begins_with_the_whole_map(flat: Any, relocalize: Relocate) -> None:
+def test_everywhere_begins_with_the_whole_map(flat: Flat, relocalize: Relocate) -> None:
     result, service = relocalize(flat(Pose2D(3.0, 1.8, 2.0)), everywhere=True)
     assert result.status == "SUCCESS", result.explain()
     assert service.map_from_base.distance_to(result.robot.truth) < 0.05  # type: ignore[attr-defined]
     assert "turn" in result.phases
 
 
-def test_not_localized_where_the_map_is_of_another_place(flat: Any, relocalize: Relocate) -> None:
+def test_not_localized_where_the_map_is_of_another_place(flat: Flat, relocalize: Relocate) -> None:
     """The laser sees a narrow cell that is not on the map."""
     world = flat(Pose2D(20.0, 20.0, 0.0), believed=Pose2D(-2.0, 0.0, 0.0))
     world.robot.boxes += [
@@ -86,7 +88,7 @@ def test_not_localized_where_the_map_is_of_another_place(flat: Any, relocalize: 
     assert abs(world.robot.angular) < 0.01
 
 
-def test_it_does_not_turn_into_what_stands_beside_it(flat: Any, relocalize: Relocate) -> None:
+def test_it_does_not_turn_into_what_stands_beside_it(flat: Flat, relocalize: Relocate) -> None:
     """A rectangular base between two boards, where its corners would touch."""
     world = flat(
         Pose2D(-2.0, 0.0, 0.0),
@@ -99,7 +101,7 @@ def test_it_does_not_turn_into_what_stands_beside_it(flat: Any, relocalize: Relo
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_an_arm_that_sticks_out_is_not_turned_into_a_wall(
-    flat: Any, flat_scene: Any, relocalize: Relocate, side: float
+    flat: Flat, flat_scene: FlatSceneOf, relocalize: Relocate, side: float
 ) -> None:
     """The wall stands beside what sticks out, on one side; the other way round there is room."""
     wall = sorted((0.15 * side, 0.25 * side))
@@ -123,7 +125,7 @@ def test_an_arm_that_sticks_out_is_not_turned_into_a_wall(
 
 
 def test_the_base_is_claimed_to_be_where_it_is_believed_to_be(
-    flat: Any, relocalize: Relocate
+    flat: Flat, relocalize: Relocate
 ) -> None:
     world = flat(Pose2D(-2.0, 0.0, 0.0), believed=Pose2D(-1.8, 0.2, 0.2))
     result, service = relocalize(world)
@@ -134,7 +136,7 @@ def test_the_base_is_claimed_to_be_where_it_is_believed_to_be(
 
 
 def test_it_does_not_drive_with_an_arm_stretched_out_that_does_not_fold(
-    stretched_out: ScriptedRobot, scene_of: Any
+    stretched_out: ScriptedRobot, scene_of: SceneOf
 ) -> None:
     scene = scene_of(stretched_out)
     services = {"localization": object(), "planning_scene": scene}

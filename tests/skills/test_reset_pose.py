@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from momantu_skills.reset_pose import ResetPose
+from scenery.table import SceneOf, Tabletop
 
 from momantu_bt.claim import JointsAt
 from momantu_bt.geometry import Transform
@@ -47,7 +48,7 @@ def off(robot: ScriptedRobot, pose: str) -> float:
 
 @pytest.mark.parametrize(("start", "end"), list(permutations(POSES, 2)))
 def test_every_pose_is_reached_from_every_other(
-    tabletop: Any, scene_of: Any, start: str, end: str
+    tabletop: type[Tabletop], scene_of: SceneOf, start: str, end: str
 ) -> None:
     robot = tabletop(can=None, pose=start)
     robot.readings["head_camera"] = Painter([])
@@ -57,14 +58,14 @@ def test_every_pose_is_reached_from_every_other(
     assert result.duration < 8.0
 
 
-def test_being_there_takes_no_motion(tabletop: Any, scene_of: Any) -> None:
+def test_being_there_takes_no_motion(tabletop: type[Tabletop], scene_of: SceneOf) -> None:
     robot = tabletop(pose="home")
     result = reset(robot, scene_of(robot), "home")
     assert result.status == "SUCCESS", result.explain()
     assert not any(actuator == "arm" and goal is not None for _, actuator, goal in robot.commands)
 
 
-def test_joints_that_a_pose_does_not_name_stay(tabletop: Any, scene_of: Any) -> None:
+def test_joints_that_a_pose_does_not_name_stay(tabletop: type[Tabletop], scene_of: SceneOf) -> None:
     robot = tabletop(can=None, pose="ready")
     description = robot.description.model_copy(
         update={"named_poses": {**robot.description.named_poses, "low": {"torso_lift_joint": 0.25}}}
@@ -77,7 +78,9 @@ def test_joints_that_a_pose_does_not_name_stay(tabletop: Any, scene_of: Any) -> 
     assert moved == {"torso_lift_joint"}
 
 
-def test_turns_of_an_endless_joint_are_not_unwound(tabletop: Any, scene_of: Any) -> None:
+def test_turns_of_an_endless_joint_are_not_unwound(
+    tabletop: type[Tabletop], scene_of: SceneOf
+) -> None:
     robot = tabletop(can=None, pose="ready")
     robot.joints["wrist_roll_joint"] += 4 * np.pi
     result = reset(robot, scene_of(robot), "carry")
@@ -87,7 +90,7 @@ def test_turns_of_an_endless_joint_are_not_unwound(tabletop: Any, scene_of: Any)
     assert result.duration < 6.0
 
 
-def test_a_pillar_in_the_way_is_gone_around(tabletop: Any, scene_of: Any) -> None:
+def test_a_pillar_in_the_way_is_gone_around(tabletop: type[Tabletop], scene_of: SceneOf) -> None:
     """From before the robot's right side to its left, past a pillar in the middle."""
     robot = tabletop(can=None, pose="carry")
     robot.joints |= STRETCHED
@@ -111,7 +114,7 @@ def test_a_pillar_in_the_way_is_gone_around(tabletop: Any, scene_of: Any) -> Non
     assert not any(touched)
 
 
-def test_what_is_held_stays_held(tabletop: Any, scene_of: Any) -> None:
+def test_what_is_held_stays_held(tabletop: type[Tabletop], scene_of: SceneOf) -> None:
     robot = tabletop(pose="carry")
     thing = robot.detected()
     robot.hold(Transform((0.007, 0.0, 0.0)))
@@ -128,7 +131,7 @@ def test_what_is_held_stays_held(tabletop: Any, scene_of: Any) -> None:
 @pytest.mark.parametrize(
     ("pose", "hint"), [("hone", "; did you mean 'home'"), ("zzz", "")], ids=["near", "far"]
 )
-def test_unknown_pose(tabletop: Any, scene_of: Any, pose: str, hint: str) -> None:
+def test_unknown_pose(tabletop: type[Tabletop], scene_of: SceneOf, pose: str, hint: str) -> None:
     robot = tabletop()
     result = reset(robot, scene_of(robot), pose)
     assert result.code == "UNKNOWN_POSE"
@@ -136,7 +139,7 @@ def test_unknown_pose(tabletop: Any, scene_of: Any, pose: str, hint: str) -> Non
     assert result.failure.message == f"fetch has no pose {pose!r}{hint}; its poses: {poses}"
 
 
-def test_a_pose_inside_something_is_no_plan(tabletop: Any, scene_of: Any) -> None:
+def test_a_pose_inside_something_is_no_plan(tabletop: type[Tabletop], scene_of: SceneOf) -> None:
     robot = tabletop(can=None, pose="ready")
     robot.joints["head_tilt_joint"] = 1.1
     robot.readings["head_camera"] = Painter([Block((0.3, 0.4, 0.3), (0.5, -0.2, 0.9))])
@@ -145,7 +148,7 @@ def test_a_pose_inside_something_is_no_plan(tabletop: Any, scene_of: Any) -> Non
     assert "cells" in result.failure.message
 
 
-def test_a_start_within_the_margin_is_left(tabletop: Any, scene_of: Any) -> None:
+def test_a_start_within_the_margin_is_left(tabletop: type[Tabletop], scene_of: SceneOf) -> None:
     robot = tabletop(can=None, pose="carry")
     hand = robot.odom_from_hand.position
     top = hand[2] - 0.075
@@ -155,7 +158,7 @@ def test_a_start_within_the_margin_is_left(tabletop: Any, scene_of: Any) -> None
 
 
 def test_a_start_deep_in_something_is_reported(
-    tabletop: Any, scene_of: Any, monkeypatch: pytest.MonkeyPatch
+    tabletop: type[Tabletop], scene_of: SceneOf, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from momantu_skills.manipulation.model.collision import CollisionWorld
 
@@ -165,7 +168,7 @@ def test_a_start_deep_in_something_is_reported(
     assert result.code == "START_IN_COLLISION"
 
 
-def test_an_arm_that_does_not_move_is_stuck(tabletop: Any, scene_of: Any) -> None:
+def test_an_arm_that_does_not_move_is_stuck(tabletop: type[Tabletop], scene_of: SceneOf) -> None:
     robot = tabletop(can=None, pose="carry")
     robot.frozen.add("arm")
     result = reset(robot, scene_of(robot), "home")
@@ -173,7 +176,9 @@ def test_an_arm_that_does_not_move_is_stuck(tabletop: Any, scene_of: Any) -> Non
     assert result.duration < 5.0
 
 
-def test_the_same_seed_gives_the_same_trajectory(tabletop: Any, scene_of: Any) -> None:
+def test_the_same_seed_gives_the_same_trajectory(
+    tabletop: type[Tabletop], scene_of: SceneOf
+) -> None:
     sent = []
     for _ in range(2):
         robot = tabletop(can=None, pose="carry")
@@ -187,7 +192,7 @@ def test_the_same_seed_gives_the_same_trajectory(tabletop: Any, scene_of: Any) -
 
 @pytest.mark.parametrize("stuck", [False, True])
 def test_arm_and_camera_are_claimed_in_the_pose_whether_said_or_denied(
-    tabletop: Any, scene_of: Any, stuck: bool
+    tabletop: type[Tabletop], scene_of: SceneOf, stuck: bool
 ) -> None:
     robot = tabletop(can=None, pose="carry")
     robot.frozen |= {"arm"} if stuck else set()
@@ -201,6 +206,8 @@ def test_arm_and_camera_are_claimed_in_the_pose_whether_said_or_denied(
     assert there is not stuck
 
 
-def test_a_pose_that_is_not_known_claims_nothing(tabletop: Any, scene_of: Any) -> None:
+def test_a_pose_that_is_not_known_claims_nothing(
+    tabletop: type[Tabletop], scene_of: SceneOf
+) -> None:
     robot = tabletop()
     assert reset(robot, scene_of(robot), "hone").claim() is None

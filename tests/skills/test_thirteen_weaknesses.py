@@ -18,6 +18,8 @@ from momantu_skills.detect_plane import DetectPlane
 from momantu_skills.manipulation.hand.grasps import grasps_for
 from momantu_skills.pick import Pick
 from momantu_skills.reset_pose import ResetPose
+from scenery.onlooker import Onlooker, SeenScene
+from scenery.table import SceneOf, Tabletop
 
 from momantu_bt import run
 from momantu_bt.frames import FrameBuffer
@@ -37,7 +39,7 @@ def lost(frame: str) -> Pose:
     return Pose(Transform((1.0, 0.0, 0.7)), frame, 0.0)
 
 
-def test_1_no_endless_wait_for_a_transform(onlooker: Any, seen_scene: Any) -> None:
+def test_1_no_endless_wait_for_a_transform(onlooker: Onlooker, seen_scene: type[SeenScene]) -> None:
     robot = onlooker([])
     services = {"planning_scene": seen_scene()}
     result = run_skill(
@@ -48,7 +50,9 @@ def test_1_no_endless_wait_for_a_transform(onlooker: Any, seen_scene: Any) -> No
 
 
 @pytest.mark.parametrize("ticks", [1, 8, 20, 40])
-def test_2_what_runs_can_be_pre_empted(tabletop: Any, scene_of: Any, ticks: int) -> None:
+def test_2_what_runs_can_be_pre_empted(
+    tabletop: type[Tabletop], scene_of: SceneOf, ticks: int
+) -> None:
     robot = tabletop()
     scene = scene_of(robot)
     result = run_skill(
@@ -63,7 +67,7 @@ def test_2_what_runs_can_be_pre_empted(tabletop: Any, scene_of: Any, ticks: int)
     assert robot.joints == before
 
 
-def test_3_no_failure_sticks(tabletop: Any, scene_of: Any) -> None:
+def test_3_no_failure_sticks(tabletop: type[Tabletop], scene_of: SceneOf) -> None:
     robot = tabletop()
     scene = scene_of(robot)
     thing, robot.can = robot.detected(), None
@@ -104,7 +108,9 @@ def _frames_without_map(robot: ScriptedRobot) -> FrameBuffer:
     return frames
 
 
-def test_5_a_plane_that_is_not_there_is_not_detected(onlooker: Any, seen_scene: Any) -> None:
+def test_5_a_plane_that_is_not_there_is_not_detected(
+    onlooker: Onlooker, seen_scene: type[SeenScene]
+) -> None:
     near = Pose(Transform((0.95, 0.1, 0.5)), "odom", 0.0)
     inputs = {"near": near, "size": (0.07, 0.07, 0.13)}
     services = {"planning_scene": seen_scene()}
@@ -118,7 +124,7 @@ def test_5_a_plane_that_is_not_there_is_not_detected(onlooker: Any, seen_scene: 
 
 @pytest.mark.parametrize(("height", "radius"), [(0.10, 0.03), (0.13, 0.035), (0.18, 0.04)])
 def test_6_the_size_is_measured(
-    onlooker: Any, seen_scene: Any, height: float, radius: float
+    onlooker: Onlooker, seen_scene: type[SeenScene], height: float, radius: float
 ) -> None:
     table = Block((0.8, 1.2, 0.03), (2.0, 0.0, 0.685))
     robot = onlooker([table, Round((1.75, 0.1, 0.7), height, radius)])
@@ -132,7 +138,7 @@ def test_6_the_size_is_measured(
     assert size == pytest.approx((2 * radius, 2 * radius, height), abs=0.008)
 
 
-def test_7_there_are_many_grasps(tabletop: Any, scene_of: Any) -> None:
+def test_7_there_are_many_grasps(tabletop: type[Tabletop], scene_of: SceneOf) -> None:
     robot = tabletop()
     scene = scene_of(robot)
     hand = robot.description.end_effector
@@ -141,7 +147,7 @@ def test_7_there_are_many_grasps(tabletop: Any, scene_of: Any) -> None:
     assert len(ways) > 20
 
 
-def test_8_a_pick_without_a_can_is_no_success(tabletop: Any, scene_of: Any) -> None:
+def test_8_a_pick_without_a_can_is_no_success(tabletop: type[Tabletop], scene_of: SceneOf) -> None:
     robot = tabletop()
     robot.slips = True
     scene = scene_of(robot)
@@ -152,7 +158,7 @@ def test_8_a_pick_without_a_can_is_no_success(tabletop: Any, scene_of: Any) -> N
     assert result.code == "SLIPPED"
 
 
-def test_9_a_failed_pick_leaves_no_constraint(tabletop: Any, scene_of: Any) -> None:
+def test_9_a_failed_pick_leaves_no_constraint(tabletop: type[Tabletop], scene_of: SceneOf) -> None:
     robot = tabletop()
     robot.slips = True
     scene = scene_of(robot)
@@ -169,7 +175,7 @@ def test_9_a_failed_pick_leaves_no_constraint(tabletop: Any, scene_of: Any) -> N
     assert result.status == "SUCCESS", result.explain()
 
 
-def test_10_an_old_detection_is_refused(tabletop: Any, scene_of: Any) -> None:
+def test_10_an_old_detection_is_refused(tabletop: type[Tabletop], scene_of: SceneOf) -> None:
     robot = tabletop()
     scene = scene_of(robot)
     old = robot.detected(stamp=robot.time - 300.0)
@@ -205,7 +211,7 @@ def _both(localization: Any) -> dict[str, Any]:
     return {"localization": localization, "planning_scene": None}
 
 
-def test_12_nothing_sleeps_while_all_goes_well(tabletop: Any) -> None:
+def test_12_nothing_sleeps_while_all_goes_well(tabletop: type[Tabletop]) -> None:
     installed = Registry.installed()
     pose = Pose(Transform((1.0, 0.0, 0.8)), "odom", 0.0)
     plane = SupportPlane(pose, ((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)))

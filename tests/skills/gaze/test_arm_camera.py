@@ -12,6 +12,7 @@ from momantu_skills.manipulation.model.arm_model import arm_model
 from momantu_skills.manipulation.model.collision import CollisionWorld, Obstacle
 from momantu_skills.manipulation.model.hulls import object_corners
 from momantu_skills.manipulation.scene.site_obstacles import overhead_of
+from scenery.table import SceneOf
 
 from momantu_bt.geometry import Pose, Pose2D, Transform
 from momantu_bt.messages import DetectedObject, GripperCommand, JointTrajectory
@@ -74,7 +75,7 @@ def ways(robot: ScriptedRobot) -> list[np.ndarray]:
 @pytest.mark.parametrize("start", ["home", "ready", "look_around"])
 @pytest.mark.parametrize("point", [*ON_TOP, (3.0, 0.5, 0.9), (0.9, 0.3, 0.1)])
 def test_a_point_comes_to_lie_on_the_axis_where_its_depth_is_measured(
-    scene_of: Any, start: str, point: tuple[float, float, float]
+    scene_of: SceneOf, start: str, point: tuple[float, float, float]
 ) -> None:
     robot = watcher(start, solids=(TABLE,) if point in ON_TOP else ())
     result = look(robot, scene_of(robot), point)
@@ -86,7 +87,7 @@ def test_a_point_comes_to_lie_on_the_axis_where_its_depth_is_measured(
 
 
 @pytest.mark.parametrize("start", ["home", "look_around"])
-def test_the_way_there_meets_neither_the_table_nor_the_robot(scene_of: Any, start: str) -> None:
+def test_the_way_there_meets_neither_the_table_nor_the_robot(scene_of: SceneOf, start: str) -> None:
     robot = watcher(start)
     scene = scene_of(robot)
     for point in ON_TOP:
@@ -99,7 +100,7 @@ def test_the_way_there_meets_neither_the_table_nor_the_robot(scene_of: Any, star
     assert all(world.path_free(way) for way in ways(robot))
 
 
-def test_what_is_held_stays_upright_and_out_of_the_way(scene_of: Any) -> None:
+def test_what_is_held_stays_upright_and_out_of_the_way(scene_of: SceneOf) -> None:
     robot = watcher("carry")
     scene = holding(robot, scene_of(robot))
     model = scene.scene.model
@@ -120,7 +121,7 @@ def test_what_is_held_stays_upright_and_out_of_the_way(scene_of: Any) -> None:
     assert scene.held is not None
 
 
-def test_a_load_that_fills_the_view_is_said_to(scene_of: Any) -> None:
+def test_a_load_that_fills_the_view_is_said_to(scene_of: SceneOf) -> None:
     robot = watcher("carry")
     scene = holding(robot, scene_of(robot))
     wall = DetectedObject("box", CAN.pose, (0.05, 0.5, 0.6), "box", 1.0, 0.0)
@@ -131,14 +132,14 @@ def test_a_load_that_fills_the_view_is_said_to(scene_of: Any) -> None:
     assert ways(robot) == []
 
 
-def test_the_same_look_is_the_same_motion(scene_of: Any) -> None:
+def test_the_same_look_is_the_same_motion(scene_of: SceneOf) -> None:
     first, second = watcher(), watcher()
     for robot in (first, second):
         assert look(robot, scene_of(robot), ON_TOP[1], seed=4).status == "SUCCESS"
     assert [w.tolist() for w in ways(first)] == [w.tolist() for w in ways(second)]
 
 
-def test_a_point_that_is_seen_already_takes_little_motion(scene_of: Any) -> None:
+def test_a_point_that_is_seen_already_takes_little_motion(scene_of: SceneOf) -> None:
     robot = watcher()
     scene = scene_of(robot)
     assert look(robot, scene, ON_TOP[0]).status == "SUCCESS"
@@ -147,7 +148,7 @@ def test_a_point_that_is_seen_already_takes_little_motion(scene_of: Any) -> None
     assert max(abs(robot.joints[name] - before[name]) for name in before) < 0.05
 
 
-def test_what_stands_between_is_looked_round(scene_of: Any) -> None:
+def test_what_stands_between_is_looked_round(scene_of: SceneOf) -> None:
     screen = Block((0.04, 0.5, 0.45), (0.75, 0.15, 0.95))
     robot = watcher("look_around", solids=(TABLE, screen))
     scene = scene_of(robot)
@@ -168,7 +169,7 @@ def test_what_stands_between_is_looked_round(scene_of: Any) -> None:
     [("home", 0.9, 1.2, 0.985), ("look_around", 0.95, 0.7, 0.935)],
 )
 def test_what_hangs_over_a_table_is_looked_below(
-    scene_of: Any, start: str, x: float, depth: float, bottom: float
+    scene_of: SceneOf, start: str, x: float, depth: float, bottom: float
 ) -> None:
     """No picture shows the board: the site tells of it, and the arm keeps off it."""
     robot = watcher(start)
@@ -189,14 +190,14 @@ def test_what_hangs_over_a_table_is_looked_below(
 
 
 @pytest.mark.parametrize("point", [(0.0, 0.0, 0.15), (-0.1, 0.0, 0.02), (60.0, 0.0, 1.0)])
-def test_what_no_posture_sees_is_out_of_view(scene_of: Any, point: Any) -> None:
+def test_what_no_posture_sees_is_out_of_view(scene_of: SceneOf, point: Any) -> None:
     robot = watcher(solids=())
     result = look(robot, scene_of(robot), point)
     assert result.code == "OUT_OF_VIEW", result.explain()
     assert "drive nearer" in result.explain() or "in between" in result.explain()
 
 
-def test_an_arm_that_does_not_move_is_the_cause(scene_of: Any) -> None:
+def test_an_arm_that_does_not_move_is_the_cause(scene_of: SceneOf) -> None:
     robot = watcher()
     robot.frozen.add("arm")
     result = look(robot, scene_of(robot), ON_TOP[0])
@@ -205,7 +206,7 @@ def test_an_arm_that_does_not_move_is_the_cause(scene_of: Any) -> None:
     assert "from where its trajectory asks it to be" in result.explain()
 
 
-def test_a_base_that_is_turned_and_moved_makes_no_difference(scene_of: Any) -> None:
+def test_a_base_that_is_turned_and_moved_makes_no_difference(scene_of: SceneOf) -> None:
     here = Pose2D(1.0, -2.0, 2.0)
     robot = watcher(solids=())
     robot.base = here

@@ -18,12 +18,14 @@ from momantu_skills.manipulation.model.collision import CollisionWorld, Obstacle
 from momantu_skills.manipulation.motion.following import brake, expected, follow
 from momantu_skills.manipulation.motion.planner import escape
 from momantu_skills.manipulation.motion.timing import timed
+from scenery.table import Tabletop
 
 from momantu_bt.failure import Failure
 from momantu_bt.frames import FrameBuffer
 from momantu_bt.geometry import Pose, Transform
-from momantu_bt.messages import DetectedObject
+from momantu_bt.messages import DetectedObject, JointTrajectory
 
+Swing = tuple[Tabletop, JointTrajectory]
 CAN = DetectedObject(
     "can", Pose(Transform(), "odom", 0.0), (0.07, 0.07, 0.13), "cylinder", 0.9, 0.7
 )
@@ -42,7 +44,7 @@ def run(generator: Any, robot: Any, each: Callable[[], None] | None = None) -> A
 
 
 @pytest.fixture
-def swing(tabletop: Any, model: ArmModel) -> tuple[Any, Any]:
+def swing(tabletop: type[Tabletop], model: ArmModel) -> Swing:
     """Fetch, and a trajectory of a second or two that turns its shoulder."""
     robot = tabletop(pose="carry")
     q = model.joints(robot.state())
@@ -51,7 +53,7 @@ def swing(tabletop: Any, model: ArmModel) -> tuple[Any, Any]:
     return robot, timed(model.group, np.array([q, end]), PlanningConfig())
 
 
-def test_it_arrives_and_rests(swing: Any) -> None:
+def test_it_arrives_and_rests(swing: Swing) -> None:
     robot, trajectory = swing
     assert run(follow(robot, robot, "arm", trajectory), robot) is True
     names = trajectory.names
@@ -59,7 +61,7 @@ def test_it_arrives_and_rests(swing: Any) -> None:
     assert robot.now() < trajectory.duration + 0.3
 
 
-def test_the_same_trajectory_is_commanded_each_tick(swing: Any) -> None:
+def test_the_same_trajectory_is_commanded_each_tick(swing: Swing) -> None:
     robot, trajectory = swing
     run(follow(robot, robot, "arm", trajectory), robot)
     times = [time for time, actuator, goal in robot.commands if goal is trajectory]
@@ -67,7 +69,7 @@ def test_the_same_trajectory_is_commanded_each_tick(swing: Any) -> None:
     assert np.diff(times).max() < 0.06
 
 
-def test_an_arm_that_stays_behind_is_stuck_and_stopped(swing: Any) -> None:
+def test_an_arm_that_stays_behind_is_stuck_and_stopped(swing: Swing) -> None:
     robot, trajectory = swing
     robot.frozen.add("arm")
     with pytest.raises(Failure) as caught:
@@ -78,7 +80,7 @@ def test_an_arm_that_stays_behind_is_stuck_and_stopped(swing: Any) -> None:
 
 
 @pytest.mark.parametrize("pace", [0.3, 0.5, 0.8])
-def test_an_arm_slower_than_its_trajectory_is_waited_for(swing: Any, pace: float) -> None:
+def test_an_arm_slower_than_its_trajectory_is_waited_for(swing: Swing, pace: float) -> None:
     robot, trajectory = swing
     command = robot.command
     times, speeds = trajectory.times / pace, trajectory.velocities * pace
@@ -95,7 +97,7 @@ def test_an_arm_slower_than_its_trajectory_is_waited_for(swing: Any, pace: float
 
 
 @pytest.mark.parametrize("share", [0.2, 0.5, 0.7])
-def test_an_arm_that_stops_on_its_way_is_stuck_soon(swing: Any, share: float) -> None:
+def test_an_arm_that_stops_on_its_way_is_stuck_soon(swing: Swing, share: float) -> None:
     robot, trajectory = swing
     stops = share * trajectory.duration
 
@@ -108,7 +110,7 @@ def test_an_arm_that_stops_on_its_way_is_stuck_soon(swing: Any, share: float) ->
     assert robot.now() < trajectory.duration + 2.0
 
 
-def test_an_arm_that_trembles_in_place_does_not_get_on(swing: Any) -> None:
+def test_an_arm_that_trembles_in_place_does_not_get_on(swing: Swing) -> None:
     robot, trajectory = swing
     robot.frozen.add("arm")
     random = np.random.default_rng(3)
@@ -121,7 +123,7 @@ def test_an_arm_that_trembles_in_place_does_not_get_on(swing: Any) -> None:
     assert robot.now() < trajectory.duration + 2.0
 
 
-def test_a_watch_ends_it_early(swing: Any) -> None:
+def test_a_watch_ends_it_early(swing: Swing) -> None:
     robot, trajectory = swing
     watched = follow(robot, robot, "arm", trajectory, until=lambda _: robot.now() > 0.5)
     assert run(watched, robot) is False
@@ -129,7 +131,7 @@ def test_a_watch_ends_it_early(swing: Any) -> None:
     assert robot.joints["shoulder_pan_joint"] < trajectory.positions[-1][1] - 0.1
 
 
-def test_braking_ends_though_the_arm_never_rests(swing: Any) -> None:
+def test_braking_ends_though_the_arm_never_rests(swing: Swing) -> None:
     robot, trajectory = swing
     robot.command("arm", trajectory)
 
@@ -140,7 +142,7 @@ def test_braking_ends_though_the_arm_never_rests(swing: Any) -> None:
     assert robot.now() < 2.0
 
 
-def test_expected_meets_the_points_and_stays_at_the_ends(swing: Any) -> None:
+def test_expected_meets_the_points_and_stays_at_the_ends(swing: Swing) -> None:
     _, trajectory = swing
     for i, time in enumerate(trajectory.times):
         assert expected(trajectory, time) == pytest.approx(trajectory.positions[i])
@@ -150,7 +152,7 @@ def test_expected_meets_the_points_and_stays_at_the_ends(swing: Any) -> None:
 
 @pytest.mark.parametrize(("thing", "rests_at"), [(None, 0.04), (0.07, 0.07)])
 def test_closing_ends_at_the_width_or_on_the_thing(
-    tabletop: Any, thing: float | None, rests_at: float
+    tabletop: type[Tabletop], thing: float | None, rests_at: float
 ) -> None:
     robot = tabletop(can=None)
     robot.object_width = thing
@@ -159,7 +161,7 @@ def test_closing_ends_at_the_width_or_on_the_thing(
     assert robot.now() < 1.5
 
 
-def test_opening_waits_while_the_force_is_let_go(tabletop: Any) -> None:
+def test_opening_waits_while_the_force_is_let_go(tabletop: type[Tabletop]) -> None:
     robot = tabletop(can=None)
     robot.gripper_width, robot.gripper_effort = 0.07, 45.0
     robot.frozen.add("gripper")
@@ -172,7 +174,7 @@ def test_opening_waits_while_the_force_is_let_go(tabletop: Any) -> None:
     assert reached == pytest.approx(0.1, abs=0.006)
 
 
-def test_only_an_upward_change_is_contact_from_below(tabletop: Any) -> None:
+def test_only_an_upward_change_is_contact_from_below(tabletop: type[Tabletop]) -> None:
     robot = tabletop(pose="carry")
     frames = FrameBuffer(robot.description.kinematics())
     frames.add_state(robot.state())
@@ -236,7 +238,9 @@ def test_a_pose_goes_stale_with_time_and_with_contact(
     assert refused is (stale or touched)
 
 
-def test_an_escape_leaves_and_touches_nothing_new(model: ArmModel, tabletop: Any) -> None:
+def test_an_escape_leaves_and_touches_nothing_new(
+    model: ArmModel, tabletop: type[Tabletop]
+) -> None:
     robot = tabletop(pose="carry")
     q = model.joints(robot.state())
     hand = model.group.tip_pose(q).position
@@ -253,7 +257,7 @@ def test_an_escape_leaves_and_touches_nothing_new(model: ArmModel, tabletop: Any
     assert bare.path_free(path)
 
 
-def test_there_is_no_escape_from_a_closed_box(model: ArmModel, tabletop: Any) -> None:
+def test_there_is_no_escape_from_a_closed_box(model: ArmModel, tabletop: type[Tabletop]) -> None:
     robot = tabletop(pose="carry")
     q = model.joints(robot.state())
     hand = model.group.tip_pose(q).position

@@ -19,6 +19,7 @@ from momantu_skills.manipulation.model.arm_model import ArmModel
 from momantu_skills.manipulation.motion.following import ARRIVED
 from momantu_skills.manipulation.motion.timing import timed
 from momantu_skills.perception.camera.snapshot import take
+from scenery.table import SceneOf, Tabletop
 
 from momantu_bt.failure import Failure
 from momantu_bt.geometry import Pose, Transform
@@ -64,7 +65,9 @@ def straightness(arm: Arm, piece: JointTrajectory) -> float:
 
 
 @pytest.mark.parametrize("can", [(0.75, 0.0), (0.65, 0.25), (0.85, -0.2)])
-def test_a_pick_is_exact_straight_and_joined(tabletop: Any, scene_of: Any, can: Any) -> None:
+def test_a_pick_is_exact_straight_and_joined(
+    tabletop: type[Tabletop], scene_of: SceneOf, can: Any
+) -> None:
     robot = tabletop(can)
     arm = arm_of(robot, scene_of(robot))
     thing = robot.detected()
@@ -92,7 +95,7 @@ def test_a_pick_is_exact_straight_and_joined(tabletop: Any, scene_of: Any, can: 
 
 @pytest.mark.parametrize("yaw", [0.0, 2.0])
 def test_a_place_is_upright_above_its_spot_and_lowers_straight_down(
-    tabletop: Any, scene_of: Any, yaw: float
+    tabletop: type[Tabletop], scene_of: SceneOf, yaw: float
 ) -> None:
     robot = tabletop(pose="carry")
     robot.hold(Transform())
@@ -152,7 +155,7 @@ def test_a_spline_that_turns_beside_a_limit_stays_inside(
 
 
 def test_the_way_back_leads_to_the_start_from_wherever_it_was_left(
-    tabletop: Any, scene_of: Any
+    tabletop: type[Tabletop], scene_of: SceneOf
 ) -> None:
     robot = tabletop(pose="carry")
     arm = arm_of(robot, scene_of(robot))
@@ -172,7 +175,7 @@ def test_the_way_back_leads_to_the_start_from_wherever_it_was_left(
 
 @pytest.mark.parametrize("jammed_at", [0.0, 0.03, 0.08])
 def test_fingers_that_do_not_open_are_stuck_in_bounded_time(
-    tabletop: Any, jammed_at: float
+    tabletop: type[Tabletop], jammed_at: float
 ) -> None:
     robot = tabletop(can=None)
     robot.gripper_width = jammed_at
@@ -186,7 +189,7 @@ def test_fingers_that_do_not_open_are_stuck_in_bounded_time(
 
 
 @pytest.mark.parametrize("thing", [0.02, 0.05, 0.09])
-def test_closing_ends_on_things_of_any_width(tabletop: Any, thing: float) -> None:
+def test_closing_ends_on_things_of_any_width(tabletop: type[Tabletop], thing: float) -> None:
     robot = tabletop(can=None)
     robot.gripper_width, robot.object_width = 0.1, thing
     closing = move_gripper(robot, robot, 0.0, 45.0, 3.0, "closing")

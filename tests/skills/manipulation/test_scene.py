@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 import pytest
@@ -26,6 +25,7 @@ from momantu_skills.manipulation.scene.surroundings import (
     within,
 )
 from momantu_skills.perception.camera.snapshot import take
+from scenery.table import SceneOf, Tabletop
 
 from momantu_bt.geometry import Pose, Pose2D, Transform
 from momantu_bt.messages import DetectedObject, RobotState, SupportPlane
@@ -108,7 +108,7 @@ def test_points_within_links_are_the_robot_and_far_ones_are_not(seed: int) -> No
 
 
 def test_the_robot_and_what_it_holds_are_told_from_the_rest(
-    tabletop: Any, scene_of: Any, model: ArmModel
+    tabletop: type[Tabletop], scene_of: SceneOf, model: ArmModel
 ) -> None:
     robot = tabletop(pose="carry")
     service = scene_of(robot)
@@ -122,7 +122,9 @@ def test_the_robot_and_what_it_holds_are_told_from_the_rest(
     assert not service.is_robot(np.array([[1.0, 0.0, 0.5]]), robot.state()).any()
 
 
-def test_the_footprint_covers_base_arm_and_what_is_held(tabletop: Any, scene_of: Any) -> None:
+def test_the_footprint_covers_base_arm_and_what_is_held(
+    tabletop: type[Tabletop], scene_of: SceneOf
+) -> None:
     home, carry = tabletop(pose="home"), tabletop(pose="carry")
     folded = scene_of(home).footprint(home.state())
     service = scene_of(carry)
@@ -138,7 +140,9 @@ def test_the_footprint_covers_base_arm_and_what_is_held(tabletop: Any, scene_of:
         assert (edges[:, 0] * after[:, 1] - edges[:, 1] * after[:, 0] > -1e-12).all()
 
 
-def test_the_footprint_below_a_height_is_of_what_hangs_lower(tabletop: Any, scene_of: Any) -> None:
+def test_the_footprint_below_a_height_is_of_what_hangs_lower(
+    tabletop: type[Tabletop], scene_of: SceneOf
+) -> None:
     robot = tabletop(pose="carry")
     service, state = scene_of(robot), robot.state()
     service.holding.claim(HELD, 0.07, 0.0)
@@ -247,7 +251,9 @@ def test_another_patch_is_not_the_known_surface(seen: Support) -> None:
     assert not same_surface(seen, known_support(surface, Transform()))
 
 
-def test_surfaces_that_no_picture_showed_are_kept_clear_of(tabletop: Any, scene_of: Any) -> None:
+def test_surfaces_that_no_picture_showed_are_kept_clear_of(
+    tabletop: type[Tabletop], scene_of: SceneOf
+) -> None:
     """The site has table_a at (2, 0); the hand is in it once localization says so."""
     robot = tabletop(can=None, pose="carry")
     scene = scene_of(robot)
@@ -261,7 +267,9 @@ def test_surfaces_that_no_picture_showed_are_kept_clear_of(tabletop: Any, scene_
         assert world.free(q) is free, world.touching(q)
 
 
-def test_a_picture_replaces_what_it_sees_through(tabletop: Any, scene_of: Any) -> None:
+def test_a_picture_replaces_what_it_sees_through(
+    tabletop: type[Tabletop], scene_of: SceneOf
+) -> None:
     robot = tabletop()
     scene = scene_of(robot)
     scene.frames.add_state(robot.state())
@@ -281,7 +289,7 @@ def test_a_picture_replaces_what_it_sees_through(tabletop: Any, scene_of: Any) -
     assert near_can() == 0
 
 
-def test_it_reads_no_camera_by_itself(tabletop: Any, scene_of: Any) -> None:
+def test_it_reads_no_camera_by_itself(tabletop: type[Tabletop], scene_of: SceneOf) -> None:
     robot = tabletop()
     robot.dead.add("head_camera")
     scene = scene_of(robot)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from momantu_skills.manipulation.scene.surroundings import Surroundings
 from momantu_skills.manipulation.tucking import STICKS_OUT, take_in
+from scenery.table import SceneOf
 
 from momantu_bt.geometry import Pose, Transform
 from momantu_bt.messages import DetectedObject, GripperCommand
@@ -54,7 +55,7 @@ def outside(robot: ScriptedRobot, scene: Any) -> float:
     return float((reach - np.abs(robot.description.footprint).max(axis=0)).max())
 
 
-def test_a_stretched_arm_goes_home_and_what_it_holds_is_carried(scene_of: Any) -> None:
+def test_a_stretched_arm_goes_home_and_what_it_holds_is_carried(scene_of: SceneOf) -> None:
     for load, pose in ((None, "home"), (CAN, "carry")):
         robot = robot_at(STRETCHED)
         scene = scene_of(robot)
@@ -73,14 +74,14 @@ def test_a_stretched_arm_goes_home_and_what_it_holds_is_carried(scene_of: Any) -
 
 
 @pytest.mark.parametrize("pose", ["home", "ready", "carry", "look_around"])
-def test_an_arm_that_is_in_stays(scene_of: Any, pose: str) -> None:
+def test_an_arm_that_is_in_stays(scene_of: SceneOf, pose: str) -> None:
     description = eye_in_hand_robot()
     robot = robot_at(description.named_poses[pose].values())
     assert run(robot, scene_of(robot)).status == "SUCCESS"
     assert robot.commands == []
 
 
-def test_without_a_way_the_base_drives_with_the_arm_as_it_is(scene_of: Any) -> None:
+def test_without_a_way_the_base_drives_with_the_arm_as_it_is(scene_of: SceneOf) -> None:
     robot = robot_at(STRETCHED)
     scene = scene_of(robot)
     cells = np.stack(np.meshgrid(*[np.arange(-0.1, 0.1, 0.02)] * 3), axis=-1).reshape(-1, 3)
@@ -90,7 +91,7 @@ def test_without_a_way_the_base_drives_with_the_arm_as_it_is(scene_of: Any) -> N
     assert robot.joints == before
 
 
-def test_an_arm_that_does_not_move_is_no_load_to_drive_with(scene_of: Any) -> None:
+def test_an_arm_that_does_not_move_is_no_load_to_drive_with(scene_of: SceneOf) -> None:
     robot = robot_at(STRETCHED)
     robot.frozen.add("arm")
     assert run(robot, scene_of(robot)).code == "ARM_STUCK"

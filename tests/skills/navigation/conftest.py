@@ -1,107 +1,25 @@
-"""A base that obeys at once, in a costmap of boxes: what `Vehicle` offers to manoeuvres."""
+"""A base that obeys at once, and moves that run to their end."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator
 from typing import Any
 
-import numpy as np
 import pytest
-from momantu_skills.navigation.config import NavigationConfig
-from momantu_skills.navigation.control.footprint import discs, half_width
-from momantu_skills.navigation.map.costmap import Costmap
-from momantu_skills.navigation.map.maps import GridMap
+from scenery.obedient import MakeObedient, Obedient, RunMove
 
 from momantu_bt.failure import Failure
-from momantu_bt.formats.maps import OCCUPIED
-from momantu_bt.geometry import Pose2D
-from momantu_bt.robot import BaseLimits
 from momantu_bt.skill import Compute
-
-LIMITS = BaseLimits(linear=1.0, angular=1.5, linear_acceleration=1.0, angular_acceleration=3.0)
-OUTLINE = np.array([(0.25, 0.2), (-0.25, 0.2), (-0.25, -0.2), (0.25, -0.2)])
-
-Boxes = Sequence[tuple[float, float, float, float]]
-"""x from, y from, x to, y to, m."""
-
-
-class Obedient:
-    """A perfect unicycle within its accelerations. least: room that the base had on its way.
-
-    stuck: it is commanded but stands. arm: how far an arm reaches ahead of the outline, m.
-    """
-
-    def __init__(self, start: Pose2D, boxes: Boxes = (), arm: float = 0.0) -> None:
-        cells = np.zeros((120, 160), np.uint8)
-        cells[[0, -1], :] = OCCUPIED
-        cells[:, [0, -1]] = OCCUPIED
-        for x0, y0, x1, y1 in boxes:
-            rows = slice(round(y0 / 0.05), round(y1 / 0.05))
-            cells[rows, round(x0 / 0.05) : round(x1 / 0.05)] = OCCUPIED
-        self.config, self.limits = NavigationConfig(), LIMITS
-        self.costmap = Costmap(GridMap(cells, 0.05, (0.0, 0.0)), None, self.config)
-        self.base_discs = self.low_discs = discs(OUTLINE)
-        reach = np.array([[0.25 + arm - 0.05, 0.0, 0.05]]) if arm else np.empty((0, 3))
-        self.discs = np.vstack([self.base_discs, reach])
-        self.half_width = half_width(OUTLINE)
-        self.start, self.at, self.time, self.v, self.w = start, Pose2D(0.0, 0.0), 0.0, 0.0, 0.0
-        self.shift = Pose2D(0.0, 0.0)
-        self.blocked_for = self.blocked_total = 0.0
-        self.stuck, self.least, self.phases = False, np.inf, list[str]()
-
-    def now(self) -> float:
-        return self.time
-
-    def odom_from_base(self) -> Pose2D:
-        return self.at
-
-    def map_from_odom(self) -> Pose2D:
-        return self.start @ self.shift
-
-    def pose(self) -> Pose2D:
-        return self.map_from_odom() @ self.at
-
-    def speed(self) -> tuple[float, float]:
-        return self.v, self.w
-
-    def sense(self, *, depth: bool = True) -> None:
-        self.least = min(self.least, self.room(self.pose(), whole=False))
-
-    def room(self, pose: Pose2D, *, whole: bool) -> float:
-        return self.costmap.room(pose, self.discs if whole else self.low_discs)
-
-    def drive(self, linear: float, angular: float, phase: str) -> Generator[str, None, None]:
-        self.phases.append(phase)
-        self.blocked_for = self.blocked_for + 0.1 if self.stuck else 0.0
-        if not self.stuck:
-            for _ in range(10):
-                self.v += float(np.clip(linear - self.v, -0.01, 0.01))
-                self.w += float(np.clip(angular - self.w, -0.03, 0.03))
-                self.at = self.at @ Pose2D(0.01 * self.v, 0.0, 0.01 * self.w)
-        self.time += 0.1
-        yield phase
-
-    def stands(self) -> bool:
-        return abs(self.v) < 0.01 and abs(self.w) < 0.01
-
-    def stop(self, phase: str) -> Generator[str, None, None]:
-        while not self.stands():
-            yield from self.drive(0.0, 0.0, phase)
-
-    def wait(self, seconds: float, phase: str) -> Generator[str, None, None]:
-        end = self.time + seconds - 1e-6
-        while self.time < end:
-            yield from self.drive(0.0, 0.0, phase)
 
 
 @pytest.fixture(scope="session")
-def obedient() -> Callable[..., Obedient]:
+def obedient() -> MakeObedient:
     """`obedient(start, boxes=…, arm=…)`: see `Obedient`; the room is 8 m x 6 m from (0, 0)."""
     return Obedient
 
 
 @pytest.fixture(scope="session")
-def run_move() -> Callable[..., object]:
+def run_move() -> RunMove:
     """`run_move(move, each)`: lets a move run to its end; what it returns."""
 
     def run(move: Generator[Any, Any, object], each: Callable[[], None] = lambda: None) -> object:

@@ -1,7 +1,6 @@
 """Manoeuvres near a goal: what is promised is kept, and what has no room is not begun."""
 
 import math
-from typing import Any
 
 import pytest
 from hypothesis import given, settings
@@ -17,6 +16,7 @@ from momantu_skills.navigation.drive.manoeuvre import (
     run_in,
     straight_behind,
 )
+from scenery.obedient import MakeObedient, RunMove
 
 from momantu_bt.failure import Failure
 from momantu_bt.geometry import Pose2D
@@ -29,10 +29,11 @@ POSES = st.builds(Pose2D, st.floats(-3, 3), st.floats(-3, 3), st.floats(-3.1, 3.
 @settings(max_examples=60)
 @given(NEAR)
 def test_a_goal_nearby_is_reached_from_anywhere_around_it(
-    obedient: Any, run_move: Any, offset: Pose2D
+    obedient: MakeObedient, run_move: RunMove, offset: Pose2D
 ) -> None:
     base = obedient(GOAL @ offset)
-    assert run_move(prepare(base, GOAL, 0.05)) is True
+    if math.hypot(offset.x, offset.y) > 0.05:  # nearer, only a turn is left, and arriving makes it
+        assert run_move(prepare(base, GOAL, 0.05)) is True
     assert run_move(arrive(base, lambda: GOAL, 0.05, 0.05)) is True
     assert within(base.pose(), GOAL, 0.05, 0.05)
     assert base.stands()
@@ -42,7 +43,7 @@ def test_a_goal_nearby_is_reached_from_anywhere_around_it(
 @settings(max_examples=40)
 @given(NEAR, st.floats(0.1, 0.6))
 def test_nothing_is_touched_on_the_way_between_two_walls(
-    obedient: Any, run_move: Any, offset: Pose2D, spare: float
+    obedient: MakeObedient, run_move: RunMove, offset: Pose2D, spare: float
 ) -> None:
     goal = Pose2D(4.0, 3.0, 0.0)
     start = goal @ Pose2D(-0.6 + 0.3 * offset.x, 0.1 * offset.y, 0.1 * offset.yaw)
@@ -57,7 +58,7 @@ def test_nothing_is_touched_on_the_way_between_two_walls(
 @settings(max_examples=60)
 @given(st.builds(Pose2D, st.floats(-1.8, -0.3), st.floats(-0.4, 0.4), st.floats(-0.6, 0.6)))
 def test_an_approach_that_is_sure_ends_within_its_distance(
-    obedient: Any, run_move: Any, offset: Pose2D
+    obedient: MakeObedient, run_move: RunMove, offset: Pose2D
 ) -> None:
     base = obedient(GOAL @ offset)
     if approach_is_sure(base, GOAL, 0.05):
@@ -69,7 +70,7 @@ def test_an_approach_that_is_sure_ends_within_its_distance(
 @settings(max_examples=40)
 @given(st.floats(0.03, 1.15), st.floats(-0.02, 0.02), st.floats(-0.3, 0.3))
 def test_a_goal_straight_behind_is_backed_into(
-    obedient: Any, run_move: Any, behind: float, left: float, yaw: float
+    obedient: MakeObedient, run_move: RunMove, behind: float, left: float, yaw: float
 ) -> None:
     start = Pose2D(4.0, 3.0, 0.0)
     goal = start @ Pose2D(-behind, left, yaw)
@@ -91,17 +92,19 @@ def test_a_goal_straight_behind_is_backed_into(
     ],
     ids=["ahead", "beside", "turned", "too far", "there already"],
 )
-def test_what_is_not_straight_behind_is_not_backed_into(obedient: Any, goal: Pose2D) -> None:
+def test_what_is_not_straight_behind_is_not_backed_into(
+    obedient: MakeObedient, goal: Pose2D
+) -> None:
     assert straight_behind(obedient(Pose2D(4.0, 3.0, 0.0)), goal, 0.05) is None
 
 
-def test_one_does_not_back_through_a_wall(obedient: Any) -> None:
+def test_one_does_not_back_through_a_wall(obedient: MakeObedient) -> None:
     base = obedient(Pose2D(4.0, 3.0, 0.0), [(3.3, 2.0, 3.5, 4.0)])
     assert straight_behind(base, Pose2D(3.0, 3.0, 0.0), 0.05) is None
 
 
 @given(NEAR)
-def test_a_hop_points_at_the_goal(obedient: Any, offset: Pose2D) -> None:
+def test_a_hop_points_at_the_goal(obedient: MakeObedient, offset: Pose2D) -> None:
     base = obedient(GOAL @ offset)
     bearing = hop_bearing(base, GOAL)
     way = base.pose().distance_to(GOAL)  # not of the offset: rounding would decide at the bounds
@@ -111,13 +114,13 @@ def test_a_hop_points_at_the_goal(obedient: Any, offset: Pose2D) -> None:
         assert there.distance_to(GOAL) < 1e-9
 
 
-def test_there_is_no_hop_through_a_wall(obedient: Any) -> None:
+def test_there_is_no_hop_through_a_wall(obedient: MakeObedient) -> None:
     base = obedient(Pose2D(4.0, 3.0, 0.0), [(4.4, 2.0, 4.6, 4.0)])
     assert hop_bearing(base, Pose2D(5.0, 3.0, 0.0)) is None
     assert hop_bearing(base, Pose2D(4.0, 3.6, 0.0)) == pytest.approx(math.pi / 2)
 
 
-def test_a_retreat_is_no_longer_than_the_room_behind(obedient: Any) -> None:
+def test_a_retreat_is_no_longer_than_the_room_behind(obedient: MakeObedient) -> None:
     start, goal = Pose2D(4.0, 3.0, 0.0), Pose2D(4.3, 3.25, 0.0)
     free = quickest_retreat(obedient(start), goal, 0.05)
     assert free is not None
@@ -127,13 +130,13 @@ def test_a_retreat_is_no_longer_than_the_room_behind(obedient: Any) -> None:
     assert shut is None or shut.back < 0.25
 
 
-def test_a_goal_straight_ahead_needs_no_retreat(obedient: Any) -> None:
+def test_a_goal_straight_ahead_needs_no_retreat(obedient: MakeObedient) -> None:
     retreat = quickest_retreat(obedient(Pose2D(3.0, 3.0, 0.0)), Pose2D(4.0, 3.0, 0.0), 0.05)
     assert retreat is not None
     assert retreat.back == 0.0
 
 
-def test_a_run_in_that_is_blocked_says_so(obedient: Any, run_move: Any) -> None:
+def test_a_run_in_that_is_blocked_says_so(obedient: MakeObedient, run_move: RunMove) -> None:
     base = obedient(Pose2D(3.0, 3.0, 0.0))
     base.stuck = True
     with pytest.raises(Failure) as caught:
@@ -142,7 +145,9 @@ def test_a_run_in_that_is_blocked_says_so(obedient: Any, run_move: Any) -> None:
     assert base.now() < base.config.blocked_patience + 1.0
 
 
-def test_a_goal_that_always_runs_away_ends_in_no_progress(obedient: Any, run_move: Any) -> None:
+def test_a_goal_that_always_runs_away_ends_in_no_progress(
+    obedient: MakeObedient, run_move: RunMove
+) -> None:
     base = obedient(Pose2D(3.0, 3.0, 0.0))
 
     def goal() -> Pose2D:
@@ -167,7 +172,7 @@ def test_being_within_does_not_depend_on_the_frame(
         assert within(goal, pose, distance, angle) is expected
 
 
-def test_leaving_a_table_frees_the_arm(obedient: Any, run_move: Any) -> None:
+def test_leaving_a_table_frees_the_arm(obedient: MakeObedient, run_move: RunMove) -> None:
     start = Pose2D(4.0, 3.0, 0.0)
     base = obedient(start, [(4.6, 2.0, 5.2, 4.0)], arm=0.5)
     assert base.room(start, whole=True) < 0.0
@@ -176,7 +181,9 @@ def test_leaving_a_table_frees_the_arm(obedient: Any, run_move: Any) -> None:
     assert base.pose().yaw == pytest.approx(0.0)
 
 
-def test_with_a_wall_behind_one_leaves_no_further_than_it(obedient: Any, run_move: Any) -> None:
+def test_with_a_wall_behind_one_leaves_no_further_than_it(
+    obedient: MakeObedient, run_move: RunMove
+) -> None:
     start = Pose2D(4.0, 3.0, 0.0)
     base = obedient(start, [(4.6, 2.0, 5.2, 4.0), (3.2, 2.0, 3.5, 4.0)], arm=0.5)
     run_move(leave(base, 0.0))

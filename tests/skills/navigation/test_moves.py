@@ -15,6 +15,7 @@ from momantu_skills.navigation.drive.moves import (
     creep,
     turn_to,
 )
+from scenery.obedient import MakeObedient, RunMove
 
 from momantu_bt.geometry import Pose2D, wrap_angle
 
@@ -25,7 +26,7 @@ MIDDLE = st.builds(Pose2D, st.floats(2.5, 5.5), st.floats(2.5, 3.5), YAWS)
 @settings(max_examples=40)
 @given(MIDDLE, st.floats(-9.0, 9.0))
 def test_a_turn_ends_at_the_heading_on_the_spot(
-    obedient: Any, run_move: Any, start: Pose2D, yaw: float
+    obedient: MakeObedient, run_move: RunMove, start: Pose2D, yaw: float
 ) -> None:
     base = obedient(start)
     assert run_move(turn_to(base, yaw)) is True
@@ -36,7 +37,7 @@ def test_a_turn_ends_at_the_heading_on_the_spot(
 
 @settings(max_examples=40)
 @given(MIDDLE, st.floats(-3.1, 3.1))
-def test_a_turn_takes_the_short_way(obedient: Any, start: Pose2D, turn: float) -> None:
+def test_a_turn_takes_the_short_way(obedient: MakeObedient, start: Pose2D, turn: float) -> None:
     base = obedient(start)
     furthest = 0.0
     for _ in turn_to(base, start.yaw + turn):
@@ -49,7 +50,7 @@ def test_a_turn_takes_the_short_way(obedient: Any, start: Pose2D, turn: float) -
 @settings(max_examples=40)
 @given(MIDDLE, st.floats(0.05, 1.2))
 def test_backing_off_goes_straight_back_that_far(
-    obedient: Any, run_move: Any, start: Pose2D, distance: float
+    obedient: MakeObedient, run_move: RunMove, start: Pose2D, distance: float
 ) -> None:
     base = obedient(start)
     assert run_move(back_off(base, distance)) is True
@@ -62,7 +63,7 @@ def test_backing_off_goes_straight_back_that_far(
 @settings(max_examples=40)
 @given(MIDDLE, st.floats(-0.6, 0.6), st.floats(-0.3, 0.3), YAWS)
 def test_creeping_ends_level_with_the_target_and_no_further(
-    obedient: Any, run_move: Any, start: Pose2D, ahead: float, left: float, yaw: float
+    obedient: MakeObedient, run_move: RunMove, start: Pose2D, ahead: float, left: float, yaw: float
 ) -> None:
     base = obedient(start)
     assert run_move(creep(base, start @ Pose2D(ahead, left, yaw))) is True
@@ -74,7 +75,7 @@ def test_creeping_ends_level_with_the_target_and_no_further(
 @settings(max_examples=30)
 @given(st.floats(0.0, 0.5))
 def test_backing_off_stops_before_what_stands_behind(
-    obedient: Any, run_move: Any, gap: float
+    obedient: MakeObedient, run_move: RunMove, gap: float
 ) -> None:
     gap = 0.05 * round(gap / 0.05)
     wall = (1.0, 2.0, 3.0 - 0.25 - gap, 4.0)
@@ -87,7 +88,7 @@ def test_backing_off_stops_before_what_stands_behind(
 
 @pytest.mark.parametrize("move", [lambda b: turn_to(b, 3.0), lambda b: back_off(b, 0.5)])
 def test_a_base_that_may_not_move_gives_up_in_bounded_time(
-    obedient: Any, run_move: Any, move: Any
+    obedient: MakeObedient, run_move: RunMove, move: Any
 ) -> None:
     base = obedient(Pose2D(4.0, 3.0, 0.0))
     base.stuck = True
@@ -95,7 +96,7 @@ def test_a_base_that_may_not_move_gives_up_in_bounded_time(
     assert base.now() < base.config.blocked_patience + 1.0
 
 
-def test_creeping_gives_up_where_it_may_not_move(obedient: Any, run_move: Any) -> None:
+def test_creeping_gives_up_where_it_may_not_move(obedient: MakeObedient, run_move: RunMove) -> None:
     base = obedient(Pose2D(4.0, 3.0, 0.0))
     base.stuck = True
     assert run_move(creep(base, Pose2D(4.3, 3.0, 0.0))) is False
@@ -103,7 +104,7 @@ def test_creeping_gives_up_where_it_may_not_move(obedient: Any, run_move: Any) -
 
 @given(MIDDLE, st.floats(-0.5, 0.5), st.floats(-0.5, 0.5), st.floats(0.05, 1.0))
 def test_room_behind_for_far_is_room_behind_for_near(
-    obedient: Any, pose: Pose2D, dx: float, dy: float, distance: float
+    obedient: MakeObedient, pose: Pose2D, dx: float, dy: float, distance: float
 ) -> None:
     box = (3.0 + dx, 2.5 + dy, 3.4 + dx, 2.9 + dy)
     base = obedient(pose, [box])
@@ -114,7 +115,7 @@ def test_room_behind_for_far_is_room_behind_for_near(
             assert base.room(behind, whole=False) > base.config.margin - 0.05
 
 
-def test_an_arm_that_would_sweep_a_wall_may_not_turn(obedient: Any) -> None:
+def test_an_arm_that_would_sweep_a_wall_may_not_turn(obedient: MakeObedient) -> None:
     wall = [(3.0, 3.6, 5.0, 3.8)]
     pose = Pose2D(4.0, 3.0, 0.0)
     assert can_turn(obedient(pose, wall), pose, math.pi / 2)
@@ -125,11 +126,13 @@ def test_an_arm_that_would_sweep_a_wall_may_not_turn(obedient: Any) -> None:
 
 
 @given(MIDDLE, YAWS)
-def test_in_the_open_every_turn_has_room(obedient: Any, pose: Pose2D, yaw: float) -> None:
+def test_in_the_open_every_turn_has_room(obedient: MakeObedient, pose: Pose2D, yaw: float) -> None:
     assert can_turn(obedient(pose, arm=0.5), pose, yaw)
 
 
-def test_an_arm_that_touches_is_no_leave_to_back_the_base_into_a_wall(obedient: Any) -> None:
+def test_an_arm_that_touches_is_no_leave_to_back_the_base_into_a_wall(
+    obedient: MakeObedient,
+) -> None:
     pose = Pose2D(4.0, 3.0, 0.0)
     ahead, behind = (4.6, 2.0, 5.2, 4.0), (3.0, 2.0, 3.5, 4.0)
     touching = obedient(pose, [ahead, behind], arm=0.5)

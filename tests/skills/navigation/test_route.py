@@ -17,6 +17,7 @@ from momantu_skills.navigation.drive.route import (
 from momantu_skills.navigation.map.sensing import Rays
 from momantu_skills.navigation.plan.goals import Stand
 from momantu_skills.navigation.plan.planner import UNREACHED
+from scenery.obedient import MakeObedient
 
 from momantu_bt.failure import Failure
 from momantu_bt.geometry import Pose2D
@@ -28,7 +29,9 @@ MANY = st.lists(st.tuples(POSES, st.integers(0, 3), st.floats(0, 5)), min_size=1
 
 @settings(max_examples=60)
 @given(MANY)
-def test_one_free_stand_of_each_variant_the_cheapest_first(obedient: Any, drawn: Any) -> None:
+def test_one_free_stand_of_each_variant_the_cheapest_first(
+    obedient: MakeObedient, drawn: Any
+) -> None:
     base = obedient(Pose2D(1.0, 3.0, 0.0), [TABLE])
     stands = [Stand(*each) for each in drawn]
     found = free_stands(base, stands)
@@ -43,7 +46,7 @@ def test_one_free_stand_of_each_variant_the_cheapest_first(obedient: Any, drawn:
 @settings(max_examples=20)
 @given(POSES, POSES)
 def test_a_route_leads_from_the_base_to_its_lead_in_with_room(
-    obedient: Any, start: Pose2D, goal: Pose2D
+    obedient: MakeObedient, start: Pose2D, goal: Pose2D
 ) -> None:
     base = obedient(start, [TABLE])
     if base.room(start, whole=False) < 0.1 or base.room(goal, whole=False) < 0.1:
@@ -62,7 +65,7 @@ def test_a_route_leads_from_the_base_to_its_lead_in_with_room(
     assert not route.crossed(base, start)
 
 
-def test_to_go_falls_along_the_way_and_is_large_off_the_map(obedient: Any) -> None:
+def test_to_go_falls_along_the_way_and_is_large_off_the_map(obedient: MakeObedient) -> None:
     base = obedient(Pose2D(1.0, 3.0, 0.0), [TABLE])
     route = route_to(base, Pose2D(6.5, 3.0, 0.0))
     assert route is not None
@@ -72,7 +75,7 @@ def test_to_go_falls_along_the_way_and_is_large_off_the_map(obedient: Any) -> No
     assert route.to_go(base, Pose2D(1.0, 60.0)) >= UNREACHED
 
 
-def test_the_heading_is_along_the_path(obedient: Any) -> None:
+def test_the_heading_is_along_the_path(obedient: MakeObedient) -> None:
     base = obedient(Pose2D(1.0, 1.0, 2.0))
     route = route_to(base, Pose2D(6.0, 4.0, math.atan2(3.0, 5.0)))
     assert route is not None
@@ -80,7 +83,9 @@ def test_the_heading_is_along_the_path(obedient: Any) -> None:
         assert route.heading(Pose2D(x, y)) == pytest.approx(math.atan2(3.0, 5.0), abs=0.25)
 
 
-def test_what_comes_to_stand_on_the_path_crosses_it_and_beside_it_does_not(obedient: Any) -> None:
+def test_what_comes_to_stand_on_the_path_crosses_it_and_beside_it_does_not(
+    obedient: MakeObedient,
+) -> None:
     for bearing, crosses in ((0.0, True), (1.2, False), (-1.2, False)):
         base = obedient(Pose2D(1.0, 3.0, 0.0))
         route = route_to(base, Pose2D(6.0, 3.0, 0.0))
@@ -94,13 +99,13 @@ def test_what_comes_to_stand_on_the_path_crosses_it_and_beside_it_does_not(obedi
         assert not route.crossed(base, Pose2D(3.5, 3.0, 0.0)), "it lies behind"
 
 
-def test_where_the_best_stand_is_taken_the_next_one_serves(obedient: Any) -> None:
+def test_where_the_best_stand_is_taken_the_next_one_serves(obedient: MakeObedient) -> None:
     base = obedient(Pose2D(1.0, 3.0, 0.0), [TABLE])
     stands = [Stand(Pose2D(4.5, 3.0, 0.0), 0, 0.0), Stand(Pose2D(3.4, 3.0, 0.0), 1, 1.0)]
     assert choose(base, stands, 0).stand == stands[1].pose
 
 
-def test_a_stand_that_cannot_be_reached_is_passed_over(obedient: Any) -> None:
+def test_a_stand_that_cannot_be_reached_is_passed_over(obedient: MakeObedient) -> None:
     cell = [(5.0, 0.0, 5.2, 6.0)]
     base = obedient(Pose2D(1.0, 3.0, 0.0), cell)
     stands = [Stand(Pose2D(6.5, 3.0, 0.0), 0, 0.0), Stand(Pose2D(3.4, 3.0, 0.0), 1, 1.0)]
@@ -108,7 +113,7 @@ def test_a_stand_that_cannot_be_reached_is_passed_over(obedient: Any) -> None:
     assert choose(base, stands, 1).stand == stands[1].pose
 
 
-def test_each_way_of_failing_has_its_code(obedient: Any) -> None:
+def test_each_way_of_failing_has_its_code(obedient: MakeObedient) -> None:
     base = obedient(Pose2D(1.0, 3.0, 0.0), [TABLE, (6.0, 0.0, 6.2, 6.0)])
     with pytest.raises(Failure) as caught:
         choose(base, [Stand(Pose2D(4.5, 3.0, 0.0), 0, 0.0)], 0)
@@ -119,6 +124,6 @@ def test_each_way_of_failing_has_its_code(obedient: Any) -> None:
     assert no_way(base, Pose2D(3.0, 3.0, 0.0)).code == "PATH_BLOCKED"
 
 
-def test_the_planner_keeps_more_room_than_the_bases_side(obedient: Any) -> None:
+def test_the_planner_keeps_more_room_than_the_bases_side(obedient: MakeObedient) -> None:
     base = obedient(Pose2D(1.0, 3.0, 0.0))
     assert planning_radius(base) > base.half_width

@@ -11,6 +11,7 @@ from momantu_skills.navigation.control.mppi import Mppi
 from momantu_skills.navigation.drive import trip
 from momantu_skills.navigation.drive.trip import Destination, be_sure, travel
 from momantu_skills.navigation.plan.goals import Stand
+from scenery.obedient import MakeObedient, RunMove
 
 from momantu_bt.failure import Failure
 from momantu_bt.geometry import Pose2D
@@ -25,7 +26,7 @@ class Belief:
         self.covariance, self.quality = np.eye(3) * sigma**2, quality
 
 
-def _base(obedient: Any, start: Pose2D, *boxes: Any, belief: Belief | None = None) -> Any:
+def _base(obedient: MakeObedient, start: Pose2D, *boxes: Any, belief: Belief | None = None) -> Any:
     base = obedient(start, boxes)
     base.localization = belief or Belief()
     return base
@@ -40,11 +41,11 @@ def _to(*poses: Pose2D, **more: Any) -> Destination:
     return Destination(lambda: stands, TOLERANCE, **more)
 
 
-def _travel(base: Any, run_move: Any, to: Destination, *, recovery: bool = True) -> None:
+def _travel(base: Any, run_move: RunMove, to: Destination, *, recovery: bool = True) -> None:
     run_move(travel(base, _mppi(base), to, recovery=recovery))
 
 
-def _code(base: Any, run_move: Any, to: Destination, *, recovery: bool) -> str:
+def _code(base: Any, run_move: RunMove, to: Destination, *, recovery: bool) -> str:
     with pytest.raises(Failure) as caught:
         _travel(base, run_move, to, recovery=recovery)
     assert base.stands()
@@ -59,7 +60,7 @@ DOOR = ((3.9, 0.0, 4.1, 2.4), (3.9, 3.6, 4.1, 6.0))
 @settings(max_examples=10)
 @given(STARTS, GOALS)
 def test_a_trip_through_a_door_arrives_and_touches_nothing(
-    obedient: Any, run_move: Any, start: Pose2D, goal: Pose2D
+    obedient: MakeObedient, run_move: RunMove, start: Pose2D, goal: Pose2D
 ) -> None:
     base = _base(obedient, start, *DOOR)
     _travel(base, run_move, _to(goal))
@@ -70,14 +71,14 @@ def test_a_trip_through_a_door_arrives_and_touches_nothing(
     assert base.stands()
 
 
-def test_at_the_goal_nothing_is_done(obedient: Any, run_move: Any) -> None:
+def test_at_the_goal_nothing_is_done(obedient: MakeObedient, run_move: RunMove) -> None:
     base = _base(obedient, Pose2D(3.0, 3.0, 0.3))
     _travel(base, run_move, _to(Pose2D(3.02, 3.0, 0.32)))
     assert base.phases == []
 
 
 def test_straight_back_needs_no_way_however_far_the_arm_stands_out(
-    obedient: Any, run_move: Any
+    obedient: MakeObedient, run_move: RunMove
 ) -> None:
     base = _base(obedient, Pose2D(3.5, 3.0, 0.0), (3.8, 2.0, 4.4, 4.0))
     base.half_width = 2.0
@@ -88,7 +89,7 @@ def test_straight_back_needs_no_way_however_far_the_arm_stands_out(
 
 @pytest.mark.parametrize("side", [0, 1, 2, 3])
 def test_side_counts_through_the_stands_and_starts_again(
-    obedient: Any, run_move: Any, side: int
+    obedient: MakeObedient, run_move: RunMove, side: int
 ) -> None:
     stands = [Pose2D(4.0, 3.0, 0.0), Pose2D(3.0, 4.0, 1.5), Pose2D(3.0, 2.0, -1.5)]
     base = _base(obedient, Pose2D(2.6, 3.0, 0.0))
@@ -98,7 +99,7 @@ def test_side_counts_through_the_stands_and_starts_again(
 
 @pytest.mark.parametrize("in_odom", [False, True])
 def test_a_goal_that_was_seen_stays_in_odometrys_frame(
-    obedient: Any, run_move: Any, in_odom: bool
+    obedient: MakeObedient, run_move: RunMove, in_odom: bool
 ) -> None:
     """Localization corrects itself by 0.2 m on the way."""
     base = _base(obedient, Pose2D(2.0, 3.0, 0.0))
@@ -119,7 +120,11 @@ def test_a_goal_that_was_seen_stays_in_odometrys_frame(
 
 @pytest.mark.parametrize(("recovery", "times"), [(False, 0), (True, 3)])
 def test_a_goal_in_a_wall_is_tried_as_often_as_allowed(
-    obedient: Any, run_move: Any, recovery: bool, times: int, monkeypatch: pytest.MonkeyPatch
+    obedient: MakeObedient,
+    run_move: RunMove,
+    recovery: bool,
+    times: int,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     recovered: list[int] = []
     original = trip._recover
@@ -135,12 +140,14 @@ def test_a_goal_in_a_wall_is_tried_as_often_as_allowed(
     assert base.now() < 60.0
 
 
-def test_a_room_without_a_door_is_no_path(obedient: Any, run_move: Any) -> None:
+def test_a_room_without_a_door_is_no_path(obedient: MakeObedient, run_move: RunMove) -> None:
     base = _base(obedient, Pose2D(2.0, 3.0, 0.0), (3.9, 0.0, 4.1, 6.0))
     assert _code(base, run_move, _to(Pose2D(6.0, 3.0, 0.0)), recovery=False) == "NO_PATH"
 
 
-def test_a_base_that_does_not_come_along_makes_no_progress(obedient: Any, run_move: Any) -> None:
+def test_a_base_that_does_not_come_along_makes_no_progress(
+    obedient: MakeObedient, run_move: RunMove
+) -> None:
     base = _base(obedient, Pose2D(1.5, 3.0, 0.0))
     base.stuck = True
     assert _code(base, run_move, _to(Pose2D(6.0, 3.0, 0.0)), recovery=False) == "NO_PROGRESS"
@@ -149,14 +156,14 @@ def test_a_base_that_does_not_come_along_makes_no_progress(obedient: Any, run_mo
 
 @pytest.mark.parametrize("belief", [Belief(sigma=0.3), Belief(quality=0.2), Belief(sigma=0.14)])
 def test_without_knowing_where_it_is_it_does_not_drive(
-    obedient: Any, run_move: Any, belief: Belief
+    obedient: MakeObedient, run_move: RunMove, belief: Belief
 ) -> None:
     base = _base(obedient, Pose2D(2.0, 3.0, 0.0), belief=belief)
     assert _code(base, run_move, _to(Pose2D(4.0, 3.0, 0.0)), recovery=True) == "NOT_LOCALIZED"
     assert base.at == Pose2D(0.0, 0.0)
 
 
-def test_it_waits_for_localization_a_little(obedient: Any, run_move: Any) -> None:
+def test_it_waits_for_localization_a_little(obedient: MakeObedient, run_move: RunMove) -> None:
     base = _base(obedient, Pose2D(2.0, 3.0, 0.0), belief=Belief(quality=0.0))
     for _ in be_sure(base):
         if base.now() > 1.0:
@@ -164,7 +171,7 @@ def test_it_waits_for_localization_a_little(obedient: Any, run_move: Any) -> Non
     assert 1.0 < base.now() < 1.5
 
 
-def test_another_failure_is_not_recovered_from(obedient: Any, run_move: Any) -> None:
+def test_another_failure_is_not_recovered_from(obedient: MakeObedient, run_move: RunMove) -> None:
     base = _base(obedient, Pose2D(2.0, 3.0, 0.0))
 
     def stands() -> list[Stand]:

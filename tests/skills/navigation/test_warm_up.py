@@ -9,6 +9,7 @@ from momantu_skills.navigation.localize.service import LocalizationService
 from momantu_skills.navigation.map import costmap
 from momantu_skills.navigation.plan import planner
 from momantu_skills.warm_up import compile_kernels
+from scenery.flat import Flat, FlatSceneOf
 
 from momantu_bt.geometry import Pose2D
 from momantu_bt.testing import run_skill
@@ -25,7 +26,7 @@ def _signatures() -> dict[str, list[Any]]:
     return {name: list(kernel.signatures) for name, kernel in KERNELS.items()}
 
 
-def test_a_drive_needs_no_other_kernels(flat: Any, flat_scene: Any) -> None:
+def test_a_drive_needs_no_other_kernels(flat: Flat, flat_scene: FlatSceneOf) -> None:
     compile_kernels()
     before = _signatures()
     world = flat()

@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import pytest
 from momantu_skills.perception.camera.pictures import see
 from momantu_skills.perception.geometry.regions import Region, disc
+from scenery.onlooker import Onlooker, SeenScene, Viewed
 
 from momantu_bt.detector import View
 from momantu_bt.geometry import Transform
 from momantu_bt.service import Snapshot
-from momantu_bt.testing import ScriptedRobot
 from momantu_bt.testing.painting import Solid
-
-Viewed = Callable[..., list[View]]
 
 
 @pytest.fixture
-def viewed(onlooker: Callable[..., ScriptedRobot], seen_scene: Callable[..., Any]) -> Viewed:
+def viewed(onlooker: Onlooker, seen_scene: type[SeenScene]) -> Viewed:
     """`viewed(solids, pans=(0.0,), …)`: views of the space around (1, 0) from the origin.
 
     The camera's errors are those of `Painter`; its mounting error is not in the views' poses.

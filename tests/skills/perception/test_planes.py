@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 import pytest
@@ -11,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from momantu_skills.perception.geometry.regions import depth_inside
 from momantu_skills.perception.surface.planes import PlaneConfig, find_plane, measure_support
+from scenery.onlooker import Viewed
 
 from momantu_bt.geometry import Transform, quaternion_from_rpy
 from momantu_bt.testing.painting import Block, Round
@@ -61,7 +61,9 @@ def test_a_ledge_is_too_small_to_be_the_surface() -> None:
 
 @pytest.mark.parametrize("roll", [-0.006, 0.005])
 @pytest.mark.parametrize("pitch", [-0.005, 0.006])
-def test_a_crooked_camera_still_sees_a_level_table(viewed: Any, roll: float, pitch: float) -> None:
+def test_a_crooked_camera_still_sees_a_level_table(
+    viewed: Viewed, roll: float, pitch: float
+) -> None:
     """In the optical frame x is right and z ahead: pitch is about x, roll about z."""
     mounting = Transform((0.0, 0.0, 0.0), quaternion_from_rpy(pitch, 0.0, roll))
     post = Round((1.0, 0.2, TOP), 0.2, 0.03)
@@ -76,7 +78,7 @@ def test_a_crooked_camera_still_sees_a_level_table(viewed: Any, roll: float, pit
     assert np.median(top[:, 2]) - support.height == pytest.approx(0.2, abs=0.004)
 
 
-def test_the_outline_holds_what_was_seen(viewed: Any) -> None:
+def test_the_outline_holds_what_was_seen(viewed: Viewed) -> None:
     support = measure_support(viewed([TABLE]), 0.66, 0.78)
     assert support is not None
     assert depth_inside(support.points[support.on_plane, :2], support.outline).min() > -1e-5
@@ -84,7 +86,7 @@ def test_the_outline_holds_what_was_seen(viewed: Any) -> None:
     assert support.outline[:, 0].max() == pytest.approx(1.3, abs=0.03)
 
 
-def test_views_without_a_surface_are_left_out(viewed: Any) -> None:
+def test_views_without_a_surface_are_left_out(viewed: Viewed) -> None:
     both = [*viewed([TABLE]), *viewed([])]
     support = measure_support(both, 0.66, 0.78)
     assert support is not None
