@@ -10,9 +10,6 @@ from typing import Any
 import numpy as np
 import pytest
 from momantu_skills.manipulation.scene.service import PlanningSceneService
-from scenery.flat import DESK, ROOMS, START, Box, Flat, FlatRobot, FlatScene, FlatSceneOf, write_map
-from scenery.onlooker import Onlooker, SeenScene
-from scenery.table import SceneOf, Tabletop
 
 from momantu_bt.frames import FrameBuffer
 from momantu_bt.geometry import Pose2D
@@ -27,6 +24,19 @@ from momantu_bt.testing import (
 )
 from momantu_bt.testing.painting import Painter, Solid
 from momantu_bt.world import Surface
+from tests.skills.scenery.flat import (
+    DESK,
+    ROOMS,
+    START,
+    Box,
+    Flat,
+    FlatRobot,
+    FlatScene,
+    FlatSceneOf,
+    write_map,
+)
+from tests.skills.scenery.onlooker import Onlooker, SeenScene
+from tests.skills.scenery.table import SceneOf, Tabletop
 
 
 @pytest.fixture

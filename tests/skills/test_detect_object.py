@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 import pytest
 from momantu_skills.detect_object import DetectObject
-from scenery.onlooker import SeenScene
 
 from momantu_bt.claim import ObjectAt, ObjectOn
 from momantu_bt.geometry import Pose2D, Transform, quaternion_from_rpy
@@ -17,6 +16,7 @@ from momantu_bt.messages import DetectedObject, ObjectClass
 from momantu_bt.testing import ScriptedRobot, SkillResult, run_skill, scripted_site
 from momantu_bt.testing.painting import Block, Round, Solid
 from momantu_bt.world import Surface
+from tests.skills.scenery.onlooker import SeenScene
 
 TOP = 0.72
 """m; the table is 2 cm lower than the site says, and 6 cm beside."""

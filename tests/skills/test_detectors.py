@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from momantu_skills.detect_object import DetectObject
 from momantu_skills.perception.objects.detectors import DETECTORS
+from momantu_skills.perception.objects.geometric import GeometricDetector
 
 from momantu_bt import plugins
 from momantu_bt.geometry import Pose2D
@@ -102,3 +103,8 @@ def test_what_is_not_a_detector_is_refused_with_what_it_lacks(
     install(monkeypatch, "pathlib:Path")
     with pytest.raises(PluginError, match="has no accepted and no budget and no detect"):
         DETECTORS.load("highest")
+
+
+def test_the_usual_detector_is_the_geometric_one() -> None:
+    usual = DetectObject.ports["detector"].default
+    assert DETECTORS.load(usual) is GeometricDetector

@@ -12,12 +12,12 @@ from momantu_skills.detect_plane import DetectPlane
 from momantu_skills.pick import Pick
 from momantu_skills.place import Place
 from momantu_skills.reset_pose import ResetPose
-from scenery.table import SceneOf, Tabletop
 
 from momantu_bt.geometry import Pose, Pose2D, Transform
 from momantu_bt.messages import ObjectClass
 from momantu_bt.testing import eye_in_hand_robot, run_skill, scripted_site
 from momantu_bt.world import Surface
+from tests.skills.scenery.table import SceneOf, Tabletop
 
 TABLE = Surface(Pose2D(0.9, 0.0, 0.0), (0.8, 1.4), 0.72, (math.pi,))
 CAN = ObjectClass("can")

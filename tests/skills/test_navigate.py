@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from momantu_skills.navigate import Navigate
 from momantu_skills.navigation.localize.service import LocalizationService
-from scenery.flat import Flat, FlatSceneOf
-from scenery.table import SceneOf
 
 from momantu_bt.claim import BaseAt, BaseNear
 from momantu_bt.geometry import Pose, Pose2D, Transform, wrap_angle
 from momantu_bt.messages import BaseVelocity
 from momantu_bt.testing import ScriptedRobot, ScriptedWorld, small_robot
 from momantu_bt.testing.skill_run import SkillResult, run_skill
+from tests.skills.scenery.flat import Flat, FlatSceneOf
+from tests.skills.scenery.table import SceneOf
 
 Drive = Callable[..., SkillResult]
 FRONT = Pose2D(3.0, 0.2, 0.0)

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 from momantu_skills.pick import Pick
-from scenery.table import SceneOf, Tabletop
 
 from momantu_bt.claim import Holding, ObjectAt
 from momantu_bt.messages import DetectedObject, JointTrajectory, ObjectClass
 from momantu_bt.testing import run_skill
 from momantu_bt.testing.painting import Block
+from tests.skills.scenery.table import SceneOf, Tabletop
 
 
 def pick(robot: Any, scene: Any, thing: DetectedObject, **more: Any) -> Any:

@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 from momantu_skills.manipulation.scene.service import PlanningSceneService
 from momantu_skills.place import Place
-from scenery.table import SceneOf, Tabletop
 
 from momantu_bt.claim import Holding, SetDown
 from momantu_bt.geometry import Pose, Transform
 from momantu_bt.messages import SupportPlane
 from momantu_bt.testing import run_skill
 from momantu_bt.testing.painting import Block, Round
+from tests.skills.scenery.table import SceneOf, Tabletop
 
 HAND_FROM_CAN = Transform((0.007, 0.0, 0.0))
 """Gripped from the side: upright while the hand is level."""

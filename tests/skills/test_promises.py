@@ -10,7 +10,6 @@ import pytest
 from momantu_skills.manipulation.scene.service import PlanningSceneService
 from momantu_skills.pick import Pick
 from momantu_skills.place import Place
-from scenery.table import Tabletop
 
 from momantu_bt.formats.problems import Severity
 from momantu_bt.geometry import Pose, Transform
@@ -20,6 +19,7 @@ from momantu_bt.skill import Skill
 from momantu_bt.testing import ScriptedWorld, check_skill
 from momantu_bt.tree.plugins import SKILLS
 from momantu_bt.tree.registry import Registry
+from tests.skills.scenery.table import Tabletop
 
 HAND_FROM_CAN = Transform((0.007, 0.0, 0.0))
 """Gripped from the side: upright while the hand is level."""

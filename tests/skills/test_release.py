@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from momantu_skills.manipulation.scene.surroundings import Surroundings
 from momantu_skills.release import Release
-from scenery.table import SceneOf, Tabletop
 
 from momantu_bt.claim import GripperOpen, Holding
 from momantu_bt.geometry import Transform
 from momantu_bt.testing import run_skill
+from tests.skills.scenery.table import SceneOf, Tabletop
 
 
 def release(robot: Any, scene: Any, **inputs: Any) -> Any:

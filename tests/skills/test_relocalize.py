@@ -9,13 +9,13 @@ import pytest
 from momantu_skills.navigation.localize.confidence import is_localized
 from momantu_skills.navigation.localize.service import LocalizationService
 from momantu_skills.relocalize import Relocalize
-from scenery.flat import Flat, FlatSceneOf
-from scenery.table import SceneOf
 
 from momantu_bt.claim import BaseAt
 from momantu_bt.geometry import Pose2D
 from momantu_bt.testing import ScriptedRobot
 from momantu_bt.testing.skill_run import SkillResult, run_skill
+from tests.skills.scenery.flat import Flat, FlatSceneOf
+from tests.skills.scenery.table import SceneOf
 
 Found = tuple[SkillResult, LocalizationService]
 Relocate = Callable[..., Found]

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 from momantu_skills.reset_pose import ResetPose
-from scenery.table import SceneOf, Tabletop
 
 from momantu_bt.claim import JointsAt
 from momantu_bt.geometry import Transform
 from momantu_bt.messages import JointTrajectory
 from momantu_bt.testing import ScriptedRobot, run_skill
 from momantu_bt.testing.painting import Block, Painter
+from tests.skills.scenery.table import SceneOf, Tabletop
 
 STRETCHED = {
     "torso_lift_joint": 0.3,

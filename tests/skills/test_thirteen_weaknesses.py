@@ -18,8 +18,6 @@ from momantu_skills.detect_plane import DetectPlane
 from momantu_skills.manipulation.hand.grasps import grasps_for
 from momantu_skills.pick import Pick
 from momantu_skills.reset_pose import ResetPose
-from scenery.onlooker import Onlooker, SeenScene
-from scenery.table import SceneOf, Tabletop
 
 from momantu_bt import run
 from momantu_bt.frames import FrameBuffer
@@ -31,6 +29,8 @@ from momantu_bt.testing.painting import Block, Round
 from momantu_bt.tree.load import load
 from momantu_bt.tree.registry import Registry
 from momantu_bt.world import TICK
+from tests.skills.scenery.onlooker import Onlooker, SeenScene
+from tests.skills.scenery.table import SceneOf, Tabletop
 
 TREE = Path(__file__).resolve().parents[2] / "trees" / "bring_object.yaml"
 

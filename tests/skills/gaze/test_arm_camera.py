@@ -12,7 +12,6 @@ from momantu_skills.manipulation.model.arm_model import arm_model
 from momantu_skills.manipulation.model.collision import CollisionWorld, Obstacle
 from momantu_skills.manipulation.model.hulls import object_corners
 from momantu_skills.manipulation.scene.site_obstacles import overhead_of
-from scenery.table import SceneOf
 
 from momantu_bt.geometry import Pose, Pose2D, Transform
 from momantu_bt.messages import DetectedObject, GripperCommand, JointTrajectory
@@ -20,6 +19,7 @@ from momantu_bt.testing import ScriptedRobot, eye_in_hand_robot, run_skill
 from momantu_bt.testing.painting import Block, Painter, Solid
 from momantu_bt.testing.world import scripted_site
 from momantu_bt.world import Overhang, Surface
+from tests.skills.scenery.table import SceneOf
 
 TABLE = Block((0.8, 1.4, 0.72), (1.0, 0.0, 0.36))
 """Its edge is 0.6 m before the robot's middle."""

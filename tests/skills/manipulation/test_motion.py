@@ -18,12 +18,12 @@ from momantu_skills.manipulation.model.collision import CollisionWorld, Obstacle
 from momantu_skills.manipulation.motion.following import brake, expected, follow
 from momantu_skills.manipulation.motion.planner import escape
 from momantu_skills.manipulation.motion.timing import timed
-from scenery.table import Tabletop
 
 from momantu_bt.failure import Failure
 from momantu_bt.frames import FrameBuffer
 from momantu_bt.geometry import Pose, Transform
 from momantu_bt.messages import DetectedObject, JointTrajectory
+from tests.skills.scenery.table import Tabletop
 
 Swing = tuple[Tabletop, JointTrajectory]
 CAN = DetectedObject(

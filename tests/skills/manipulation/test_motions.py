@@ -19,12 +19,12 @@ from momantu_skills.manipulation.model.arm_model import ArmModel
 from momantu_skills.manipulation.motion.following import ARRIVED
 from momantu_skills.manipulation.motion.timing import timed
 from momantu_skills.perception.camera.snapshot import take
-from scenery.table import SceneOf, Tabletop
 
 from momantu_bt.failure import Failure
 from momantu_bt.geometry import Pose, Transform
 from momantu_bt.messages import JointTrajectory
 from momantu_bt.service import HeldObject
+from tests.skills.scenery.table import SceneOf, Tabletop
 
 LIFT = 0.12
 EXACT = 1.5e-3

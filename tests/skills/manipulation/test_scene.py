@@ -25,12 +25,12 @@ from momantu_skills.manipulation.scene.surroundings import (
     within,
 )
 from momantu_skills.perception.camera.snapshot import take
-from scenery.table import SceneOf, Tabletop
 
 from momantu_bt.geometry import Pose, Pose2D, Transform
 from momantu_bt.messages import DetectedObject, RobotState, SupportPlane
 from momantu_bt.service import HeldObject
 from momantu_bt.world import Surface
+from tests.skills.scenery.table import SceneOf, Tabletop
 
 CONFIG = SceneConfig()
 CAN = DetectedObject(

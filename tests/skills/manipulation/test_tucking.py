@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from momantu_skills.manipulation.scene.surroundings import Surroundings
 from momantu_skills.manipulation.tucking import STICKS_OUT, take_in
-from scenery.table import SceneOf
 
 from momantu_bt.geometry import Pose, Transform
 from momantu_bt.messages import DetectedObject, GripperCommand
@@ -16,6 +15,7 @@ from momantu_bt.robot import CAMERA_CARRIER, Robot
 from momantu_bt.skill import Needs, Run, Skill
 from momantu_bt.testing import ScriptedRobot, eye_in_hand_robot, run_skill
 from momantu_bt.testing.painting import Painter
+from tests.skills.scenery.table import SceneOf
 
 STRETCHED = (0.0, 2.0, 3.14, 0.0, 0.0, 0.0)
 CAN = DetectedObject("can", Pose(Transform(), "odom", 0.0), (0.07, 0.07, 0.13), "cylinder", 1.0, 0)

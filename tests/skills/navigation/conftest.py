@@ -6,10 +6,10 @@ from collections.abc import Callable, Generator
 from typing import Any
 
 import pytest
-from scenery.obedient import MakeObedient, Obedient, RunMove
 
 from momantu_bt.failure import Failure
 from momantu_bt.skill import Compute
+from tests.skills.scenery.obedient import MakeObedient, Obedient, RunMove
 
 
 @pytest.fixture(scope="session")

@@ -16,10 +16,10 @@ from momantu_skills.navigation.drive.manoeuvre import (
     run_in,
     straight_behind,
 )
-from scenery.obedient import MakeObedient, RunMove
 
 from momantu_bt.failure import Failure
 from momantu_bt.geometry import Pose2D
+from tests.skills.scenery.obedient import MakeObedient, RunMove
 
 GOAL = Pose2D(4.0, 3.0, 0.7)
 NEAR = st.builds(Pose2D, st.floats(-0.9, 0.9), st.floats(-0.9, 0.9), st.floats(-3.1, 3.1))

@@ -15,9 +15,9 @@ from momantu_skills.navigation.drive.moves import (
     creep,
     turn_to,
 )
-from scenery.obedient import MakeObedient, RunMove
 
 from momantu_bt.geometry import Pose2D, wrap_angle
+from tests.skills.scenery.obedient import MakeObedient, RunMove
 
 YAWS = st.floats(-math.pi, math.pi)
 MIDDLE = st.builds(Pose2D, st.floats(2.5, 5.5), st.floats(2.5, 3.5), YAWS)

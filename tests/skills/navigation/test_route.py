@@ -17,10 +17,10 @@ from momantu_skills.navigation.drive.route import (
 from momantu_skills.navigation.map.sensing import Rays
 from momantu_skills.navigation.plan.goals import Stand
 from momantu_skills.navigation.plan.planner import UNREACHED
-from scenery.obedient import MakeObedient
 
 from momantu_bt.failure import Failure
 from momantu_bt.geometry import Pose2D
+from tests.skills.scenery.obedient import MakeObedient
 
 TABLE = (4.0, 2.0, 5.0, 4.0)
 POSES = st.builds(Pose2D, st.floats(0.6, 7.4), st.floats(0.6, 5.4), st.floats(-3.1, 3.1))

@@ -11,10 +11,10 @@ from momantu_skills.navigation.control.mppi import Mppi
 from momantu_skills.navigation.drive import trip
 from momantu_skills.navigation.drive.trip import Destination, be_sure, travel
 from momantu_skills.navigation.plan.goals import Stand
-from scenery.obedient import MakeObedient, RunMove
 
 from momantu_bt.failure import Failure
 from momantu_bt.geometry import Pose2D
+from tests.skills.scenery.obedient import MakeObedient, RunMove
 
 TOLERANCE = (0.05, 0.05)
 

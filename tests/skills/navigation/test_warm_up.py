@@ -9,10 +9,10 @@ from momantu_skills.navigation.localize.service import LocalizationService
 from momantu_skills.navigation.map import costmap
 from momantu_skills.navigation.plan import planner
 from momantu_skills.warm_up import compile_kernels
-from scenery.flat import Flat, FlatSceneOf
 
 from momantu_bt.geometry import Pose2D
 from momantu_bt.testing import run_skill
+from tests.skills.scenery.flat import Flat, FlatSceneOf
 
 KERNELS = {
     f"{module.__name__}.{name}": kernel

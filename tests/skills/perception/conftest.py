@@ -8,12 +8,12 @@ from typing import Any
 import pytest
 from momantu_skills.perception.camera.pictures import see
 from momantu_skills.perception.geometry.regions import Region, disc
-from scenery.onlooker import Onlooker, SeenScene, Viewed
 
 from momantu_bt.detector import View
 from momantu_bt.geometry import Transform
 from momantu_bt.service import Snapshot
 from momantu_bt.testing.painting import Solid
+from tests.skills.scenery.onlooker import Onlooker, SeenScene, Viewed
 
 
 @pytest.fixture

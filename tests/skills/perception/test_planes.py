@@ -10,10 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from momantu_skills.perception.geometry.regions import depth_inside
 from momantu_skills.perception.surface.planes import PlaneConfig, find_plane, measure_support
-from scenery.onlooker import Viewed
 
 from momantu_bt.geometry import Transform, quaternion_from_rpy
 from momantu_bt.testing.painting import Block, Round
+from tests.skills.scenery.onlooker import Viewed
 
 TOP = 0.72
 TABLE = Block((0.6, 1.2, 0.03), (1.0, 0.0, TOP - 0.015))

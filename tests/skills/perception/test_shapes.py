@@ -10,9 +10,9 @@ from momantu_skills.perception.objects.shapes import Shape, describe
 from momantu_skills.perception.objects.splitting import split
 from momantu_skills.perception.surface.planes import measure_support
 from momantu_skills.perception.surface.segment import SegmentConfig, Thing, headroom, things_on
-from scenery.onlooker import Viewed
 
 from momantu_bt.testing.painting import Block, Round, Solid
+from tests.skills.scenery.onlooker import Viewed
 
 TOP = 0.72
 TABLE = Block((0.6, 1.2, 0.03), (1.0, 0.0, TOP - 0.015))

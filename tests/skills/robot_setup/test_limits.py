@@ -95,7 +95,7 @@ def test_a_slide_without_room_is_taken_as_fixed(limit: str) -> None:
     ("limit", "words"),
     [
         ('velocity="-1"', "the joint j has velocity='-1'; write a number of 0 or more"),
-        ('effort="inf"', "the joint j has effort='inf'; write a number of 0 or more"),
+        ('effort="inf"', "the joint j has effort='inf'; write a number$"),
         ('lower="nan"', "the joint j has lower='nan'; write a number$"),
         ('upper="1,5"', "the joint j has upper='1,5'; write a number$"),
     ],

@@ -17,6 +17,7 @@ from momantu_skills.robot_setup.write.sensor_writer import LIDAR_SCAN, sensor_fr
 from pydantic import TypeAdapter
 from ruamel.yaml import YAML
 
+from momantu_bt.formats.urdf import Urdf
 from momantu_bt.robot_parts import CameraSensor, LaserSensor, LidarSensor, Sensor
 from tests.skills.robot_setup.conftest import joint, link
 
@@ -28,7 +29,7 @@ def found(*names: str, extra: str = "") -> list[FoundSensor]:
         for i, name in enumerate(names)
     )
     root = etree.fromstring(f'<robot name="r">{link("base_link")}{links}{extra}</robot>')
-    skeleton = read_skeleton(root)
+    skeleton = read_skeleton(Urdf(root))
     return find_sensors(root, skeleton, set(skeleton.links))
 
 
