@@ -17,7 +17,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from momantu_bt.bench.table import columns
+from momantu_bt.bench.reports.table import columns
 
 VALUES = Path("trees/values")
 HEAD = ("world", "robot", "brought", "95 % interval", "median s", "p95 s", "false claims", "harm")

@@ -29,16 +29,18 @@ from momantu_bt.formats.seeds import parse_seeds
 from momantu_bt.lazy import lazily
 
 with lazily():
-    from momantu_bt.bench import carry_out, coverage_text, summary, tables
-    from momantu_bt.bench import coverage as coverages
-    from momantu_bt.bench import matrix as matrices
-    from momantu_bt.bench import report as reports
-    from momantu_bt.bench import store as results
+    from momantu_bt.bench.episodes import carry_out
+    from momantu_bt.bench.reports import coverage_text, tables
+    from momantu_bt.bench.reports import matrix as matrices
+    from momantu_bt.bench.reports import report as reports
+    from momantu_bt.bench.rows import store as results
+    from momantu_bt.bench.statistics import coverage as coverages
+    from momantu_bt.bench.statistics import summary
     from momantu_bt.cli import bench_merge, bench_progress, bench_setup, given
 
 if TYPE_CHECKING:
-    from momantu_bt.bench.plan import Plan
-    from momantu_bt.bench.spec import Row
+    from momantu_bt.bench.planning.plan import Plan
+    from momantu_bt.bench.rows.spec import Row
     from momantu_bt.faults.matrix import Row as Demand
     from momantu_bt.tree.model import Document
 

@@ -8,14 +8,14 @@ from pathlib import Path
 
 import typer
 
-from momantu_bt.bench.merge import Merged, merge
-from momantu_bt.bench.plan import PLAN, RECORDS, record_name
-from momantu_bt.bench.report import report as as_report
-from momantu_bt.bench.report import write_report
-from momantu_bt.bench.spec import Row
-from momantu_bt.bench.store import Store
-from momantu_bt.bench.summary import Summary
-from momantu_bt.bench.tables import summary_text
+from momantu_bt.bench.planning.merge import Merged, merge
+from momantu_bt.bench.planning.plan import PLAN, RECORDS, record_name
+from momantu_bt.bench.reports.report import report as as_report
+from momantu_bt.bench.reports.report import write_report
+from momantu_bt.bench.reports.tables import summary_text
+from momantu_bt.bench.rows.spec import Row
+from momantu_bt.bench.rows.store import Store
+from momantu_bt.bench.statistics.summary import Summary
 from momantu_bt.errors import ExitCode, InputError
 from momantu_bt.formats.files import check_writable
 

@@ -11,12 +11,11 @@ from rich.console import Console, RenderableType
 from rich.live import Live
 from rich.text import Text
 
-from momantu_bt.bench.engine import Engine
-from momantu_bt.bench.intervals import wilson
-from momantu_bt.bench.outcome import succeeded
-from momantu_bt.bench.process import REFUSED
-from momantu_bt.bench.spec import Row
-from momantu_bt.bench.tables import row_text
+from momantu_bt.bench.episodes.engine import Engine
+from momantu_bt.bench.reports.tables import row_text
+from momantu_bt.bench.rows.outcome import succeeded
+from momantu_bt.bench.rows.spec import REFUSED, Row
+from momantu_bt.bench.statistics.intervals import wilson
 
 MOST_RUNNING = 4
 """Running episodes that the live line names."""

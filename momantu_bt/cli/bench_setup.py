@@ -9,13 +9,13 @@ from typing import Any
 
 import typer
 
-from momantu_bt.bench.carry_out import Ended
-from momantu_bt.bench.engine import Engine
-from momantu_bt.bench.local_engine import LocalEngine
-from momantu_bt.bench.made_of import made_of
-from momantu_bt.bench.plan import Plan, Wanted
-from momantu_bt.bench.ray_engine import RayEngine
-from momantu_bt.bench.store import Store
+from momantu_bt.bench.episodes.carry_out import Ended
+from momantu_bt.bench.episodes.engine import Engine
+from momantu_bt.bench.episodes.local_engine import LocalEngine
+from momantu_bt.bench.episodes.ray_engine import RayEngine
+from momantu_bt.bench.planning.made_of import made_of
+from momantu_bt.bench.planning.plan import Plan, Wanted
+from momantu_bt.bench.rows.store import Store
 from momantu_bt.cli.notices import notice
 from momantu_bt.engine.build import skills_in
 from momantu_bt.errors import InputError

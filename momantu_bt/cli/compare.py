@@ -28,17 +28,18 @@ from momantu_bt.formats.seeds import parse_seeds
 from momantu_bt.lazy import lazily
 
 with lazily():
-    from momantu_bt.bench import carry_out, tables
-    from momantu_bt.bench import paired as pairs
-    from momantu_bt.bench import report as reports
-    from momantu_bt.bench import store as results
-    from momantu_bt.bench import summary as figures
+    from momantu_bt.bench.episodes import carry_out
+    from momantu_bt.bench.reports import report as reports
+    from momantu_bt.bench.reports import tables
+    from momantu_bt.bench.rows import store as results
+    from momantu_bt.bench.statistics import paired as pairs
+    from momantu_bt.bench.statistics import summary as figures
     from momantu_bt.cli import bench_progress, bench_setup, given
 
 if TYPE_CHECKING:
-    from momantu_bt.bench.engine import Engine
-    from momantu_bt.bench.plan import Plan
-    from momantu_bt.bench.spec import Row
+    from momantu_bt.bench.episodes.engine import Engine
+    from momantu_bt.bench.planning.plan import Plan
+    from momantu_bt.bench.rows.spec import Row
 
 
 def compare(

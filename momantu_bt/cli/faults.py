@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from momantu_bt.bench.table import columns
+from momantu_bt.bench.reports.table import columns
 from momantu_bt.cli.help import help_of
 from momantu_bt.cli.schema_file import Out, put_schema
 from momantu_bt.errors import ExitCode

@@ -7,7 +7,7 @@ import json
 import pytest
 import trimesh
 
-from momantu_bt.bench.made_of import difference, made_of
+from momantu_bt.bench.planning.made_of import difference, made_of
 from momantu_bt.cli import main
 from momantu_bt.tree.check.named_world import world_of
 from momantu_bt.tree.load import load

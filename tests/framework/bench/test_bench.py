@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 
-from momantu_bt.bench.store import RESULTS, Store, read_rows
+from momantu_bt.bench.rows.store import RESULTS, Store, read_rows
 from momantu_bt.cli import main
 
 Out = pytest.CaptureFixture[str]

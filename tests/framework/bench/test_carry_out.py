@@ -9,13 +9,13 @@ from pathlib import Path
 
 import pytest
 
-from momantu_bt.bench.carry_out import MOST_REFUSED, carry_out
-from momantu_bt.bench.engine import Engine
-from momantu_bt.bench.episode import Refused, run
-from momantu_bt.bench.plan import Plan, Wanted
-from momantu_bt.bench.process import EpisodeProcess
-from momantu_bt.bench.spec import EpisodeSpec, Row
-from momantu_bt.bench.store import Store, read_rows
+from momantu_bt.bench.episodes.carry_out import MOST_REFUSED, carry_out
+from momantu_bt.bench.episodes.engine import Engine
+from momantu_bt.bench.episodes.episode import Refused, run
+from momantu_bt.bench.episodes.process import EpisodeProcess
+from momantu_bt.bench.planning.plan import Plan, Wanted
+from momantu_bt.bench.rows.spec import EpisodeSpec, Row
+from momantu_bt.bench.rows.store import Store, read_rows
 
 MADE = {"the file t.yaml": "1"}
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from momantu_bt.bench.paired import Paired, paired_text
-from momantu_bt.bench.store import read_rows
+from momantu_bt.bench.rows.store import read_rows
+from momantu_bt.bench.statistics.paired import Paired, paired_text
 from momantu_bt.cli import main
 
 Out = pytest.CaptureFixture[str]

@@ -9,8 +9,15 @@ from typing import Any, cast
 import pytest
 
 import momantu_bt
-from momantu_bt.bench.coverage import GUARD, HANDLER, NODE, Point, coverage, running_order
-from momantu_bt.bench.coverage_text import coverage_text
+from momantu_bt.bench.reports.coverage_text import coverage_text
+from momantu_bt.bench.statistics.coverage import (
+    GUARD,
+    HANDLER,
+    NODE,
+    Point,
+    coverage,
+    running_order,
+)
 from momantu_bt.cli import main
 from momantu_bt.engine.body import Body
 from momantu_bt.engine.build import build

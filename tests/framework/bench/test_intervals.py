@@ -7,7 +7,7 @@ import statistics
 
 import pytest
 
-from momantu_bt.bench.intervals import Z, mcnemar, paired_difference, quantile, wilson
+from momantu_bt.bench.statistics.intervals import Z, mcnemar, paired_difference, quantile, wilson
 
 
 @pytest.mark.parametrize("n", [1, 2, 7, 30, 500])

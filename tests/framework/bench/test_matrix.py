@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from momantu_bt.bench.matrix import Matrix, matrix_text
-from momantu_bt.bench.outcome import Outcome, outcome
+from momantu_bt.bench.reports.matrix import Matrix, matrix_text
+from momantu_bt.bench.rows.outcome import Outcome, outcome
 from momantu_bt.fault_kind import FaultKind, Where
 from momantu_bt.faults.matrix import Row as Demand
 from momantu_bt.faults.matrix import row_of, rows_like

@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
-from momantu_bt.bench.merge import merge
-from momantu_bt.bench.plan import RECORDS, Wanted, record_name
-from momantu_bt.bench.spec import Row
-from momantu_bt.bench.store import Store, StoreError, read_rows
+from momantu_bt.bench.planning.merge import merge
+from momantu_bt.bench.planning.plan import RECORDS, Wanted, record_name
+from momantu_bt.bench.rows.spec import Row
+from momantu_bt.bench.rows.store import Store, StoreError, read_rows
 from momantu_bt.cli import main
 
 Out = pytest.CaptureFixture[str]

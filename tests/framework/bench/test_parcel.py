@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from momantu_bt.bench.made_of import made_of
-from momantu_bt.bench.parcel import Parcel
+from momantu_bt.bench.episodes.parcel import Parcel
+from momantu_bt.bench.planning.made_of import made_of
 from momantu_bt.tree.load import load
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.registry import Registry

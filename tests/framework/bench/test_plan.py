@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
-from momantu_bt.bench import made_of as module
-from momantu_bt.bench.made_of import difference, key_of, made_of
-from momantu_bt.bench.plan import Plan, Wanted, record_name
-from momantu_bt.bench.spec import EpisodeSpec
+from momantu_bt.bench.planning import made_of as module
+from momantu_bt.bench.planning.made_of import difference, key_of, made_of
+from momantu_bt.bench.planning.plan import Plan, Wanted, record_name
+from momantu_bt.bench.rows.spec import EpisodeSpec
 from momantu_bt.tree.files.settings import Given
 from momantu_bt.tree.load import load
 from momantu_bt.tree.registry import Registry

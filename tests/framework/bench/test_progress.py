@@ -12,8 +12,8 @@ from typing import Any
 
 import pytest
 
-from momantu_bt.bench.spec import EpisodeSpec, Row
-from momantu_bt.bench.store import read_rows
+from momantu_bt.bench.rows.spec import EpisodeSpec, Row
+from momantu_bt.bench.rows.store import read_rows
 from momantu_bt.cli.bench_progress import Progress, duration
 
 

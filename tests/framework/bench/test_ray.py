@@ -15,14 +15,14 @@ from typing import Any
 
 import pytest
 
-from momantu_bt.bench.made_of import made_of
-from momantu_bt.bench.merge import DECIDED
-from momantu_bt.bench.parcel import Parcel
-from momantu_bt.bench.process import ONE_THREAD
-from momantu_bt.bench.ray_engine import MOST_DEATHS
-from momantu_bt.bench.ray_task import errand, order
-from momantu_bt.bench.spec import EpisodeSpec, Row
-from momantu_bt.bench.store import read_rows
+from momantu_bt.bench.episodes.parcel import Parcel
+from momantu_bt.bench.episodes.process import ONE_THREAD
+from momantu_bt.bench.episodes.ray_engine import MOST_DEATHS
+from momantu_bt.bench.episodes.ray_task import errand, order
+from momantu_bt.bench.planning.made_of import made_of
+from momantu_bt.bench.planning.merge import DECIDED
+from momantu_bt.bench.rows.spec import EpisodeSpec, Row
+from momantu_bt.bench.rows.store import read_rows
 from momantu_bt.cli import main
 from momantu_bt.tree.load import load
 from momantu_bt.tree.registry import Registry

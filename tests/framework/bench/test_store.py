@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from momantu_bt.bench.store import LOCK, RESULTS, Store, StoreError, read_rows
+from momantu_bt.bench.rows.store import LOCK, RESULTS, Store, StoreError, read_rows
 from momantu_bt.formats.files import OutputError
 
 

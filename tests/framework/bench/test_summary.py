@@ -6,12 +6,12 @@ import json
 import random
 from typing import Any
 
-from momantu_bt.bench.blame import Blame, blame, general
-from momantu_bt.bench.intervals import wilson
-from momantu_bt.bench.report import report
-from momantu_bt.bench.summary import Summary
-from momantu_bt.bench.table import columns
-from momantu_bt.bench.tables import row_text, summary_text
+from momantu_bt.bench.reports.report import report
+from momantu_bt.bench.reports.table import columns
+from momantu_bt.bench.reports.tables import row_text, summary_text
+from momantu_bt.bench.statistics.blame import Blame, blame, general
+from momantu_bt.bench.statistics.intervals import wilson
+from momantu_bt.bench.statistics.summary import Summary
 
 
 def link(code: str, node: str, line: int, cause: Any = None) -> dict[str, Any]:

@@ -9,7 +9,7 @@ import pytest
 from jsonschema import Draft202012Validator
 from ruamel.yaml import YAML
 
-from momantu_bt.bench.parcel import Parcel
+from momantu_bt.bench.episodes.parcel import Parcel
 from momantu_bt.cli import main
 from momantu_bt.cli.bench_setup import demands_of
 from momantu_bt.faults.spec import parse_fault

@@ -14,7 +14,7 @@ import pytest
 
 import momantu_bt
 from momantu_bt import plugins
-from momantu_bt.bench.made_of import made_of
+from momantu_bt.bench.planning.made_of import made_of
 from momantu_bt.cli import main
 from momantu_bt.engine.build import build
 from momantu_bt.engine.context import RunContext

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from momantu_bt.bench.made_of import difference, made_of
+from momantu_bt.bench.planning.made_of import difference, made_of
 from momantu_bt.cli import main
 from momantu_bt.robots import read_robot
 from momantu_bt.robots.plugins import ROBOTS

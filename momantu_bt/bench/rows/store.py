@@ -13,7 +13,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from types import TracebackType
 
-from momantu_bt.bench.spec import Row
+from momantu_bt.bench.rows.spec import Row
 from momantu_bt.errors import MomantuError
 from momantu_bt.formats.files import OutputError
 

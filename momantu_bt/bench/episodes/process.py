@@ -1,7 +1,7 @@
-"""Running one episode in a process of its own, with a watchdog outside it.
+"""Run one episode in a process of its own, with a watchdog outside it.
 
-`python -m momantu_bt.bench.episode SPEC ROW PARENT` runs in a session of its own, so that a hang
-in native code and whatever it started are killed together.
+`python -m momantu_bt.bench.episodes.episode SPEC ROW PARENT` runs in a session of its own, so that
+a hang in native code and whatever it started are killed together.
 """
 
 from __future__ import annotations
@@ -17,15 +17,17 @@ import time
 from contextlib import suppress
 from pathlib import Path
 
-from momantu_bt.bench.spec import EpisodeSpec, Row
+from momantu_bt.bench.rows.spec import (
+    CRASHED,
+    HUNG,
+    IMPOSSIBLE,
+    KILLED,
+    REFUSED,
+    REPORT,
+    EpisodeSpec,
+    Row,
+)
 
-REPORT, HUNG, KILLED, CRASHED = "report", "hung", "killed", "crashed"
-"""How a process ended: it left its row; a watchdog ended it, this one by a signal or the run's own
-with exit code 1; another signal did; it exited without a row."""
-IMPOSSIBLE = "impossible"
-"""Its fault cannot happen in this tree, robot or world."""
-REFUSED = "refused"
-"""It could not begin, for a reason that has nothing to do with what was asked for."""
 _WITHOUT_ROW = {os.EX_UNAVAILABLE: IMPOSSIBLE, os.EX_TEMPFAIL: REFUSED}
 """How a process ended that left no row, by its exit code; what it printed says why."""
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "LP_NUM_THREADS": "1"}
@@ -49,7 +51,7 @@ class EpisodeProcess:
         words = [str(told), str(self._row_file), str(os.getpid())]
         with self._output.open("wb") as output:
             self._process = subprocess.Popen(
-                [sys.executable, "-m", "momantu_bt.bench.episode", *words],
+                [sys.executable, "-m", "momantu_bt.bench.episodes.episode", *words],
                 stdin=subprocess.DEVNULL,
                 stdout=output,
                 stderr=subprocess.STDOUT,

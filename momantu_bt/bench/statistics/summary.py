@@ -1,4 +1,4 @@
-"""Statistics of many rows of one tree."""
+"""Summarize many rows of one tree: rates, times, failures and claims."""
 
 from __future__ import annotations
 
@@ -8,12 +8,11 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from momantu_bt.bench.blame import Blame, blame_table
-from momantu_bt.bench.claims import Claimed, claims_of
-from momantu_bt.bench.intervals import Interval, quantile, wilson
-from momantu_bt.bench.outcome import succeeded
-from momantu_bt.bench.process import IMPOSSIBLE, REPORT
-from momantu_bt.bench.spec import Row
+from momantu_bt.bench.rows.outcome import succeeded
+from momantu_bt.bench.rows.spec import IMPOSSIBLE, REPORT, Row
+from momantu_bt.bench.statistics.blame import Blame, blame_table
+from momantu_bt.bench.statistics.claims import Claimed, claims_of
+from momantu_bt.bench.statistics.intervals import Interval, quantile, wilson
 
 
 @dataclass(frozen=True, slots=True)

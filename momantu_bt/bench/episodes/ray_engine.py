@@ -10,12 +10,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from momantu_bt.bench.engine import EngineError
-from momantu_bt.bench.parcel import Parcel
-from momantu_bt.bench.process import CRASHED, REFUSED
-from momantu_bt.bench.ray_cluster import cluster
-from momantu_bt.bench.ray_task import errand, order
-from momantu_bt.bench.spec import EpisodeSpec, Row
+from momantu_bt.bench.episodes.engine import EngineError
+from momantu_bt.bench.episodes.parcel import Parcel
+from momantu_bt.bench.episodes.ray_cluster import cluster
+from momantu_bt.bench.episodes.ray_task import errand, order
+from momantu_bt.bench.rows.spec import CRASHED, REFUSED, EpisodeSpec, Row
 from momantu_bt.formats.files import OutputError
 
 MOST_DEATHS = 3

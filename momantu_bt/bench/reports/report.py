@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from momantu_bt.bench.spec import Row
-from momantu_bt.bench.summary import Summary
+from momantu_bt.bench.rows.spec import Row
+from momantu_bt.bench.statistics.summary import Summary
 from momantu_bt.formats.files import write_whole
 
 _TOO_LONG = ("nodes", "made_of")

@@ -1,4 +1,4 @@
-"""One episode, and its row: `python -m momantu_bt.bench.episode SPEC ROW PARENT`.
+"""Run one episode and write its row: `python -m momantu_bt.bench.episodes.episode SPEC ROW PARENT`.
 
 SPEC and ROW are JSON files; PARENT is the number of the process that waits for it: without that
 one this one ends too.
@@ -17,8 +17,8 @@ from pathlib import Path
 from typing import Any
 
 import momantu_bt.threads  # noqa: F401 - before numpy, which the next imports load
-from momantu_bt.bench.made_of import difference, made_of
-from momantu_bt.bench.spec import EpisodeSpec, Row
+from momantu_bt.bench.planning.made_of import difference, made_of
+from momantu_bt.bench.rows.spec import EpisodeSpec, Row
 from momantu_bt.engine.executor import Executor, Observer
 from momantu_bt.engine.node import TreeNode
 from momantu_bt.errors import MomantuError

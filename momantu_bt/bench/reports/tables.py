@@ -1,18 +1,28 @@
-"""The figures of a bench as text."""
+"""The results of a bench as text: rows, rates, spreads, failures and claims."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
-from momantu_bt.bench.blame import REFEREE, blame
-from momantu_bt.bench.claims import claims_text
-from momantu_bt.bench.outcome import succeeded
-from momantu_bt.bench.process import IMPOSSIBLE, REPORT
-from momantu_bt.bench.spec import Row
-from momantu_bt.bench.summary import Spread, Summary
-from momantu_bt.bench.table import columns
+from momantu_bt.bench.reports.table import columns
+from momantu_bt.bench.rows.outcome import succeeded
+from momantu_bt.bench.rows.spec import IMPOSSIBLE, REPORT, Row
+from momantu_bt.bench.statistics.blame import REFEREE, blame
+from momantu_bt.bench.statistics.claims import Claimed
+from momantu_bt.bench.statistics.summary import Spread, Summary
 from momantu_bt.formats.seeds import few_seeds
+
+_CLAIM_COUNTS = {
+    "runs": "runs",
+    "successes": "successes",
+    "judged_successes": "judged",
+    "false_successes": "false",
+    "failures": "failures",
+    "judged_failures": "judged",
+    "false_failures": "false",
+}
+"""Counts of a report's claims, and what they are called in the table."""
 
 
 def row_text(row: Row) -> str:
@@ -54,7 +64,7 @@ def summary_text(name: str, summary: Summary) -> str:
     lines = [f"{name}: {rate_text(summary.successes, summary.episodes, summary.interval)}"]
     lines += _figures(summary)
     lines += _blame(summary)
-    lines += claims_text(summary.claims)
+    lines += _claims_text(summary.claims)
     if summary.incidents:
         lines.append("incidents, by the referee:")
         lines += [
@@ -100,3 +110,15 @@ def _blame(summary: Summary) -> list[str]:
             "--no-referee counts what the tree says"
         )
     return lines
+
+
+def _claims_text(claims: Mapping[str, Claimed]) -> list[str]:
+    """A table; a skill's seeds are those on which it claimed a false success."""
+    if not any(claimed.counts["judged_successes"] for claimed in claims.values()):
+        return []
+    rows = [("skill", *_CLAIM_COUNTS.values(), "false successes")]
+    for skill, claimed in claims.items():
+        seeds = [lie["seed"] for lie in claimed.lies if lie["code"] is None]
+        counts = [str(claimed.counts[name]) for name in _CLAIM_COUNTS]
+        rows.append((skill, *counts, few_seeds(seeds) if seeds else ""))
+    return ["what skills claimed, judged by ground truth:", *columns(rows)]

@@ -1,4 +1,4 @@
-"""Running the missing episodes of a plan, and writing their rows to disk."""
+"""Run the missing episodes of a plan, and write their rows to disk."""
 
 from __future__ import annotations
 
@@ -9,12 +9,11 @@ from dataclasses import dataclass, field
 from itertools import zip_longest
 from typing import Protocol
 
-from momantu_bt.bench.engine import Engine
-from momantu_bt.bench.outcome import Outcome, outcome_of, succeeded
-from momantu_bt.bench.plan import RECORDS, Plan, record_name
-from momantu_bt.bench.process import REFUSED
-from momantu_bt.bench.spec import EpisodeSpec, Row
-from momantu_bt.bench.store import Store
+from momantu_bt.bench.episodes.engine import Engine
+from momantu_bt.bench.planning.plan import RECORDS, Plan, record_name
+from momantu_bt.bench.rows.outcome import Outcome, outcome_of, succeeded
+from momantu_bt.bench.rows.spec import REFUSED, EpisodeSpec, Row
+from momantu_bt.bench.rows.store import Store
 from momantu_bt.engine.interrupts import Interrupts
 
 MOST_REFUSED = 3

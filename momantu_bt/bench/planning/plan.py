@@ -8,8 +8,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from momantu_bt.bench.made_of import difference, key_of
-from momantu_bt.bench.spec import EpisodeSpec, Row
+from momantu_bt.bench.planning.made_of import difference, key_of
+from momantu_bt.bench.rows.spec import EpisodeSpec, Row
 from momantu_bt.formats.files import write_whole
 from momantu_bt.formats.seeds import parse_seeds, seeds_text
 

@@ -1,4 +1,4 @@
-"""The outcome of a row: success or failure, and the result of a fault."""
+"""Decide the outcome of a row: success or failure, and the result of a fault."""
 
 from __future__ import annotations
 
@@ -6,8 +6,7 @@ from collections.abc import Iterator, Mapping
 from enum import StrEnum
 from typing import Any
 
-from momantu_bt.bench.process import HUNG, IMPOSSIBLE, REPORT
-from momantu_bt.bench.spec import Row
+from momantu_bt.bench.rows.spec import HUNG, IMPOSSIBLE, REPORT, Row
 from momantu_bt.engine.ending import SUCCESS
 from momantu_bt.faults.matrix import Row as Demand
 from momantu_bt.faults.matrix import row_of

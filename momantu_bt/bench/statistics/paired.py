@@ -1,4 +1,4 @@
-"""Comparing two trees on the same seeds, with McNemar's test."""
+"""Compare two trees on the same seeds, with McNemar's test."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from momantu_bt.bench.intervals import Interval, mcnemar, paired_difference, quantile
-from momantu_bt.bench.outcome import succeeded
-from momantu_bt.bench.spec import Row
+from momantu_bt.bench.rows.outcome import succeeded
+from momantu_bt.bench.rows.spec import Row
+from momantu_bt.bench.statistics.intervals import Interval, mcnemar, paired_difference, quantile
 from momantu_bt.formats.seeds import seeds_text
 
 

@@ -10,6 +10,14 @@ from typing import Any, TypeAlias
 Row: TypeAlias = dict[str, Any]
 """One finished episode, a line of `results.jsonl`; see `docs/bench.md` for its fields."""
 
+REPORT, HUNG, KILLED, CRASHED = "report", "hung", "killed", "crashed"
+"""How an episode's process ended: it left its row; a watchdog ended it, the one outside by a signal
+or the run's own with exit code 1; another signal did; it exited without a row."""
+IMPOSSIBLE = "impossible"
+"""Its fault cannot happen in this tree, robot or world."""
+REFUSED = "refused"
+"""It could not begin, for a reason that has nothing to do with what was asked for."""
+
 
 @dataclass(frozen=True, slots=True)
 class EpisodeSpec:

@@ -1,4 +1,4 @@
-"""Which parts of a tree ran over many episodes: nodes, handlers, and both sides of guards."""
+"""Count which parts of a tree ran over many episodes: nodes, handlers, both sides of guards."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from momantu_bt.bench.spec import Row
+from momantu_bt.bench.rows.spec import Row
 from momantu_bt.engine.conditions import ASKED
 from momantu_bt.formats.places import Place
 from momantu_bt.tree.catalogue import SUBTREE

@@ -1,4 +1,4 @@
-"""Connecting to a Ray cluster: a private one on this machine, or a running one."""
+"""Connect to a Ray cluster: a private one on this machine, or a running one."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from functools import cache
 from importlib import import_module
 from typing import Any
 
-from momantu_bt.bench.engine import EngineError
+from momantu_bt.bench.episodes.engine import EngineError
 
 AUTO = "auto"
 """As an address: the cluster that `ray start` began on this machine."""

@@ -1,4 +1,4 @@
-"""Merging folders of results of one bench that several machines ran."""
+"""Merge folders of results of one bench that several machines ran."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from functools import reduce
 from pathlib import Path
 
-from momantu_bt.bench.made_of import difference
-from momantu_bt.bench.plan import PLAN, Wanted
-from momantu_bt.bench.spec import Row
-from momantu_bt.bench.store import RESULTS, StoreError, read_rows
+from momantu_bt.bench.planning.made_of import difference
+from momantu_bt.bench.planning.plan import PLAN, Wanted
+from momantu_bt.bench.rows.spec import Row
+from momantu_bt.bench.rows.store import RESULTS, StoreError, read_rows
 
 DECIDED: tuple[str, ...] = ("ended", "status", "success", "unmet", "fingerprint", "sim_time_s")
 DECIDED += ("tries", "incidents", "claims", "faults", "outcome")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from momantu_bt.bench.coverage import GUARD, HANDLER, NODE, Point
+from momantu_bt.bench.statistics.coverage import GUARD, HANDLER, NODE, Point
 
 MARK = "!"
 """Before a line with something that never happened."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Generator, Iterable
 from typing import Protocol
 
-from momantu_bt.bench.spec import EpisodeSpec, Row
+from momantu_bt.bench.rows.spec import EpisodeSpec, Row
 from momantu_bt.errors import MomantuError
 
 

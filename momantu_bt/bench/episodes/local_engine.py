@@ -5,8 +5,8 @@ from __future__ import annotations
 import time
 from collections.abc import Generator, Iterable, Iterator
 
-from momantu_bt.bench.process import EpisodeProcess
-from momantu_bt.bench.spec import EpisodeSpec, Row
+from momantu_bt.bench.episodes.process import EpisodeProcess
+from momantu_bt.bench.rows.spec import EpisodeSpec, Row
 
 PAUSE = 0.05
 """Seconds between two looks at the processes."""

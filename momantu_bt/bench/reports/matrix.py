@@ -6,12 +6,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from momantu_bt.bench.intervals import wilson
-from momantu_bt.bench.outcome import Outcome, outcome
-from momantu_bt.bench.process import IMPOSSIBLE
-from momantu_bt.bench.spec import Row
-from momantu_bt.bench.table import columns
-from momantu_bt.bench.tables import rate_text
+from momantu_bt.bench.reports.table import columns
+from momantu_bt.bench.reports.tables import rate_text
+from momantu_bt.bench.rows.outcome import Outcome, outcome
+from momantu_bt.bench.rows.spec import IMPOSSIBLE, Row
+from momantu_bt.bench.statistics.intervals import wilson
 from momantu_bt.faults.matrix import Row as Demand
 from momantu_bt.formats.seeds import seeds_text
 

@@ -1,4 +1,4 @@
-"""Who is to blame: the innermost node that failed, its line and its code, over many episodes."""
+"""Find what failed over many episodes: the innermost node, its line and its code."""
 
 from __future__ import annotations
 
@@ -8,9 +8,8 @@ from dataclasses import dataclass
 from pathlib import PurePath
 from typing import Any
 
-from momantu_bt.bench.outcome import succeeded
-from momantu_bt.bench.process import REPORT
-from momantu_bt.bench.spec import Row
+from momantu_bt.bench.rows.outcome import succeeded
+from momantu_bt.bench.rows.spec import REPORT, Row
 from momantu_bt.engine.ending import ERROR
 from momantu_bt.failure import HALTED
 

@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Any
 
 import momantu_bt
-from momantu_bt.bench.made_of import foreign
-from momantu_bt.bench.parcel import Parcel
-from momantu_bt.bench.process import EpisodeProcess
-from momantu_bt.bench.spec import EpisodeSpec
+from momantu_bt.bench.episodes.parcel import Parcel
+from momantu_bt.bench.episodes.process import EpisodeProcess
+from momantu_bt.bench.planning.made_of import foreign
+from momantu_bt.bench.rows.spec import EpisodeSpec
 
 
 def order(spec: EpisodeSpec, parcel: Parcel) -> dict[str, Any]:
@@ -37,7 +37,7 @@ def errand() -> Callable[[dict[str, Any]], dict[str, Any]]:
             import momantu_bt
 
             if momantu_bt.__version__ == order["version"]:
-                from momantu_bt.bench.ray_task import carry_out
+                from momantu_bt.bench.episodes.ray_task import carry_out
 
                 return carry_out(order)
             found = f"has momantu-bt {momantu_bt.__version__}"

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from momantu_bt.bench.spec import Row
+from momantu_bt.bench.rows.spec import Row
 from momantu_bt.faults.tree_file import faults_source
 from momantu_bt.tree.load import read_file
 

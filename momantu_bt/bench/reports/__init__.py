@@ -1,0 +1,1 @@
+"""Report the results of a bench as text and as JSON."""

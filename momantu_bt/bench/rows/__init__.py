@@ -1,0 +1,1 @@
+"""Rows of a bench, one for each episode: their fields, their outcome, and their file."""
