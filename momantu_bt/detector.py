@@ -20,7 +20,7 @@ class View:
 
     @property
     def camera(self) -> Array:
-        """Where the camera was, (3,) in odom, m."""
+        """The camera's position, (3,) in odom, m."""
         return self.snapshot.odom_from_camera.position
 
 

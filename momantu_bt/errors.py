@@ -11,7 +11,7 @@ from typing import ClassVar
 
 
 class ExitCode(IntEnum):
-    """What a command line ends with."""
+    """The exit code of a command line."""
 
     SUCCESS = 0
     """The tree succeeded and no referee denies it; the command did what was asked."""
@@ -41,7 +41,7 @@ class MomantuError(Exception):
         self.hint = hint
 
     def printed(self) -> str:
-        """What the command line prints: the message, and the hint in a line of its own."""
+        """The printed text: the message, and the hint in a line of its own."""
         message = f"momantu-bt: {self}"
         return message if self.hint is None else f"{message}\n{self.hint}"
 

@@ -60,7 +60,7 @@ ENGINE_CODES: Mapping[str, str] = MappingProxyType(
 
 @dataclass(frozen=True, slots=True)
 class FailureValue:
-    """What a failed node hands to its parent, the record and the terminal.
+    """A failure as a node passes it to its parent, the record and the terminal.
 
     code: upper-case words joined by underscores, from the skill's `failures`.
     message: one sentence for a person.

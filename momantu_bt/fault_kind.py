@@ -21,7 +21,7 @@ FOR = "for"
 
 
 class Where(StrEnum):
-    """Where a fault enters; lists of faults are in this order."""
+    """Where a fault acts; lists of faults are in this order."""
 
     ROBOT = "robot"
     """at the robot's boundary, whatever the world"""
@@ -95,7 +95,7 @@ class FaultKind:
 
     @property
     def defaults(self) -> Mapping[str, FaultParameter]:
-        """Each parameter's value where nobody gives one."""
+        """The default of each parameter."""
         return {port.name: port.default for port in self.parameters}
 
 

@@ -68,7 +68,7 @@ def worst_first(findings: Iterable[Finding]) -> list[Finding]:
 
 
 def findings_text(subject: str, findings: Sequence[Finding]) -> str:
-    """What a terminal shows: every finding and one line that counts them."""
+    """The text for a terminal: every finding, and one line that counts them."""
     errors = sum(finding.severity is Severity.ERROR for finding in findings)
     warnings = len(findings) - errors
     if not findings:
@@ -79,7 +79,7 @@ def findings_text(subject: str, findings: Sequence[Finding]) -> str:
 
 
 def findings_json(subject: str, findings: Sequence[Finding]) -> dict[str, Any]:
-    """What a program reads."""
+    """The data for a program."""
     return {
         "subject": subject,
         "ok": not findings,

@@ -147,7 +147,7 @@ class FrameBuffer:
         self._map_from_odom: deque[tuple[float, Transform]] = deque()
 
     def add_state(self, state: RobotState) -> None:
-        """Remember a state; its stamp must not lie before the newest one's."""
+        """Remember a state; its stamp must not be older than the newest one's."""
         if self._states and state.stamp < self._states[-1].stamp:
             raise ValueError(f"state of {state.stamp} s after one of {self._states[-1].stamp} s")
         self._states.append(state)
@@ -162,7 +162,7 @@ class FrameBuffer:
 
     @property
     def map_from_odom(self) -> Transform | None:
-        """What localization believes now; None before it has spoken."""
+        """The current estimate of localization; None before the first one."""
         return self._map_from_odom[-1][1] if self._map_from_odom else None
 
     @property

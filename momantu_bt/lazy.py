@@ -30,7 +30,7 @@ _KNOWN_BEFORE = frozenset(
 
 
 class _Pending(ModuleType):
-    """A module that is run as soon as somebody asks it for a name."""
+    """A module that runs when one of its names is first used."""
 
     def __getattribute__(self, name: str) -> Any:
         if name in _KNOWN_BEFORE:
@@ -91,7 +91,7 @@ class _PendingLoader(Loader):
         self._loader = loader
 
     def exec_module(self, module: ModuleType) -> None:
-        """Put off what this is asked for."""
+        """Defer running the module until one of its names is used."""
         module.__class__ = _Pending
         module.__loader__ = self._loader
 

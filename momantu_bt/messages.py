@@ -92,7 +92,7 @@ class LaserScan:
 
 @dataclass(frozen=True, slots=True)
 class PointCloud:
-    """What a lidar met in one turn. points: (n, 3) float32, m, in `frame`; misses are left out."""
+    """The points of one turn of a lidar: (n, 3) float32, m, in `frame`, without misses."""
 
     stamp: float
     frame: str
@@ -164,7 +164,7 @@ ActuatorGoal: TypeAlias = BaseVelocity | JointTrajectory | JointPositions | Grip
 
 @dataclass(frozen=True, slots=True)
 class ObjectClass:
-    """What to look for. A size that is None is not known; sizes in metres."""
+    """An object to look for. A size that is None is unknown; sizes in metres."""
 
     category: str
     diameter: float | None = field(default=None, metadata={"unit": "m"})
@@ -175,7 +175,7 @@ class ObjectClass:
 
 @dataclass(frozen=True, slots=True)
 class DetectedObject:
-    """What was seen on a surface.
+    """An object that was seen on a surface.
 
     pose: `odom_from_object`; origin at the centre of the object's bounding box, z up along its
     axis. size: extent (3,) along its own x, y, z in m. shape: "cylinder" or "box".

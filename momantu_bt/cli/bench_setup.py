@@ -41,7 +41,7 @@ ENGINES = ("local", "ray")
 
 @dataclass(frozen=True, slots=True)
 class HowToRun:
-    """How episodes are run, whatever the tree. values: of the root's board."""
+    """How to run episodes of any tree. values: of the root's blackboard."""
 
     world: str | None
     robot: str | None

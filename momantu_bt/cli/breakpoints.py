@@ -44,7 +44,7 @@ WIDEST = 100
 
 
 class Breakpoints:
-    """Where a person wants to stop. wanted: names, types, skills, trees, patterns, or lines.
+    """Breakpoints. wanted: names, types, skills, trees, patterns, or lines.
 
     Raises:
         InputError: one of them names no node that the run can reach.

@@ -89,7 +89,7 @@ def _keys() -> list[Text]:
 
 
 def _failures(stepper: Stepper, width: int) -> list[Text]:
-    """What failed in this tick, with its causes, in a few lines."""
+    """The failures of this tick, with their causes, in a few lines."""
     lines: list[str] = []
     for failure in failures_of(stepper.moment):
         lines += wrap(f"✗ {failure_line(failure)}", width, subsequent_indent="  ")

@@ -49,7 +49,7 @@ def _skills(registry: Registry) -> dict[str, type[Skill]]:
 
 
 def _names(world: str | None, robot: str | None) -> Names:
-    """What a world and a robot can name; PluginError when none has that name."""
+    """The names of a world and a robot; PluginError when there is no such world or robot."""
     names: dict[str, tuple[str, ...]] = {}
     if world is not None:
         site = WORLDS.load(world).site()

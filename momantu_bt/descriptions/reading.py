@@ -91,7 +91,7 @@ class Reading:
             raise self._error(self.path, self.text, found)
 
     def problem(self, keys: KeyPath, message: str, *, key: bool = False) -> KeyProblem:
-        """What is wrong at some keys, at its place in the file; `key` as of `at`."""
+        """The problem at some keys, at its place in the file; `key` as in `at`."""
         return KeyProblem("", message, self.at(keys, key=key), keys=keys)
 
     def at(self, keys: KeyPath, *, key: bool = False) -> Place:

@@ -68,7 +68,7 @@ def _told(kind: type[Tunables], owner: str, finding: dict[str, Any]) -> str:
 
 
 def tunable_problems(reading: Reading, keys: KeyPath) -> Iterator[KeyProblem]:
-    """What is wrong with the tunables that a file sets, by service, at some keys."""
+    """The problems of the tunables that a file sets, by service, at their keys."""
     given: Any = reading.plain
     for part in keys:
         given = given.get(part) if isinstance(given, dict) else None

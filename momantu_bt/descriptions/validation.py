@@ -42,7 +42,7 @@ class _Located:
     def __init__(
         self, reading: Reading, model: type[BaseModel], what: str, keys: KeyPath = ()
     ) -> None:
-        """keys: where in the file the part stands that the model was asked about."""
+        """keys: the place in the file of the part that the model validated."""
         self._reading, self._what, self._keys = reading, what, keys
         self._plain = reading.value(keys)
         self._schema: dict[str, Any] = model.model_json_schema()
@@ -65,7 +65,7 @@ class _Located:
         return list(told)
 
     def _place(self, location: tuple[str | int, ...]) -> KeyPath:
-        """Where a finding is in the file: without the names of a union's members."""
+        """The place of a finding in the file, without the names of a union's members."""
         place: list[str | int] = []
         here: Any = self._plain
         for i, part in enumerate(location):

@@ -140,7 +140,7 @@ def _threads(tree: Tree, boxes: tuple[Box, ...], found: list[Wire]) -> tuple[Thr
 
 
 def width_of(text: str) -> int:
-    """How many cells of a terminal, or characters of a fixed width, a text takes."""
+    """The width of a text in cells of a terminal."""
     return sum(map(cells, text))
 
 

@@ -46,7 +46,7 @@ class Placed:
 
 @dataclass(frozen=True, slots=True)
 class Plug:
-    """Where a wire meets a box's right edge. writes: it begins here."""
+    """The point where a wire meets a box's right edge. writes: the wire begins here."""
 
     number: int
     x: float

@@ -26,7 +26,7 @@ class Issued:
 
 
 class SensorRead(NamedTuple):
-    """Somebody read a sensor; nobody has judged yet whether the reading can be relied on."""
+    """A sensor was read; the reading has not been checked yet."""
 
     sensor: str
     reading: SensorReading

@@ -73,7 +73,7 @@ class ReadOnlyCell(Cell):
 
     @property
     def writes(self) -> int:
-        """How many values have been found here."""
+        """The number of writes to this key."""
         found = self._ask()
         if found is not self._last:
             self._last, self._count = found, self._count + 1

@@ -58,11 +58,11 @@ class RunContext:
         self.changes.clear()
 
     def remark(self, text: str) -> None:
-        """Tell those who watch something that a person should read."""
+        """Publish a remark for a reader."""
         self.events.publish(Remarked(text))
 
     def ask(self, key: str, ask: Callable[[], T]) -> T:
-        """What `ask` answers, by way of the outside. key: names what is asked.
+        """The answer of `ask`, through the outside. key: the name of the question.
 
         Raises:
             Failure: there is no answer.

@@ -107,7 +107,7 @@ class Executor:
         """From the first tick to the last; nothing but an interrupt's second signal escapes."""
         started = time.perf_counter()
         interrupts.patient = True
-        self._tell_starts(interrupts)
+        self._publish_starts(interrupts)
         try:
             status = self._until_end(interrupts, started)
         except KeyboardInterrupt:
@@ -122,22 +122,22 @@ class Executor:
             status = ending.ERROR
         return Ending(status, self._failure, verdict, sim_time, wall_time, ticks, self._error)
 
-    def _tell_starts(self, interrupts: Interrupts) -> None:
-        """Have nodes tell when they start, if anybody hears it; an interrupt holds the tree."""
+    def _publish_starts(self, interrupts: Interrupts) -> None:
+        """Publish the starts of nodes, if there are subscribers; an interrupt suspends the tree."""
         if not self.context.events.has_subscribers(NodeStarting):
             return
         for node in self.built.nodes:
-            setattr(node, "execute", self._telling(node, node.execute, interrupts))  # noqa: B010
+            setattr(node, "execute", self._publishing(node, node.execute, interrupts))  # noqa: B010
 
-    def _telling(
+    def _publishing(
         self, node: TreeNode, execute: Callable[[], Status], interrupts: Interrupts
     ) -> Callable[[], Status]:
-        def tell_and_execute() -> Status:
+        def publish_and_execute() -> Status:
             if node.state is not RUNNING and not interrupts.requested:
                 self.context.events.publish(NodeStarting(node))
             return RUNNING if interrupts.requested else execute()
 
-        return tell_and_execute
+        return publish_and_execute
 
     def _until_end(self, interrupts: Interrupts, started: float) -> str:
         self.begin()

@@ -144,7 +144,7 @@ class TreeNode:
 
     @property
     def answered(self) -> tuple[int, ...]:
-        """How often each of its handlers has answered a failure."""
+        """The number of failures that each of its handlers has handled."""
         return ()
 
     @property

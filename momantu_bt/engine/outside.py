@@ -118,14 +118,14 @@ class SkillStepped(NamedTuple):
 
 
 class SkillEnded(NamedTuple):
-    """A leaf's skill has ended by itself; what it gave is not on the blackboard yet."""
+    """A leaf's skill has ended on its own; its outputs are not on the blackboard yet."""
 
     leaf: SkillNode
     session: SkillSession
 
 
 class Answered(NamedTuple):
-    """Something outside was asked. key: as in `Outside.ask`. answer: `Refused` for a failure."""
+    """The outside has answered. key: as in `Outside.ask`. answer: `Refused` for a failure."""
 
     key: str
     answer: Any

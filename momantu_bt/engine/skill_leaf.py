@@ -48,7 +48,7 @@ class SkillLeaf(TreeNode):
 
     @property
     def note(self) -> str:
-        """What the running skill last yielded."""
+        """The running skill's latest phase."""
         return "" if self.session is None else self.session.phase
 
     def step(self) -> Status:

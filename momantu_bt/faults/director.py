@@ -65,7 +65,7 @@ class Director:
                 staged.ended = context.now
 
     def reports(self) -> tuple[FaultReport, ...]:
-        """What has happened so far, in the order in which the faults were given."""
+        """The progress of each fault so far, in their given order."""
         return tuple(FaultReport(format_fault(s.fault), s.began, s.ended) for s in self._staged)
 
     def _begin(self, staged: Staged, now: float) -> None:

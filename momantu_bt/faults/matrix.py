@@ -18,7 +18,7 @@ RECOVERED, ENDED = "recovered", "process ended"
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """What is demanded of a run with one fault.
+    """The requirements on a run with one fault.
 
     fault: as it is written. recoverable: a robot can do its work all the same.
     """

@@ -30,7 +30,7 @@ def usual_phases(moments: Iterable[Moment], skills: Mapping[str, type[Skill]]) -
 
 
 def activities_of(skill: type[Skill]) -> Mapping[Activity, str]:
-    """What a skill does, as it declares it, else as its `uses` and its outputs tell.
+    """A skill's activities, as it declares them, or else from its `uses` and its outputs.
 
     The value stands behind the skill's name where a phase is written.
     """

@@ -33,7 +33,7 @@ class Phase:
 
 
 def parse_phase(text: str) -> Phase:
-    """What a text means.
+    """Parse a phase.
 
     Raises:
         ValueError: nothing; the message says what is valid.

@@ -117,7 +117,7 @@ class Stage:
         context.events.subscribe(Stepping, lambda event: director.act(context, event.settling))
 
     def reports(self) -> tuple[FaultReport, ...]:
-        """What became of each fault, in the order in which they were given."""
+        """The outcome of each fault, in their given order."""
         return () if self._director is None else self._director.reports()
 
     def _effect(
@@ -154,7 +154,7 @@ class Killed:
     """`process.killed`. Implements `Effect`."""
 
     def begin(self) -> None:
-        """End the process at once; nobody is told."""
+        """End the process at once, without any notice."""
         os.kill(os.getpid(), signal.SIGKILL)
 
     def end(self) -> None:

@@ -40,7 +40,7 @@ from momantu_bt.tree.substitute.substitution import Substitution
 
 @dataclass(frozen=True, slots=True)
 class TreeFaults:
-    """What belongs to one tree.
+    """The fault rows and phases of one tree.
 
     begins: a phase by a fault's name. rows: faults as they are written, for a bench of all.
     """
@@ -50,7 +50,7 @@ class TreeFaults:
 
 
 def tree_faults(document: Document) -> TreeFaults:
-    """What stands beside the document's main file; nothing where there is no such file.
+    """The file of faults beside the document's main file; empty if there is none.
 
     Raises:
         TreeError: the file has errors; all of them are in it.

@@ -51,7 +51,7 @@ class TreeRow:
 
 
 def tree_rows(document: Document, registry: Registry) -> tuple[TreeRow, ...]:
-    """What `bench --faults all` runs a checked tree with.
+    """The faults with which `bench --faults all` runs a checked tree.
 
     Raises:
         TreeError, TreeNotFound: the file of faults beside the tree is wrong.

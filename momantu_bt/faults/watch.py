@@ -14,7 +14,7 @@ from momantu_bt.tree.model import Document
 
 
 class PhaseWatch:
-    """Asked after each tick until the phase has begun.
+    """Whether the phase has begun; called after each tick until it has.
 
     node: the one that made it begin; None for a phase that goes by the clock.
     """

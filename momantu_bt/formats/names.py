@@ -34,7 +34,7 @@ def valid_names(word: str, candidates: Iterable[str], what: str) -> str:
 
 
 def _equally_near(word: str, candidates: Iterable[str]) -> list[str]:
-    """The known names that a mistyped one is most like; several where nothing tells them apart."""
+    """The known names that are nearest to a mistyped one; several if they are equally near."""
     folded = {_folded(name): name for name in candidates}
     exact = folded.get(_folded(word))
     if exact is not None:

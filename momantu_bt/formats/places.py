@@ -97,7 +97,7 @@ def underlined(line: str, start: int, length: int) -> tuple[str, str]:
 
 
 def cells(character: str) -> int:
-    """How many cells of a terminal a character takes."""
+    """The width of a character in cells of a terminal."""
     if unicodedata.category(character) in ("Mn", "Me"):
         return 0
     return 2 if unicodedata.east_asian_width(character) in "WF" else 1

@@ -74,7 +74,7 @@ class Quantity:
 
 
 def units_of(unit: str) -> tuple[str, ...]:
-    """What may be written where this SI unit is expected, such as ("mm", "cm", "m") for "m"."""
+    """The units that are valid for an SI unit, such as ("mm", "cm", "m") for "m"."""
     return tuple(name for name, (si, _) in _SCALE.items() if si == unit)
 
 

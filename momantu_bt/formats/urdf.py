@@ -118,7 +118,7 @@ def read_urdf(path: Path) -> Urdf:
 
 
 def parse_urdf(text: bytes, file: str) -> etree._Element:
-    """The `robot` element of a URDF, for those who change it; nothing else is read from disk.
+    """The `robot` element of a URDF, for changing it; nothing else is read from disk.
 
     Raises:
         UrdfError: it is not XML; `file` names it in the message.

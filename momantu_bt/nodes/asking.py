@@ -42,7 +42,7 @@ class _Asking(TreeNode):
 
     @property
     def role(self) -> Role:
-        """Somebody has to do something."""
+        """Its role for a reader: an action, here a person's."""
         return Role.ACT
 
     def step(self) -> Status:
@@ -67,11 +67,11 @@ class _Asking(TreeNode):
         return self.judge(said, question)
 
     def question(self, values: dict[str, Any]) -> Question:
-        """What to ask, from the inputs."""
+        """The question, from the inputs."""
         raise NotImplementedError
 
     def judge(self, said: str, question: Question) -> Status:
-        """What the answer makes of the node."""
+        """The node's status after an answer."""
         raise NotImplementedError
 
 
@@ -82,7 +82,7 @@ class _Heard:
         self._context = context
 
     def ask(self, question: Question, complaint: str) -> str | None:
-        """What the person says."""
+        """The person's answer."""
         context = self._context
         return context.ask(PERSON, lambda: context.person.ask(question, complaint))
 

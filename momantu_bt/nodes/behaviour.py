@@ -129,12 +129,12 @@ class BehaviourLeaf(TreeNode):
 
     @property
     def role(self) -> Role:
-        """What the robot does in this step."""
+        """Its role for a reader: an action."""
         return Role.ACT
 
     @property
     def note(self) -> str:
-        """What the behaviour says while it runs."""
+        """The behaviour's feedback while it runs."""
         return self._feedback
 
     def step(self) -> Status:

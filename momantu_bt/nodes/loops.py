@@ -206,7 +206,7 @@ class ForEach(Decorator):
         return SUCCESS
 
     def clear(self) -> None:
-        """The list is read anew."""
+        """The list is read again."""
         self.items = None
 
 

@@ -42,7 +42,7 @@ class _Parallel(TreeNode):
         self.clear()
 
     def clear(self) -> None:
-        """Nobody has ended yet."""
+        """No child has ended yet."""
         self.ended: set[int] = set()
         self.succeeded = 0
         self.failures_seen: list[FailureValue] = []

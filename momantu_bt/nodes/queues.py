@@ -74,11 +74,11 @@ class QueueLoop(Decorator):
 
     @property
     def note(self) -> str:
-        """How many items are waiting."""
+        """The number of waiting items."""
         return f"{len(self.left)} left"
 
     def clear(self) -> None:
-        """The queue is read anew."""
+        """The queue is read again."""
         self.left.clear()
         self.in_round = False
 

@@ -84,7 +84,7 @@ class RateController(_Paced):
         return self.context.now - self.since >= self.period - CLOCK_SLACK
 
     def succeeded(self) -> None:
-        """The time begins anew."""
+        """The time begins again."""
         self.since = self.context.now
 
 
@@ -118,7 +118,7 @@ class DistanceController(_Paced):
         return math.dist(here, self.origin) >= distance
 
     def succeeded(self) -> None:
-        """The way begins anew."""
+        """The distance begins again."""
         self.origin = self._position()
 
     def _position(self) -> Array | None:
@@ -202,7 +202,7 @@ class SpeedController(_Paced):
 
 
 class SingleTrigger(Decorator):
-    """Runs the child to its end once; FAILURE from then on, until the node is started anew."""
+    """Runs the child to its end once; FAILURE from then on, until the node is restarted."""
 
     spec = decorator(
         "SingleTrigger",

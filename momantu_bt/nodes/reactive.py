@@ -50,7 +50,7 @@ class ReactiveSequence(TreeNode):
 
 
 class ReactiveFallback(TreeNode):
-    """The first that can, each tick anew."""
+    """Ticks its children from the first one on, at each tick."""
 
     spec = control(
         "ReactiveFallback",

@@ -61,7 +61,7 @@ def _came_from(failure: FailureValue, kind: str) -> bool:
 
 
 def _words(handler: TreeNode) -> str:
-    """What a handler is going to do: the steps of a list, the turn of a round robin."""
+    """What a handler is about to do: the steps of a list, the child of a round robin."""
     if isinstance(handler, RoundRobin):
         return f"{text(handler.kids[handler.at].model)} ({handler.at + 1} of {len(handler.kids)})"
     if handler.role is Role.STEPS:
@@ -70,7 +70,7 @@ def _words(handler: TreeNode) -> str:
 
 
 class Catching(TreeNode):
-    """What Recover and Handle share.
+    """The base of Recover and Handle.
 
     children: `try`, then the handlers' nodes. caught: the cell that handlers see as failure.
     """
@@ -86,7 +86,7 @@ class Catching(TreeNode):
 
     @property
     def answered(self) -> tuple[int, ...]:
-        """How often each of `catches` has answered a failure."""
+        """The number of failures that each of `catches` has handled."""
         return tuple(self._answered)
 
     def clear(self) -> None:
@@ -118,7 +118,7 @@ class Catching(TreeNode):
 
 
 def _handled(walk: Walk, node: Node, failed: Known) -> list[After]:
-    """What each handler leaves, which knows the failure besides."""
+    """What is known after each handler, which also knows the failure."""
     return [
         walk(handler.node, failed.having(FAILURE_KEY, Key(FailureValue, handler.place)))
         for handler in node.handlers

@@ -95,7 +95,7 @@ class TestNode(TreeNode):
         return status
 
     def clear(self) -> None:
-        """The time starts anew."""
+        """The time starts again."""
         self.begun = None
 
     def _run(self, name: str, due: bool) -> None:

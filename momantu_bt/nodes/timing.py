@@ -69,7 +69,7 @@ class Timeout(Decorator):
         return self.pass_on(status)
 
     def clear(self) -> None:
-        """The time starts anew."""
+        """The time starts again."""
         self.begun = None
 
 
@@ -108,7 +108,7 @@ class Delay(Decorator):
         return self.pass_on(status)
 
     def clear(self) -> None:
-        """The waiting starts anew."""
+        """The wait starts again."""
         self.begun = None
 
 

@@ -90,7 +90,7 @@ class TryCatch(TreeNode):
         return SKIPPED if all_skipped else SUCCESS
 
     def halt(self) -> None:
-        """Halt; clean up first when that is asked for and nothing has failed yet."""
+        """Halt; clean up first if `catch_on_halt` is set and nothing has failed yet."""
         try:
             if self.state is RUNNING and self.caught is None and self._cleans_up_halted():
                 for child in self.kids[:-1]:

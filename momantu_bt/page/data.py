@@ -87,7 +87,7 @@ def _file_number(file: str, names: Sequence[str]) -> int:
 
 
 def _counts(recording: Recording) -> tuple[list[int], list[int]]:
-    """How often each node started and failed: the report knows, or else it is counted.
+    """How often each node started and failed: from the report, or else counted.
 
     The record shows no start that ends at once as the one before it did.
     """

@@ -20,7 +20,7 @@ _CLEARED = "(no value)"
 
 
 class Texts:
-    """Texts, each kept once, by number."""
+    """Texts, each stored once, by number."""
 
     def __init__(self, *texts: str) -> None:
         self.texts: list[str] = list(texts)
@@ -41,7 +41,7 @@ def value_text(value: Any) -> str:
 
 
 def _words(value: Any) -> str:
-    """What comes out of a record is nested at most as deeply as its codec allows."""
+    """Values of a record, nested at most as deeply as its codec allows."""
     if isinstance(value, np.generic):
         value = value.item()
     if value is None or isinstance(value, bool):

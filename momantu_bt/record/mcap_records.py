@@ -42,7 +42,7 @@ def statistics_record(counts: Mapping[int, int], schemas: int, last: int) -> byt
 
 
 def offset_record(code: int, start: int, length: int) -> bytes:
-    """Where the summary has the records of an opcode."""
+    """The position of an opcode's records in the summary."""
     return _record(OFFSET, struct.pack("<BQQ", code, start, length))
 
 
@@ -52,7 +52,7 @@ def data_end_record() -> bytes:
 
 
 def footer_record(summary: int, offsets: int) -> bytes:
-    """Where the summary and its offsets begin; 0 stands for no checksum."""
+    """The beginnings of the summary and of its offsets; 0 means no checksum."""
     return _record(FOOTER, struct.pack("<QQI", summary, offsets, 0))
 
 

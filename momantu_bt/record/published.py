@@ -16,7 +16,7 @@ RATE = 5.0
 
 
 class Published:
-    """Asks each service that publishes anything. One that cannot answer is not asked again."""
+    """Reads each service that publishes. A service that raises is not read again."""
 
     def __init__(self, remark: Callable[[str], None]) -> None:
         self._remark = remark

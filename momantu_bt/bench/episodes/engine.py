@@ -18,7 +18,7 @@ class Engine(Protocol):
 
     @property
     def workers(self) -> int:
-        """How many episodes it runs at a time; 0 while that is not known."""
+        """The number of episodes at a time; 0 while unknown."""
         ...
 
     def running(self) -> tuple[EpisodeSpec, ...]:

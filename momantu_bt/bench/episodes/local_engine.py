@@ -21,7 +21,7 @@ class LocalEngine:
 
     @property
     def workers(self) -> int:
-        """How many processes run at a time."""
+        """The number of processes at a time."""
         return self._jobs
 
     def running(self) -> tuple[EpisodeSpec, ...]:

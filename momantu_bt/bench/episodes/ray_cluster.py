@@ -125,7 +125,7 @@ def _secret() -> Mapping[str, str]:
 
 @contextmanager
 def _folder() -> Iterator[str]:
-    """Where Ray keeps its sockets and logs. Names of sockets are short: not below TMPDIR."""
+    """The folder of Ray's sockets and logs. Socket names must be short: not below TMPDIR."""
     folder = tempfile.mkdtemp(prefix="momantu_ray_", dir="/tmp")
     try:
         yield folder

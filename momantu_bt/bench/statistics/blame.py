@@ -49,7 +49,7 @@ def blame(row: Row) -> Blame:
 
 
 def innermost(failure: Mapping[str, Any]) -> Mapping[str, Any]:
-    """The last cause of a chain that failed by itself; what a time limit ended did not."""
+    """The last cause of a chain that failed on its own, not through a time limit."""
     link = failure
     while link["cause"] is not None and link["cause"]["code"] != HALTED:
         link = link["cause"]

@@ -46,12 +46,12 @@ class Paired:
 
     @property
     def counts(self) -> tuple[int, int, int, int]:
-        """How many seeds: both, only A, only B, neither."""
+        """The numbers of seeds: both, only A, only B, neither."""
         return len(self.both), len(self.only_a), len(self.only_b), len(self.neither)
 
     @property
     def pairs(self) -> int:
-        """How many seeds there are."""
+        """The number of seeds."""
         return sum(self.counts)
 
     @property

@@ -70,7 +70,7 @@ class Offset(GoalLayer):
         return arm_of(self.description)
 
     def begin(self) -> None:
-        """Forget what was told of this instant."""
+        """Forget the readings of this moment."""
         super().begin()
         self._inner = None
 
@@ -86,7 +86,7 @@ class Offset(GoalLayer):
         return self._told
 
     def changed(self, goal: ActuatorGoal) -> ActuatorGoal:
-        """The goal as the joint itself has to be told, within its limits."""
+        """The goal to command to the joint itself, within its limits."""
         if not isinstance(goal, JointTrajectory | JointPositions) or self.joint not in goal.names:
             return goal
         column = goal.names.index(self.joint)

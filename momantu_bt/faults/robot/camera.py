@@ -91,7 +91,7 @@ class Shifted(SensorLayer):
 def _turned(
     shape: tuple[int, int], intrinsics: tuple[float, ...], heading: float, turn: float
 ) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.bool_], NDArray[np.float32]]:
-    """Where each pixel of the turned camera lies in the straight one's picture.
+    """The position of each pixel of the turned camera in the straight camera's picture.
 
     Returns rows and columns (h, w), whether they lie in it, and turned over straight depth there.
     """

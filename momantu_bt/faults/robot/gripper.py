@@ -45,7 +45,7 @@ class Stuck(StuckLayer):
 
 
 class Slips(GoalLayer):
-    """`gripper.slips`: little force, until the fingers are told to open."""
+    """`gripper.slips`: little force, until the fingers are commanded to open."""
 
     def __init__(self, inner: Robot, fault: Fault, seed: int) -> None:
         super().__init__(inner, fault, seed)
@@ -56,7 +56,7 @@ class Slips(GoalLayer):
         return gripper_of(self.description)
 
     def begin(self) -> None:
-        """Take the force away from what the fingers were told last."""
+        """Repeat the fingers' last command with little force."""
         super().begin()
         width = max(0.0, self.inner.state().gripper_width)
         last = self._last or GripperCommand(width, self.description.end_effector.max_force)

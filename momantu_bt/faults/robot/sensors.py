@@ -39,7 +39,7 @@ class SensorLayer(Layer):
         return known[1]
 
     def altered(self, sensor: str, reading: Any) -> SensorReading:
-        """What is read instead."""
+        """The reading that replaces the real one."""
         raise NotImplementedError(f"{type(self).__name__} has no altered()")
 
 
@@ -70,7 +70,7 @@ class _Repeating(SensorLayer):
                 self._held.pop(name, None)
 
     def read(self, sensor: str) -> SensorReading:
-        """What was seen at the begin, with the stamp of now."""
+        """The reading from the beginning of the fault, with the current stamp."""
         held = self._held.get(sensor)
         if not self.active or held is None:
             return self.inner.read(sensor)

@@ -70,14 +70,14 @@ class SkillFault:
         return type(kind.__name__, (kind,), {**about, "__qualname__": kind.__qualname__})
 
     def before(self, skill: Skill) -> None:
-        """What happens to a skill that is hit before each of its steps."""
+        """The effect on an affected skill before each of its steps."""
 
     def longer(self, said: str | Compute) -> Iterator[str | Compute]:
-        """What a skill that is hit yields where it would yield `said`."""
+        """What an affected skill yields in place of `said`."""
         yield said
 
     def after(self, skill: Skill) -> None:
-        """What happens to a skill that is hit when it has ended in SUCCESS."""
+        """The effect on an affected skill after it has ended in SUCCESS."""
 
     def _run(self, skill: Skill, steps: Run) -> Run:
         answer: Any = None

@@ -15,7 +15,7 @@ from momantu_bt.formats.problems import Problem
 
 @dataclass(frozen=True, slots=True)
 class XmlRules:
-    """How one kind of file is read.
+    """How to read one kind of file: its limits, and its words in messages.
 
     what: what a person calls such a file, in messages. most_nodes: elements, attributes and
     comments; most_attributes: of one element. beginning: what to do about an empty file.
@@ -33,7 +33,7 @@ class XmlRules:
 
 @dataclass(frozen=True, slots=True)
 class LibraryError:
-    """What lxml says. kind: such as "ERR_TAG_NAME_MISMATCH"; line, column: from 1."""
+    """An error of lxml. kind: such as "ERR_TAG_NAME_MISMATCH"; line, column: from 1."""
 
     kind: str
     message: str

@@ -21,7 +21,7 @@ class Comment:
 
 
 def span(event: Any) -> list[tuple[int, int]]:
-    """Where a scalar's text stands; that of `|` and `>` begins on the next line."""
+    """The place of a scalar's text; that of `|` and `>` begins on the next line."""
     start, end = event.start_mark.index, event.end_mark.index
     if event.style not in ("|", ">"):
         return [(start, end)]

@@ -16,7 +16,7 @@ _FLOW_MAPPING = "a flow mapping"
 
 @dataclass(frozen=True, slots=True)
 class YamlRules:
-    """How one kind of file is read.
+    """How to read one kind of file: its limits, and its words in messages.
 
     what: what a person calls such a file, in messages. most_values: those behind aliases are
     counted each time they are used; comments have the same bound.
@@ -61,7 +61,7 @@ def in_our_words(error: MarkedYAMLError, text: str, file: str, rules: YamlRules)
 
 
 def _indented_above(text: str, begin: StringMark, at: StringMark | None) -> str:
-    """Where the mapping or list begins, and which lines above may be indented wrongly.
+    """The place where a mapping or list begins, and the lines above that may be misindented.
 
     The line would fit if the one that it stands below were further out or in, or that one's first
     line were.
