@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import cache
 from importlib import import_module
 from importlib.metadata import EntryPoint
 from typing import Any, ClassVar, Protocol, TypeAlias, TypeVar
@@ -18,7 +18,7 @@ from momantu_bt.tree.catalogue.words import CONDITIONS, NODE_KEYS
 
 K = TypeVar("K")
 V = TypeVar("V")
-_Installed: TypeAlias = tuple[tuple[str, EntryPoint], ...]
+_Installed: TypeAlias = Mapping[str, EntryPoint]
 
 
 class NodeClass(Protocol):
@@ -99,7 +99,16 @@ def is_ours(name: str) -> bool:
 
 
 def _tables() -> _Tables:
-    return _read(tuple(PLUGINS.installed().items()), tuple(BEHAVIOURS.installed().items()))
+    """The tables of today's plug-ins; groups give the same mapping while these are the same."""
+    global _newest
+    found = PLUGINS.installed(), BEHAVIOURS.installed()
+    if _newest is None or found[0] is not _newest[0] or found[1] is not _newest[1]:
+        _newest = (*found, _read(*found))
+    return _newest[2]
+
+
+_newest: tuple[_Installed, _Installed, _Tables] | None = None
+"""What the tables were read from, and the tables."""
 
 
 def _bridge() -> Any:
@@ -120,15 +129,14 @@ def _built_in() -> Mapping[str, type[NodeClass]]:
     return found
 
 
-@lru_cache(maxsize=4)
 def _read(nodes: _Installed, behaviours: _Installed) -> _Tables:
     """All installed nodes without the broken ones; `load` of their group raises the reason."""
     classes = dict(_built_in())
-    for name, _ in nodes:
+    for name in nodes:
         with suppress(PluginError):
             plugin = PLUGINS.load(name)
             classes[plugin.spec.type] = plugin
-    for name, _ in behaviours:
+    for name in behaviours:
         with suppress(PluginError):
             classes[name] = _bridge().node_class(name, BEHAVIOURS.load(name))
     specs = {type_: kind.spec for type_, kind in classes.items()}
