@@ -59,41 +59,48 @@ class Group:
         """(n,) which joints turn for ever."""
         return np.asarray(~np.isfinite(self.lower))
 
+    @cached_property
+    def chain(self) -> kin.Chain:
+        """The joints as the compiled kinematics take them."""
+        weights = (self.velocity / self.pace) ** 2
+        limits = (self.lower, self.upper)
+        return kin.Chain(self.origins, self.axes, self.slides, self.tip, *limits, weights)
+
     def tip_pose(self, q: Array) -> Transform:
         """base_from_tip at joints (n,)."""
-        r, p, _ = kin.forward(self.origins, self.axes, self.slides, self.tip, q)
+        r, p, _ = kin.forward(self.chain, q)
         return Transform.from_rotation(r, p)
 
     def tip_matrix(self, q: Array) -> Array:
         """base_from_tip (4, 4) at joints (n,)."""
         m = np.eye(4)
-        m[:3, :3], m[:3, 3], _ = kin.forward(self.origins, self.axes, self.slides, self.tip, q)
+        m[:3, :3], m[:3, 3], _ = kin.forward(self.chain, q)
         return m
 
     def jacobian(self, q: Array) -> Array:
         """(6, n): velocity of the tip, then angular velocity, in base, per joint."""
-        return np.asarray(kin.forward(self.origins, self.axes, self.slides, self.tip, q)[2])
+        return np.asarray(kin.forward(self.chain, q)[2])
 
     def solve(self, targets: Array, seeds: Array, rounds: int = 40) -> tuple[Array, Array]:
         """Inverse kinematics of poses (m, 4, 4) from seeds (s, n).
 
         Returns joints (m, s, n) within the limits, and success (m, s).
         """
-        found, good = kin.solve(  # type: ignore[call-arg]
-            *self._kernel(), np.ascontiguousarray(targets), seeds, rounds, NEAR, TURN
+        found, good = kin.solve(
+            self.chain, np.ascontiguousarray(targets), seeds, rounds, NEAR, TURN
         )
         return found, good
 
     def trace(self, targets: Array, start: Array) -> tuple[Array, int]:
         """Joints along poses (k, 4, 4) a centimetre apart: (reached, n), and how many there are."""
-        path, reached = kin.trace(  # type: ignore[call-arg]
-            *self._kernel(), np.ascontiguousarray(targets), np.array(start), NEAR, TURN, JUMP
+        path, reached = kin.trace(
+            self.chain, np.ascontiguousarray(targets), np.array(start), NEAR, TURN, JUMP
         )
         return path[:reached], int(reached)
 
     def poses(self, postures: Array) -> Array:
         """base_from_tip (m, 4, 4) at each of joints (m, n)."""
-        return np.asarray(kin.poses(self.origins, self.axes, self.slides, self.tip, postures))
+        return np.asarray(kin.poses(self.chain, postures))
 
     def point(
         self, starts: Array, ray: Array, target: Array, rounds: int = 12
@@ -102,24 +109,13 @@ class Group:
 
         Returns joints (m, n) within the limits, moved little, and the angles left (m,), rad.
         """
-        return kin.point(*self._kernel(), starts, ray, target, rounds, TURN)  # type: ignore[call-arg,no-any-return]
+        found, left = kin.point(self.chain, starts, ray, target, rounds, TURN)
+        return found, left
 
     def nearest_turn(self, q: Array, reference: Array) -> Array:
         """The same posture with endless joints (.., n) within half a turn of `reference` (n,)."""
         turns = np.round((q - reference) / (2 * np.pi)) * (2 * np.pi)
         return np.where(self.endless, q - turns, q)
-
-    def _kernel(self) -> tuple[object, ...]:
-        weights = (self.velocity / self.pace) ** 2
-        return (
-            self.origins,
-            self.axes,
-            self.slides,
-            self.tip,
-            self.lower,
-            self.upper,
-            weights,
-        )
 
 
 class ArmModel:

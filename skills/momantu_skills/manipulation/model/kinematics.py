@@ -1,20 +1,38 @@
-"""Forward and inverse kinematics of a serial chain, compiled.
-
-A chain of n joints is given by arrays: origins (n, 4, 4), each joint's fixed transform from the
-previous joint; axes (n, 3), unit, in the joint's frame; slides (n,), True where prismatic; tip
-(4, 4), from the last joint to the tip. Poses are base_from_tip (4, 4).
-"""
+"""Forward and inverse kinematics of a serial chain, compiled. Poses are base_from_tip (4, 4)."""
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
+
+from momantu_bt.geometry import Array
 
 DAMPING = 1e-4
 """Damped least squares' lambda squared, in m2 of weighted joint motion: keeps steps near
 singular arms short and costs a few iterations elsewhere."""
 LONGEST_STEP = 0.35
 """rad (or scaled m) a joint moves in one iteration at most: the linearisation holds that far."""
+
+
+class Chain(NamedTuple):
+    """A serial chain of n joints.
+
+    origins (n, 4, 4): each joint's fixed transform from the previous joint. axes (n, 3): unit, in
+    the joint's frame. slides (n,): True where prismatic. tip (4, 4): from the last joint to the
+    tip. lower, upper (n,): limits, rad or m. weights (n,): squared speeds, so that slow joints
+    move little (weighted pseudo-inverse).
+    """
+
+    origins: Array
+    axes: Array
+    slides: NDArray[np.bool_]
+    tip: Array
+    lower: Array
+    upper: Array
+    weights: Array
 
 
 @njit(cache=True)
@@ -46,11 +64,12 @@ def _product(ra, pa, rb, pb):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def forward(origins, axes, slides, tip, q):  # type: ignore[no-untyped-def]
+def forward(chain, q):  # type: ignore[no-untyped-def]
     """Rotation (3, 3) and position (3,) of the tip, and the geometric Jacobian (6, n) in base.
 
     Rows: linear velocity of the tip, then angular velocity (Siciliano et al., Robotics, 3.1).
     """
+    origins, axes, slides, tip = chain.origins, chain.axes, chain.slides, chain.tip
     n = len(q)
     r, p = np.eye(3), np.zeros(3)
     directions, points = np.empty((n, 3)), np.empty((n, 3))
@@ -102,9 +121,9 @@ def _error(r, p, target):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _stepped(q, jacobian, e, lower, upper, weights):  # type: ignore[no-untyped-def]
+def _stepped(chain, q, jacobian, e):  # type: ignore[no-untyped-def]
     """Joints (n,) after one damped, weighted step against an error (k,), within their limits."""
-    weighted = jacobian * weights
+    weighted = jacobian * chain.weights
     system = weighted @ jacobian.T
     for i in range(len(e)):
         system[i, i] += DAMPING
@@ -112,48 +131,37 @@ def _stepped(q, jacobian, e, lower, upper, weights):  # type: ignore[no-untyped-
     largest = np.max(np.abs(step))
     if largest > LONGEST_STEP:
         step *= LONGEST_STEP / largest
-    return np.minimum(np.maximum(q + step, lower), upper)
+    return np.minimum(np.maximum(q + step, chain.lower), chain.upper)
 
 
 @njit(cache=True)
-def descend(  # type: ignore[no-untyped-def]
-    origins, axes, slides, tip, lower, upper, weights, target, q, rounds, near, turn
-):
+def descend(chain, target, q, rounds, near, turn):  # type: ignore[no-untyped-def]
     """Damped least squares from `q` to `target`: joints (n,) and whether they are there.
 
-    weights (n,): squared speeds, so that slow joints move little (weighted pseudo-inverse).
     near, turn: tolerances in m and rad. Limits hold after every step.
     """
     q = q.copy()
     for _ in range(rounds):
-        r, p, jacobian = forward(origins, axes, slides, tip, q)
+        r, p, jacobian = forward(chain, q)
         e = _error(r, p, target)
         if (
             np.sqrt(e[0] ** 2 + e[1] ** 2 + e[2] ** 2) < near
             and np.sqrt(e[3] ** 2 + e[4] ** 2 + e[5] ** 2) < turn
         ):
             return q, True
-        q = _stepped(q, jacobian, e, lower, upper, weights)
+        q = _stepped(chain, q, jacobian, e)
     return q, False
 
 
 @njit(cache=True)
-def solve(  # type: ignore[no-untyped-def]
-    origins, axes, slides, tip, lower, upper, weights, targets, seeds, rounds, near, turn
-):
+def solve(chain, targets, seeds, rounds, near, turn):  # type: ignore[no-untyped-def]
     """Every target (m, 4, 4) from every seed (s, n): joints (m, s, n) and success (m, s)."""
     m, s, n = len(targets), len(seeds), seeds.shape[1]
     found, good = np.empty((m, s, n)), np.zeros((m, s), dtype=np.bool_)
     for i in range(m):
         for j in range(s):
             found[i, j], good[i, j] = descend(
-                origins,
-                axes,
-                slides,
-                tip,
-                lower,
-                upper,
-                weights,
+                chain,
                 targets[i],
                 seeds[j],
                 rounds,
@@ -164,9 +172,7 @@ def solve(  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def trace(  # type: ignore[no-untyped-def]
-    origins, axes, slides, tip, lower, upper, weights, targets, start, near, turn, jump
-):
+def trace(chain, targets, start, near, turn, jump):  # type: ignore[no-untyped-def]
     """Follow poses (k, 4, 4) closely spaced, from `start`: joints (k, n), how many were reached.
 
     Stops where a pose cannot be reached, or a joint would move more than `jump` between two.
@@ -175,9 +181,7 @@ def trace(  # type: ignore[no-untyped-def]
     q = start
     for i in range(len(targets)):
         previous = q
-        q, good = descend(
-            origins, axes, slides, tip, lower, upper, weights, targets[i], q, 25, near, turn
-        )
+        q, good = descend(chain, targets[i], q, 25, near, turn)
         if not good or np.max(np.abs(q - previous)) > jump:
             return path, i
         path[i] = q
@@ -185,11 +189,11 @@ def trace(  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def poses(origins, axes, slides, tip, postures):  # type: ignore[no-untyped-def]
+def poses(chain, postures):  # type: ignore[no-untyped-def]
     """base_from_tip (m, 4, 4) at joints (m, n)."""
     found = np.zeros((len(postures), 4, 4))
     for i in range(len(postures)):
-        r, p, _ = forward(origins, axes, slides, tip, postures[i])
+        r, p, _ = forward(chain, postures[i])
         found[i, :3, :3] = r
         found[i, :3, 3] = p
         found[i, 3, 3] = 1.0
@@ -218,9 +222,7 @@ def _off_ray(r, p, ray, target):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def point(  # type: ignore[no-untyped-def]
-    origins, axes, slides, tip, lower, upper, weights, starts, ray, target, rounds, near
-):
+def point(chain, starts, ray, target, rounds, near):  # type: ignore[no-untyped-def]
     """Turn the tip's `ray` (3,) towards `target` (3,) from each of starts (m, n).
 
     Damped least squares on the angle between ray and line of sight: two conditions, so that all
@@ -230,7 +232,7 @@ def point(  # type: ignore[no-untyped-def]
     for k in range(len(starts)):
         q = starts[k].copy()
         for _ in range(rounds):
-            r, p, jacobian = forward(origins, axes, slides, tip, q)
+            r, p, jacobian = forward(chain, q)
             e, angle, way, length = _off_ray(r, p, ray, target)
             left[k] = angle
             if angle < near:
@@ -242,8 +244,8 @@ def point(  # type: ignore[no-untyped-def]
                 turning[0, i] = w[0] - along * way[0] + (way[1] * v[2] - way[2] * v[1]) / length
                 turning[1, i] = w[1] - along * way[1] + (way[2] * v[0] - way[0] * v[2]) / length
                 turning[2, i] = w[2] - along * way[2] + (way[0] * v[1] - way[1] * v[0]) / length
-            q = _stepped(q, turning, e, lower, upper, weights)
+            q = _stepped(chain, q, turning, e)
         found[k] = q
-        r, p, _ = forward(origins, axes, slides, tip, q)
+        r, p, _ = forward(chain, q)
         _, left[k], _, _ = _off_ray(r, p, ray, target)
     return found, left
