@@ -1,4 +1,4 @@
-"""The command line: one module per verb, imported when its verb is used.
+"""The command line: one file for each verb, imported when the verb is used.
 
 Exit codes: 0 the tree succeeded and no referee denies it; 1 it failed, or something is wrong;
 2 the tree or the arguments are wrong, and nothing was started; 3 the world could not start;
@@ -16,7 +16,7 @@ from typing import Any
 import typer
 
 import momantu_bt.threads  # noqa: F401 - before numpy, which the next imports load
-from momantu_bt.cli.notices import notice
+from momantu_bt.cli.shared.notices import notice
 from momantu_bt.cli.subverbs import add_command, with_subverbs
 from momantu_bt.cli.verbs import COMMANDS, VERBS, built_in
 from momantu_bt.errors import ExitCode, MomantuError
@@ -67,12 +67,12 @@ def _app(given: Sequence[str]) -> typer.Typer:
         context_settings={"help_option_names": ["-h", "--help"]},
     )
     app.callback(epilog="momantu-bt VERB --help shows worked examples.")(_options)
-    for name, help_line in VERBS.items():
+    for name, described in VERBS.items():
         if name == verb:
             own = built_in(name)
             add_command(app, name, with_subverbs(own, name, rest))
         else:
-            app.command(name, help=help_line)(_never)
+            app.command(name, help=described.summary)(_never)
     for name, entry in COMMANDS.installed().items():
         if name in VERBS or " " in name:
             continue

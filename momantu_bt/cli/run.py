@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from momantu_bt.cli.notices import notice
-from momantu_bt.cli.options import Robot
+from momantu_bt.cli.shared.notices import notice
+from momantu_bt.cli.shared.options import Robot
 from momantu_bt.errors import ExitCode, InputError, MomantuError
 from momantu_bt.formats.files import check_writable
 from momantu_bt.lazy import lazily
@@ -20,8 +20,9 @@ from momantu_bt.lazy import lazily
 with lazily():
     from rich import console
 
-    from momantu_bt.cli import breakpoints, given, live
+    from momantu_bt.cli import breakpoints, live
     from momantu_bt.cli import terminal as terminals
+    from momantu_bt.cli.shared import given
     from momantu_bt.engine import person
     from momantu_bt.faults import spec
     from momantu_bt.record import changes, ending, film

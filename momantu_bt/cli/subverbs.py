@@ -16,7 +16,7 @@ from typing import Any
 
 import typer
 
-from momantu_bt.cli.help import help_of
+from momantu_bt.cli.shared.help import help_of
 from momantu_bt.cli.verbs import COMMANDS
 
 

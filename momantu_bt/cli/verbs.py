@@ -4,28 +4,62 @@ from __future__ import annotations
 
 import re
 from importlib import import_module
-from typing import Any
+from typing import Any, NamedTuple
 
 import typer
 
 from momantu_bt.plugins import Group
 
+
+class Verb(NamedTuple):
+    """A built-in verb.
+
+    module: has a function or a typer app of the verb's name. summary: one line of help.
+    """
+
+    module: str
+    summary: str
+
+
 VERBS = {
-    "run": "Run a tree.",
-    "bench": "Run a tree many times and say how often it works, and why not.",
-    "compare": "Run two trees on the same seeds and say which works more often.",
-    "replay": "Go through a recorded run, or tick its tree again.",
-    "diff": "Say what two recorded runs differ in.",
-    "check": "Say everything that is wrong with tree files.",
-    "convert": "Write a tree in the other spelling, YAML or BehaviorTree.CPP's XML.",
-    "show": "Print a tree in plain words or as a picture, or the difference of two.",
-    "skills": "List skills, or show one with its ports and failure codes.",
-    "worlds": "List worlds, or show one with its places and surfaces.",
-    "robots": "List robots, or show one with its actuators and named poses.",
-    "faults": "List what can be broken on purpose, or show one fault.",
-    "doctor": "Say what this machine lacks, and the cure.",
+    "run": Verb("momantu_bt.cli.run", "Run a tree."),
+    "bench": Verb(
+        "momantu_bt.cli.bench.bench",
+        "Run a tree many times and say how often it works, and why not.",
+    ),
+    "compare": Verb(
+        "momantu_bt.cli.bench.compare",
+        "Run two trees on the same seeds and say which works more often.",
+    ),
+    "replay": Verb(
+        "momantu_bt.cli.replay.replay", "Go through a recorded run, or tick its tree again."
+    ),
+    "diff": Verb("momantu_bt.cli.replay.diff", "Say what two recorded runs differ in."),
+    "check": Verb("momantu_bt.cli.trees.check", "Say everything that is wrong with tree files."),
+    "convert": Verb(
+        "momantu_bt.cli.trees.convert",
+        "Write a tree in the other spelling, YAML or BehaviorTree.CPP's XML.",
+    ),
+    "show": Verb(
+        "momantu_bt.cli.trees.show",
+        "Print a tree in plain words or as a picture, or the difference of two.",
+    ),
+    "skills": Verb(
+        "momantu_bt.cli.skills.skills", "List skills, or show one with its ports and failure codes."
+    ),
+    "worlds": Verb(
+        "momantu_bt.cli.worlds", "List worlds, or show one with its places and surfaces."
+    ),
+    "robots": Verb(
+        "momantu_bt.cli.robots.robots",
+        "List robots, or show one with its actuators and named poses.",
+    ),
+    "faults": Verb(
+        "momantu_bt.cli.faults", "List what can be broken on purpose, or show one fault."
+    ),
+    "doctor": Verb("momantu_bt.cli.doctor", "Say what this machine lacks, and the cure."),
 }
-"""Built-in verbs. `momantu_bt.cli.<verb>` has a function or a typer app of the verb's name."""
+"""The built-in verbs, by name."""
 
 
 _WORD = re.compile(r"[a-z][a-z0-9_-]*")
@@ -33,7 +67,7 @@ _WORD = re.compile(r"[a-z][a-z0-9_-]*")
 
 def built_in(verb: str) -> Any:
     """The function or typer app of a built-in verb, whose module is imported now."""
-    return getattr(import_module(f"momantu_bt.cli.{verb}"), verb)
+    return getattr(import_module(VERBS[verb].module), verb)
 
 
 def _objection(name: str, plugin: Any) -> str | None:

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from momantu_bt.cli.listing import listing
+from momantu_bt.cli.shared.listing import listing
 from momantu_bt.messages import plain
 from momantu_bt.world import AboutWorld, WorldEntry
 from momantu_bt.world_plugins import WORLDS

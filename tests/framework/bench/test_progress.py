@@ -14,7 +14,7 @@ import pytest
 
 from momantu_bt.bench.rows.spec import EpisodeSpec, Row
 from momantu_bt.bench.rows.store import read_rows
-from momantu_bt.cli.bench_progress import Progress, duration
+from momantu_bt.cli.bench.progress import Progress, duration
 
 
 class Still:

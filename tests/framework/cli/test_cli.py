@@ -171,7 +171,7 @@ def test_what_a_verb_raises_becomes_an_exit_code(
     def load(*arguments: object, **options: object) -> None:
         raise error
 
-    monkeypatch.setattr("momantu_bt.cli.check.load", load)
+    monkeypatch.setattr("momantu_bt.cli.trees.check.load", load)
     monkeypatch.setattr("os.dup2", lambda *descriptors: None)
     monkeypatch.delenv("MOMANTU_BT_TRACEBACK", raising=False)
     assert main(["check", str(tree)]) == code

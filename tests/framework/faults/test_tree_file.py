@@ -11,7 +11,7 @@ from ruamel.yaml import YAML
 
 from momantu_bt.bench.episodes.parcel import Parcel
 from momantu_bt.cli import main
-from momantu_bt.cli.bench_setup import demands_of
+from momantu_bt.cli.bench.setup import demands_of
 from momantu_bt.faults.spec import parse_fault
 from momantu_bt.faults.stage import plan
 from momantu_bt.faults.tree_file import TreeFaults, tree_faults

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from rich.console import Console, ConsoleDimensions
 
-from momantu_bt.cli.replay_screen import picture
+from momantu_bt.cli.replay.screen import picture
 from momantu_bt.replay.run_text import run_lines
 from momantu_bt.replay.stepper import Stepper
 from momantu_bt.replay.timeline import Timeline

@@ -12,7 +12,7 @@ from jsonschema import Draft202012Validator
 from ruamel.yaml import YAML
 
 from momantu_bt.cli import main
-from momantu_bt.cli.robots_schema import robot_schema
+from momantu_bt.cli.robots.schema import robot_schema
 from momantu_bt.robots import read_robot
 
 Write = Callable[..., Path]

@@ -13,7 +13,7 @@ from momantu_bt.errors import ExitCode
 from momantu_bt.lazy import lazily
 
 with lazily():
-    from momantu_bt.cli import records
+    from momantu_bt.cli.replay import records
     from momantu_bt.replay import compare
 
 if TYPE_CHECKING:

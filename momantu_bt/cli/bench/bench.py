@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from momantu_bt.cli.options import (
+from momantu_bt.cli.shared.options import (
     OUT,
     RECORD,
     EpisodeLimit,
@@ -36,7 +36,10 @@ with lazily():
     from momantu_bt.bench.rows import store as results
     from momantu_bt.bench.statistics import coverage as coverages
     from momantu_bt.bench.statistics import summary
-    from momantu_bt.cli import bench_merge, bench_progress, bench_setup, given
+    from momantu_bt.cli.bench import merge as bench_merge
+    from momantu_bt.cli.bench import progress as bench_progress
+    from momantu_bt.cli.bench import setup as bench_setup
+    from momantu_bt.cli.shared import given
 
 if TYPE_CHECKING:
     from momantu_bt.bench.planning.plan import Plan

@@ -16,7 +16,7 @@ from momantu_bt.bench.episodes.ray_engine import RayEngine
 from momantu_bt.bench.planning.made_of import made_of
 from momantu_bt.bench.planning.plan import Plan, Wanted
 from momantu_bt.bench.rows.store import Store
-from momantu_bt.cli.notices import notice
+from momantu_bt.cli.shared.notices import notice
 from momantu_bt.engine.build import skills_in
 from momantu_bt.errors import InputError
 from momantu_bt.faults.matrix import Row as Demand

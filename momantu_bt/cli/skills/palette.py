@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import typer
 
-from momantu_bt.cli.notices import notice
+from momantu_bt.cli.shared.notices import notice
 from momantu_bt.plugins import PluginError
 from momantu_bt.skill import Skill
 from momantu_bt.tree.files.xml.palette import palette

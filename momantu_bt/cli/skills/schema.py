@@ -6,8 +6,8 @@ from typing import Annotated
 
 import typer
 
-from momantu_bt.cli.notices import notice
-from momantu_bt.cli.schema_file import Out, put_schema
+from momantu_bt.cli.shared.notices import notice
+from momantu_bt.cli.shared.schema_file import Out, put_schema
 from momantu_bt.errors import ExitCode
 from momantu_bt.plugins import PluginError
 from momantu_bt.robots.plugins import load_robot

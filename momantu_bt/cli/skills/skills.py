@@ -7,13 +7,13 @@ from typing import Annotated
 
 import typer
 
-from momantu_bt.cli.help import help_of
-from momantu_bt.cli.listing import first_line, listing
-from momantu_bt.cli.skills_new import new
-from momantu_bt.cli.skills_pages import pages
-from momantu_bt.cli.skills_palette import print_palette
-from momantu_bt.cli.skills_schema import schema
-from momantu_bt.cli.skills_test import promises
+from momantu_bt.cli.shared.help import help_of
+from momantu_bt.cli.shared.listing import first_line, listing
+from momantu_bt.cli.skills.new import new
+from momantu_bt.cli.skills.pages import pages
+from momantu_bt.cli.skills.palette import print_palette
+from momantu_bt.cli.skills.schema import schema
+from momantu_bt.cli.skills.test import promises
 from momantu_bt.tree.catalogue import SPELLED
 from momantu_bt.tree.plugins import SKILLS
 from momantu_bt.tree.show.node_page import node_data, node_text

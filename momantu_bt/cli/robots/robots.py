@@ -7,10 +7,10 @@ from typing import Annotated
 
 import typer
 
-from momantu_bt.cli.help import help_of
-from momantu_bt.cli.listing import listing
-from momantu_bt.cli.robot_text import robot_lines
-from momantu_bt.cli.robots_schema import schema
+from momantu_bt.cli.robots.schema import schema
+from momantu_bt.cli.robots.text import robot_lines
+from momantu_bt.cli.shared.help import help_of
+from momantu_bt.cli.shared.listing import listing
 from momantu_bt.robots.plugins import ROBOTS, Describe, load_robot
 from momantu_bt.robots.summary import summary
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from momantu_bt.cli.options import (
+from momantu_bt.cli.shared.options import (
     OUT,
     RECORD,
     EpisodeLimit,
@@ -34,7 +34,9 @@ with lazily():
     from momantu_bt.bench.rows import store as results
     from momantu_bt.bench.statistics import paired as pairs
     from momantu_bt.bench.statistics import summary as figures
-    from momantu_bt.cli import bench_progress, bench_setup, given
+    from momantu_bt.cli.bench import progress as bench_progress
+    from momantu_bt.cli.bench import setup as bench_setup
+    from momantu_bt.cli.shared import given
 
 if TYPE_CHECKING:
     from momantu_bt.bench.episodes.engine import Engine

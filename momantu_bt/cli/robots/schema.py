@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from momantu_bt.cli.schema_file import Out, put_schema
+from momantu_bt.cli.shared.schema_file import Out, put_schema
 from momantu_bt.descriptions.schema import editor_schema
 from momantu_bt.errors import ExitCode
 from momantu_bt.robots.robot_file import RobotFile

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from momantu_bt.cli.notices import notice
+from momantu_bt.cli.shared.notices import notice
 from momantu_bt.record.reader import RecordError, read_record
 from momantu_bt.record.recording import Recording
 

@@ -1,0 +1,1 @@
+"""`momantu-bt bench` and `compare`: many runs of a tree."""

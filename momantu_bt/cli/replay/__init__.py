@@ -1,0 +1,1 @@
+"""`momantu-bt replay` and `diff`: recorded runs."""

@@ -1,0 +1,1 @@
+"""`momantu-bt robots` and its sub-verbs."""

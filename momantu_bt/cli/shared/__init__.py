@@ -1,0 +1,1 @@
+"""What several verbs use: options, values, lists, schemas, notices and help."""

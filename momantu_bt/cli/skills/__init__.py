@@ -1,0 +1,1 @@
+"""`momantu-bt skills` and its sub-verbs, a file each."""

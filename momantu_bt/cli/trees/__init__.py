@@ -1,0 +1,1 @@
+"""`momantu-bt check`, `convert` and `show`: tree files."""
