@@ -65,7 +65,7 @@ def setup(
 def _check_free(path: Path, force: bool) -> None:
     """OutputError where a file is in the way and may not be written over."""
     if path.exists() and not force:
-        raise OutputError(f"{path} is there already; --force writes over it, -o FOLDER elsewhere")
+        raise OutputError(f"{path} exists; --force overwrites it, -o FOLDER writes elsewhere")
 
 
 def _text(found: proposal.Proposal, folder: Path) -> tuple[str, tuple[str, ...]]:

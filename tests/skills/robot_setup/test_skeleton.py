@@ -79,7 +79,7 @@ def test_a_joint_without_a_range_turns_half_a_turn_each_way() -> None:
     ("elements", "words"),
     [
         ((link("a"), link("b")), "one root"),
-        ((link("a"), joint("ab", "a", "b")), "'b' there is not"),
+        ((link("a"), joint("ab", "a", "b")), "missing link 'b'"),
         ((link("a"), link("b"), joint("x", "a", "b"), joint("y", "b", "a")), "one root"),
         ((link("a"), link("b"), link("c"), joint("x", "b", "c"), joint("y", "c", "b")), "circle"),
         ((link("a"), link("b"), joint("x", "a", "b"), joint("y", "a", "b")), "two parents: b"),

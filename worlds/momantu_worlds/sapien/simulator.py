@@ -204,6 +204,6 @@ def render_system() -> Any:
     except RuntimeError as error:
         raise WorldError(
             f"SAPIEN cannot render: {error}. It needs a Vulkan driver, in software at least; "
-            "`make setup` brings one without touching the system, and `momantu-bt doctor` tells "
+            "`make setup` brings one without touching the system, and `momantu-bt doctor` says "
             "what is missing"
         ) from None

@@ -31,7 +31,7 @@ class Body:
         try:
             self.pin: pin.Model = pin.buildModelFromXML(self.urdf.text)
         except (RuntimeError, ValueError) as error:
-            raise SetupError(f"the URDF's joints make no mechanism: {error}") from None
+            raise SetupError(f"the URDF's joints do not form a mechanism: {error}") from None
         try:
             self.hulls = link_hulls(self.urdf.parts)
         except (QhullError, ValueError, RuntimeError) as error:

@@ -68,7 +68,7 @@ class Skeleton:
         for joint in self.joints.values():
             for end in (joint.parent, joint.child):
                 if end not in self.links:
-                    raise SetupError(f"the joint {joint.name!r} names a link {end!r} there is not")
+                    raise SetupError(f"the joint {joint.name!r} names the missing link {end!r}")
             self._below[joint.parent].append(joint)
         self.root = self._only_root()
 

@@ -32,7 +32,7 @@ class Floor(Part):
     @model_validator(mode="after")
     def _both(self) -> Self:
         if (self.center is None) != (self.size is None):
-            raise ValueError("write both center and size, or none of them")
+            raise ValueError("write both center and size, or neither")
         if self.size is not None and max(self.size) > MOST_FLOOR:
             raise ValueError(f"the floor is at most {MOST_FLOOR:g} m wide")
         return self

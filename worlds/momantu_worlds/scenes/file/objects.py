@@ -55,7 +55,7 @@ class ObjectNote(Part):
         if not box and self.size is not None:
             raise ValueError(f"a {self.kind} has a radius and a height, no size")
         if (self.radius is None) != (self.height is None):
-            raise ValueError("write both radius and height, or none of them")
+            raise ValueError("write both radius and height, or neither")
         return self
 
     @property
