@@ -24,7 +24,7 @@ from momantu_bt.errors import InputError
 from momantu_bt.failure import Failure
 from momantu_bt.formats.names import nearest, valid_names
 from momantu_bt.messages import plain
-from momantu_bt.record.lines import tree_lines
+from momantu_bt.record.text.lines import tree_lines
 from momantu_bt.skill import MISSING
 from momantu_bt.tree.catalogue.wording import value_text
 from momantu_bt.tree.model import Document, Node

@@ -11,8 +11,8 @@ from rich.live import Live
 from rich.text import Text
 
 from momantu_bt.engine.executor import Executor
-from momantu_bt.record.changes import ChangeLines
-from momantu_bt.record.lines import tree_lines
+from momantu_bt.record.text.changes import ChangeLines
+from momantu_bt.record.text.lines import tree_lines
 from momantu_bt.world import TreeLine
 
 REFRESH = 0.1

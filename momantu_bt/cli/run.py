@@ -25,7 +25,8 @@ with lazily():
     from momantu_bt.cli.shared import given
     from momantu_bt.engine import person
     from momantu_bt.faults import spec
-    from momantu_bt.record import changes, ending, film
+    from momantu_bt.record import film
+    from momantu_bt.record.text import changes, ending
     from momantu_bt.running import launch as launching
     from momantu_bt.running import options as run_options
     from momantu_bt.running import prepare as preparing

@@ -10,8 +10,8 @@ from momantu_bt.engine.ending import ERROR, FAILURE, INTERRUPTED, SUCCESS
 from momantu_bt.page.failures import final_failure
 from momantu_bt.page.tables import value_text
 from momantu_bt.record.codec import from_json
-from momantu_bt.record.failure_text import failure_line
 from momantu_bt.record.recording import Recording
+from momantu_bt.record.text.failure import failure_line
 
 _VERDICTS = {None: "", True: ", the referee agrees", False: ", the referee denies it"}
 

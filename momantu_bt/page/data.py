@@ -14,8 +14,8 @@ from momantu_bt.page.floor import floor
 from momantu_bt.page.lanes import lanes
 from momantu_bt.page.statuses import FAILURE, IDLE, RUNNING, SKIPPED, STATUS_NUMBERS, shown
 from momantu_bt.page.tables import Texts
-from momantu_bt.record.lines import is_frame
 from momantu_bt.record.recording import NodeInfo, Recording
+from momantu_bt.record.text.lines import is_frame
 
 _CAMERA = "/camera/"
 

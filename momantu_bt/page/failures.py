@@ -9,8 +9,8 @@ from typing import Any
 from momantu_bt.failure import FailureValue
 from momantu_bt.page.statuses import FAILURE
 from momantu_bt.page.tables import value_text
-from momantu_bt.record.failure_text import tries_text
 from momantu_bt.record.recording import NodeInfo, Recording, TickRecord
+from momantu_bt.record.text.failure import tries_text
 from momantu_bt.replay.run_text import report_of
 
 _MOST_LINKS = 200

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from momantu_bt.lazy import lazily
-from momantu_bt.record.floor_plan import FREE_BYTE, OCCUPIED_BYTE
+from momantu_bt.record.channels.floor_plan import FREE_BYTE, OCCUPIED_BYTE
 from momantu_bt.record.recording import Recording
 
 with lazily():

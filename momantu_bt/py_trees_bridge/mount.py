@@ -13,7 +13,7 @@ from py_trees.common import Status as PyTreesStatus
 from momantu_bt.engine.executor import Executor
 from momantu_bt.engine.person import Scripted
 from momantu_bt.py_trees_bridge.view import PY_TREES_STATUS, view
-from momantu_bt.record.lines import tree_lines
+from momantu_bt.record.text.lines import tree_lines
 from momantu_bt.running.launch import assemble
 from momantu_bt.running.options import RunOptions
 from momantu_bt.running.prepare import Prepared, prepare

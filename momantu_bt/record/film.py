@@ -1,9 +1,9 @@
-"""Observers that show a run in pictures: a film, and a view in a browser."""
+"""Subscribers that show a run in pictures: a film, and a view in a browser."""
 
 from __future__ import annotations
 
 from momantu_bt.engine.executor import Executor
-from momantu_bt.record.lines import running_text, tree_lines
+from momantu_bt.record.text.lines import running_text, tree_lines
 from momantu_bt.world import Video, View
 
 FRAME_EVERY = 2

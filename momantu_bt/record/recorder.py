@@ -18,21 +18,21 @@ from momantu_bt.engine.executor import Executor, Ticked
 from momantu_bt.formats.files import OutputError, write_whole
 from momantu_bt.formats.maps import read_map
 from momantu_bt.record.about import files_of, nodes_data, run_data
-from momantu_bt.record.channel import Channel, stamp_of
+from momantu_bt.record.channels.channel import Channel, stamp_of
+from momantu_bt.record.channels.floor_plan import grid_text
+from momantu_bt.record.channels.log_lines import LogLines
+from momantu_bt.record.channels.objects import Objects
+from momantu_bt.record.channels.poses import Poses
+from momantu_bt.record.channels.published import Published
+from momantu_bt.record.channels.sensors import Sensors
+from momantu_bt.record.channels.ticks import Ticks
 from momantu_bt.record.codec import dumps
-from momantu_bt.record.floor_plan import grid_text
 from momantu_bt.record.folder import LOG, REPORT, prepare_folder
-from momantu_bt.record.log_lines import LogLines
-from momantu_bt.record.mcap_file import McapFile
-from momantu_bt.record.objects import Objects
+from momantu_bt.record.mcap.file import McapFile
+from momantu_bt.record.mcap.schemas import END, FILE, NODES, RUN, Schema
+from momantu_bt.record.mcap.viewer_schemas import GRID
 from momantu_bt.record.outside_log import OutsideLog
-from momantu_bt.record.poses import Poses
-from momantu_bt.record.published import Published
 from momantu_bt.record.report import Report
-from momantu_bt.record.schemas import END, FILE, NODES, RUN, Schema
-from momantu_bt.record.sensors import Sensors
-from momantu_bt.record.ticks import Ticks
-from momantu_bt.record.viewer_schemas import GRID
 from momantu_bt.tree.model import Document
 
 MOST_TICKS, MOST_SECONDS = 10, 0.1

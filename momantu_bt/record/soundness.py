@@ -1,4 +1,4 @@
-"""Whether a record is consistent: a damaged file may still be JSON."""
+"""Check that a record is consistent: a damaged file may still be valid JSON."""
 
 from __future__ import annotations
 

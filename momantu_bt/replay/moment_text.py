@@ -9,9 +9,9 @@ from typing import Any
 from momantu_bt.engine.status import FAILURE, IDLE
 from momantu_bt.failure import FailureValue
 from momantu_bt.messages import plain
-from momantu_bt.record.failure_text import failure_line
-from momantu_bt.record.lines import tree_lines
 from momantu_bt.record.report import finite
+from momantu_bt.record.text.failure import failure_line
+from momantu_bt.record.text.lines import tree_lines
 from momantu_bt.replay.difference import value_words
 from momantu_bt.replay.moment import Moment, ShownNode
 

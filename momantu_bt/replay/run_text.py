@@ -8,10 +8,10 @@ from typing import Any
 
 from momantu_bt.engine.status import Status
 from momantu_bt.failure import FailureValue
-from momantu_bt.record.changes import ChangeLines
-from momantu_bt.record.ending import ending_text
 from momantu_bt.record.recording import Recording
 from momantu_bt.record.report import Report
+from momantu_bt.record.text.changes import ChangeLines
+from momantu_bt.record.text.ending import ending_text
 from momantu_bt.replay.moment import ShownNode
 
 

@@ -12,8 +12,8 @@ from rich.text import Text
 from momantu_bt.cli.keyboard import Keyboard
 from momantu_bt.cli.live import line_text
 from momantu_bt.engine.status import RUNNING
-from momantu_bt.record.failure_text import failure_line
-from momantu_bt.record.lines import tree_lines
+from momantu_bt.record.text.failure import failure_line
+from momantu_bt.record.text.lines import tree_lines
 from momantu_bt.replay.moment_text import board_lines, failures_of
 from momantu_bt.replay.stepper import KEYS, Stepper
 

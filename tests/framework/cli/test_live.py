@@ -9,8 +9,8 @@ import pytest
 from rich.console import Console
 
 from momantu_bt.cli.live import LiveTree
-from momantu_bt.record.changes import ChangeLines
-from momantu_bt.record.lines import running_text, tree_lines
+from momantu_bt.record.text.changes import ChangeLines
+from momantu_bt.record.text.lines import running_text, tree_lines
 from momantu_bt.running.api import run
 from momantu_bt.skill import Failure, In, Run, Skill
 from momantu_bt.testing import ScriptedWorld

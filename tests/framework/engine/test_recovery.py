@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from momantu_bt.record.failure_text import failure_line
+from momantu_bt.record.text.failure import failure_line
 from momantu_bt.skill import Failure, In, Out, Run, Skill
 
 SEEN: list[str] = []

@@ -11,8 +11,8 @@ from momantu_bt.engine.node import Parts, TreeNode
 from momantu_bt.engine.status import FAILURE, RUNNING, SUCCESS
 from momantu_bt.nodes.fallbacks import RoundRobin
 from momantu_bt.nodes.recover import Handle, Recover
-from momantu_bt.record.changes import ChangeLines
 from momantu_bt.record.reader import read_record
+from momantu_bt.record.text.changes import ChangeLines
 from momantu_bt.skill import MISSING, Failure, In, Run, Skill
 
 CODES = ("A", "B", "C")

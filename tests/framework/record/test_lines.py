@@ -7,7 +7,7 @@ import itertools
 import pytest
 
 from momantu_bt.record.film import FilmObserver, ViewObserver
-from momantu_bt.record.lines import running_text, tree_lines
+from momantu_bt.record.text.lines import running_text, tree_lines
 from momantu_bt.running.api import run
 from momantu_bt.skill import Failure, In, Run, Skill
 from momantu_bt.testing import ScriptedWorld

@@ -14,9 +14,9 @@ from hypothesis import strategies as st
 from momantu_bt.failure import FailureValue
 from momantu_bt.formats.files import OutputError, check_writable, write_whole
 from momantu_bt.geometry import Pose2D
-from momantu_bt.record.failure_text import failure_line
 from momantu_bt.record.folder import prepare_folder
 from momantu_bt.record.report import FalseClaim, NodeReport, Report, SkillClaims
+from momantu_bt.record.text.failure import failure_line
 
 FIELDS = {
     "tree": str,

@@ -18,10 +18,10 @@ from momantu_bt.failure import FailureValue
 from momantu_bt.formats.files import OutputError, check_writable, write_whole
 from momantu_bt.geometry import Pose2D
 from momantu_bt.messages import BaseVelocity
-from momantu_bt.record.ending import ending_text
-from momantu_bt.record.failure_text import failure_line
 from momantu_bt.record.folder import prepare_folder
 from momantu_bt.record.report import Report
+from momantu_bt.record.text.ending import ending_text
+from momantu_bt.record.text.failure import failure_line
 from momantu_bt.world import Incident
 
 VALUES = st.recursive(

@@ -10,10 +10,10 @@ from momantu_bt.engine.events import Events
 from momantu_bt.frames import ODOM
 from momantu_bt.geometry import Pose, Transform
 from momantu_bt.messages import DetectedObject, WrenchReading
+from momantu_bt.record.channels.sensors import Sensors
+from momantu_bt.record.channels.ticks import Ticks
 from momantu_bt.record.codec import Opaque
 from momantu_bt.record.recorder import Recorder
-from momantu_bt.record.sensors import Sensors
-from momantu_bt.record.ticks import Ticks
 from momantu_bt.service import HeldObject, Service
 from momantu_bt.skill import Needs, Out, Run, Skill
 

@@ -16,8 +16,8 @@ from fcntl import ioctl
 import pytest
 
 from momantu_bt.cli import main
-from momantu_bt.record.ending import ending_text
-from momantu_bt.record.failure_text import failure_line
+from momantu_bt.record.text.ending import ending_text
+from momantu_bt.record.text.failure import failure_line
 from momantu_bt.replay.run_text import report_of
 
 TREE = """

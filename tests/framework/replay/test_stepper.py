@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from momantu_bt.cli.keyboard import keys_in
-from momantu_bt.record.lines import tree_lines
+from momantu_bt.record.text.lines import tree_lines
 from momantu_bt.replay.moment_text import board_lines, failures_of, moment_data
 from momantu_bt.replay.seek import SeekError, changes, failures, matching
 from momantu_bt.replay.stepper import KEYS, SPEEDS, Stepper

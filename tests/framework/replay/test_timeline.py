@@ -5,7 +5,7 @@ from __future__ import annotations
 from hypothesis import HealthCheck, given, reject, settings
 
 from momantu_bt.engine.status import RUNNING
-from momantu_bt.record.lines import running_text, tree_lines
+from momantu_bt.record.text.lines import running_text, tree_lines
 from momantu_bt.replay.timeline import Timeline
 from momantu_bt.tree.load import TreeError
 from tests.framework.replay.test_recheck import trees_at_work

@@ -1,4 +1,4 @@
-"""The tree as lines of text, for the terminal and for pictures, of a run or of its record."""
+"""Write the tree as lines of text, for the terminal and for pictures, of a run or of its record."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A run as plain lines: one for each change that matters to a reader."""
+"""Write a run as plain lines: one for each change that matters to a reader."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from momantu_bt.engine.executor import Executor
 from momantu_bt.engine.role import Role
 from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, Status
 from momantu_bt.failure import FailureValue
-from momantu_bt.record.failure_text import failure_line
+from momantu_bt.record.text.failure import failure_line
 
 _WORDS = {"RUNNING": "starts", "SUCCESS": "done", "IDLE": "halted", "SKIPPED": "skipped"}
 

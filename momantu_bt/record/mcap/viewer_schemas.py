@@ -5,7 +5,7 @@ Fields and meanings are those of https://docs.foxglove.dev/docs/visualization/me
 
 from __future__ import annotations
 
-from momantu_bt.record.schemas import COUNT, NUMBER, TEXT, Schema, array, record
+from momantu_bt.record.mcap.schemas import COUNT, NUMBER, TEXT, Schema, array, record
 
 TIME: Schema = {
     "type": "object",

@@ -13,11 +13,11 @@ from momantu_bt.engine.executor import Executor
 from momantu_bt.engine.status import IDLE, RUNNING
 from momantu_bt.failure import FailureValue
 from momantu_bt.messages import ActuatorGoal
-from momantu_bt.record.channel import stamp_of
+from momantu_bt.record.channels.channel import stamp_of
 from momantu_bt.record.codec import dumps, to_json, to_text
-from momantu_bt.record.mcap_file import McapFile
+from momantu_bt.record.mcap.file import McapFile
+from momantu_bt.record.mcap.schemas import TICK
 from momantu_bt.record.outside_log import OutsideLog, Step
-from momantu_bt.record.schemas import TICK
 
 AGAIN = '{"$again":true}'
 """In the place of a value that is the same object as the last one of its name."""

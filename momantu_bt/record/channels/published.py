@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from momantu_bt.engine.executor import Executor
-from momantu_bt.record.channel import Due, stamp_of
+from momantu_bt.record.channels.channel import Due, stamp_of
 from momantu_bt.record.codec import dumps, to_json
-from momantu_bt.record.mcap_file import McapFile
-from momantu_bt.record.schemas import SERVICE
+from momantu_bt.record.mcap.file import McapFile
+from momantu_bt.record.mcap.schemas import SERVICE
 from momantu_bt.service import Service
 
 RATE = 5.0

@@ -14,11 +14,11 @@ from momantu_bt.engine.executor import Executor
 from momantu_bt.geometry import Transform
 from momantu_bt.lazy import lazily
 from momantu_bt.messages import CameraImage, LaserScan
-from momantu_bt.record.channel import stamp_of, time_text
+from momantu_bt.record.channels.channel import stamp_of, time_text
+from momantu_bt.record.channels.poses import pose_text
 from momantu_bt.record.codec import dumps
-from momantu_bt.record.mcap_file import McapFile
-from momantu_bt.record.poses import pose_text
-from momantu_bt.record.viewer_schemas import IMAGE, SCAN
+from momantu_bt.record.mcap.file import McapFile
+from momantu_bt.record.mcap.viewer_schemas import IMAGE, SCAN
 
 with lazily():
     from PIL import Image

@@ -9,11 +9,11 @@ from typing import Any
 from momantu_bt.engine.executor import Executor
 from momantu_bt.geometry import Transform
 from momantu_bt.messages import DetectedObject
-from momantu_bt.record.channel import Due, stamp_of, time_text
+from momantu_bt.record.channels.channel import Due, stamp_of, time_text
+from momantu_bt.record.channels.poses import pose_text
 from momantu_bt.record.codec import dumps
-from momantu_bt.record.mcap_file import McapFile
-from momantu_bt.record.poses import pose_text
-from momantu_bt.record.viewer_schemas import SCENE
+from momantu_bt.record.mcap.file import McapFile
+from momantu_bt.record.mcap.viewer_schemas import SCENE
 from momantu_bt.service import HeldObject, KnowsHeld, offers
 
 HELD = "held"

@@ -5,10 +5,10 @@ from __future__ import annotations
 from momantu_bt.engine.executor import Executor
 from momantu_bt.engine.status import FAILURE
 from momantu_bt.failure import FailureValue
-from momantu_bt.record.channel import stamp_of, time_text
+from momantu_bt.record.channels.channel import stamp_of, time_text
 from momantu_bt.record.codec import dumps
-from momantu_bt.record.mcap_file import McapFile
-from momantu_bt.record.viewer_schemas import LOG
+from momantu_bt.record.mcap.file import McapFile
+from momantu_bt.record.mcap.viewer_schemas import LOG
 
 _INFO, _WARNING = 2, 3
 """foxglove.LogLevel."""

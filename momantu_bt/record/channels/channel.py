@@ -1,11 +1,11 @@
-"""The base of the parts of a record: each writes its own messages when they are due."""
+"""The base class of channels: each writes its own messages when they are due."""
 
 from __future__ import annotations
 
 from typing import Protocol
 
 from momantu_bt.engine.executor import Executor
-from momantu_bt.record.mcap_file import McapFile
+from momantu_bt.record.mcap.file import McapFile
 
 _SLACK = 1e-6
 

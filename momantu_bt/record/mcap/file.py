@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from momantu_bt.record.codec import dumps
-from momantu_bt.record.mcap_records import (
+from momantu_bt.record.mcap.records import (
     CHANNEL,
     MAGIC,
     SCHEMA,

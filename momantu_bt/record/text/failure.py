@@ -1,4 +1,4 @@
-"""A failure in one line, outermost first.
+"""Write a failure in one line, the outermost node first.
 
 `my_tree failed: TOO_FAR, a chair in the doorway <- Serve (my_tree.yaml:22) <- dock (:41), 3 of 3
 tries`

@@ -1,12 +1,12 @@
-"""How a run ended, in one line."""
+"""Say in one line how a run ended."""
 
 from __future__ import annotations
 
 from pathlib import PurePath
 
 from momantu_bt.engine.ending import ERROR, FAILURE, INTERRUPTED
-from momantu_bt.record.failure_text import failure_line
 from momantu_bt.record.report import Report
+from momantu_bt.record.text.failure import failure_line
 
 
 def ending_text(report: Report) -> str:

@@ -12,10 +12,10 @@ from momantu_bt.engine.executor import Executor
 from momantu_bt.frames import MAP, ODOM, Joint
 from momantu_bt.geometry import Transform
 from momantu_bt.messages import RobotState
-from momantu_bt.record.channel import Due, stamp_of, time_text
+from momantu_bt.record.channels.channel import Due, stamp_of, time_text
 from momantu_bt.record.codec import dumps
-from momantu_bt.record.mcap_file import McapFile
-from momantu_bt.record.viewer_schemas import POSE_IN_FRAME, TRANSFORMS
+from momantu_bt.record.mcap.file import McapFile
+from momantu_bt.record.mcap.viewer_schemas import POSE_IN_FRAME, TRANSFORMS
 
 BASE_RATE = 5.0
 LINK_RATE = 2.0

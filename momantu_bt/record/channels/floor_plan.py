@@ -9,8 +9,8 @@ import numpy as np
 from momantu_bt.formats.maps import FREE, OCCUPIED, UNKNOWN, MapPicture
 from momantu_bt.frames import MAP
 from momantu_bt.geometry import Transform
-from momantu_bt.record.channel import time_text
-from momantu_bt.record.poses import pose_text
+from momantu_bt.record.channels.channel import time_text
+from momantu_bt.record.channels.poses import pose_text
 
 FREE_BYTE, OCCUPIED_BYTE, UNKNOWN_BYTE = 0, 100, 255
 """What a byte of a viewer's grid says."""

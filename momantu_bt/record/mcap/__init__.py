@@ -1,0 +1,1 @@
+"""MCAP files: their records as bytes, safe writing, and the schemas of messages."""

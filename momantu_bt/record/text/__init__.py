@@ -1,0 +1,1 @@
+"""Runs as lines of text: the tree, changes, failures and how a run ended."""
