@@ -292,7 +292,7 @@ def test_a_floor_without_end_is_refused(write):
 
 
 def test_the_site_has_services_and_its_kept_form_keeps_them(write):
-    told = {"localization": {"particles": 300, "names": ["a", "b"]}}
+    told = {"localization": {"particles": [300, 3000], "beams": 40}}
     site = nominal_site(load_world(write(site={"services": told, "places": {"home": [1, 1, 0]}})))
     assert site.services == told
     assert site.places["home"] == Pose2D(1, 1, 0)

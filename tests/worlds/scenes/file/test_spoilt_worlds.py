@@ -62,7 +62,7 @@ goal: {item: cola, on: low, beside: mark}
 site:
   places: {home: [3, 2, 0]}
   objects: {can: {category: can, height: 12 cm}}
-  services: {a: {b: 1}}
+  services: {localization: {beams: 40}}
 """
 VALUES = [
     *(None, True, -1, 0, 1, 3, 1e9, -0.5, "", "x", "none", "5 cm", "90 deg", "2 kg", "desk"),
