@@ -19,7 +19,7 @@ HEADLESS = "opencv-python-headless"
 
 
 def diagnose() -> Iterator[Diagnosis]:
-    """Diagnoses of the libraries that skills stand on; silent where none is installed."""
+    """Diagnoses of the libraries that skills stand on; nothing if none of them is installed."""
     present = [name for name in LIBRARIES if importlib.util.find_spec(name) is not None]
     errors = import_errors([PREPARATION, *present] if present else [])
     for name, reason in errors.items():

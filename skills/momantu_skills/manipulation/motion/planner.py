@@ -41,7 +41,7 @@ class Planner:
         self.group, self.random, self.config = group, random, config
 
     def path(self, start: Array, goals: Sequence[Array], valid: Valid) -> Array | None:
-        """Waypoints (k, n) from `start` to one of `goals`, all of it valid; None if none is found.
+        """Waypoints (k, n) from `start` to one of `goals`, all of it valid; None if not found.
 
         `start` must be valid. Goals that are not are left out; endless joints of the others are
         turned the short way. First straight lines, nearest goal first; then RRT-Connect (Kuffner

@@ -87,7 +87,7 @@ class FloorPlan:
         self._layers = [(g, clearance(g.cells == OCCUPIED, g.resolution)) for g in grids]
 
     def distance(self, points: Array) -> Array:
-        """(n,) m along the floor from points (n, 3) in odom; FAR while nobody knows where it is."""
+        """(n,) m along the floor from points (n, 3) in odom; FAR without localization."""
         least = np.full(len(points), FAR)
         try:
             map_from_odom = self._frames.lookup(MAP, ODOM)

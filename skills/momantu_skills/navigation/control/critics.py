@@ -37,19 +37,19 @@ class Critics(NamedTuple):
 
 @numba.njit(cache=True, inline="always")
 def collision(critics: Critics, spare: float, step: int, steps: int) -> float:
-    """Of meeting something at a step, `spare` (below 0) m of room left: the earlier, the worse."""
+    """Cost of a collision at a step; spare: room left, m, below 0. The earlier, the worse."""
     return critics.collision * (steps - step) / steps + DEPTH * min(-spare, DEEPEST)
 
 
 @numba.njit(cache=True, inline="always")
 def nearness(critics: Critics, spare: float, speed: float, dt: float) -> float:
-    """Of being near something for `dt` s, times the speed there."""
+    """Cost of being near something for `dt` s, times the speed there."""
     return critics.nearness * math.exp(-spare / critics.comfort) * (LEAST_SPEED + speed) * dt
 
 
 @numba.njit(cache=True, inline="always")
 def haste(critics: Critics, spare: float, speed: float, top_speed: float, dt: float) -> float:
-    """Of driving for `dt` s faster than the room allows: `near_speed` where none is to spare."""
+    """Cost of driving for `dt` s faster than allowed: `near_speed` with no room to spare."""
     share = min(spare / (critics.far_clearance - critics.margin), 1.0)
     allowed = critics.near_speed + share * (top_speed - critics.near_speed)
     return critics.haste * max(0.0, speed - allowed) ** 2 * dt
@@ -57,17 +57,17 @@ def haste(critics: Critics, spare: float, speed: float, top_speed: float, dt: fl
 
 @numba.njit(cache=True, inline="always")
 def smoothness(critics: Critics, turn: float, turn_before: float) -> float:
-    """Of a change of the turning speed, rad/s."""
+    """Cost of a change of the turning speed, rad/s."""
     return critics.smoothness * (turn - turn_before) ** 2
 
 
 @numba.njit(cache=True, inline="always")
 def progress(to_go: float, steps: int) -> float:
-    """Of what is still to go at one of the steps, m; what is left at the end counts in full."""
+    """Cost of the distance to go at one step, m; the distance at the end counts in full."""
     return ON_THE_WAY * to_go / steps
 
 
 @numba.njit(cache=True, inline="always")
 def heading(critics: Critics, yaw: float, dx: float, dy: float, steep: float) -> float:
-    """Of looking away from where the distance to go falls; (dx, dy): its slope, `steep` long."""
+    """Cost of heading away from where the distance to go falls; (dx, dy): its slope."""
     return critics.heading * (1.0 + (math.cos(yaw) * dx + math.sin(yaw) * dy) / steep)

@@ -76,7 +76,7 @@ def free_stands(vehicle: Vehicle, stands: list[Stand]) -> list[Stand]:
 
 
 def first_choice(vehicle: Vehicle, stands: list[Stand], side: int) -> Stand | None:
-    """The `side`-th best stand that is free, whether or not it can be reached; None: none is."""
+    """The `side`-th best free stand, whether or not it can be reached; None if none is free."""
     free = free_stands(vehicle, stands)
     return free[side % len(free)] if free else None
 
@@ -104,7 +104,7 @@ def choose(vehicle: Vehicle, stands: list[Stand], side: int) -> Route:
 
 
 def route_to(vehicle: Vehicle, stand: Pose2D) -> Route | None:
-    """The cheapest way to a stand, by way of a lead-in on its axis; None when there is none."""
+    """The cheapest way to a stand, by way of a lead-in on its axis; None if there is no way."""
     for distance in LEAD_IN:
         lead_in = stand @ Pose2D(-distance, 0.0, 0.0)
         wanted = vehicle.config.margin if distance else -math.inf

@@ -47,7 +47,7 @@ def plan(
     *,
     known: bool = False,
 ) -> Plan | None:
-    """The cheapest way for a disc of `radius` m, or None when there is none.
+    """The cheapest way for a disc of `radius` m, or None if there is no way.
 
     known: by the map's layers alone, to tell a blocked way from one that never was.
     """

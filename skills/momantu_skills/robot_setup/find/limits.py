@@ -25,7 +25,7 @@ LIGHT = 2.0
 USUAL_SPEED = {"prismatic": 0.05, "revolute": 1.0, "continuous": 1.0}
 """m/s, rad/s where the URDF gives none."""
 SLOWEST = 0.01
-"""m/s2, rad/s2; below this a proposal helps nobody."""
+"""m/s2, rad/s2; a lower limit would be useless."""
 FOUR_DIGITS = Context(prec=4, rounding=ROUND_DOWN)
 """How speeds and accelerations are written."""
 
