@@ -21,7 +21,7 @@ def cache_folder() -> Path:
     return (Path(base) if base else Path.home() / ".cache").absolute() / "momantu-bt"
 
 
-def kept_folder(kind: str) -> Path:
+def cache_subfolder(kind: str) -> Path:
     """A folder for one kind of thing: in the user's cache, or one that goes with the process.
 
     Raises:

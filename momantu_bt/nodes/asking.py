@@ -57,7 +57,7 @@ class _Asking(TreeNode):
         begun = time.perf_counter()
         try:
             with self.context.watchdog.paused():
-                said = answer(_Heard(self.context), question)
+                said = answer(_PersonOutside(self.context), question)
         except Interrupted:
             return RUNNING
         finally:
@@ -75,8 +75,8 @@ class _Asking(TreeNode):
         raise NotImplementedError
 
 
-class _Heard:
-    """The run's person, whose words come from outside."""
+class _PersonOutside:
+    """The run's person, asked through the outside, so that a replay can answer."""
 
     def __init__(self, context: RunContext) -> None:
         self._context = context

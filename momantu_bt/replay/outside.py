@@ -41,8 +41,8 @@ class RecordedOutside(Outside):
         for key, value in tick.reads:
             self._answers.setdefault(key, deque()).append(value)
 
-    def unheard(self) -> tuple[str, int | None] | None:
-        """The recorded steps and answers that the tree did not ask for, with their nodes."""
+    def left_over(self) -> tuple[str, int | None] | None:
+        """The first recorded step or answer that the tree did not ask for, with its node."""
         for node, steps in self._steps.items():
             if steps:
                 return f"a step of its skill, to {_words(steps[0])}", node

@@ -125,7 +125,7 @@ class _Replica:
             return self._unlike(tick, "outside", missing.node, NOTHING, missing.what)
         except Exception as error:  # the run had none here
             return self._unlike(tick, "error", 0, NOTHING, f"{type(error).__name__}: {error}")
-        return self._compared(tick) or self._unheard(tick) or self._ended(tick, status, last)
+        return self._compared(tick) or self._left_over(tick) or self._ended(tick, status, last)
 
     def _compared(self, tick: TickRecord) -> Difference | None:
         changes = tuple(
@@ -136,8 +136,8 @@ class _Replica:
         here = replace(tick, changes=changes, writes=writes)
         return first_difference(tick, here, self._nodes, surroundings=False)
 
-    def _unheard(self, tick: TickRecord) -> Difference | None:
-        left = self._outside.unheard()
+    def _left_over(self, tick: TickRecord) -> Difference | None:
+        left = self._outside.left_over()
         return None if left is None else self._unlike(tick, "outside", left[1], left[0], NOTHING)
 
     def _ended(self, tick: TickRecord, status: Status, last: bool) -> Difference | None:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from lxml import etree
 
-from momantu_bt.formats.cache import kept_folder
+from momantu_bt.formats.cache import cache_subfolder
 from momantu_bt.formats.files import write_whole
 from momantu_bt.formats.places import KeyPath
 from momantu_bt.formats.problems import errors
@@ -134,7 +134,7 @@ def _keep_urdf(name: str, text: bytes) -> Path:
     Raises:
         OSError: neither the user's cache nor the folder of temporary files can be written.
     """
-    path = kept_folder("robots") / f"{name}-{hashlib.sha256(text).hexdigest()[:_DIGITS]}.urdf"
+    path = cache_subfolder("robots") / f"{name}-{hashlib.sha256(text).hexdigest()[:_DIGITS]}.urdf"
     if not path.is_file() or path.read_bytes() != text:
         write_whole(path, text)
     return path

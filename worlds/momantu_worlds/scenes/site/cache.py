@@ -16,7 +16,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from momantu_bt.formats.cache import kept_folder
+from momantu_bt.formats.cache import cache_subfolder
 from momantu_bt.formats.files import write_whole
 from momantu_bt.geometry import Pose2D
 from momantu_bt.messages import ObjectClass, plain
@@ -52,7 +52,7 @@ def cached_nominal(text: bytes) -> Nominal | None:
 
 
 def _cache_file(text: bytes) -> Path:
-    return kept_folder("sites") / f"{cache_key([text])}.json"
+    return cache_subfolder("sites") / f"{cache_key([text])}.json"
 
 
 def _read(data: dict[str, Any]) -> Site:

@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from shutil import rmtree
 
-from momantu_bt.formats.cache import kept_folder
+from momantu_bt.formats.cache import cache_subfolder
 from momantu_bt.formats.maps import write_map
 from momantu_bt.world import Site, WorldError
 from momantu_worlds.scenes.file.world import WorldFile
@@ -39,7 +39,7 @@ def with_maps(site: Site, world: WorldFile, band: tuple[float, float], robot_hei
 
 def _drawn(world: WorldFile, band: tuple[float, float], robot_height: float) -> tuple[Path, Path]:
     made_of = cache_key([repr((band, robot_height)), *_contents(world)])
-    folder = kept_folder("maps") / f"{world.name}-{made_of}"
+    folder = cache_subfolder("maps") / f"{world.name}-{made_of}"
     files = folder / "map.yaml", folder / "overhang.yaml"
     if not all(file.is_file() for file in files):
         folder.mkdir(exist_ok=True)
