@@ -106,7 +106,7 @@ CAMERA = (
     ),
     _kind(
         "camera.shifted",
-        "Every camera is turned on its mount, and nobody has calibrated it since.",
+        "Every camera is turned on its mount and has not been calibrated since.",
         number("turn", 0.015, "rad", "by how much, about an axis that the seed chooses", 0.0, pi),
         lasting(inf),
         begins=(),
@@ -180,7 +180,7 @@ ODOMETRY = (
 BASE = (
     _base(
         "base.stuck",
-        "The base does not move, whatever it is told.",
+        "The base does not move, whatever the command.",
         lasting(10.0),
         begins=DRIVING,
         notice=30.0,
@@ -190,7 +190,7 @@ BASE = (
     ),
     _base(
         "base.slow",
-        "The base drives and turns slower than it is told.",
+        "The base drives and turns slower than commanded.",
         number("factor", 0.5, None, "true speed over commanded speed", 0.0, 1.0),
         lasting(inf),
         begins=DRIVING,
@@ -214,7 +214,7 @@ BASE = (
 ARM_ROWS = (
     _arm(
         "arm.stuck",
-        "The arm does not move, whatever it is told.",
+        "The arm does not move, whatever the command.",
         lasting(5.0),
         begins=(Moment(Activity.REACH), *ARM_MOVES),
         notice=5.0,
@@ -224,7 +224,7 @@ ARM_ROWS = (
     ),
     _arm(
         "arm.slow",
-        "The arm follows its trajectories slower than it is told.",
+        "The arm follows its trajectories slower than commanded.",
         number("factor", 0.7, None, "true speed over commanded speed", 0.05, 1.0),
         lasting(inf),
         begins=(GRASP, *ARM_MOVES),
@@ -235,7 +235,7 @@ ARM_ROWS = (
     ),
     _arm(
         "arm.offset",
-        "A joint is elsewhere than it says, since its encoder was mounted anew.",
+        "A joint is elsewhere than it reports: its encoder was mounted wrongly.",
         number("by", 0.03, "rad", "what the joint reports too much", -1.0, 1.0),
         word("joint", "", "which joint; else the arm's first one that turns"),
         lasting(inf),
@@ -249,7 +249,7 @@ ARM_ROWS = (
 GRIPPER = (
     _gripper(
         "gripper.weak",
-        "The gripper presses with less force than it is told.",
+        "The gripper presses with less force than commanded.",
         number("factor", 0.3, None, "true force over commanded force", 0.001, 1.0),
         lasting(inf),
         begins=(GRASP,),
@@ -259,7 +259,7 @@ GRIPPER = (
     ),
     _gripper(
         "gripper.stuck",
-        "The fingers stay as they are, whatever they are told.",
+        "The fingers do not move, whatever the command.",
         lasting(10.0),
         begins=(GRASP, Moment(Activity.SET_DOWN)),
         notice=15.0,

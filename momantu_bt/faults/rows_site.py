@@ -23,7 +23,7 @@ KINDS: tuple[FaultKind, ...] = (
     ),
     _kind(
         "table.height",
-        "Surfaces are told higher than they are.",
+        "The site gives surfaces as higher than they are.",
         number("by", 0.05, "m", "how much too high; below 0: too low", -1.0, 1.0),
         word("surface", "", "which one; else all"),
         begins=(),
