@@ -35,7 +35,7 @@ class Where(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Moment:
+class Trigger:
     """When a fault usually begins: while the first skill of a tree that does something runs.
 
     after: instead this many seconds after it ended in SUCCESS.
@@ -45,7 +45,7 @@ class Moment:
     after: float | None = None
 
     def phase(self, skill: str, behind: str) -> str:
-        """The moment in the form of phases. behind: see `Skill.activities`."""
+        """The phase, as `--fault` writes it. behind: see `Skill.activities`."""
         if self.after is None:
             return f"{skill}{behind}"
         return f"after-{skill}" + (f"+{self.after:g} s" if self.after else "")
@@ -66,7 +66,7 @@ class Variant:
 class FaultKind:
     """One kind of fault.
 
-    begins: its usual moments; the first that the tree has is taken, else it begins at the start.
+    begins: its usual triggers; the first that the tree has is taken, else it begins at the start.
     notice: seconds within which a robot must notice it.
     symptoms: what skills may notice of it. codes: those of the engine that are a true reason to
     give up because of it; codes of skills follow from the symptoms.
@@ -78,7 +78,7 @@ class FaultKind:
     mode: str
     doc: str
     place: Where
-    begins: tuple[Moment, ...]
+    begins: tuple[Trigger, ...]
     notice: float
     recoverable: bool
     symptoms: frozenset[Symptom] = frozenset()

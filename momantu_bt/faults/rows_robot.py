@@ -9,7 +9,7 @@ from momantu_bt.activity import Activity
 from momantu_bt.failure import SENSOR_DEAD, TIMEOUT
 from momantu_bt.fault_kind import (
     FaultKind,
-    Moment,
+    Trigger,
     Variant,
     Where,
     fault_kind,
@@ -20,17 +20,17 @@ from momantu_bt.fault_kind import (
 from momantu_bt.robot import ARM
 from momantu_bt.symptom import Symptom
 
-GRASP = Moment(Activity.GRASP)
-MARKER = Moment(Activity.FIND_MARKER)
+GRASP = Trigger(Activity.GRASP)
+MARKER = Trigger(Activity.FIND_MARKER)
 LOOKING = (
-    Moment(Activity.FIND_OBJECT),
+    Trigger(Activity.FIND_OBJECT),
     MARKER,
-    Moment(Activity.MEASURE_SURFACE),
+    Trigger(Activity.MEASURE_SURFACE),
     GRASP,
-    Moment(Activity.LOOK),
+    Trigger(Activity.LOOK),
 )
-DRIVING = (Moment(Activity.DRIVE), Moment(Activity.LOCALIZE))
-ARM_MOVES = (Moment(Activity.MOVE_ARM), Moment(Activity.SET_DOWN))
+DRIVING = (Trigger(Activity.DRIVE), Trigger(Activity.LOCALIZE))
+ARM_MOVES = (Trigger(Activity.MOVE_ARM), Trigger(Activity.SET_DOWN))
 SENSOR = (SENSOR_DEAD,)
 UNSEEN = frozenset({Symptom.NOT_SEEN})
 MISJUDGED = frozenset({Symptom.NOT_SEEN, Symptom.NOT_HELD})
@@ -216,7 +216,7 @@ ARM_ROWS = (
         "arm.stuck",
         "The arm does not move, whatever the command.",
         lasting(5.0),
-        begins=(Moment(Activity.REACH), *ARM_MOVES),
+        begins=(Trigger(Activity.REACH), *ARM_MOVES),
         notice=5.0,
         recoverable=True,
         symptoms={Symptom.ARM_OFF_COURSE},
@@ -261,7 +261,7 @@ GRIPPER = (
         "gripper.stuck",
         "The fingers do not move, whatever the command.",
         lasting(10.0),
-        begins=(GRASP, Moment(Activity.SET_DOWN)),
+        begins=(GRASP, Trigger(Activity.SET_DOWN)),
         notice=15.0,
         recoverable=True,
         symptoms={Symptom.HAND_STUCK},
@@ -271,7 +271,7 @@ GRIPPER = (
         "gripper.slips",
         "The fingers lose their force until they are opened again.",
         number("force", 0.3, "N", "what is left", 0.001, 100.0),
-        begins=(Moment(Activity.GRASP, after=3.0), Moment(Activity.SET_DOWN)),
+        begins=(Trigger(Activity.GRASP, after=3.0), Trigger(Activity.SET_DOWN)),
         notice=5.0,
         recoverable=False,
         symptoms={Symptom.NOT_HELD, Symptom.OBJECT_GONE},

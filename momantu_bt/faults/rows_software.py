@@ -7,11 +7,11 @@ from math import inf
 
 from momantu_bt.activity import Activity
 from momantu_bt.failure import HUNG, SKILL_ERROR, TIMEOUT, WRONG_TYPE
-from momantu_bt.fault_kind import FaultKind, Moment, Where, count, fault_kind, lasting, number
+from momantu_bt.fault_kind import FaultKind, Trigger, Where, count, fault_kind, lasting, number
 from momantu_bt.symptom import Symptom
 
-ANY = Moment(Activity.ANY)
-ANSWER = Moment(Activity.ANSWER)
+ANY = Trigger(Activity.ANY)
+ANSWER = Trigger(Activity.ANSWER)
 _TIMES = count("times", 1, "how many starts of the skill it hits", least=1)
 
 _kind = partial(fault_kind, place=Where.SKILL)
@@ -77,7 +77,7 @@ KINDS: tuple[FaultKind, ...] = (
         "process.killed",
         "The process is ended by SIGKILL.",
         place=Where.PROCESS,
-        begins=(Moment(Activity.DRIVE), ANY),
+        begins=(Trigger(Activity.DRIVE), ANY),
         notice=1.0,
         recoverable=False,
         ends_process=True,

@@ -12,11 +12,11 @@ from momantu_bt.tree.check.nodes import with_named_inputs
 from momantu_bt.tree.check.signatures import Context
 from momantu_bt.tree.files.resolve import resolve
 from momantu_bt.tree.files.scalars import CannotWrite
-from momantu_bt.tree.files.text import is_xml
 from momantu_bt.tree.files.xml import writer as xml_writer
 from momantu_bt.tree.files.xml.format import XmlSource
 from momantu_bt.tree.files.yaml import writer as yaml_writer
 from momantu_bt.tree.files.yaml.format import YamlSource
+from momantu_bt.tree.language import is_xml
 from momantu_bt.tree.load import read_file
 from momantu_bt.tree.model import Document, Node
 from momantu_bt.tree.problems import Problems, TreeError

@@ -1,8 +1,9 @@
-"""What YAML and XML share: the language's version, names of trees, and the words of handlers."""
+"""What YAML and XML share: the version, names of trees, words of handlers; which file is which."""
 
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 from momantu_bt.failure import CODE
 from momantu_bt.formats.places import Place
@@ -33,3 +34,11 @@ def handler_codes(text: str, place: Place, problems: Problems) -> tuple[str, ...
         hint = "codes are upper-case words, `A | B` several, `any` the rest"
         problems.error("bad-code", place, f"{code!r} is not a failure code", hint)
     return tuple(code for code in codes if code not in wrong)
+
+
+def is_xml(file: str, content: str) -> bool:
+    """Whether a tree file is XML, by its suffix or, for other suffixes, by its first character."""
+    suffix = Path(file).suffix.lower()
+    if suffix in (".yaml", ".yml"):
+        return False
+    return suffix in (".xml", ".btproj") or content.lstrip("\ufeff \t\r\n").startswith("<")

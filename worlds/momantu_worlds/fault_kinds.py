@@ -11,7 +11,7 @@ from math import inf, pi
 from momantu_bt.activity import Activity
 from momantu_bt.fault_kind import (
     FaultKind,
-    Moment,
+    Trigger,
     Variant,
     Where,
     count,
@@ -21,17 +21,17 @@ from momantu_bt.fault_kind import (
 )
 from momantu_bt.symptom import Symptom
 
-GRASP = Moment(Activity.GRASP)
-FIND_MARKER = Moment(Activity.FIND_MARKER)
+GRASP = Trigger(Activity.GRASP)
+FIND_MARKER = Trigger(Activity.FIND_MARKER)
 SEEING = (
-    Moment(Activity.FIND_OBJECT),
+    Trigger(Activity.FIND_OBJECT),
     FIND_MARKER,
-    Moment(Activity.MEASURE_SURFACE),
-    Moment(Activity.LOOK),
+    Trigger(Activity.MEASURE_SURFACE),
+    Trigger(Activity.LOOK),
 )
-DRIVING = (Moment(Activity.DRIVE), Moment(Activity.LOCALIZE))
-BEFORE_GRASP = (Moment(Activity.FIND_OBJECT, after=0.0), GRASP)
-CARRYING = (Moment(Activity.GRASP, after=3.0), Moment(Activity.SET_DOWN))
+DRIVING = (Trigger(Activity.DRIVE), Trigger(Activity.LOCALIZE))
+BEFORE_GRASP = (Trigger(Activity.FIND_OBJECT, after=0.0), GRASP)
+CARRYING = (Trigger(Activity.GRASP, after=3.0), Trigger(Activity.SET_DOWN))
 MISSED = (
     Symptom.NOT_SEEN,
     Symptom.NOT_HELD,
@@ -129,7 +129,7 @@ KINDS: tuple[FaultKind, ...] = (
         "place.occupied",
         "Boxes stand on the free spots beside the marker.",
         count("free", 1, "how many spots within the goal's distance are left"),
-        begins=(FIND_MARKER, Moment(Activity.MEASURE_SURFACE)),
+        begins=(FIND_MARKER, Trigger(Activity.MEASURE_SURFACE)),
         notice=90.0,
         recoverable=True,
         symptoms={

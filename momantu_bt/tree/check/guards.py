@@ -40,7 +40,7 @@ def _check_sequence(
         said = later.name or later.target or later.type
         keys = ", ".join(f"$@{key}" for key in changing)
         message = f"{keys} is asked once here, and not again while {said} runs"
-        if context.is_xml(child.place):
+        if context.in_xml(child.place):
             hint = "<ReactiveSequence>, or _while on what follows, asks at every tick"
         else:
             hint = "`reactive_sequence:`, or `while:` on what follows, asks at every tick"

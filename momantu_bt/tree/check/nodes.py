@@ -152,7 +152,7 @@ def _check_children(context: Context, node: Node, signature: Signature) -> None:
 
 
 def _child_hint(context: Context, node: Node) -> str:
-    return "put one node inside" if context.is_xml(node.place) else "write `child:` among its ports"
+    return "put one node inside" if context.in_xml(node.place) else "write `child:` among its ports"
 
 
 def _check_one_of(context: Context, node: Node, signature: Signature) -> None:
@@ -165,7 +165,7 @@ def _check_one_of(context: Context, node: Node, signature: Signature) -> None:
             message = f"{signature.said} needs exactly one of the inputs {', '.join(group)}"
             context.problems.error("missing-input", node.place, message)
         elif not given:
-            first = group[-1] if context.is_xml(node.place) else group[0]
+            first = group[-1] if context.in_xml(node.place) else group[0]
             _report_missing(context, node, signature.ports[first], signature)
         for name in given[1:]:
             message = f"{signature.said} takes {given[0]!r} or {name!r}, not both"
@@ -196,7 +196,7 @@ def _check_switch(context: Context, node: Node, signature: Signature) -> None:
 def _report_missing(context: Context, node: Node, port: Port, signature: Signature) -> None:
     kind = "input" if port.direction == "in" else "key"
     name = port.name
-    if signature.spec is not None and context.is_xml(node.place):
+    if signature.spec is not None and context.in_xml(node.place):
         name = signature.spec.xml.get(name, name)
     message = f"{signature.said} needs the {kind} {name!r}"
     hint = f"{name}: {label(port.type)}{f' in {port.unit}' if port.unit else ''}"
@@ -295,6 +295,6 @@ def _report_unknown_port(context: Context, node: Node, name: str, signature: Sig
     if not signature.ports:
         hint = f"{signature.said} has no ports"
         if signature.spec is None and signature.skill is None:
-            section = "the model" if context.is_xml(place) else "`inputs:` or `outputs:`"
+            section = "the model" if context.in_xml(place) else "`inputs:` or `outputs:`"
             hint = f"declare it in {section} of {signature.said}"
     context.problems.error("unknown-port", place, f"{signature.said} has no port {name!r}", hint)

@@ -14,6 +14,7 @@ from momantu_bt.skill import Port, Skill
 from momantu_bt.tree.catalogue import AUTOREMAP, NODES, SUBTREE, NodeSpec
 from momantu_bt.tree.catalogue.nodes import BEHAVIOURS, PLUGINS
 from momantu_bt.tree.catalogue.objection import type_of
+from momantu_bt.tree.language import is_xml
 from momantu_bt.tree.model import BROKEN, Document, Node, Tree
 from momantu_bt.tree.problems import Problems
 from momantu_bt.tree.registry import Registry
@@ -64,7 +65,7 @@ class Context:
         """The signature of this node; None if it is unknown or broken."""
         spec = NODES.get(node.type)
         if spec is not None:
-            said = node.type if self.is_xml(node.place) else spec.yaml[0]
+            said = node.type if self.in_xml(node.place) else spec.yaml[0]
             return Signature(said, spec.ports, spec.first, spec=spec)
         if node.type == SUBTREE:
             return self._call_signature(node, self.document.trees[node.target or ""])
@@ -84,18 +85,18 @@ class Context:
                 ports[name] = Port(name, "inout", object, "")
         return Signature(tree.name, ports, declared.first)
 
-    def is_xml(self, place: Place) -> bool:
+    def in_xml(self, place: Place) -> bool:
         """Whether the file of this place is XML, so that its words are used."""
         known = self._xml_files.get(place.file)
         if known is None:
             text = self.document.source.get(place.file, "")
-            known = text.lstrip("\ufeff \t\r\n").startswith("<")
+            known = is_xml(place.file, text)
             self._xml_files[place.file] = known
         return known
 
     def wire(self, key: str, place: Place) -> str:
         """A wire as the file of this place spells it."""
-        return f"{{{key}}}" if self.is_xml(place) else f"${key}"
+        return f"{{{key}}}" if self.in_xml(place) else f"${key}"
 
     def tree_signature(self, tree: Tree) -> Signature:
         """The ports of a subtree. An unknown type counts as `any`; `tree_ports` reports it."""

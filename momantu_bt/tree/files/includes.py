@@ -12,9 +12,10 @@ from momantu_bt.formats.names import nearest
 from momantu_bt.formats.problems import Problem, errors
 from momantu_bt.tree.files.lookup import TreeNotFound, tree_files
 from momantu_bt.tree.files.resolve import resolve
-from momantu_bt.tree.files.text import is_xml, read_text
+from momantu_bt.tree.files.text import read_text
 from momantu_bt.tree.files.xml.format import XmlSource
 from momantu_bt.tree.files.yaml.format import YamlSource
+from momantu_bt.tree.language import is_xml
 from momantu_bt.tree.model import Document, Include, Tree
 from momantu_bt.tree.problems import Problems, TooManyProblems, TreeError
 from momantu_bt.tree.registry import Registry

@@ -23,11 +23,3 @@ def read_text(path: Path, shown: str) -> str:
         raise TreeNotFound(f"{shown} cannot be read: {error.strerror}") from None
     except text.TextError as error:
         raise TreeError([error.problem], {}) from None
-
-
-def is_xml(file: str, content: str) -> bool:
-    """By the suffix; where that says nothing, by the first character."""
-    suffix = Path(file).suffix.lower()
-    if suffix in (".yaml", ".yml"):
-        return False
-    return suffix in (".xml", ".btproj") or content.lstrip("\ufeff \t\r\n").startswith("<")

@@ -13,11 +13,11 @@ import pytest
 from momantu_bt import plugins
 from momantu_bt.activity import Activity
 from momantu_bt.cli import main
-from momantu_bt.fault_kind import Moment, Where, fault_kind
+from momantu_bt.fault_kind import Trigger, Where, fault_kind
 from momantu_bt.faults.catalogue import FAULTS, kinds
-from momantu_bt.faults.moments import activities_of
 from momantu_bt.faults.reasons import true_reasons
 from momantu_bt.faults.tree_page import TreeRow, tree_rows
+from momantu_bt.faults.triggers import activities_of
 from momantu_bt.messages import DetectedObject
 from momantu_bt.plugins import PluginClash, PluginError
 from momantu_bt.robot import ARM
@@ -118,7 +118,7 @@ SPILLED = fault_kind(
     "spoon.spilled",
     "The spoon is turned over.",
     place=Where.WORLD,
-    begins=(Moment(Activity.GRASP, after=2.0),),
+    begins=(Trigger(Activity.GRASP, after=2.0),),
     notice=5.0,
     recoverable=False,
     symptoms={Symptom.NOT_HELD},

@@ -15,7 +15,8 @@ ROOT = Path(__file__).parents[3]
 PAGE = (ROOT / "docs" / "tree_language.md").read_text(encoding="utf-8")
 XML_PAGE = (ROOT / "docs" / "xml.md").read_text(encoding="utf-8")
 EXAMPLES = re.findall(r"```(?:yaml|xml)\n(.*?)```", PAGE + XML_PAGE, re.DOTALL)
-SOURCES = [*(ROOT / "momantu_bt" / "tree").rglob("*.py")]
+ROOMS = (ROOT / "momantu_bt" / "formats", ROOT / "momantu_bt" / "tree")
+SOURCES = [path for room in ROOMS for path in room.rglob("*.py")]
 
 
 @pytest.mark.parametrize("example", EXAMPLES)

@@ -312,7 +312,7 @@ class _KeyCheck:
 
     def in_script(self, key: str, place: Place) -> Place:
         """The place of a key in a script."""
-        shown = key if self.context.is_xml(place) else f"${key}"
+        shown = key if self.context.in_xml(place) else f"${key}"
         return within(place, shown, self.context.document.source)
 
     def script_types(self, script: Script, known: Mapping[str, ValueType], place: Place) -> None:

@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import get_args
 
 from momantu_bt.activity import Activity
-from momantu_bt.fault_kind import Moment
+from momantu_bt.fault_kind import Trigger
 from momantu_bt.messages import DetectedObject, SupportPlane
 from momantu_bt.robot import ARM
 from momantu_bt.skill import Port, Skill
@@ -20,13 +20,13 @@ _GIVING: Mapping[type, Activity] = MappingProxyType(
 )
 
 
-def usual_phases(moments: Iterable[Moment], skills: Mapping[str, type[Skill]]) -> Iterator[str]:
-    """The phases that moments mean, in order; skills: by name, in the order of the tree."""
-    for moment in moments:
+def usual_phases(triggers: Iterable[Trigger], skills: Mapping[str, type[Skill]]) -> Iterator[str]:
+    """The phases that triggers mean, in order; skills: by name, in the order of the tree."""
+    for trigger in triggers:
         for name, skill in skills.items():
-            behind = activities_of(skill).get(moment.activity)
+            behind = activities_of(skill).get(trigger.activity)
             if behind is not None:
-                yield moment.phase(name, behind)
+                yield trigger.phase(name, behind)
 
 
 def activities_of(skill: type[Skill]) -> Mapping[Activity, str]:
