@@ -1,4 +1,4 @@
-"""What a detector of objects gets and gives; a skill takes one by name."""
+"""The interface of object detectors; a skill takes one by name."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is known of one kind of fault, before any run: a row of the entry points momantu_bt.faults.
+"""A kind of fault: a row of the entry points `momantu_bt.faults`.
 
 A kind names no skill, no code of a skill and no subtree. It names activities and symptoms; skills
 say which are theirs.

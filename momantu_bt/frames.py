@@ -1,4 +1,4 @@
-"""Where every frame was at each recent moment, from joints, odometry and localization."""
+"""Poses of all frames at each recent moment, from joints, odometry and localization."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Who owns which actuator, and the robot as a skill sees it.
+"""The owners of actuators, and the robot as a skill sees it.
 
 A skill owns an actuator from its first command until its generator ends, however it ends; then
 the actuator is stopped. Every command and stop of a tick is kept for the run's fingerprint.

@@ -1,4 +1,4 @@
-"""Who answers the questions of a tree: a person at the terminal, a script, or nobody."""
+"""Persons who answer a tree's questions: at the terminal, scripted, or none."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is wired to a node's ports: readers made once, when the tree is built."""
+"""Readers and writers of a node's wired ports, made once when the tree is built."""
 
 from __future__ import annotations
 

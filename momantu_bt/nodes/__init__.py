@@ -1,4 +1,4 @@
-"""What a node of your own is made of; the built-in nodes stand beside this file, family by family.
+"""The public names for nodes of your own; the built-in nodes are beside this file, by family.
 
 A node is a subclass of `TreeNode` or `Decorator` with a `spec` (made by `control`, `decorator` or
 `leaf`) and a `step`. See docs/writing_a_node.md.

@@ -1,4 +1,4 @@
-"""A tree file as one behaviour of somebody's own py_trees tree."""
+"""A tree file as one behaviour of a py_trees tree."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What can be wrong with a robot file."""
+"""The errors of robot files."""
 
 from __future__ import annotations
 

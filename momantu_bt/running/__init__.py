@@ -1,1 +1,1 @@
-"""A run as a whole: from a tree's name and what is asked of its run to the report."""
+"""A run as a whole: from a tree's name and its options to the report."""

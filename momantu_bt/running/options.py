@@ -1,4 +1,4 @@
-"""What is asked of a run: one value, made where it is asked and handed through unchanged."""
+"""The options of a run: one value that is passed on unchanged."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""What several verbs use: options, values, lists, schemas, notices and help."""
+"""Helpers of several verbs: options, values, lists, schemas, notices and help."""

@@ -1,1 +1,1 @@
-"""The channels of a record, a file each: what is written of a run, and when."""
+"""The channels of a record, a file each."""

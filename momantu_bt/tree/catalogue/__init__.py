@@ -1,4 +1,4 @@
-"""What the language knows of its nodes: names, ports, children, checks and wording.
+"""The catalogue of nodes: names, ports, children, checks and wording.
 
 Canonical types and their meaning are BehaviorTree.CPP 4's and Nav2's where they have the node; the
 rest is ours. Nodes themselves are in `momantu_bt/nodes` and in plug-ins.

@@ -1,4 +1,4 @@
-"""Where the built-in nodes are. A new one needs a file in `momantu_bt/nodes` and a line here.
+"""The table of built-in nodes. A new one needs a file in `momantu_bt/nodes` and a line here.
 
 The language finds its own nodes by name, as it finds plug-ins: what reads and checks trees imports
 none of them.

@@ -1,4 +1,4 @@
-"""What is known of keys after a node, from what its children leave known.
+"""How knowledge about keys flows through a node with children.
 
 A flow says it for one kind of node. `walk(child, before)` gives what is known after each end that
 the child can have. The flows here are those that several kinds share.

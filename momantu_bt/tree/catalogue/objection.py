@@ -1,4 +1,4 @@
-"""What a node of another package has to be, so that trees can use it."""
+"""The rules for nodes of other packages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How tree files are read in both spellings: their bounds, and the words of messages."""
+"""The limits of tree files in both spellings, and their words in messages."""
 
 from __future__ import annotations
 

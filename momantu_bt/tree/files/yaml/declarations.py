@@ -1,4 +1,4 @@
-"""What a tree in YAML takes and gives: `inputs:`, `outputs:`, `inouts:`."""
+"""The declared ports of a tree in YAML: `inputs:`, `outputs:`, `inouts:`."""
 
 from __future__ import annotations
 

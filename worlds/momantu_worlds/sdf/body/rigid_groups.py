@@ -1,4 +1,4 @@
-"""Which links move as one: joints joined, robots told from furniture."""
+"""Groups of links that move as one: joints joined, robots distinguished from furniture."""
 
 from __future__ import annotations
 
