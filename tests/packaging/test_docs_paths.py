@@ -121,6 +121,9 @@ def test_what_registers_an_addition_stands_in_its_file() -> None:
     for *names, path in named:
         text = (ROOT / path).read_text(encoding="utf-8")
         assert all(re.search(rf"\b{name}\b", text) for name in names if name), f"{names}: {path}"
+    examples = re.findall(r"`([\w/]+/)`, such as `([\w/]+\.py)`", page)
+    assert len(examples) >= 10
+    assert [path for path in examples if not (ROOT / "".join(path)).is_file()] == []
     groups = set(re.findall(r"`pyproject.toml`: `([\w.]+)`", page))
     project = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
     assert {group for group in groups if f'"{group}"' not in project} == set()
