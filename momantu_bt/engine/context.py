@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 from typing import NamedTuple, TypeVar
 
 from momantu_bt.engine.blackboard import Journal
-from momantu_bt.engine.body import Body
 from momantu_bt.engine.changes import Change
 from momantu_bt.engine.events import Events
 from momantu_bt.engine.outside import Answered, Outside, Refused
 from momantu_bt.engine.person import Person, Scripted
+from momantu_bt.engine.skills.body import Body
 from momantu_bt.engine.watchdog import Watchdog
 from momantu_bt.failure import Failure
 from momantu_bt.skill import Clock

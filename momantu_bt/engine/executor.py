@@ -15,8 +15,8 @@ from momantu_bt.engine.ending import Ending
 from momantu_bt.engine.fingerprint import Fingerprint
 from momantu_bt.engine.interrupts import Interrupts
 from momantu_bt.engine.node import TreeNode
-from momantu_bt.engine.services import Services
-from momantu_bt.engine.session import CLOCK_SLACK
+from momantu_bt.engine.skills.services import Services
+from momantu_bt.engine.skills.session import CLOCK_SLACK
 from momantu_bt.engine.status import FAILURE, RUNNING, Status
 from momantu_bt.failure import TIMEOUT, FailureValue
 from momantu_bt.messages import RobotState

@@ -7,8 +7,8 @@ import struct
 from collections.abc import Iterable
 from typing import Any
 
-from momantu_bt.engine.actuators import Issued
 from momantu_bt.engine.encode import encode
+from momantu_bt.engine.skills.actuators import Issued
 from momantu_bt.messages import ActuatorGoal, RobotState
 
 

@@ -10,9 +10,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple, Protocol, TypeVar
 
-from momantu_bt.engine.body import Body
 from momantu_bt.engine.changes import SeenNode
-from momantu_bt.engine.session import Session, SkillContext
+from momantu_bt.engine.skills.body import Body
+from momantu_bt.engine.skills.session import Session, SkillContext
 from momantu_bt.engine.status import Status
 from momantu_bt.failure import FailureValue
 from momantu_bt.skill import Clock, Skill

@@ -8,7 +8,7 @@ from momantu_bt.engine.label import label
 from momantu_bt.engine.node import Parts, TreeNode
 from momantu_bt.engine.outside import SkillEnded, SkillSession, SkillStepped
 from momantu_bt.engine.role import Role
-from momantu_bt.engine.session import SLOW_STEP
+from momantu_bt.engine.skills.session import SLOW_STEP
 from momantu_bt.engine.status import FAILURE, RUNNING, SUCCESS, Status
 from momantu_bt.failure import FAILED, FailureValue
 from momantu_bt.skill import Skill

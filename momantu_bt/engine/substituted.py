@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from momantu_bt.engine.blackboard import Cell
 from momantu_bt.engine.node import Parts, TreeNode
 from momantu_bt.engine.role import Role
-from momantu_bt.engine.session import CLOCK_SLACK
+from momantu_bt.engine.skills.session import CLOCK_SLACK
 from momantu_bt.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS, Status
 from momantu_bt.tree.substitute.substitution import Result
 

@@ -8,7 +8,7 @@ from math import inf
 
 from momantu_bt.engine.context import RunContext
 from momantu_bt.engine.node import TreeNode
-from momantu_bt.engine.session import CLOCK_SLACK
+from momantu_bt.engine.skills.session import CLOCK_SLACK
 from momantu_bt.fault import Effect, Fault, FaultError
 from momantu_bt.fault_kind import FOR
 from momantu_bt.faults.skills.victim import SkillFault

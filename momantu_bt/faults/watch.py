@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from momantu_bt.engine.context import RunContext
 from momantu_bt.engine.node import TreeNode
-from momantu_bt.engine.session import CLOCK_SLACK
+from momantu_bt.engine.skills.session import CLOCK_SLACK
 from momantu_bt.engine.status import RUNNING, SUCCESS
 from momantu_bt.faults.phase import Phase
 from momantu_bt.faults.phases import wears

@@ -12,7 +12,7 @@ import math
 from momantu_bt.engine.decorator import Decorator
 from momantu_bt.engine.node import Parts
 from momantu_bt.engine.outside import POSITION, SPEED
-from momantu_bt.engine.session import CLOCK_SLACK
+from momantu_bt.engine.skills.session import CLOCK_SLACK
 from momantu_bt.engine.status import IDLE, RUNNING, SUCCESS, Status
 from momantu_bt.failure import FAILED, FRAME_UNKNOWN, WRONG_TYPE, Failure
 from momantu_bt.geometry import Array

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 from momantu_bt.engine.node import Parts, TreeNode
-from momantu_bt.engine.session import CLOCK_SLACK
+from momantu_bt.engine.skills.session import CLOCK_SLACK
 from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, SUCCESS, Status
 from momantu_bt.failure import FAILED, SCRIPT_ERROR, Failure
 from momantu_bt.nodes.scripts import code_at

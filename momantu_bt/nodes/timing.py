@@ -8,7 +8,7 @@ from momantu_bt.engine.label import label
 from momantu_bt.engine.node import Parts, TreeNode
 from momantu_bt.engine.ports import Inputs
 from momantu_bt.engine.role import Role
-from momantu_bt.engine.session import CLOCK_SLACK
+from momantu_bt.engine.skills.session import CLOCK_SLACK
 from momantu_bt.engine.status import RUNNING, SKIPPED, SUCCESS, Status
 from momantu_bt.failure import TIMEOUT
 from momantu_bt.tree.catalogue.codes import joined

@@ -6,9 +6,9 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar, cast
 
-from momantu_bt.engine.body import Body
 from momantu_bt.engine.outside import PERSON, Outside, Refused, SkillNode, SkillSession
 from momantu_bt.engine.person import Interrupted
+from momantu_bt.engine.skills.body import Body
 from momantu_bt.engine.status import Status
 from momantu_bt.failure import Failure, FailureValue
 from momantu_bt.record.recording import StepRecord, TickRecord

@@ -8,7 +8,7 @@ from dataclasses import replace
 from momantu_bt.claim import Claim, Judge, Sentence
 from momantu_bt.engine.context import RunContext
 from momantu_bt.engine.outside import SkillEnded, SkillNode, SkillSession
-from momantu_bt.engine.session import Session
+from momantu_bt.engine.skills.session import Session
 from momantu_bt.geometry import Transform
 from momantu_bt.record.report import FalseClaim, SkillClaims
 from momantu_bt.world import World

@@ -9,16 +9,16 @@ from contextlib import ExitStack
 from dataclasses import replace
 from typing import Any, TypeAlias
 
-from momantu_bt.engine.actuators import Actuators
 from momantu_bt.engine.blackboard import Board, ReadOnlyCell
-from momantu_bt.engine.body import Body
 from momantu_bt.engine.build import build, skills_in
 from momantu_bt.engine.context import Remarked, RunContext
 from momantu_bt.engine.ending import ERROR
 from momantu_bt.engine.events import Events
 from momantu_bt.engine.executor import Executor, Observer
 from momantu_bt.engine.interrupts import Interrupts
-from momantu_bt.engine.services import Services, in_order
+from momantu_bt.engine.skills.actuators import Actuators
+from momantu_bt.engine.skills.body import Body
+from momantu_bt.engine.skills.services import Services, in_order
 from momantu_bt.engine.watchdog import Watchdog
 from momantu_bt.errors import MomantuError
 from momantu_bt.faults.stage import Planned, Stage, plan

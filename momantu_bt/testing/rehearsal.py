@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from momantu_bt.engine.encode import encode
-from momantu_bt.engine.services import ServiceCycleError, in_order
-from momantu_bt.engine.session import Session
+from momantu_bt.engine.skills.services import ServiceCycleError, in_order
+from momantu_bt.engine.skills.session import Session
 from momantu_bt.engine.status import RUNNING
 from momantu_bt.failure import SKILL_ERROR, WRONG_TYPE, FailureValue
 from momantu_bt.formats.places import NOWHERE, Place

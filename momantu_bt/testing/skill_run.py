@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from momantu_bt.claim import Claim
-from momantu_bt.engine.actuators import Actuators
-from momantu_bt.engine.services import Services
-from momantu_bt.engine.session import Session, SkillContext
+from momantu_bt.engine.skills.actuators import Actuators
+from momantu_bt.engine.skills.services import Services
+from momantu_bt.engine.skills.session import Session, SkillContext
 from momantu_bt.engine.status import FAILURE, RUNNING
 from momantu_bt.failure import Failure, FailureValue
 from momantu_bt.frames import FrameBuffer

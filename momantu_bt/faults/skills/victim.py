@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from momantu_bt.engine.node import TreeNode
-from momantu_bt.engine.session import Session
 from momantu_bt.engine.skill_leaf import SkillLeaf
+from momantu_bt.engine.skills.session import Session
 from momantu_bt.fault import Fault
 from momantu_bt.robot import Robot
 from momantu_bt.skill import Compute, Run, Skill

@@ -7,8 +7,8 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from momantu_bt.engine.body import Body
 from momantu_bt.engine.executor import Executor
+from momantu_bt.engine.skills.body import Body
 from momantu_bt.frames import MAP, ODOM, Joint
 from momantu_bt.geometry import Transform
 from momantu_bt.messages import RobotState

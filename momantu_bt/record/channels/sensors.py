@@ -8,9 +8,9 @@ import math
 
 import numpy as np
 
-from momantu_bt.engine.actuators import SensorRead
 from momantu_bt.engine.events import Events
 from momantu_bt.engine.executor import Executor
+from momantu_bt.engine.skills.actuators import SensorRead
 from momantu_bt.geometry import Transform
 from momantu_bt.lazy import lazily
 from momantu_bt.messages import CameraImage, LaserScan

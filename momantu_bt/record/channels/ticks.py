@@ -6,10 +6,10 @@ import hashlib
 from collections.abc import Iterable
 from typing import Any
 
-from momantu_bt.engine.actuators import Issued
 from momantu_bt.engine.blackboard import Journal, written
 from momantu_bt.engine.changes import Change, SeenNode
 from momantu_bt.engine.executor import Executor
+from momantu_bt.engine.skills.actuators import Issued
 from momantu_bt.engine.status import IDLE, RUNNING
 from momantu_bt.failure import FailureValue
 from momantu_bt.messages import ActuatorGoal

@@ -19,9 +19,9 @@ from momantu_bt.bench.statistics.coverage import (
     running_order,
 )
 from momantu_bt.cli import main
-from momantu_bt.engine.body import Body
 from momantu_bt.engine.build import build
 from momantu_bt.engine.context import RunContext
+from momantu_bt.engine.skills.body import Body
 from momantu_bt.testing import ManualClock
 from momantu_bt.tree.files.lookup import bundled
 from momantu_bt.tree.load import load, read_file

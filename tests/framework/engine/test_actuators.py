@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from momantu_bt.engine.actuators import Actuators, Issued
+from momantu_bt.engine.skills.actuators import Actuators, Issued
 from momantu_bt.failure import Failure
 from momantu_bt.messages import BaseVelocity, JointPositions
 from momantu_bt.robot import CAMERA_CARRIER

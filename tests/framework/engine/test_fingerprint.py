@@ -10,9 +10,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from momantu_bt.engine.actuators import Issued
 from momantu_bt.engine.encode import encode
 from momantu_bt.engine.fingerprint import Fingerprint
+from momantu_bt.engine.skills.actuators import Issued
 from momantu_bt.failure import FailureValue
 from momantu_bt.geometry import Pose2D, Transform
 from momantu_bt.messages import (

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from momantu_bt.engine.actuators import Actuators
-from momantu_bt.engine.sensor_check import same
+from momantu_bt.engine.skills.actuators import Actuators
+from momantu_bt.engine.skills.sensor_check import same
 from momantu_bt.failure import Failure
 from momantu_bt.geometry import Pose2D
 from momantu_bt.messages import CameraImage, LaserScan

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from momantu_bt.engine.actuators import Actuators
-from momantu_bt.engine.services import ServiceCycleError, Services, in_order
+from momantu_bt.engine.skills.actuators import Actuators
+from momantu_bt.engine.skills.services import ServiceCycleError, Services, in_order
 from momantu_bt.frames import FrameBuffer
 from momantu_bt.messages import BaseVelocity
 from momantu_bt.running.launch import LaunchError

@@ -11,8 +11,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from momantu_bt.engine.actuators import Actuators
-from momantu_bt.engine.session import Session, SkillContext
+from momantu_bt.engine.skills.actuators import Actuators
+from momantu_bt.engine.skills.session import Session, SkillContext
 from momantu_bt.engine.status import FAILURE, RUNNING, SUCCESS
 from momantu_bt.failure import Failure
 from momantu_bt.frames import FrameBuffer

@@ -11,9 +11,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from momantu_bt.engine.actuators import Issued
 from momantu_bt.engine.encode import encode
 from momantu_bt.engine.fingerprint import Fingerprint
+from momantu_bt.engine.skills.actuators import Issued
 from momantu_bt.failure import FailureValue
 from momantu_bt.formats.files import OutputError, check_writable, write_whole
 from momantu_bt.geometry import Pose2D

@@ -5,8 +5,8 @@ import math
 
 import pytest
 
-from momantu_bt.engine.actuators import Actuators, SensorRead
 from momantu_bt.engine.events import Events
+from momantu_bt.engine.skills.actuators import Actuators, SensorRead
 from momantu_bt.frames import ODOM
 from momantu_bt.geometry import Pose, Transform
 from momantu_bt.messages import DetectedObject, WrenchReading

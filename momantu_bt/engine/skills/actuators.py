@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from momantu_bt.engine.events import Events
-from momantu_bt.engine.sensor_check import SensorCheck
+from momantu_bt.engine.skills.sensor_check import SensorCheck
 from momantu_bt.failure import ACTUATOR_BUSY, Failure
 from momantu_bt.messages import ActuatorGoal, RobotState
 from momantu_bt.robot import Robot, RobotDescription, SensorReading

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, TypeAlias
 
-from momantu_bt.engine.actuators import Actuators
-from momantu_bt.engine.session import CLOCK_SLACK
+from momantu_bt.engine.skills.actuators import Actuators
+from momantu_bt.engine.skills.session import CLOCK_SLACK
 from momantu_bt.errors import MomantuError
 from momantu_bt.frames import FrameBuffer
 from momantu_bt.robot import Robot

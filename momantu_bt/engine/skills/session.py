@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from momantu_bt.engine.actuators import Lease
-from momantu_bt.engine.skill_errors import declared, hung_failure, skill_error
+from momantu_bt.engine.skills.actuators import Lease
+from momantu_bt.engine.skills.errors import declared, hung_failure, skill_error
 from momantu_bt.engine.status import FAILURE, RUNNING, SUCCESS, Status
 from momantu_bt.engine.watchdog import Hung
 from momantu_bt.failure import INPUT_MISSING, SERVICE_MISSING, Failure, FailureValue

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from momantu_bt.engine.actuators import Actuators
+from momantu_bt.engine.skills.actuators import Actuators
 from momantu_bt.frames import FrameBuffer
 from momantu_bt.world import Site
 
