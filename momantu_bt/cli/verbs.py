@@ -22,7 +22,7 @@ class Verb(NamedTuple):
 
 
 VERBS = {
-    "run": Verb("momantu_bt.cli.run", "Run a tree."),
+    "run": Verb("momantu_bt.cli.run.run", "Run a tree."),
     "bench": Verb(
         "momantu_bt.cli.bench.bench",
         "Run a tree many times and say how often it works, and why not.",

@@ -16,9 +16,9 @@ with lazily():
     from rich import console
 
     from momantu_bt import page
-    from momantu_bt.cli import terminal
     from momantu_bt.cli.replay import records
     from momantu_bt.cli.replay import screen as replay_screen
+    from momantu_bt.cli.run import terminal
     from momantu_bt.replay import moment_text, rebuild, recheck, run_text, seek, stepper
     from momantu_bt.replay import timeline as timelines
     from momantu_bt.tree import registry

@@ -9,8 +9,8 @@ from rich.console import Console, ConsoleDimensions, Group
 from rich.live import Live
 from rich.text import Text
 
-from momantu_bt.cli.keyboard import Keyboard
-from momantu_bt.cli.live import line_text
+from momantu_bt.cli.run.live import line_text
+from momantu_bt.cli.shared.keyboard import Keyboard
 from momantu_bt.engine.status import RUNNING
 from momantu_bt.record.text.failure import failure_line
 from momantu_bt.record.text.lines import tree_lines

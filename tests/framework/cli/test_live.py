@@ -8,7 +8,7 @@ import itertools
 import pytest
 from rich.console import Console
 
-from momantu_bt.cli.live import LiveTree
+from momantu_bt.cli.run.live import LiveTree
 from momantu_bt.record.text.changes import ChangeLines
 from momantu_bt.record.text.lines import running_text, tree_lines
 from momantu_bt.running.api import run
@@ -134,7 +134,7 @@ def test_the_live_tree_draws_and_obeys_no_color(start, monkeypatch, color):
         monkeypatch.setenv("NO_COLOR", "1")
     out = io.StringIO()
     live = LiveTree(Console(file=out, force_terminal=True, width=80))
-    monkeypatch.setattr("momantu_bt.cli.live.REFRESH", 0.0)
+    monkeypatch.setattr("momantu_bt.cli.run.live.REFRESH", 0.0)
     start(live)
     live.close()
     drawn = out.getvalue()

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from momantu_bt.cli.keyboard import keys_in
+from momantu_bt.cli.shared.keyboard import keys_in
 from momantu_bt.record.text.lines import tree_lines
 from momantu_bt.replay.moment_text import board_lines, failures_of, moment_data
 from momantu_bt.replay.seek import SeekError, changes, failures, matching

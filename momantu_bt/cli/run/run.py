@@ -20,8 +20,8 @@ from momantu_bt.lazy import lazily
 with lazily():
     from rich import console
 
-    from momantu_bt.cli import breakpoints, live
-    from momantu_bt.cli import terminal as terminals
+    from momantu_bt.cli.run import breakpoints, live
+    from momantu_bt.cli.run import terminal as terminals
     from momantu_bt.cli.shared import given
     from momantu_bt.engine import person
     from momantu_bt.faults import spec
@@ -32,8 +32,8 @@ with lazily():
     from momantu_bt.running import prepare as preparing
 
 if TYPE_CHECKING:
-    from momantu_bt.cli.breakpoints import Breakpoints
-    from momantu_bt.cli.terminal import Terminal
+    from momantu_bt.cli.run.breakpoints import Breakpoints
+    from momantu_bt.cli.run.terminal import Terminal
     from momantu_bt.engine.executor import Executor, Observer
     from momantu_bt.record.report import Report
     from momantu_bt.running.options import RunOptions

@@ -14,7 +14,7 @@ from typing import Any
 
 import typer
 
-from momantu_bt.cli.terminal import Terminal
+from momantu_bt.cli.run.terminal import Terminal
 from momantu_bt.engine.blackboard import Board
 from momantu_bt.engine.executor import Executor, NodeStarting
 from momantu_bt.engine.node import TreeNode

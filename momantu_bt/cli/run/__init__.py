@@ -1,0 +1,1 @@
+"""`momantu-bt run`: the live tree, questions to a person, breakpoints."""
