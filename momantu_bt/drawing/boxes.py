@@ -1,4 +1,4 @@
-"""A document as boxes and the lines between them, the base of every kind of picture.
+"""Turn a document into boxes and lines between them, the base of every kind of picture.
 
 A box is a node with the decorators around it; each node of the document is in one box.
 """

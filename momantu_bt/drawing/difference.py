@@ -1,4 +1,4 @@
-"""The difference between two documents, as a tree with + - ~ marks."""
+"""Show the difference between two documents, as a tree with + - ~ marks."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A document for Graphviz."""
+"""Write a document as a graph for Graphviz."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Matching the nodes of two trees.
+"""Match the nodes of two trees.
 
 Nodes are matched from the roots down: children of two matched nodes in an order that both have, by
 what they are, as alike as possible. What is left over and stands elsewhere unchanged has moved.

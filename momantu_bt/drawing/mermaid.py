@@ -1,4 +1,4 @@
-"""A document as a Mermaid flowchart, which many wikis show directly."""
+"""Write a document as a Mermaid flowchart, which many wikis show directly."""
 
 from __future__ import annotations
 

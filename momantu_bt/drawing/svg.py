@@ -1,4 +1,4 @@
-"""A document as an SVG picture, drawn without any other program."""
+"""Draw a document as an SVG picture, without any other program."""
 
 from __future__ import annotations
 

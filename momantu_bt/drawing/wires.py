@@ -1,4 +1,4 @@
-"""The wires of a document: which node writes what another one reads."""
+"""Find the wires of a document: which node writes what another one reads."""
 
 from __future__ import annotations
 

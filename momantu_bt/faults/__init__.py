@@ -1,1 +1,1 @@
-"""Breaking a run on purpose: what a fault is called, when it begins, and how it is made."""
+"""Break a run on purpose: names of faults, when they begin, and what they do."""

@@ -1,4 +1,4 @@
-"""Begins and ends the faults of one run, between its ticks."""
+"""Begin and end the faults of one run, between its ticks."""
 
 from __future__ import annotations
 

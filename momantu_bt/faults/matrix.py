@@ -1,4 +1,4 @@
-"""The rows that a bench of all faults has, and what is demanded of each."""
+"""List the rows of a bench of all faults, and say how each must end."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Kinds of faults for people: a list, a page each, and the table of the documentation."""
+"""Print the kinds of faults: a list, a page for each, and the table of the documentation."""
 
 from __future__ import annotations
 

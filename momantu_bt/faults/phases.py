@@ -1,4 +1,4 @@
-"""Phases in a tree: whether their names occur, and the usual phase of a kind of fault."""
+"""Check the phases of faults against a tree, and choose the usual phase of a kind of fault."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Faults in what the robot is told; the world does not change."""
+"""Faults in the site that the robot gets; the world does not change."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Wrong sites: the robot is told something false; the world does not change."""
+"""Wrong sites: the robot gets false information; the world does not change."""
 
 from __future__ import annotations
 

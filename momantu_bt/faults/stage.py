@@ -1,4 +1,4 @@
-"""Preparing a run for the requested faults."""
+"""Prepare a run for the requested faults."""
 
 from __future__ import annotations
 

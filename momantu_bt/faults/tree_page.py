@@ -1,4 +1,4 @@
-"""The rows of one tree: when each fault begins in it, and how a run with it must end."""
+"""Print the fault rows of one tree: when each fault begins, and how a run with it must end."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The usual phases of a kind of fault, given the installed skills."""
+"""Find the usual phases of a kind of fault, given the installed skills."""
 
 from __future__ import annotations
 

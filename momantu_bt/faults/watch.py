@@ -1,4 +1,4 @@
-"""Watching a running tree for the beginning of a phase."""
+"""Watch a running tree for the beginning of a phase."""
 
 from __future__ import annotations
 

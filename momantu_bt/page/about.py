@@ -1,4 +1,4 @@
-"""The head of the page: what ran, with what, and how it ended."""
+"""The head of the page: the tree, world, robot and versions, and how the run ended."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""When each leaf of the tree was at work."""
+"""Gather when each leaf of the tree ran."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""All data of the page; `assets/record.js` reads it."""
+"""Gather all data of the page; `assets/record.js` reads it."""
 
 from __future__ import annotations
 

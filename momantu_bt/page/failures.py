@@ -1,4 +1,4 @@
-"""The failures of a run, each with the chain that led to it."""
+"""Gather the failures of a run, each with the chain that led to it."""
 
 from __future__ import annotations
 

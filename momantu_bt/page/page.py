@@ -1,4 +1,4 @@
-"""One HTML file of a run: markup, style, scripts and data, joined."""
+"""Write one HTML file of a run: markup, style, scripts and data."""
 
 from __future__ import annotations
 

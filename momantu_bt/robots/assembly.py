@@ -1,4 +1,4 @@
-"""Joining the parts of a robot into one URDF; a single part's own URDF is used unchanged."""
+"""Join the parts of a robot into one URDF; a single part's own URDF is used unchanged."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Names and numbers of a robot file that must fit the robot's URDF and each other."""
+"""Check that names and numbers of a robot file fit the robot's URDF and each other."""
 
 from __future__ import annotations
 

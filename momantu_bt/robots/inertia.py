@@ -1,4 +1,4 @@
-"""Whether the masses and inertias of a URDF are physically possible."""
+"""Check that the masses and inertias of a URDF are physically possible."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Parts, mounts, frames and virtual base joints in one `robot` element."""
+"""Join parts, mounts, frames and virtual base joints in one `robot` element."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Adding joint limits from the robot file that a URDF leaves out."""
+"""Add joint limits from the robot file that a URDF leaves out."""
 
 from __future__ import annotations
 

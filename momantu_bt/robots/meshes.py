@@ -1,4 +1,4 @@
-"""Finding the meshes of a part, and replacing them with a user's own."""
+"""Find the meshes of a part, and replace them with a user's own."""
 
 from __future__ import annotations
 

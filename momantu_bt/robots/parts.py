@@ -1,4 +1,4 @@
-"""Finding and reading the URDF of each part."""
+"""Find and read the URDF of each part."""
 
 from __future__ import annotations
 

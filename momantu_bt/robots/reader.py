@@ -1,4 +1,4 @@
-"""Reading a robot file: from YAML and URDFs to a description, with every error at its place."""
+"""Read a robot file: from YAML and URDFs to a description, with every error at its place."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether a part's URDF is one tree of links with valid numbers."""
+"""Check that a part's URDF is one tree of links with valid numbers."""
 
 from __future__ import annotations
 

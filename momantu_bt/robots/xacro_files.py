@@ -1,4 +1,4 @@
-"""Expanding xacro files, without ROS.
+"""Expand xacro files, without ROS.
 
 A xacro file is a program: it evaluates Python expressions, reads files and the environment. The
 `xacro` package keeps expressions from Python's built-in functions, which does not stop a

@@ -1,4 +1,4 @@
-"""Checking a skill against the rules for all skills, without a simulator."""
+"""Check a skill against the rules for all skills, without a simulator."""
 
 from __future__ import annotations
 

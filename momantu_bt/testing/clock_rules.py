@@ -1,4 +1,4 @@
-"""Use of clocks and random numbers other than the run's: found in the source and at run time."""
+"""Find clocks and random numbers other than the run's, in a skill's source and at run time."""
 
 from __future__ import annotations
 

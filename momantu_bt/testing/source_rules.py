@@ -1,4 +1,4 @@
-"""What a skill's source shows: undeclared ports, undeclared codes, missing docs."""
+"""Find undeclared ports, undeclared codes and missing docs in a skill's source."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The plan of a bench: which episodes are wanted, done and missing."""
+"""Plan a bench: which episodes are wanted, done and missing."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Coverage as text: the tree file with the number of runs beside each line."""
+"""Print coverage as text: the tree file with the number of runs beside each line."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The matrix of faults: the outcome of each fault, over seeds."""
+"""Print the matrix of faults: the outcome of each fault, over seeds."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A table as lines of text."""
+"""Write a table as lines of text."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Opening a record that is named on the command line."""
+"""Open a record that the command line names."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A robot's summary as text."""
+"""Write a robot's summary as text."""
 
 from __future__ import annotations
 

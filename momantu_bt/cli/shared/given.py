@@ -1,4 +1,4 @@
-"""Values from `--values` and `--set`; `--set` wins."""
+"""Read the values of `--values` and `--set`; `--set` wins."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A verb's docstring as its help."""
+"""Format a verb's docstring as its help."""
 
 from __future__ import annotations
 

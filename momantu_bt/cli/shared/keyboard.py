@@ -1,4 +1,4 @@
-"""Keys of a terminal one by one, without Enter and without being shown."""
+"""Read the keys of a terminal one by one, without Enter and without showing them."""
 
 from __future__ import annotations
 

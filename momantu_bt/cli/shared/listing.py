@@ -1,4 +1,4 @@
-"""Lists of the plug-ins of one kind, with one line about each."""
+"""Print the plug-ins of one kind, with a line about each."""
 
 from __future__ import annotations
 

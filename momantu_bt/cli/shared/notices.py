@@ -1,4 +1,4 @@
-"""Notices on standard error: remarks that are not part of a result."""
+"""Print notices on standard error: remarks that are not part of a result."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A JSON Schema, printed or written where an editor finds it."""
+"""Print a JSON Schema, or write it where an editor finds it."""
 
 from __future__ import annotations
 
