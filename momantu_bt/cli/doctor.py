@@ -15,7 +15,7 @@ from momantu_bt.diagnosis.machine import machine
 from momantu_bt.diagnosis.packages import packages
 from momantu_bt.diagnosis.plugins import plugins
 from momantu_bt.errors import ExitCode
-from momantu_bt.faults.catalogue import FAULTS
+from momantu_bt.faults.kinds.catalogue import FAULTS
 from momantu_bt.robots.plugins import ROBOTS
 from momantu_bt.tree.catalogue.nodes import BEHAVIOURS
 from momantu_bt.tree.catalogue.nodes import PLUGINS as NODES

@@ -11,7 +11,7 @@ from momantu_bt.bench.reports.table import columns
 from momantu_bt.cli.shared.help import help_of
 from momantu_bt.cli.shared.schema_file import Out, put_schema
 from momantu_bt.errors import ExitCode
-from momantu_bt.faults.catalogue import kinds
+from momantu_bt.faults.kinds.catalogue import kinds
 from momantu_bt.faults.pages import as_data, as_parameters, as_table, as_text, as_words
 from momantu_bt.faults.spec import parse_fault
 from momantu_bt.faults.tree_file import faults_schema

@@ -11,7 +11,7 @@ from momantu_bt.engine.node import TreeNode
 from momantu_bt.engine.skills.session import CLOCK_SLACK
 from momantu_bt.fault import Effect, Fault, FaultError
 from momantu_bt.fault_kind import FOR
-from momantu_bt.faults.skills.victim import SkillFault
+from momantu_bt.faults.effects.skills.victim import SkillFault
 from momantu_bt.faults.spec import format_fault
 from momantu_bt.faults.watch import PhaseWatch
 from momantu_bt.record.report import FaultReport

@@ -8,8 +8,8 @@ from fnmatch import fnmatchcase
 
 from momantu_bt.fault import Fault, FaultError
 from momantu_bt.fault_kind import FaultKind
-from momantu_bt.faults.catalogue import kinds
-from momantu_bt.faults.reasons import installed_skills, true_reasons
+from momantu_bt.faults.kinds.catalogue import kinds
+from momantu_bt.faults.kinds.reasons import installed_skills, true_reasons
 from momantu_bt.faults.spec import format_fault, parse_fault
 from momantu_bt.formats.names import valid_names
 

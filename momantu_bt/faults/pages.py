@@ -8,11 +8,11 @@ from typing import Any
 
 from momantu_bt.activity import Activity
 from momantu_bt.fault_kind import FaultKind
-from momantu_bt.faults.catalogue import kinds
+from momantu_bt.faults.kinds.catalogue import kinds
+from momantu_bt.faults.kinds.reasons import installed_skills
+from momantu_bt.faults.kinds.triggers import usual_phases
 from momantu_bt.faults.matrix import ENDED, RECOVERED, Row, rows
 from momantu_bt.faults.phase import START
-from momantu_bt.faults.reasons import installed_skills
-from momantu_bt.faults.triggers import usual_phases
 from momantu_bt.skill import Port
 from momantu_bt.symptom import Symptom
 from momantu_bt.values.types import label

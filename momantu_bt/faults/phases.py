@@ -8,8 +8,8 @@ from typing import TypeAlias
 
 from momantu_bt.fault import FaultError
 from momantu_bt.fault_kind import FaultKind
+from momantu_bt.faults.kinds.triggers import usual_phases
 from momantu_bt.faults.phase import START, Phase, parse_phase
-from momantu_bt.faults.triggers import usual_phases
 from momantu_bt.formats.names import valid_names
 from momantu_bt.skill import Skill
 from momantu_bt.tree.catalogue import NODES, SUBTREE

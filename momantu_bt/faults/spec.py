@@ -9,7 +9,7 @@ from types import MappingProxyType
 
 from momantu_bt.fault import Fault, FaultError, FaultParameter
 from momantu_bt.fault_kind import FOR, FaultKind
-from momantu_bt.faults.catalogue import kinds
+from momantu_bt.faults.kinds.catalogue import kinds
 from momantu_bt.faults.phase import parse_phase
 from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.places import underlined

@@ -15,14 +15,14 @@ from momantu_bt.engine.context import RunContext
 from momantu_bt.engine.executor import Stepping
 from momantu_bt.fault import Effect, Fault, FaultError, FaultyWorld
 from momantu_bt.fault_kind import FaultKind, Where
-from momantu_bt.faults import robot as at_robot
-from momantu_bt.faults import site as at_site
-from momantu_bt.faults.catalogue import kinds
 from momantu_bt.faults.director import Director, Staged
+from momantu_bt.faults.effects import robot as at_robot
+from momantu_bt.faults.effects import site as at_site
+from momantu_bt.faults.effects.skills import skill_fault
+from momantu_bt.faults.effects.skills.victim import SkillFault
+from momantu_bt.faults.kinds.catalogue import kinds
 from momantu_bt.faults.phase import START, Phase, parse_phase
 from momantu_bt.faults.phases import check_phase, usual_phase
-from momantu_bt.faults.skills import skill_fault
-from momantu_bt.faults.skills.victim import SkillFault
 from momantu_bt.faults.tree_file import TreeFaults, tree_faults
 from momantu_bt.faults.watch import PhaseWatch
 from momantu_bt.formats.names import valid_names

@@ -18,7 +18,7 @@ from typing import Any
 from momantu_bt.descriptions.schema import DIALECT
 from momantu_bt.fault import FaultError
 from momantu_bt.fault_kind import Where
-from momantu_bt.faults.catalogue import kinds
+from momantu_bt.faults.kinds.catalogue import kinds
 from momantu_bt.faults.phase import FORMS, START, parse_phase
 from momantu_bt.faults.phases import check_phase
 from momantu_bt.faults.spec import FORM, FaultSyntaxError, parse_fault

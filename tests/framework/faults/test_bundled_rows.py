@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from momantu_bt.engine.build import skills_in
-from momantu_bt.faults.catalogue import kinds
+from momantu_bt.faults.kinds.catalogue import kinds
 from momantu_bt.faults.matrix import rows
 from momantu_bt.faults.spec import parse_fault
 from momantu_bt.faults.stage import plan

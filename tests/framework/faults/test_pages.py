@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from momantu_bt.cli import main
-from momantu_bt.faults.catalogue import kinds
+from momantu_bt.faults.kinds.catalogue import kinds
 from momantu_bt.faults.pages import as_parameters, as_table, as_text, as_words
 from momantu_bt.faults.spec import parse_fault
 

@@ -10,7 +10,7 @@ import pytest
 from momantu_bt.engine.encode import encode
 from momantu_bt.failure import Failure
 from momantu_bt.fault import FaultError
-from momantu_bt.faults.robot import LAYERS, layer
+from momantu_bt.faults.effects.robot import LAYERS, layer
 from momantu_bt.faults.spec import parse_fault
 from momantu_bt.geometry import Pose2D
 from momantu_bt.messages import (

@@ -13,8 +13,8 @@ import pytest
 
 from momantu_bt.fault import FaultError
 from momantu_bt.faults.director import Director
-from momantu_bt.faults.site import wrong_site
-from momantu_bt.faults.skills.modes import without_numbers
+from momantu_bt.faults.effects.site import wrong_site
+from momantu_bt.faults.effects.skills.modes import without_numbers
 from momantu_bt.faults.spec import parse_fault
 from momantu_bt.formats.maps import FREE, OCCUPIED, read_map
 from momantu_bt.geometry import Transform

@@ -13,7 +13,7 @@ from momantu_bt.engine.build import skills_in
 from momantu_bt.failure import CODE, ENGINE_CODES
 from momantu_bt.fault import Fault, FaultError
 from momantu_bt.fault_kind import FOR
-from momantu_bt.faults.catalogue import kinds
+from momantu_bt.faults.kinds.catalogue import kinds
 from momantu_bt.faults.matrix import ENDED, RECOVERED, row_of, rows, rows_like
 from momantu_bt.faults.phase import Phase, parse_phase
 from momantu_bt.faults.phases import check_phase, usual_phase

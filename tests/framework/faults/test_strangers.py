@@ -14,10 +14,10 @@ from momantu_bt import plugins
 from momantu_bt.activity import Activity
 from momantu_bt.cli import main
 from momantu_bt.fault_kind import Trigger, Where, fault_kind
-from momantu_bt.faults.catalogue import FAULTS, kinds
-from momantu_bt.faults.reasons import true_reasons
+from momantu_bt.faults.kinds.catalogue import FAULTS, kinds
+from momantu_bt.faults.kinds.reasons import true_reasons
+from momantu_bt.faults.kinds.triggers import activities_of
 from momantu_bt.faults.tree_page import TreeRow, tree_rows
-from momantu_bt.faults.triggers import activities_of
 from momantu_bt.messages import DetectedObject
 from momantu_bt.plugins import PluginClash, PluginError
 from momantu_bt.robot import ARM

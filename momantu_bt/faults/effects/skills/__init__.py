@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from momantu_bt.fault import Fault
-from momantu_bt.faults.skills import modes
-from momantu_bt.faults.skills.victim import SkillFault
+from momantu_bt.faults.effects.skills import modes
+from momantu_bt.faults.effects.skills.victim import SkillFault
 
 MODES: Mapping[str, type[SkillFault]] = MappingProxyType(
     {

@@ -7,8 +7,8 @@ from types import MappingProxyType
 from typing import TypeAlias
 
 from momantu_bt.fault import Fault, FaultError
-from momantu_bt.faults.robot import arm, base, camera, gripper, odometry, sensors
-from momantu_bt.faults.robot.layer import Layer
+from momantu_bt.faults.effects.robot import arm, base, camera, gripper, odometry, sensors
+from momantu_bt.faults.effects.robot.layer import Layer
 from momantu_bt.robot import Robot
 
 LayerType: TypeAlias = type[Layer]

@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from momantu_bt.faults.robot.sensors import SensorLayer
+from momantu_bt.faults.effects.robot.sensors import SensorLayer
 from momantu_bt.geometry import Array, matrix_from_quaternion, quaternion_from_axis_angle
 from momantu_bt.messages import CameraImage, frozen
 from momantu_bt.robot import CameraSensor

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from momantu_bt.faults.skills.victim import SkillFault
+from momantu_bt.faults.effects.skills.victim import SkillFault
 from momantu_bt.geometry import Transform
 from momantu_bt.skill import Compute, Skill
 

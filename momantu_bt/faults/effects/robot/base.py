@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from momantu_bt.faults.robot.actuators import base_of
-from momantu_bt.faults.robot.layer import GoalLayer, StuckLayer
+from momantu_bt.faults.effects.robot.actuators import base_of
+from momantu_bt.faults.effects.robot.layer import GoalLayer, StuckLayer
 from momantu_bt.messages import ActuatorGoal, BaseVelocity
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from momantu_bt.failure import SENSOR_DEAD, Failure
 from momantu_bt.fault import Fault
-from momantu_bt.faults.robot.layer import Layer
+from momantu_bt.faults.effects.robot.layer import Layer
 from momantu_bt.messages import LaserScan, frozen
 from momantu_bt.robot import CameraSensor, LaserSensor, Robot, SensorReading
 

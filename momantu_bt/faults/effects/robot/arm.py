@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from momantu_bt.fault import Fault
-from momantu_bt.faults.robot.actuators import arm_of
-from momantu_bt.faults.robot.layer import GoalLayer, StuckLayer
+from momantu_bt.faults.effects.robot.actuators import arm_of
+from momantu_bt.faults.effects.robot.layer import GoalLayer, StuckLayer
 from momantu_bt.geometry import Array
 from momantu_bt.messages import (
     ActuatorGoal,

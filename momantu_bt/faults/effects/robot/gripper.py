@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from momantu_bt.fault import Fault
-from momantu_bt.faults.robot.actuators import gripper_of
-from momantu_bt.faults.robot.layer import GoalLayer, StuckLayer
+from momantu_bt.faults.effects.robot.actuators import gripper_of
+from momantu_bt.faults.effects.robot.layer import GoalLayer, StuckLayer
 from momantu_bt.messages import ActuatorGoal, GripperCommand
 from momantu_bt.robot import Robot
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from momantu_bt.fault import Fault
-from momantu_bt.faults.robot.layer import Layer
+from momantu_bt.faults.effects.robot.layer import Layer
 from momantu_bt.geometry import Pose2D, wrap_angle
 from momantu_bt.messages import RobotState
 from momantu_bt.robot import Robot
