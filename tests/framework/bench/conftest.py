@@ -182,10 +182,14 @@ def stalling(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     return _write(tmp_path / "stalling.yaml", STALLING)
 
 
+READ_EVERYTHING = plugins._everything.__wrapped__
+"""Reads the entry points anew at each call."""
+
+
 def _look_again(monkeypatch: pytest.MonkeyPatch) -> None:
     """What has just been installed is found, though entry points are read once a process."""
     find = plugins.entry_points
-    monkeypatch.setattr(plugins, "_everything", plugins._everything.__wrapped__)
+    monkeypatch.setattr(plugins, "_everything", READ_EVERYTHING)
     monkeypatch.setattr(plugins, "entry_points", lambda group: find(group))
 
 

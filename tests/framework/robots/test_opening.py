@@ -59,7 +59,7 @@ def test_fingers_without_a_table_share_the_opening() -> None:
 
 def test_a_gripper_without_joints_has_no_width_by_joints() -> None:
     assert small_robot().end_effector.positions(0.05) == {}
-    with pytest.raises(ValueError, match="without joints"):
+    with pytest.raises(ValueError, match="needs joints, and this gripper has none"):
         small_robot().end_effector.width({})
 
 
