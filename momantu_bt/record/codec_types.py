@@ -1,4 +1,4 @@
-"""Types by name, for values of a record: the framework's own and those of plug-ins."""
+"""Find types by name for values of a record; reading a record runs no code but theirs."""
 
 from __future__ import annotations
 
