@@ -112,10 +112,10 @@ class Group(Mapping[str, T]):
             )
         try:
             plugin: T = entry.load()
+            objection = self.objection(name, plugin)
         except (Exception, SystemExit) as error:  # other people's code: it may raise anything
             reason = f"cannot be loaded: {type(error).__name__}: {error}"
         else:
-            objection = self.objection(name, plugin)
             if objection is None:
                 return plugin
             reason = f"is broken: {objection}"

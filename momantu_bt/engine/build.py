@@ -14,8 +14,10 @@ from momantu_bt.engine.ports import Reader, cell_of, reader
 from momantu_bt.engine.skill_leaf import SkillLeaf
 from momantu_bt.engine.substituted import Disabled, Substituted
 from momantu_bt.engine.subtree import SubTree
+from momantu_bt.errors import MomantuError
 from momantu_bt.skill import Port, Skill
 from momantu_bt.tree.catalogue import AUTOREMAP, NODE_CLASSES, NODES, SUBTREE
+from momantu_bt.tree.catalogue.built_in import BUILT_IN
 from momantu_bt.tree.language import FAILURE_KEY
 from momantu_bt.tree.model import Document, Literal, Node, PortValue, Reference, Tree
 from momantu_bt.tree.substitute.substitution import Substitution, reached
@@ -68,6 +70,20 @@ def _tree(document: Document, name: str) -> Tree:
     return document.trees[name]
 
 
+def _plugged_in(kind: type[TreeNode], parts: Parts) -> TreeNode:
+    """A node of another package, whose constructor may raise anything."""
+    try:
+        return kind(parts)
+    except (MomantuError, ConversionError):
+        raise
+    except Exception as error:
+        raise BuildError(
+            f"{parts.model.place}: the node {parts.model.type} cannot be made: its constructor "
+            f"({kind.__module__}:{kind.__qualname__}) raised {type(error).__name__}: {error}",
+            hint="Tell its authors, or leave the node out.",
+        ) from error
+
+
 class _Builder:
     def __init__(
         self,
@@ -107,7 +123,7 @@ class _Builder:
         if spec.handlers:
             parts = self._with_handlers(parts, path)
         kind = cast(type[TreeNode], NODE_CLASSES[model.type])
-        return kind(parts)
+        return kind(parts) if model.type in BUILT_IN else _plugged_in(kind, parts)
 
     def _substituted(self, parts: Parts, path: str) -> Substituted:
         model, board = parts.model, parts.board

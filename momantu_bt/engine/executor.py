@@ -14,7 +14,7 @@ from momantu_bt.engine.context import RunContext
 from momantu_bt.engine.ending import Ending
 from momantu_bt.engine.fingerprint import Fingerprint
 from momantu_bt.engine.interrupts import Interrupts
-from momantu_bt.engine.node import TreeNode
+from momantu_bt.engine.node import TreeNode, ticked_in
 from momantu_bt.engine.skills.services import Services
 from momantu_bt.engine.skills.session import CLOCK_SLACK
 from momantu_bt.engine.status import FAILURE, RUNNING, Status
@@ -112,8 +112,8 @@ class Executor:
             status = self._until_end(interrupts, started)
         except KeyboardInterrupt:
             status = ending.INTERRUPTED
-        except Exception:
-            self._error = traceback.format_exc()
+        except Exception as error:
+            self._error = _told(error)
             status = ending.ERROR
         sim_time, ticks = self.context.now, self.context.tick
         verdict = self._come_to_rest(status)
@@ -222,8 +222,8 @@ class Executor:
             return None if self.world is None else self.world.verdict()
         except KeyboardInterrupt:
             return None
-        except Exception:
-            self._error = self._error or traceback.format_exc()
+        except Exception as error:
+            self._error = self._error or _told(error)
             return None
 
     def stop(self) -> None:
@@ -253,6 +253,13 @@ class Executor:
         until = self._stepper.now() + SETTLE
         while self._stepper.now() < until - CLOCK_SLACK:
             self._step()
+
+
+def _told(error: Exception) -> str:
+    """The traceback; its last line ends with the node in which it happened."""
+    text = "".join(traceback.format_exception(error)).rstrip()
+    node = ticked_in(error)
+    return f"{text}\n" if node is None else f"{text}, in the node {node.where}\n"
 
 
 def halt_tree(built: Built) -> None:

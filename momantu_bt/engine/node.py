@@ -8,6 +8,8 @@ starts anew, without a change of its own in the journal.
 
 from __future__ import annotations
 
+import traceback
+from abc import abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import ClassVar
@@ -30,6 +32,16 @@ from momantu_bt.tree.show.printing import text
 
 class BuildError(MomantuError):
     """The model cannot become nodes: the checker would have said so."""
+
+
+_RESULTS = (RUNNING, SUCCESS, FAILURE, SKIPPED)
+"""What `step` may return."""
+
+
+def ticked_in(error: BaseException) -> TreeNode | None:
+    """The innermost node in whose tick or halt an exception was raised; None outside of nodes."""
+    owners = (frame.f_locals.get("self") for frame, _ in traceback.walk_tb(error.__traceback__))
+    return next((each for each in reversed([*owners]) if isinstance(each, TreeNode)), None)
 
 
 class _Top:
@@ -122,9 +134,9 @@ class TreeNode:
 
     # what subclasses write
 
+    @abstractmethod
     def step(self) -> Status:
         """One tick of the node itself; its conditions have been asked."""
-        raise NotImplementedError(f"{type(self).__name__} has no step()")
 
     def clear(self) -> None:
         """Forget progress (indices, counts, timers): the node is being halted."""
@@ -179,6 +191,9 @@ class TreeNode:
         if new is not SKIPPED:
             self.state = new
         if new is not self._shown or self._shown_in_run != self._above.runs:
+            if new not in _RESULTS:
+                names = ", ".join(each.value for each in _RESULTS)
+                raise TypeError(f"step() returned {new!r}; expected one of {names}")
             self.show(new)
         return new
 

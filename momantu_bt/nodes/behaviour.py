@@ -53,6 +53,7 @@ class Declaration:
     ports: Mapping[str, Port]
     through: Through
     failure: str
+    codes: tuple[str, ...]
     doc: str
 
 
@@ -61,18 +62,26 @@ def behaviour(
     *ports: Port,
     through: str = Through.ATTRIBUTES,
     failure: str = FAILED,
+    codes: Collection[str] = (),
     doc: str = "",
 ) -> Declaration:
     """Declare the ports of a behaviour, for an entry point of the group `momantu_bt.behaviours`.
 
     ports: made by `input_port` and `output_port`; their names are those of the arguments,
     attributes or keys. through: "constructor", "attributes" or "blackboard"; see `Through`.
-    failure: the code of its FAILURE; the sentence is its feedback message. doc: one sentence,
-    unless the docstring of the class says it.
+    failure: the code of its FAILURE; the sentence is its feedback message. codes: further codes,
+    of what it raises as `momantu_bt.Failure`. doc: one sentence, unless the docstring of the class
+    says it.
+
+    Raises:
+        ValueError: `through` is none of these three.
     """
+    if through not in {*Through}:
+        names = ", ".join(Through)
+        raise ValueError(f"through={through!r}; expected one of {names}")
     said = doc or (inspect.getdoc(kind) or "").partition("\n")[0]
     by_name = {port.name: port for port in ports}
-    return Declaration(kind, by_name, Through(through), failure, said)
+    return Declaration(kind, by_name, Through(through), failure, tuple(codes), said)
 
 
 def declared(plugin: object) -> Declaration | None:
@@ -89,10 +98,36 @@ def behaviour_objection(name: str, plugin: object, built_in: Collection[str]) ->
         return f"{plugin!r} is not a py_trees Behaviour class and not made by `behaviour(…)`"
     if not declaration.doc.strip():
         return f"{declaration.kind.__name__} has no docstring: one sentence that says what it does"
-    if not CODE.fullmatch(declaration.failure):
-        return f"{declaration.failure!r} is not a failure code: UPPER_CASE words"
+    for code in (declaration.failure, *declaration.codes):
+        if not isinstance(code, str) or not CODE.fullmatch(code):
+            return f"{code!r} is not a failure code: UPPER_CASE words"
     wrong = (bad_port(name, port) for port in declaration.ports.values())
-    return bad_name(name, built_in) or next(filter(None, wrong), None)
+    return (
+        bad_name(name, built_in) or next(filter(None, wrong), None) or _cannot_be_made(declaration)
+    )
+
+
+def _cannot_be_made(declaration: Declaration) -> str | None:
+    """Why the constructor would refuse its arguments, or there is no `update`; else None."""
+    kind = declaration.kind
+    if inspect.isabstract(kind):
+        return f"{kind.__name__} has no {', '.join(sorted(kind.__abstractmethods__))}"
+    inputs = [port.name for port in declaration.ports.values() if port.direction == "in"]
+    named = inputs if declaration.through is Through.CONSTRUCTOR else []
+    try:
+        inspect.signature(kind).bind(name="", **dict.fromkeys(named))
+    except TypeError as error:
+        return (
+            f"the constructor of {kind.__name__} cannot be called with {_list('name', *named)}: "
+            f"{error}; behaviour(…, through='constructor') gives it the inputs too"
+        )
+    except ValueError:
+        return None  # Python knows no signature of it
+    return None
+
+
+def _list(*names: str) -> str:
+    return ", ".join(f"`{name}`" for name in names)
 
 
 def node_class(name: str, plugin: object) -> type[BehaviourLeaf]:
@@ -105,7 +140,7 @@ def node_class(name: str, plugin: object) -> type[BehaviourLeaf]:
         declaration.doc,
         *declaration.ports.values(),
         first=next((p.name for p in declaration.ports.values() if p.direction == "in"), None),
-        codes=and_also(declaration.failure, BEHAVIOUR_ERROR, HUNG),
+        codes=and_also(declaration.failure, *declaration.codes, BEHAVIOUR_ERROR, HUNG),
     )
     return type(name, (BehaviourLeaf,), {"spec": spec, "declaration": declaration})
 
@@ -164,6 +199,7 @@ class BehaviourLeaf(TreeNode):
             try:
                 running.stop(PyTreesStatus.INVALID)
             except Exception as error:
+                running.status = PyTreesStatus.INVALID  # it has been halted, and once is enough
                 self.context.remark(f"{self.where}: while it was halted: {_words(error)}")
 
     def _ticked(self, begins: bool, inputs: Mapping[str, Any]) -> tuple[str, str, dict[str, Any]]:

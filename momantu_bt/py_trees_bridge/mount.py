@@ -11,7 +11,9 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status as PyTreesStatus
 
 from momantu_bt.engine.executor import Executor
+from momantu_bt.engine.node import TreeNode
 from momantu_bt.engine.person import Scripted
+from momantu_bt.engine.status import RUNNING
 from momantu_bt.py_trees_bridge.view import PY_TREES_STATUS, view
 from momantu_bt.record.text.lines import tree_lines
 from momantu_bt.running.launch import assemble
@@ -82,13 +84,19 @@ class TreeBehaviour(Behaviour):
         self._run.begin()
 
     def update(self) -> PyTreesStatus:
-        """One tick. SKIPPED, which py_trees does not know, is SUCCESS: nothing was to be done."""
+        """One tick. SKIPPED, which py_trees does not know, is SUCCESS: nothing was to be done.
+
+        Whatever a tick raises stops the robot first.
+        """
         run = self._run
         assert run is not None
-        status = run.tick()
+        try:
+            status = run.tick()
+        except BaseException:
+            run.stop()
+            raise
         failure = run.built.root.failure
-        deepest = tree_lines(run.built.root)[-1].text
-        self.feedback_message = str(failure) if failure is not None else deepest
+        self.feedback_message = _at_work(run.built.root) if failure is None else str(failure)
         found = PY_TREES_STATUS[status]
         return PyTreesStatus.SUCCESS if found is PyTreesStatus.INVALID else found
 
@@ -98,5 +106,13 @@ class TreeBehaviour(Behaviour):
             self._run.stop()
 
     def shutdown(self) -> None:
-        """Close the world, where this behaviour opened it."""
+        """Halt what still runs; close the world, where this behaviour opened it."""
+        if self.status is PyTreesStatus.RUNNING:
+            self.stop(PyTreesStatus.INVALID)
         self._stack.close()
+
+
+def _at_work(root: TreeNode) -> str:
+    """The innermost node that runs, in one line; empty when the tree has ended."""
+    running = [line.text for line in tree_lines(root) if line.status == RUNNING.value]
+    return running[-1] if running else ""

@@ -12,7 +12,8 @@ from typing import Any, ClassVar, Protocol, TypeAlias, TypeVar
 
 from momantu_bt.plugins import Group, PluginError
 from momantu_bt.tree.catalogue.built_in import BUILT_IN
-from momantu_bt.tree.catalogue.objection import node_objection
+from momantu_bt.tree.catalogue.guarded import guarded
+from momantu_bt.tree.catalogue.objection import node_objection, type_of
 from momantu_bt.tree.catalogue.spec import Dialect, NodeSpec
 from momantu_bt.tree.catalogue.words import CONDITIONS, NODE_KEYS
 
@@ -39,6 +40,9 @@ def _behaviour_objection(name: str, plugin: object) -> str | None:
     found: str | None = _bridge().behaviour_objection(name, plugin, _spellings())
     return found
 
+
+DOCTOR = "run momantu-bt doctor"
+"""What to do about a broken one."""
 
 BEHAVIOURS: Group[object] = Group("momantu_bt.behaviours", "behaviour", _behaviour_objection)
 """Behaviours of py_trees that other packages bring, by their names in trees."""
@@ -98,6 +102,22 @@ def is_ours(name: str) -> bool:
     return name in BUILT_IN and NODES[name].dialect is Dialect.OURS
 
 
+def why_broken(name: str) -> str | None:
+    """Why the node or behaviour of another package cannot be used; None where it can.
+
+    name: its spelling in YAML or its type in XML; of no such node, None.
+    """
+    spelled = {type_of(spelling): spelling for spelling in PLUGINS}
+    try:
+        if name in PLUGINS or name in spelled:
+            PLUGINS.load(spelled.get(name, name))
+        elif name in BEHAVIOURS:
+            BEHAVIOURS.load(name)
+    except PluginError as error:
+        return str(error)
+    return None
+
+
 def _tables() -> _Tables:
     """The tables of today's plug-ins; groups give the same mapping while these are the same."""
     global _newest
@@ -139,7 +159,10 @@ def _read(nodes: _Installed, behaviours: _Installed) -> _Tables:
     for name in behaviours:
         with suppress(PluginError):
             classes[name] = _bridge().node_class(name, BEHAVIOURS.load(name))
-    specs = {type_: kind.spec for type_, kind in classes.items()}
+    specs = {
+        type_: kind.spec if type_ in BUILT_IN else guarded(kind.spec)
+        for type_, kind in classes.items()
+    }
     return _Tables(
         classes=classes,
         specs=specs,

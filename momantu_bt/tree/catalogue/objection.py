@@ -8,6 +8,7 @@ from collections.abc import Collection
 
 from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue.built_in import BUILT_IN
+from momantu_bt.tree.catalogue.guarded import FUNCTIONS
 from momantu_bt.tree.catalogue.spec import Kind, NodeSpec
 from momantu_bt.tree.catalogue.words import (
     CONDITIONS,
@@ -38,8 +39,10 @@ def node_objection(name: str, plugin: object, built_in: Collection[str]) -> str 
     return (
         bad_name(name, built_in)
         or _bad_spelling(name, spec)
+        or _bad_types(spec)
         or _bad_spec(spec)
         or next(filter(None, (bad_port(name, port) for port in spec.ports.values())), None)
+        or _without_step(plugin)
     )
 
 
@@ -64,6 +67,33 @@ def _bad_spelling(name: str, spec: NodeSpec) -> str | None:
         return f"its spec is spelled {' and '.join(spec.yaml)}, and its entry point {name}"
     if spec.type != type_of(name):
         return f"its spec has the type {spec.type!r}; of {name!r} it is {type_of(name)!r}"
+    return None
+
+
+def _bad_types(spec: NodeSpec) -> str | None:
+    """The first argument of the spec that is not what it has to be."""
+    for argument in FUNCTIONS:
+        value = getattr(spec, argument)
+        if value is None and argument not in ("flow", "codes"):
+            continue
+        if not callable(value):
+            example = "; write and_also('CODE')" if argument == "codes" else ""
+            return f"its spec's `{argument}` is {value!r}; expected a function{example}"
+    least, most = spec.children if _is_pair(spec.children) else (None, None)
+    if not isinstance(least, int) or not isinstance(most, int | None):
+        return f"its spec's `children` is {spec.children!r}; expected (least, most), such as (2, 5)"
+    if not isinstance(spec.doc, str):
+        return f"its spec's doc is {spec.doc!r}; expected one sentence"
+    return None
+
+
+def _is_pair(value: object) -> bool:
+    return isinstance(value, tuple) and len(value) == 2
+
+
+def _without_step(plugin: type) -> str | None:
+    if getattr(getattr(plugin, "step", None), "__isabstractmethod__", False):
+        return f"{plugin.__name__} has no `step`: the method that is one tick of the node"
     return None
 
 

@@ -12,8 +12,7 @@ from momantu_bt.plugins import PluginError, installed_names
 from momantu_bt.robot import RobotDescription
 from momantu_bt.skill import Port, Skill
 from momantu_bt.tree.catalogue import AUTOREMAP, NODES, SUBTREE, NodeSpec
-from momantu_bt.tree.catalogue.nodes import BEHAVIOURS, PLUGINS
-from momantu_bt.tree.catalogue.objection import type_of
+from momantu_bt.tree.catalogue.nodes import DOCTOR, why_broken
 from momantu_bt.tree.language import is_xml
 from momantu_bt.tree.model import BROKEN, Document, Node, Tree
 from momantu_bt.tree.problems import Problems
@@ -139,7 +138,7 @@ def report_unknown_node(context: Context, node: Node) -> None:
     name = node.type
     broken = _why_broken(context, name)
     if broken is not None:
-        context.problems.error("broken-plugin", node.place, broken, "run momantu-bt doctor")
+        context.problems.error("broken-plugin", node.place, broken, DOCTOR)
         return
     spellings = [spec.yaml[0] for spec in NODES.values()]
     skills = [*context.document.trees, *context.registry.skills]
@@ -150,17 +149,12 @@ def report_unknown_node(context: Context, node: Node) -> None:
 
 def _why_broken(context: Context, name: str) -> str | None:
     """Why the plug-in of this name cannot be used; None if it can."""
-    spelled = {type_of(spelling): spelling for spelling in PLUGINS}
     try:
-        if name in PLUGINS or name in spelled:
-            PLUGINS.load(spelled.get(name, name))
-        elif name in BEHAVIOURS:
-            BEHAVIOURS.load(name)
-        elif name in context.registry.skills:
+        if name in context.registry.skills:
             context.registry.skills[name]
     except PluginError as error:
         return str(error)
-    return None
+    return why_broken(name)
 
 
 def known_type(text: str) -> Any:

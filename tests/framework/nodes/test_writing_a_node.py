@@ -154,6 +154,11 @@ BROKEN = {
     "class Calm(TreeNode): spec = leaf('Calm', 'calm', 'Waits.', keys=('k',))": "port 'k'",
     "class Calm(TreeNode): spec = leaf('Calm', 'calm', ' ')": "has no doc",
     "class Calm(TreeNode): spec = leaf('Calm', 'calm', 'W.', input_port('child', int, 'c'))": "hi",
+    "class Calm(TreeNode): spec = leaf('Calm', 'calm', 'Waits.')": "Calm has no `step`",
+    "class Calm(TreeNode): spec = leaf('Calm', 'calm', 'W.', codes=('A',))": "and_also('CODE')",
+    "class Calm(TreeNode): spec = control('Calm', 'calm', 'W.', children=2)": "(least, most)",
+    "class Calm(TreeNode): spec = control('Calm', 'calm', 'W.', roles='r')": "expected a function",
+    "class Calm(TreeNode): spec = control('Calm', 'calm', 'W.', keys=3)": "TypeError",
 }
 
 
@@ -191,3 +196,85 @@ def test_a_node_does_not_replace_a_built_in_one(package, monkeypatch, capsys):
     assert SPELLED["retry"].type == "RetryUntilSuccessful"
     main(["doctor"])
     assert "'retry' is a built-in node" in "".join(capsys.readouterr())
+
+
+CALM = """from momantu_bt.nodes import Decorator, SUCCESS, TreeNode, control, decorator, leaf
+class Calm({base}):
+    \"\"\"Waits.\"\"\"
+    spec = {kind}("Calm", "calm", "Waits.", {further})
+    {method}
+"""
+
+
+@pytest.fixture
+def calm(tmp_path, monkeypatch, capsys):
+    """What a command says of a tree in which a node of another package does something."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(tmp_path)
+
+    def told(verb, tree="calm", method="def step(self): return SUCCESS", further="", kind="leaf"):
+        module = f"calm_{abs(hash((method, further, kind)))}"
+        base = "Decorator" if kind == "decorator" else "TreeNode"
+        text = CALM.format(base=base, kind=kind, further=further, method=method)
+        Path(f"{module}.py").write_text(text, encoding="utf-8")
+        importlib.invalidate_caches()
+        install(monkeypatch, EntryPoint("calm", f"{module}:Calm", GROUP))
+        text = f"momantu_bt: 1\ntrees:\n  Main:\n    - {tree}\n"
+        Path("tree.yaml").write_text(text, encoding="utf-8")
+        code = main(verb.split())
+        return code, "".join(capsys.readouterr())
+
+    return told
+
+
+RUN = "run tree.yaml --world none"
+
+
+@pytest.mark.parametrize(
+    ("tree", "where"),
+    [("{calm: [succeed]}", "tree.yaml:4:8"), ("{succeed: , calm: 3 s}", "tree.yaml:4:19")],
+)
+def test_a_broken_node_is_told_also_with_children_and_beside_a_node(calm, tree, where):
+    code, said = calm("check tree.yaml", tree, further="children=2", kind="control")
+    assert code == 2
+    assert f"{where}: error: the node 'calm'" in said
+    assert "1 error;" in said
+
+
+@pytest.mark.parametrize(
+    ("method", "said"),
+    [
+        ("def step(self): return {}['a']", "KeyError: 'a', in the node calm (tree.yaml:4)"),
+        ("def step(self): pass", "TypeError: step() returned None; expected one of RUNNING"),
+        ("def step(self): return self.shown", "step() returned <Status.IDLE"),
+    ],
+)
+def test_a_node_that_raises_or_returns_no_status_is_named(calm, method, said):
+    code, told = calm(RUN, method=method)
+    assert code == 4
+    last = next(line for line in told.splitlines() if "internal error after" in line)
+    assert said in last
+    assert last.endswith("in the node calm (tree.yaml:4)")
+
+
+def test_a_constructor_that_raises_is_told_without_a_traceback(calm):
+    method = "def step(self): return SUCCESS\n    def __init__(self, parts): self.a = 1 / 0"
+    code, said = calm(RUN, method=method)
+    assert code == 2
+    assert "tree.yaml:4:7: the node Calm cannot be made" in said
+    assert "ZeroDivisionError" in said
+    assert "Traceback" not in said
+
+
+@pytest.mark.parametrize("argument", ["flow", "codes", "objection"])
+def test_a_function_of_a_spec_that_raises_is_named(calm, argument):
+    code, said = calm("check tree.yaml", further=f"{argument}=lambda *given: 1 / 0")
+    assert code == 2
+    assert f"the node 'calm' is broken: its spec's `{argument}` raised ZeroDivisionError" in said
+
+
+def test_a_word_of_a_spec_that_raises_is_named(calm):
+    tree = "{succeed: , calm: }"
+    code, said = calm("show tree.yaml", tree, further="around=lambda n: 1 / 0", kind="decorator")
+    assert code == 2
+    assert "the node 'calm' is broken: its spec's `around` raised ZeroDivisionError" in said

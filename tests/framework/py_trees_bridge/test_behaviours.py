@@ -14,6 +14,7 @@ from py_trees.common import Status
 import momantu_bt
 from momantu_bt import Failure, plugins
 from momantu_bt.cli import main
+from momantu_bt.engine.executor import Executor
 from momantu_bt.nodes import input_port, output_port
 from momantu_bt.nodes.behaviour import behaviour
 from momantu_bt.testing import ScriptedWorld
@@ -82,6 +83,18 @@ class Wrong(py_trees.behaviour.Behaviour):
         if self.how == "fails":
             raise Failure("NO_WAY", "there is no way")
         return {"invalid": Status.INVALID, "failure": Status.FAILURE}[self.how]
+
+
+class Endless(py_trees.behaviour.Behaviour):
+    """Has no update."""
+
+
+class Stuck(Count):
+    """Cannot be let go of."""
+
+    def terminate(self, new_status):
+        super().terminate(new_status)
+        raise RuntimeError("stuck")
 
 
 UP_TO = input_port("up_to", int, "how far", least=1)
@@ -202,6 +215,25 @@ def test_a_declared_code_can_be_handled(tree):
     assert momantu_bt.run(file, world="none").status == "SUCCESS"
 
 
+def test_a_code_that_it_raises_can_be_declared_and_handled(tree):
+    INSTALLED["wrong"] = behaviour(Wrong, HOW, failure="ALL_WRONG", codes=("NO_WAY",))
+    file = tree("    - handle: {try: {wrong: fails}, catch: {NO_WAY: succeed}}\n")
+    assert momantu_bt.run(file, world="none").status == "SUCCESS"
+
+
+def test_an_unknown_way_for_values_is_told():
+    with pytest.raises(ValueError, match="expected one of constructor, attributes, blackboard"):
+        behaviour(Count, through="magic")
+
+
+def test_a_halt_that_raises_halts_once_and_the_next_start_begins_anew(tree, capsys):
+    INSTALLED["count"] = behaviour(Stuck, UP_TO)
+    file = tree("    - repeat: {cycles: 2, child: {count: 100, timeout: 0.2 s, force: success}}\n")
+    assert momantu_bt.run(file, world="none").status == "SUCCESS"
+    once = ["initialise", "terminate INVALID"]
+    assert Count.events == ["setup ['clock']", *once, *once]
+
+
 def test_it_is_shown_and_converted_both_ways(tree, tmp_path, capsys):
     file = tree("    - count: {up_to: 3, count: $n}\n    - condition: $n == 3\n")
     assert main(["show", str(file)]) == 0
@@ -230,6 +262,10 @@ def test_a_replay_takes_it_from_the_record(tree, tmp_path, capsys):
         (5, "is not a py_trees Behaviour class"),
         (behaviour(Count, failure="no code"), "is not a failure code"),
         (behaviour(Count, input_port("far", int, " ")), "has no doc"),
+        (behaviour(Count, codes=("NO_WAY", "no way")), "'no way' is not a failure code"),
+        (py_trees.behaviours.Periodic, "missing a required argument: 'n'"),
+        (behaviour(py_trees.behaviours.Periodic, UP_TO, through="constructor"), "argument: 'n'"),
+        (Endless, "Endless has no update"),
     ],
 )
 def test_a_broken_one_is_told(tree, capsys, plugin, said):
@@ -279,6 +315,39 @@ def test_an_interruption_halts_it(tree):
     root = py_trees.composites.Selector("root", memory=False, children=[alarm, enter])
     assert ticked(root) == [Status.RUNNING, Status.RUNNING, Status.SUCCESS]
     assert enter.status is Status.INVALID
+    assert enter.values == {"halted": 1}
+
+
+def test_its_feedback_is_what_runs_now(tree):
+    enter = momantu_bt.as_behaviour(tree("    - wait: 0.1 s\n    - wait: 0.2 s\n    - succeed\n"))
+    for _ in range(2):
+        said = []
+        while not said or enter.status is Status.RUNNING:
+            enter.tick_once()
+            said.append(enter.feedback_message)
+        assert said == ["wait 0.1 s"] * 2 + ["wait 0.2 s"] * 4 + [""]
+
+
+def test_a_shutdown_halts_what_runs(tree):
+    text = "    - {wait: 10 s, on_halt: $halted = 1}\n"
+    enter = momantu_bt.as_behaviour(tree(f"    - set: {{key: $halted, value: 0}}\n{text}"))
+    enter.tick_once()
+    enter.shutdown()
+    assert enter.status is Status.INVALID
+    assert enter.values == {"halted": 1}
+
+
+def test_what_a_tick_raises_halts_the_tree_first(tree, monkeypatch):
+    text = "    - {wait: 10 s, on_halt: $halted = 1}\n"
+    enter = momantu_bt.as_behaviour(tree(f"    - set: {{key: $halted, value: 0}}\n{text}"))
+    enter.tick_once()
+
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Executor, "_note", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        enter.tick_once()
     assert enter.values == {"halted": 1}
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from momantu_bt.formats.names import nearest
 from momantu_bt.formats.yaml.values import Entries, Raw, Scalar
 from momantu_bt.tree.catalogue import FORCED, MODIFIERS, NODES, SPELLED, NodeSpec
+from momantu_bt.tree.catalogue.nodes import DOCTOR, why_broken
 from momantu_bt.tree.files.port_values import words
 from momantu_bt.tree.files.yaml.ports import is_empty, read_port, read_ports
 from momantu_bt.tree.files.yaml.reading import Reading, said
@@ -35,6 +36,10 @@ def modified(node: Node, modifiers: list[tuple[Scalar, Raw]], reading: Reading) 
 
 
 def _report_unknown(node: Node, key: Scalar, reading: Reading) -> None:
+    broken = why_broken(key.text)
+    if broken is not None:
+        reading.error("broken-plugin", key.place, broken, DOCTOR)
+        return
     near = near_modifier(key.text)
     if near is not None:
         hint = f"did you mean {near}?"

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from momantu_bt.formats.yaml.values import Entries, Items, Raw, Scalar
 from momantu_bt.tree.catalogue import MODIFIERS, NODES, SPELLED, SUBTREE, Kind, NodeSpec
+from momantu_bt.tree.catalogue.nodes import DOCTOR, why_broken
 from momantu_bt.tree.files.port_values import drop_duplicates
 from momantu_bt.tree.files.queue import Put
 from momantu_bt.tree.files.yaml.branches import read_branches, read_switch
@@ -108,6 +109,9 @@ class NodeReader:
         """A skill, or a tree of this document."""
         name = key.text
         target = name if name in self.reading.trees else None
+        broken = None if target else why_broken(name)
+        if broken is not None:
+            return self.reading.broken("broken-plugin", key.place, broken, DOCTOR)
         node = Node(SUBTREE if target else name, key.place, target=target)
         if target is None and isinstance(value, Entries) and _has_children(value):
             split(node, value, None, ("children",), self.reading)
