@@ -73,3 +73,6 @@ BUILT_IN: Mapping[str, str] = {
     "GoalUpdated": "goals",
 }
 """Type and module of each, in the order of lists; the class is named as the type."""
+
+ADAPTERS: Mapping[str, str] = {"momantu_bt.behaviours": "behaviour"}
+"""Entry-point groups whose plug-ins are made into leaves, and the file that makes them."""

@@ -11,7 +11,7 @@ from importlib.metadata import EntryPoint
 from typing import Any, ClassVar, Protocol, TypeAlias, TypeVar
 
 from momantu_bt.plugins import Group, PluginError
-from momantu_bt.tree.catalogue.built_in import BUILT_IN
+from momantu_bt.tree.catalogue.built_in import ADAPTERS, BUILT_IN
 from momantu_bt.tree.catalogue.guarded import guarded
 from momantu_bt.tree.catalogue.objection import node_objection, type_of
 from momantu_bt.tree.catalogue.spec import Dialect, NodeSpec
@@ -133,7 +133,12 @@ _newest: tuple[_Installed, _Installed, _Tables] | None = None
 
 def _bridge() -> Any:
     """The module that makes leaves of behaviours; py_trees is imported with it."""
-    return import_module("momantu_bt.nodes.behaviour")
+    return _module(ADAPTERS[BEHAVIOURS.name])
+
+
+def _module(name: str) -> Any:
+    """A module of nodes; found by name, as plug-ins are, so that the language imports no node."""
+    return import_module(f"momantu_bt.nodes.{name}")
 
 
 def _spellings() -> frozenset[str]:
@@ -145,7 +150,7 @@ def _spellings() -> frozenset[str]:
 def _built_in() -> Mapping[str, type[NodeClass]]:
     found = {}
     for type_, module in BUILT_IN.items():
-        found[type_] = getattr(import_module(f"momantu_bt.nodes.{module}"), type_)
+        found[type_] = getattr(_module(module), type_)
     return found
 
 
