@@ -11,9 +11,9 @@ from typing import Any
 CODE = re.compile(r"[A-Z][A-Z0-9]*(_[A-Z0-9]+)*")
 
 SKILL_ERROR = "SKILL_ERROR"
-"""A skill raised something it did not declare; `data["traceback"]` holds the traceback."""
+"""A skill raised an exception that it does not declare; `data["traceback"]` is its traceback."""
 TIMEOUT = "TIMEOUT"
-"""A time limit ended what was running, which is the cause."""
+"""A time limit ended the child; the failure's cause says what was running."""
 ACTUATOR_BUSY = "ACTUATOR_BUSY"
 """Another skill owns the actuator; `data["owner"]` names it."""
 FRAME_UNKNOWN = "FRAME_UNKNOWN"
@@ -21,24 +21,24 @@ FRAME_UNKNOWN = "FRAME_UNKNOWN"
 SERVICE_MISSING = "SERVICE_MISSING"
 """A skill needs a service that this run does not have."""
 INPUT_MISSING = "INPUT_MISSING"
-"""A node started while a key that one of its inputs reads held no value."""
+"""A node started, but a key that one of its inputs reads had no value."""
 WRONG_TYPE = "WRONG_TYPE"
 """A value at a port is not of the port's type."""
 FAILED = "FAILED"
-"""A node failed without saying more (AlwaysFailure, a false condition, a guard)."""
+"""A node failed without a more specific code (AlwaysFailure, a false condition, a guard)."""
 HALTED = "HALTED"
-"""Never fails a node: what was running when a time limit ended it, as the TIMEOUT's cause."""
+"""The cause of a TIMEOUT: the node that was running when time was up. No node fails with it."""
 SENSOR_DEAD = "SENSOR_DEAD"
-"""A sensor does not answer, or repeats itself; `data["sensor"]` names it."""
+"""A sensor does not answer, or repeats the same reading; `data["sensor"]` names it."""
 HUNG = "HUNG"
-"""A skill gave no step back within the run's patience; `data["traceback"]` says where it was."""
+"""One step of a skill exceeded the run's time limit; `data["traceback"]` says where it was."""
 SCRIPT_ERROR = "SCRIPT_ERROR"
 """A script or a condition could not be evaluated."""
 
 NO_ANSWER = "NO_ANSWER"
-"""Of `ask` and `confirm`: nobody answered, and there is no default."""
+"""From `ask` and `confirm`: nobody answered, and there is no default."""
 DECLINED = "DECLINED"
-"""Of `confirm`: the answer is no."""
+"""From `confirm`: the answer is no."""
 
 ENGINE_CODES: Mapping[str, str] = MappingProxyType(
     {
@@ -55,7 +55,7 @@ ENGINE_CODES: Mapping[str, str] = MappingProxyType(
         SCRIPT_ERROR: "a script or a condition could not be evaluated",
     }
 )
-"""Codes that any node can fail with, beside those its skill declares."""
+"""Codes that any node can fail with, in addition to those its skill declares."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,12 +64,12 @@ class FailureValue:
 
     code: upper-case words joined by underscores, from the skill's `failures`.
     message: one sentence for a person.
-    data: plain values (numbers, text, lists) that explain the numbers behind the sentence.
-    node: name of the node that failed; place: `file:line` of it in the tree file.
-    cause: the failure that led to this one; through a subtree, the same one further inside.
+    data: details as plain values (numbers, text, lists), for programs.
+    node: name of the node that failed. place: its `file:line` in the tree file.
+    cause: the failure that led to this one; for a subtree node, the failure inside the subtree.
     beside: failures of siblings that were tried before (a fallback's earlier children).
-    tries: how often a retry or recover node tried; most_tries: how often it may (0: no such node).
-    node_type: canonical type of the node, or name of its skill.
+    tries: how often a retry or recover node tried. most_tries: its limit (0: not such a node).
+    node_type: the node's canonical type, or the name of its skill.
     """
 
     code: str
@@ -84,14 +84,14 @@ class FailureValue:
     node_type: str = ""
 
     def chain(self) -> Iterator[FailureValue]:
-        """Yield the failure, then its causes, outermost first."""
+        """Yield this failure, then its cause, then that one's cause, and so on."""
         link: FailureValue | None = self
         while link is not None:
             yield link
             link = link.cause
 
     def as_dict(self) -> dict[str, Any]:
-        """Plain data for JSON: code, message, the node, tries, data, cause, beside."""
+        """The failure as plain data for JSON."""
         return {
             "code": self.code,
             "message": self.message,
@@ -106,7 +106,7 @@ class FailureValue:
         }
 
     def __str__(self) -> str:
-        """`CODE, a sentence`."""
+        """Return `CODE, message`."""
         return f"{self.code}, {self.message}" if self.message else self.code
 
 

@@ -24,9 +24,9 @@ from momantu_bt.messages import RobotState
 MAP = "map"
 ODOM = "odom"
 HISTORY = 10.0
-"""Seconds of joints and odometry that a buffer remembers: longer than any sensor's delay."""
+"""How long a buffer keeps joints and odometry, s: longer than any sensor's delay."""
 AHEAD = 1e-6
-"""Seconds by which a stamp may lie after the newest state and still be taken as the newest."""
+"""A stamp this much later than the newest state, s, is still answered with the newest state."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +42,7 @@ class Joint:
 
     @classmethod
     def of_urdf(cls, joint: urdf.Joint) -> Joint:
-        """A joint as its URDF has it."""
+        """Make a joint from a joint of a URDF file."""
         parent_from_joint = Transform.from_rpy(joint.xyz, joint.rpy)
         return cls(joint.name, joint.kind, joint.parent, joint.child, parent_from_joint, joint.axis)
 
@@ -71,7 +71,7 @@ class KinematicTree:
 
         Raises:
             FileNotFoundError: there is no such file.
-            UrdfError: it is not a URDF, or has no link `base_frame`.
+            UrdfError: the file is not a URDF file, or has no link `base_frame`.
         """
         robot = urdf.read_urdf(path)
         links = [link.name for link in robot.links]
@@ -89,7 +89,7 @@ class KinematicTree:
         return cls([Joint.of_urdf(joint) for joint in robot.joints], base_frame)
 
     def frames(self) -> tuple[str, ...]:
-        """Every frame below the base, and the base itself."""
+        """The base and every frame below it."""
         below = [name for name in self._joint_above if self._chain(name)]
         return (self.base_frame, *below)
 
@@ -98,10 +98,10 @@ class KinematicTree:
         return tuple(joint for name, joint in self._joint_above.items() if self._chain(name))
 
     def base_from_frame(self, frame: str, positions: Mapping[str, float]) -> Transform:
-        """Pose of a link in the base; joints that `positions` does not name stand at 0.
+        """Pose of a link in the base frame; joints that are not in `positions` are at 0.
 
         Raises:
-            Failure: FRAME_UNKNOWN, with the known frames.
+            Failure: FRAME_UNKNOWN, there is no such frame; the message lists the known ones.
         """
         matrix = np.eye(4)
         for joint in self.chain(frame):
@@ -112,7 +112,7 @@ class KinematicTree:
         """The joints from the base to a frame, fixed ones included.
 
         Raises:
-            Failure: FRAME_UNKNOWN, with the known frames.
+            Failure: FRAME_UNKNOWN, there is no such frame; the message lists the known ones.
         """
         chain = self._chain(frame)
         if chain is None:
@@ -147,7 +147,7 @@ class FrameBuffer:
         self._map_from_odom: deque[tuple[float, Transform]] = deque()
 
     def add_state(self, state: RobotState) -> None:
-        """Remember a state; its stamp must not be older than the newest one's."""
+        """Add a state; ValueError when its stamp is older than the newest one's."""
         if self._states and state.stamp < self._states[-1].stamp:
             raise ValueError(f"state of {state.stamp} s after one of {self._states[-1].stamp} s")
         self._states.append(state)
@@ -155,7 +155,7 @@ class FrameBuffer:
             self._states.popleft()
 
     def set_map_from_odom(self, transform: Transform, stamp: float) -> None:
-        """Remember what localization believes from `stamp` on."""
+        """Set localization's estimate, valid from `stamp` on."""
         self._map_from_odom.append((stamp, transform))
         while len(self._map_from_odom) > 1 and self._map_from_odom[1][0] < stamp - HISTORY:
             self._map_from_odom.popleft()
@@ -170,18 +170,18 @@ class FrameBuffer:
         """Stamp of the newest state, s.
 
         Raises:
-            Failure: FRAME_UNKNOWN when nothing was ever added.
+            Failure: FRAME_UNKNOWN, no state was added yet.
         """
         if not self._states:
             raise Failure(FRAME_UNKNOWN, "the robot has not reported a state yet")
         return self._states[-1].stamp
 
     def lookup(self, target: str, source: str, stamp: float | None = None) -> Transform:
-        """`target_from_source` at `stamp` (the newest state when None).
+        """`target_from_source` at `stamp`; None: at the newest state. It never waits.
 
         Raises:
-            Failure: FRAME_UNKNOWN at once: no such frame, a time outside what is remembered, or
-                `map` before localization has spoken. Nothing ever waits.
+            Failure: FRAME_UNKNOWN, there is no such frame, the stamp is outside the buffer, or
+                `map` has no estimate of localization yet.
         """
         if target == source:
             return Transform()

@@ -1,7 +1,7 @@
-"""Rigid transforms, planar poses and the few rotations that everything shares.
+"""Rigid transforms, planar poses and conversions between rotations.
 
-Quaternions are `(w, x, y, z)`, unit length, of a right-handed rotation. Arrays of points are
-`(..., 3)`. A transform named `map_from_base` takes coordinates in base and gives them in map.
+Quaternions are unit quaternions `(w, x, y, z)` of right-handed rotations. Arrays of points are
+`(..., 3)`. A transform named `map_from_base` turns coordinates in base into coordinates in map.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ Array: TypeAlias = NDArray[np.float64]
 
 
 def wrap_angle(angle: float) -> float:
-    """The same angle in (-pi, pi]."""
+    """Wrap an angle, rad, into (-pi, pi]."""
     wrapped = math.fmod(angle + math.pi, 2.0 * math.pi)
     if wrapped <= 0.0:
         wrapped += 2.0 * math.pi
@@ -63,14 +63,14 @@ def quaternion_from_matrix(rotation: ArrayLike) -> Array:
 
 
 def quaternion_from_axis_angle(axis: ArrayLike, angle: float) -> Array:
-    """Unit quaternion of a turn by `angle` rad about `axis` (3,), which need not be unit length."""
+    """Unit quaternion of a rotation by `angle` rad about `axis` (3,) of any length but 0."""
     unit = np.asarray(axis, dtype=np.float64)
     unit = unit / math.sqrt(float(unit @ unit))
     return np.concatenate([[math.cos(angle / 2)], math.sin(angle / 2) * unit])
 
 
 def quaternion_from_rpy(roll: float, pitch: float, yaw: float) -> Array:
-    """Unit quaternion of fixed-axis roll, pitch, yaw in rad, URDF's convention."""
+    """Unit quaternion of fixed-axis roll, pitch, yaw in rad, as URDF defines them."""
     cr, sr = math.cos(roll / 2), math.sin(roll / 2)
     cp, sp = math.cos(pitch / 2), math.sin(pitch / 2)
     cy, sy = math.cos(yaw / 2), math.sin(yaw / 2)
@@ -85,7 +85,7 @@ def quaternion_from_rpy(roll: float, pitch: float, yaw: float) -> Array:
 
 
 def quaternion_product(left: ArrayLike, right: ArrayLike) -> Array:
-    """Hamilton product: the rotation `right`, then `left`."""
+    """Hamilton product: rotates by `right` first, then by `left`."""
     w1, x1, y1, z1 = (float(v) for v in np.asarray(left))
     w2, x2, y2, z2 = (float(v) for v in np.asarray(right))
     return np.array(
@@ -156,7 +156,7 @@ class Transform:
         return Transform(-(self.rotation.T @ self.position), (w, -x, -y, -z))
 
     def apply(self, points: ArrayLike) -> Array:
-        """Points (..., 3) of the source frame, in the target frame."""
+        """Transform points (..., 3) from the source frame to the target frame."""
         return np.asarray(np.asarray(points, dtype=np.float64) @ self.rotation.T + self.position)
 
     def __matmul__(self, other: Transform) -> Transform:
@@ -171,7 +171,7 @@ class Transform:
         return 2.0 * math.acos(min(1.0, abs(float(self.quaternion @ other.quaternion))))
 
     def __eq__(self, other: object) -> bool:
-        """Equal to the last bit."""
+        """Whether all numbers are equal exactly, without a tolerance."""
         if not isinstance(other, Transform):
             return NotImplemented
         return bool(
@@ -185,14 +185,14 @@ class Transform:
 
 @dataclass(frozen=True, slots=True)
 class Pose2D:
-    """A place on the floor: x, y in metres and yaw in rad, in the frame that the context names."""
+    """A pose on the floor: x, y in metres and yaw in rad, in a frame that the user states."""
 
     x: float = field(metadata={"unit": "m"})
     y: float = field(metadata={"unit": "m"})
     yaw: float = field(default=0.0, metadata={"unit": "rad"})
 
     def transform(self, z: float = 0.0) -> Transform:
-        """The same as a rigid transform, at height z."""
+        """This pose as a rigid transform, at height z, m."""
         return Transform(
             (self.x, self.y, z), (math.cos(self.yaw / 2), 0.0, 0.0, math.sin(self.yaw / 2))
         )
@@ -225,10 +225,10 @@ class Pose2D:
 
 @dataclass(frozen=True, slots=True)
 class Pose:
-    """A transform `frame_from_object` with the frame's name and the time it was true.
+    """A transform `frame_from_object`, its frame's name and the time for which it holds.
 
-    frame: "odom" for what will be touched, "map" for places.
-    stamp: seconds of the world's clock.
+    frame: "odom" for things that the robot will touch, "map" for places.
+    stamp: time of the world's clock, s.
     """
 
     transform: Transform

@@ -1,7 +1,7 @@
 """What sensors, actuators and skills exchange: immutable values in SI units.
 
-Arrays inside are read-only. Optical frames are OpenCV's: x right, y down, z forward; pixel
-centres have integer coordinates.
+Their arrays are read-only. Optical frames follow OpenCV: x right, y down, z forward; pixel centres
+have integer coordinates.
 """
 
 from __future__ import annotations
@@ -17,22 +17,22 @@ from momantu_bt.geometry import Array, Pose, Pose2D, Transform
 
 
 def frozen(array: NDArray[Any]) -> NDArray[Any]:
-    """The same array, marked read-only."""
+    """Mark an array read-only and return it."""
     array.setflags(write=False)
     return array
 
 
-# what a robot reports
+# What a robot reports.
 
 
 @dataclass(frozen=True, slots=True)
 class RobotState:
-    """Joints and odometry of one instant, as measured.
+    """Measured joints and odometry at one time.
 
-    names: joint names in a fixed order, the gripper's fingers left out.
+    names: joint names in a fixed order, without the gripper's fingers.
     positions, velocities, efforts: (n,) in rad or m, rad/s or m/s, Nm or N.
-    odom_from_base: where wheel odometry believes the base to be (drifts).
-    linear, angular: the base's measured speed, m/s along x and rad/s about z.
+    odom_from_base: the base's pose from wheel odometry; it drifts.
+    linear, angular: the base's measured velocity, m/s along x and rad/s about z.
     gripper_width: opening between the finger pads, m. gripper_effort: closing force, N.
     """
 
@@ -48,7 +48,7 @@ class RobotState:
     gripper_effort: float
 
     def position(self, joint: str) -> float:
-        """Position of one joint; KeyError with the known names when there is no such joint."""
+        """Position of one joint; an unknown name raises a KeyError that lists the known ones."""
         try:
             return float(self.positions[self.names.index(joint)])
         except ValueError:
@@ -76,9 +76,9 @@ class CameraImage:
 
 @dataclass(frozen=True, slots=True)
 class LaserScan:
-    """One planar scan: beam i points to `angle_min + i * angle_increment` rad in `frame`.
+    """One planar scan: beam i has the angle `angle_min + i * angle_increment` rad in `frame`.
 
-    ranges: (n,) float64 in metres; `range_max` or more where nothing was hit.
+    ranges: (n,) float64 in metres; a beam that hit nothing has `range_max` or more.
     """
 
     stamp: float
@@ -92,7 +92,7 @@ class LaserScan:
 
 @dataclass(frozen=True, slots=True)
 class PointCloud:
-    """The points of one turn of a lidar: (n, 3) float32, m, in `frame`, without misses."""
+    """The points of one turn of a lidar: (n, 3) float32, m, in `frame`; only beams that hit."""
 
     stamp: float
     frame: str
@@ -101,7 +101,7 @@ class PointCloud:
 
 @dataclass(frozen=True, slots=True)
 class WrenchReading:
-    """Force (3,) in N and torque (3,) in Nm that the hand's load puts on the wrist, in `frame`."""
+    """Force (3,) in N and torque (3,) in Nm that act on the wrist from the hand, in `frame`."""
 
     stamp: float
     frame: str
@@ -109,7 +109,7 @@ class WrenchReading:
     torque: Array
 
 
-# what a robot is told
+# Goals of actuators.
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,10 +122,10 @@ class BaseVelocity:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class JointTrajectory:
-    """Goal of an arm or head: positions over time, from where the joints are now.
+    """Goal of an arm or head: joint positions over time, beginning at the current ones.
 
-    names: the joints. times: (k,) seconds from the first command, times[0] = 0, rising.
-    positions, velocities: (k, n). Commanding the same object again keeps it going: a driver
+    names: the joints. times: (k,) seconds since the first command, increasing, times[0] = 0.
+    positions, velocities: (k, n). Command the same object again to continue the motion: the driver
     stops along the path 0.25 s after the last command.
     """
 
@@ -142,7 +142,7 @@ class JointTrajectory:
 
 @dataclass(frozen=True, slots=True)
 class JointPositions:
-    """Goal of a head (or any small joint group): the driver goes there within its limits."""
+    """Goal of a head or another small joint group: the driver moves there within its limits."""
 
     names: tuple[str, ...]
     positions: tuple[float, ...]
@@ -150,7 +150,7 @@ class JointPositions:
 
 @dataclass(frozen=True, slots=True)
 class GripperCommand:
-    """Goal of a gripper: opening between the pads in m, and the force it may use, in N."""
+    """Goal of a gripper: opening between the pads in m, and the highest force in N."""
 
     width: float
     max_force: float
@@ -159,12 +159,12 @@ class GripperCommand:
 ActuatorGoal: TypeAlias = BaseVelocity | JointTrajectory | JointPositions | GripperCommand
 
 
-# what skills exchange over the blackboard
+# What skills exchange over the blackboard.
 
 
 @dataclass(frozen=True, slots=True)
 class ObjectClass:
-    """An object to look for. A size that is None is unknown; sizes in metres."""
+    """A kind of object to look for. Sizes in metres; None means unknown."""
 
     category: str
     diameter: float | None = field(default=None, metadata={"unit": "m"})
@@ -178,9 +178,9 @@ class DetectedObject:
     """An object that was seen on a surface.
 
     pose: `odom_from_object`; origin at the centre of the object's bounding box, z up along its
-    axis. size: extent (3,) along its own x, y, z in m. shape: "cylinder" or "box".
-    score: 0..1, how well it matches what was asked. support_height: height of the surface that
-    it stands on, z in the pose's frame, m.
+    axis. size: extent (3,) along its own x, y, z, m. shape: "cylinder" or "box".
+    score: 0..1, how well it matches the requested object. support_height: height of the surface
+    that it stands on, z in the pose's frame, m.
     """
 
     category: str
@@ -195,8 +195,8 @@ class DetectedObject:
 class SupportPlane:
     """A horizontal surface. pose: `odom_from_plane`, z up, origin on the surface.
 
-    outline: (k, 2) convex polygon in the plane's own x, y, m, counter-clockwise.
-    obstacles: things that stand on it, as (x, y, radius, height) in the plane's frame, m.
+    outline: (k, 2) convex polygon in the plane's x, y, m, counter-clockwise.
+    obstacles: objects that stand on it, as (x, y, radius, height) in the plane's frame, m.
     """
 
     pose: Pose
@@ -223,7 +223,7 @@ A plug-in adds its own with `register_value_type`.
 
 
 def register_value_type(name: str, python_type: type) -> None:
-    """Add a type name for tree files; ValueError when the name is taken by another type."""
+    """Add a type name for tree files; ValueError when another type already has the name."""
     taken = VALUE_TYPES.get(name)
     if taken is not None and taken is not python_type:
         raise ValueError(f"the value type {name!r} is already {taken.__qualname__}")

@@ -78,39 +78,39 @@ __all__ = [
 SensorReading: TypeAlias = CameraImage | LaserScan | PointCloud | WrenchReading
 
 CAMERA_CARRIER = "camera_carrier"
-"""In a skill's `uses`: whichever actuator carries the camera (a head, or the arm)."""
+"""For a skill's `uses`: the actuator that carries the camera, a head or the arm."""
 
 ARM = "arm"
-"""The actuator that carries the hand, and the planning group of its joints: robots name them so."""
+"""Name of the actuator that carries the hand, and of the planning group of its joints."""
 
 REQUIRED_POSES = ("home", "ready", "carry", "look_around")
 """Named poses that every robot has."""
 
 MESH_ENDINGS = (".glb", ".gltf", ".dae", ".obj", ".stl", ".ply")
-"""How names of mesh files end, in lower case."""
+"""Extensions of mesh files, in lower case."""
 
 WATCHDOG = 0.25
 """Seconds after the last command at which a driver stops its actuator by itself."""
 
 
 class RobotDescription(Part):
-    """All that skills may know of a robot; nothing in them mentions a robot by name."""
+    """Everything that skills know about a robot; they never test for a robot's name."""
 
     name: str
     source: Path | None = None
     """The robot file that it was read from."""
     files: dict[str, Path] = {}
-    """Every file that it is made of, by names that mean something on other machines."""
+    """Every file of the description, by a name that is the same on all machines."""
     urdf: Path
     """One URDF of the whole robot; absolute."""
     mesh_directories: tuple[Path, ...] = ()
-    """The folders in which `package://` addresses are searched."""
+    """Folders in which `package://` addresses are looked up."""
     base_frame: str = "base_link"
     """On the floor, x forward."""
     footprint: Annotated[tuple[tuple[Length, Length], ...], Field(min_length=3)]
     """(x, y) corners of the base in its frame, counter-clockwise."""
     height: Size
-    """Of the robot in its tallest working posture; what hangs lower is in its way."""
+    """Height in the tallest working posture; anything that hangs lower is an obstacle."""
     working: Working
     base: BaseLimits
     actuators: dict[str, Actuator]
@@ -121,13 +121,13 @@ class RobotDescription(Part):
     named_poses: dict[str, dict[str, float]]
     """Joint positions by name, rad or m."""
     ignored_collisions: tuple[tuple[str, str], ...] = ()
-    """Pairs of links that never matter to a collision check."""
+    """Pairs of links that collision checks ignore."""
     simulation: SimulationModel | None = None
     """None: the robot cannot be simulated."""
 
     @model_validator(mode="after")
     def _usual_opening(self) -> Self:
-        """Fingers without a table share the opening evenly."""
+        """Without a finger table, each finger moves by an equal share of the opening."""
         hand = self.end_effector
         gripper = self.actuators.get(hand.actuator)
         if hand.opening or gripper is None or not gripper.joints:
@@ -138,7 +138,7 @@ class RobotDescription(Part):
         return self
 
     def texts(self) -> Mapping[str, str]:
-        """Texts of all that the robot is made of except meshes, by file name."""
+        """Texts of the robot's files by file name, without meshes."""
         return {
             name: path.read_text(encoding="utf-8", errors="replace")
             for name, path in self.files.items()
@@ -160,7 +160,7 @@ class RobotDescription(Part):
 
     @property
     def eye_in_hand(self) -> bool:
-        """Whether the arm carries the first camera: looking is then moving the arm."""
+        """Whether the arm carries the first camera, so that looking around moves the arm."""
         cameras = (s for s in self.sensors.values() if isinstance(s, CameraSensor))
         return next((camera.carrier == ARM for camera in cameras), False)
 
@@ -175,12 +175,12 @@ class RobotDescription(Part):
         return _pick("lidar", lidars, name)
 
     def resolve_use(self, use: str) -> str | None:
-        """The actuator that an entry of a skill's `uses` means on this robot.
+        """The actuator that an entry of a skill's `uses` stands for on this robot.
 
-        None: its camera is fixed, and nothing carries it.
+        Returns None for CAMERA_CARRIER when no actuator moves the camera.
 
         Raises:
-            KeyError: the robot has no such actuator, with those it has.
+            KeyError: the robot has no such actuator; the message lists those it has.
         """
         actuator = self.camera()[1].carrier if use == CAMERA_CARRIER else use
         return None if actuator is None else _pick("actuator", self.actuators, actuator)[0]
@@ -201,11 +201,11 @@ def _pick(what: str, having: dict[str, _T], name: str | None) -> tuple[str, _T]:
 def laser_band(description: RobotDescription) -> tuple[float, float]:
     """Lowest and highest point above the floor that the robot's laser sees, m.
 
-    Of a scanner of its own both are the height of its plane. Of a robot without a laser they are
-    the floor and its own height: all that it could drive into.
+    For a planar laser scanner both are the height of its plane. For a robot without a laser they
+    are the floor and the robot's height: everything that it could drive into.
 
     Raises:
-        Failure: FRAME_UNKNOWN, the robot has no such frame as the laser's.
+        Failure: FRAME_UNKNOWN, the robot does not have the laser's frame.
     """
     if not any(isinstance(sensor, LaserSensor) for sensor in description.sensors.values()):
         return 0.0, description.height
@@ -218,7 +218,7 @@ def laser_band(description: RobotDescription) -> tuple[float, float]:
 
 
 class Robot(Protocol):
-    """A robot's driver: flat, never blocking, the same in simulation and on hardware."""
+    """A robot's driver. No call blocks; simulation and hardware share this interface."""
 
     @property
     def description(self) -> RobotDescription:
@@ -226,34 +226,34 @@ class Robot(Protocol):
         ...
 
     def state(self) -> RobotState:
-        """Joints and odometry of now."""
+        """The current joints and odometry."""
         ...
 
     def read(self, sensor: str) -> SensorReading:
-        """The newest reading; two reads of one instant give the same one.
+        """The newest reading; two reads at the same time return the same one.
 
         Raises:
-            KeyError: no sensor of that name.
-            Failure: SENSOR_DEAD, when the sensor does not answer.
+            KeyError: there is no sensor of that name.
+            Failure: SENSOR_DEAD, the sensor does not answer.
         """
         ...
 
     def command(self, actuator: str, goal: ActuatorGoal) -> None:
-        """Give an actuator its goal, to be given again within 0.25 s or it stops.
+        """Give an actuator its goal. Repeat the command within 0.25 s, or the actuator stops.
 
         Raises:
-            KeyError: no actuator of that name.
-            ValueError: a goal it cannot take (wrong kind, wrong joints, outside its limits).
+            KeyError: there is no actuator of that name.
+            ValueError: the goal does not fit (wrong kind, wrong joints, outside its limits).
         """
         ...
 
     def stop(self, actuator: str) -> None:
-        """Brake at the limits; an arm stops along its path, a gripper keeps its last force."""
+        """Brake at the limits. An arm stops along its path, a gripper keeps its last force."""
         ...
 
 
 def read_camera(robot: Robot, name: str | None = None) -> CameraImage:
-    """A picture of the named camera, or of the robot's first one."""
+    """Read the named camera, or the robot's first one."""
     reading = robot.read(robot.description.camera(name)[0])
     if not isinstance(reading, CameraImage):
         raise TypeError(f"sensor {name!r} gave a {type(reading).__name__}, not a picture")
@@ -261,7 +261,7 @@ def read_camera(robot: Robot, name: str | None = None) -> CameraImage:
 
 
 def read_laser(robot: Robot, name: str | None = None) -> LaserScan:
-    """A scan of the named laser, or of the robot's first one."""
+    """Read the named laser, or the robot's first one."""
     reading = robot.read(robot.description.laser(name)[0])
     if not isinstance(reading, LaserScan):
         raise TypeError(f"sensor {name!r} gave a {type(reading).__name__}, not a scan")
@@ -269,7 +269,7 @@ def read_laser(robot: Robot, name: str | None = None) -> LaserScan:
 
 
 def read_lidar(robot: Robot, name: str | None = None) -> PointCloud:
-    """Points of the named lidar, or of the robot's first one."""
+    """Read the named lidar, or the robot's first one."""
     reading = robot.read(robot.description.lidar(name)[0])
     if not isinstance(reading, PointCloud):
         raise TypeError(f"sensor {name!r} gave a {type(reading).__name__}, not points")

@@ -20,7 +20,7 @@ from momantu_bt.world import Site
 
 @dataclass(frozen=True, slots=True)
 class ServiceContext:
-    """What a service receives at the beginning of the run.
+    """What a service receives when the run starts.
 
     parameters: the site's entry for this service. random: seeded from run seed and service name.
     """
@@ -36,11 +36,11 @@ class ServiceContext:
 
 
 class Service:
-    """Subclass it; `update` runs before the tree, at `rate` Hz of the world's clock.
+    """Subclass it; `update` is called before the tree's tick, at `rate` Hz of the world's clock.
 
-    publishes: read-only keys that trees see as `$@<service>.<key>`, with their types.
-    needs: services that run before it. senses: kinds of sensors that the robot must have, such as
-    `laser`; a run with a robot that lacks one is refused.
+    publishes: names and types of the keys that trees can read as `$@<service>.<key>`.
+    needs: services that this one uses; they start and update before it. senses: kinds of sensors
+    that the robot must have, such as `laser`; without one of them the run does not start.
     An exception in a service ends the run: the robot must not go on without it.
     """
 
@@ -54,7 +54,7 @@ class Service:
         raise NotImplementedError
 
     def update(self, robot: Robot, now: float) -> None:
-        """Called at `rate`; reads sensors only when it needs them."""
+        """Called at `rate`. now: the clock's time, s. Read a sensor only when it is needed."""
         raise NotImplementedError
 
     def published(self) -> Mapping[str, Any]:
@@ -67,12 +67,12 @@ class Localization(Protocol):
 
     @property
     def map_from_base(self) -> Pose2D:
-        """The best estimate of now."""
+        """The best estimate of the current pose."""
         ...
 
     @property
     def covariance(self) -> Array:
-        """(3, 3) of x, y, yaw in m2, m rad, rad2."""
+        """Covariance (3, 3) of x, y, yaw in m2, m rad, rad2."""
         ...
 
     @property
@@ -81,11 +81,11 @@ class Localization(Protocol):
         ...
 
     def reset(self, map_from_base: Pose2D, sigma_position: float, sigma_yaw: float) -> None:
-        """Start over around a pose; standard deviations in m and rad."""
+        """Restart around a pose; sigmas are standard deviations in m and rad."""
         ...
 
     def spread(self) -> None:
-        """Start over everywhere on the map's free floor."""
+        """Restart with guesses spread over all of the map's free floor."""
         ...
 
 
@@ -99,7 +99,7 @@ class HeldObject:
 
 @dataclass(frozen=True, slots=True)
 class Snapshot:
-    """A camera's picture with what was true when it was taken."""
+    """A camera image with the camera's pose, the base's pose and the robot's state at its time."""
 
     image: CameraImage
     odom_from_camera: Transform
@@ -108,34 +108,34 @@ class Snapshot:
 
 
 class KnowsHeld(Protocol):
-    """The object that the robot believes to hold."""
+    """A service that knows which object the robot believes it holds."""
 
     @property
     def held(self) -> HeldObject | None:
-        """The held object, judged again at each update from gripper width and effort."""
+        """The held object or None; each update checks it against gripper width and effort."""
         ...
 
 
 class PlanningScene(KnowsHeld, Protocol):
-    """The robot, its surroundings and what it holds, as believed."""
+    """The robot's belief about its own shape, its surroundings and the object it holds."""
 
     @property
     def last_contact(self) -> float:
-        """When the hand last touched or released something, s; -inf when it never has."""
+        """Time when the hand last touched or released something, s; -inf before the first time."""
         ...
 
     def grasped(self, thing: DetectedObject, grasp_from_object: Transform) -> None:
-        """Say what the gripper closed on; it counts as held while width and effort agree."""
+        """Report what the gripper closed on; it is held as long as width and effort agree."""
         ...
 
     def observe(self, snapshot: Snapshot) -> None:
-        """Take over what a picture shows: what an arm may meet."""
+        """Add the obstacles that a camera image shows, for planning the arm's motion."""
         ...
 
     def footprint(self, state: RobotState, below: float = math.inf) -> Array:
         """Convex outline (k, 2) of base, arm and held object on the floor, base frame, m.
 
-        below: parts of arm and load that keep above this height, m, are left out.
+        below: ignore parts of the arm and the held object that are above this height, m.
         """
         ...
 
@@ -145,7 +145,7 @@ class PlanningScene(KnowsHeld, Protocol):
 
 
 def offers(service: object, interface: type) -> bool:
-    """Whether a service has all that a Protocol names; none of it is evaluated."""
+    """Whether a service has every member of a Protocol; no property is evaluated."""
     wanted = [name for name in dir(interface) if not name.startswith("_")]
     missing = object()
     return all(getattr_static(service, name, missing) is not missing for name in wanted)

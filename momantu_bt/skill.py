@@ -44,8 +44,8 @@ MISSING: Any = _Missing()
 NAMES = ("place", "surface", "named_pose")
 """What a text input may name, so that the checker knows the valid values.
 
-The name of an entry point group, such as `momantu_bt.detectors`, is possible too: the input names
-one of its plug-ins.
+It may also be an entry point group, such as `momantu_bt.detectors`; the input then names a plug-in
+of that group.
 """
 
 
@@ -59,7 +59,7 @@ class Clock(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Compute:
-    """Work that takes time: the run's clock advances by `budget` seconds while it is done."""
+    """A function call that takes `budget` seconds of the run's clock."""
 
     function: Callable[[], Any]
     budget: float
@@ -75,8 +75,8 @@ def compute(function: Callable[[], T], budget: float) -> Generator[Compute, Any,
     """Do work that takes time.
 
     Write `plan = yield from compute(lambda: search(...), budget=0.2)`.
-    In lock-step the function runs in place and the clock then advances by `budget` seconds, so
-    thinking is never free. What it raises is raised here.
+    In a lock-step run the function is called at once. The clock then advances by `budget` seconds,
+    so that computation costs time in simulation too. An exception of the function is raised here.
     """
     result: T = yield Compute(function, budget)
     return result
@@ -86,7 +86,8 @@ def compute(function: Callable[[], T], budget: float) -> Generator[Compute, Any,
 class Port:
     """One port as declared. type: the resolved annotation. names: see `NAMES`, or None.
 
-    least, most: bounds of a number, in the port's unit. endless: -1 is valid besides, for no end.
+    least, most: bounds of a number, in the port's unit. endless: -1 is valid too and means
+    "without end".
     """
 
     name: str
@@ -198,7 +199,7 @@ def In(
     """Declare an input. Without a default it is required. live: read again on each tick.
 
     unit: SI unit that numbers in trees are converted to. names: see `NAMES`.
-    least, most: bounds of a number, in `unit`; a tree that gives another one is wrong.
+    least, most: bounds of a number, in `unit`; the checker rejects a tree that exceeds them.
     """
     return _InDescriptor(
         default, doc=doc, unit=unit, live=live, names=names, least=least, most=most
@@ -206,28 +207,30 @@ def In(
 
 
 def Out(*, doc: str, unit: str | None = None, live: bool = False) -> Any:
-    """Declare an output; written with SUCCESS, or (live) whenever it is assigned."""
+    """Declare an output. It is written on SUCCESS, or with `live` on each assignment."""
     return _OutDescriptor(doc=doc, unit=unit, live=live)
 
 
 def Needs(service: str | None = None) -> Any:
-    """Declare a service; its name is the attribute's unless given."""
+    """Declare that the skill needs a service. service: its name; by default the attribute's."""
     return _NeedsDescriptor(service)
 
 
 class Skill:
     """What a robot can do. Subclass it, declare ports and codes, write `run`.
 
-    failures: each code this skill raises, with the sentence that explains it.
-    uses: actuators it commands, or CAMERA_CARRIER.
-    one_of: groups of inputs with defaults; of each group a tree gives exactly one.
-    activities: what it does, for faults that begin while something does that; the value stands
-    behind the skill's name where a phase of a fault is written: "" as soon as it runs, "+2 s" a
-    while later, "/closing" when it notes that phase. None: as its `uses` and outputs tell.
-    symptoms: of each code, what is wrong in the world when the skill fails with it; codes that
-    no fault explains are left out. None: any of its codes may come of any fault of what it uses,
-    senses or is told.
-    A fresh instance is made for each start; the engine sets what stands below `run`.
+    failures: each code this skill raises, with a sentence that explains it.
+    uses: the actuators it commands; CAMERA_CARRIER for the one that carries the camera.
+    one_of: groups of inputs with defaults; a tree gives exactly one input of each group.
+    activities: what the skill does, for faults that start during such an activity. The value is a
+    suffix to the skill's name that says when: "" as soon as the skill runs, "+2 s" two seconds
+    later, "/closing" when it yields the phase "closing". None: derived from `uses` and outputs.
+    symptoms: for each code, what is wrong in the world when the skill fails with it. Leave out
+    codes that no fault explains. None: each code may be caused by any fault of the actuators,
+    sensors and inputs that the skill uses.
+
+    The engine makes a new instance for each start. Before it calls `run` it sets the inputs,
+    `services`, `clock`, `random`, `frames` and `site`.
     """
 
     failures: ClassVar[Mapping[str, str]] = {}
@@ -264,17 +267,17 @@ class Skill:
     def rehearsal(cls, seed: int) -> Mapping[str, Any]:
         """Arguments of `momantu_bt.testing.run_skill` with which `momantu-bt skills test` runs it.
 
-        Made anew at each call. What it leaves out, such as inputs, is made from the ports' types.
+        Each call returns new objects. Inputs that are left out get values made from their types.
         """
         return {}
 
     def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
-        """What its end claims about the world, for a judge; None when it claims nothing.
+        """What the skill's result says about the world, for the referee; None: nothing to check.
 
-        Called once after the skill has ended, and only where somebody judges; it reads no sensor
-        and commands nothing. failure: None asks what SUCCESS says. Otherwise it is how the skill
-        ended, and asked for is the sentence that would show it to be a false alarm: after
-        "nothing is held" that something is.
+        Called once after the skill has ended, only in worlds with a referee. It must not read
+        sensors or command actuators. failure: None after SUCCESS: return what should now be true.
+        After a failure: return what would make it a false alarm, for example "an object is held"
+        after the failure "nothing is held".
         """
         return None
 

@@ -25,10 +25,10 @@ TICK = 0.05
 
 @dataclass(frozen=True, slots=True)
 class Overhang:
-    """A solid that hangs over a surface, such as the next board of a shelf.
+    """A solid above a surface, such as the next board of a shelf.
 
-    map_from_overhang: its middle on the floor plan. size: (x, y) extent, m. bottom, top: heights
-    above the floor between which it lies, m.
+    map_from_overhang: its centre on the floor plan. size: (x, y) extent, m. bottom, top: heights
+    of its lower and upper side above the floor, m.
     """
 
     map_from_overhang: Pose2D
@@ -42,9 +42,9 @@ class Surface:
     """A named table or shelf, as a person would describe it.
 
     map_from_surface: centre of its top on the floor plan. size: (x, y) extent of the top, m.
-    height: of the top above the floor, m. sides: the directions, as angles in the surface's own
-    frame (rad), from which it can be approached; the first is preferred. over: what hangs over it
-    and is not a surface itself.
+    height: of the top above the floor, m. sides: the directions from which the robot can approach
+    it, as angles in the surface's frame, rad; the first is preferred. over: solids above it that
+    are not surfaces themselves.
     """
 
     map_from_surface: Pose2D
@@ -58,10 +58,10 @@ class Surface:
 class Site:
     """Everything that the robot is told about its surroundings.
 
-    map_file: map_server's YAML of the floor plan; overhang_file: the same format, for known
-    furniture that the laser's plane does not meet. start: the rough pose in the map where the
-    robot stands at first, within start_sigma (m, rad).
-    services: tunables of services and skills, by name.
+    map_file: the floor plan, in map_server's YAML format. overhang_file: a map in the same format
+    of known furniture that the laser's plane misses. start: the robot's approximate start pose in
+    the map; start_sigma: its standard deviations (m, rad). services: parameters of services and
+    skills, by name.
     """
 
     name: str
@@ -83,8 +83,9 @@ class Site:
 class Incident:
     """Something dangerous that the robot did, by ground truth.
 
-    time: s. kind: "force" (it pushed too hard), "dropped" (it let go above a surface) or "moving"
-    (it still moves although the run is over). value: N, m, or m/s and rad/s.
+    time: s. kind: "force" (the robot pushed too hard), "dropped" (it released an object above a
+    surface) or "moving" (it still moves after the end of the run). value: the force in N, the
+    height in m, or the speed in m/s or rad/s.
     """
 
     time: float
@@ -95,11 +96,11 @@ class Incident:
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """The referee's word, from ground truth.
+    """The referee's judgement of the episode, from ground truth.
 
-    success: every demand is met. unmet: one sentence per demand that is not.
-    measures: numbers behind it (tilt in rad, distances in m, forces in N).
-    incidents: what was dangerous, in the order of time, whether or not it was demanded.
+    success: every demand is met. unmet: one sentence for each demand that is not met.
+    measures: the measured numbers (tilt in rad, distances in m, forces in N).
+    incidents: everything dangerous that happened, ordered by time, demanded or not.
     """
 
     success: bool
@@ -110,7 +111,7 @@ class Verdict:
 
 @dataclass(frozen=True, slots=True)
 class TreeLine:
-    """One line of the tree as a display shows it: indentation depth, text, status name."""
+    """One line of the tree on a display: indentation depth, text and status name."""
 
     depth: int
     text: str
@@ -121,11 +122,11 @@ class Video(Protocol):
     """A film of the run: third-person view, head camera and the tree's state in one picture."""
 
     def add(self, lines: Sequence[TreeLine], headline: str) -> None:
-        """Take one frame of now."""
+        """Add a frame that shows the current moment."""
         ...
 
     def close(self) -> None:
-        """Finish the file; safe to call twice."""
+        """Finish the file. Calling it twice is safe."""
         ...
 
 
@@ -138,11 +139,11 @@ class View(Protocol):
         ...
 
     def update(self) -> None:
-        """Show the current world."""
+        """Show the world's current state."""
         ...
 
     def close(self) -> None:
-        """Stop serving; safe to call twice."""
+        """Stop serving. Calling it twice is safe."""
         ...
 
 
@@ -169,15 +170,15 @@ class World(Protocol):
         ...
 
     def step(self) -> None:
-        """Advance by one TICK; drivers act at the physics rate in between."""
+        """Advance by one TICK; in between, drivers run at the rate of the physics."""
         ...
 
     def verdict(self) -> Verdict | None:
-        """The referee's verdict on this moment; None without a referee."""
+        """The referee's verdict on the current state; None without a referee."""
         ...
 
     def open_video(self, path: Path, title: str) -> Video:
-        """Start a film; the file is written next to its final name and renamed at the end."""
+        """Start a film. It is written to a temporary file beside `path` and renamed at the end."""
         ...
 
     def open_view(self, port: int) -> View:
@@ -185,33 +186,33 @@ class World(Protocol):
         ...
 
     def close(self) -> None:
-        """Free everything; safe to call twice."""
+        """Free all resources. Calling it twice is safe."""
         ...
 
 
 @runtime_checkable
 class WorldTexts(Protocol):
-    """A world that is described by files, which a record of a run keeps."""
+    """A world that is described by files; the record of a run keeps their texts."""
 
     def texts(self) -> Mapping[str, str]:
-        """The files' texts by their names."""
+        """The text of each file, by file name."""
         ...
 
 
 @runtime_checkable
 class AboutWorld(Protocol):
-    """An entry of a world that can say more of itself than its site does."""
+    """A world's entry that can describe more of the world than its site."""
 
     def about(self) -> Mapping[str, Mapping[str, str]]:
-        """Sections (tags, goal, variation …), each with a line of text per subject."""
+        """Sections (tags, goal, variation …), each with one line of text per subject."""
         ...
 
 
 class WorldEntry(Protocol):
-    """The object that an entry point of `momantu_bt.worlds` names; light to import.
+    """The object that an entry point of `momantu_bt.worlds` names. Importing it must be cheap.
 
-    site: the nominal site, read without a simulator, for the checker and `show`.
-    open: build the episode of a seed. Raises WorldError when it cannot.
+    site: the nominal site, for the checker and `show`; reading it starts no simulator.
+    open: builds the episode of a seed. It raises WorldError when it cannot.
     """
 
     @property
@@ -221,7 +222,7 @@ class WorldEntry(Protocol):
 
     @property
     def default_robot(self) -> str:
-        """The robot to use when no other is named."""
+        """The robot to use when the user names none."""
         ...
 
     def site(self) -> Site:
@@ -240,9 +241,9 @@ class WorldError(MomantuError):
 
 
 def seeded(*parts: str | float) -> np.random.Generator:
-    """A random generator that depends on its parts alone, the same in every process.
+    """A random generator that depends on `parts` alone; it is the same in every process.
 
-    Parts are the run's seed and whatever names the use: `seeded(seed, "laser", stamp)`.
+    parts: the run's seed and what names its use, for example `seeded(seed, "laser", stamp)`.
     """
     digest = hashlib.blake2b("\x1f".join(repr(p) for p in parts).encode(), digest_size=16).digest()
     words: NDArray[np.uint32] = np.frombuffer(digest, dtype=np.uint32)
