@@ -192,7 +192,7 @@ class Pose2D:
     yaw: float = field(default=0.0, metadata={"unit": "rad"})
 
     def transform(self, z: float = 0.0) -> Transform:
-        """This pose as a rigid transform, at height z, m."""
+        """The pose as a rigid transform, at height z, m."""
         return Transform(
             (self.x, self.y, z), (math.cos(self.yaw / 2), 0.0, 0.0, math.sin(self.yaw / 2))
         )
