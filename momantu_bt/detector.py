@@ -1,13 +1,14 @@
-"""The interface of object detectors; a skill takes one by name."""
+"""Declare the interface of object detectors, and find those that are installed, by name."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 from momantu_bt.geometry import Array
 from momantu_bt.messages import DetectedObject, ObjectClass
+from momantu_bt.plugins import Group
 from momantu_bt.service import Snapshot
 
 
@@ -50,3 +51,16 @@ class ObjectDetector(Protocol):
         the stamp of a view. None when no view shows such a surface.
         """
         ...
+
+
+def _objection(name: str, plugin: Any) -> str | None:
+    lacking = [part for part in ("accepted", "budget", "detect") if not hasattr(plugin, part)]
+    if lacking:
+        return f"{plugin!r} has no {' and no '.join(lacking)}; see momantu_bt.detector"
+    return None if callable(plugin) else f"{plugin!r} is not a class"
+
+
+DETECTORS: Group[Callable[[], ObjectDetector]] = Group(
+    "momantu_bt.detectors", "detector", _objection
+)
+"""Classes of detectors, by the names that trees give."""

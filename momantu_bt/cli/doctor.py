@@ -5,22 +5,40 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from momantu_bt.cli.verbs import COMMANDS
+from momantu_bt.descriptions.tunables import TUNABLES
+from momantu_bt.detector import DETECTORS
 from momantu_bt.diagnosis import Diagnosis
 from momantu_bt.diagnosis.machine import machine
 from momantu_bt.diagnosis.packages import packages
 from momantu_bt.diagnosis.plugins import plugins
 from momantu_bt.errors import ExitCode
 from momantu_bt.faults.kinds.catalogue import FAULTS
+from momantu_bt.plugins import Group
 from momantu_bt.robots.plugins import ROBOTS
 from momantu_bt.tree.catalogue.nodes import BEHAVIOURS
 from momantu_bt.tree.catalogue.nodes import PLUGINS as NODES
 from momantu_bt.tree.plugins import SERVICES, SKILLS
-from momantu_bt.world_plugins import WORLDS
+from momantu_bt.world_plugins import WORLD_FILES, WORLDS
+
+GROUPS: tuple[Group[Any], ...] = (
+    SKILLS,
+    NODES,
+    BEHAVIOURS,
+    SERVICES,
+    DETECTORS,
+    TUNABLES,
+    ROBOTS,
+    WORLDS,
+    WORLD_FILES,
+    FAULTS,
+    COMMANDS,
+)
+"""Every entry point group; each plug-in is loaded once."""
 
 
 def doctor(
@@ -59,7 +77,7 @@ def diagnose(output: Path) -> Iterator[Diagnosis]:
     """Everything there is to look at, the quick and the certain first."""
     yield from machine(output)
     yield from packages()
-    yield from plugins((SKILLS, NODES, BEHAVIOURS, SERVICES, ROBOTS, WORLDS, FAULTS, COMMANDS))
+    yield from plugins(GROUPS)
 
 
 def mended(diagnosis: Diagnosis) -> Diagnosis:

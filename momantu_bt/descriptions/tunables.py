@@ -20,7 +20,7 @@ from momantu_bt.descriptions.validation import problems_at
 from momantu_bt.descriptions.wording import said
 from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.places import KeyPath
-from momantu_bt.plugins import Group, installed_names
+from momantu_bt.plugins import Group, PluginError, installed_names
 
 
 class Tunables(BaseModel):
@@ -77,11 +77,21 @@ def tunable_problems(reading: Reading, keys: KeyPath) -> Iterator[KeyProblem]:
     for name, values in given.items():
         if name in TUNABLES:
             if isinstance(values, dict):
-                yield from problems_at(reading, (*keys, name), TUNABLES.load(name))
+                yield from _problems_of(reading, (*keys, name))
         elif name not in installed_names("momantu_bt.services"):
             hint = valid_names(str(name), sorted(TUNABLES), "with tunables")
             message = f"no service or skill {name!r} has tunables; {hint}"
             yield reading.problem((*keys, name), message, key=True)
+
+
+def _problems_of(reading: Reading, keys: KeyPath) -> Iterator[KeyProblem]:
+    """The problems of the tunables of one service or skill, whose name is the last key."""
+    try:
+        kind = TUNABLES.load(str(keys[-1]))
+    except PluginError as error:
+        yield reading.problem(keys, f"{error}; run momantu-bt doctor", key=True)
+        return
+    yield from problems_at(reading, keys, kind)
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,7 @@ from functools import partial
 
 from momantu_bt.activity import Activity
 from momantu_bt.claim import Claim, ObjectAt, ObjectOn
-from momantu_bt.detector import ObjectDetector, View
+from momantu_bt.detector import DETECTORS, ObjectDetector, View
 from momantu_bt.failure import FailureValue
 from momantu_bt.geometry import Array
 from momantu_bt.lazy import lazily
@@ -16,7 +16,6 @@ from momantu_bt.robot import CAMERA_CARRIER, Robot
 from momantu_bt.service import Localization, PlanningScene, Snapshot
 from momantu_bt.skill import Failure, In, Needs, Out, Run, Skill, compute
 from momantu_bt.symptom import Symptom
-from momantu_skills.perception.objects.detectors import DETECTORS
 
 with lazily():
     from momantu_skills.gaze import surveys

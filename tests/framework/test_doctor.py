@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 from collections.abc import Callable, Iterator
 from importlib.metadata import EntryPoint
 from pathlib import Path
@@ -14,6 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from momantu_bt.cli import doctor as verb
+from momantu_bt.cli.doctor import GROUPS
 from momantu_bt.diagnosis import Diagnosis, imports, machine, packages, plugins
 from momantu_bt.diagnosis.packages import Requirement, judge, release, requirements
 from momantu_bt.plugins import Group, PluginError
@@ -261,3 +263,10 @@ def test_a_missing_system_library_is_named_in_the_cure() -> None:
     reason = "ImportError: libgomp.so.1: cannot open shared object file: No such file"
     assert "libgomp.so.1" in imports.import_cure("pinocchio", reason)
     assert "pinocchio" in imports.import_cure("pinocchio", "SyntaxError: oh")
+
+
+def test_it_loads_the_plugins_of_every_group() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "api.md").read_text(encoding="utf-8")
+    table = page[page.index("| group |") : page.index("## Tunables")]
+    listed = re.findall(r"^\| `(momantu_bt\.\w+)` \|", table, re.MULTILINE)
+    assert [group.name for group in GROUPS] == listed

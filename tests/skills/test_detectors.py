@@ -12,10 +12,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from momantu_skills.detect_object import DetectObject
-from momantu_skills.perception.objects.detectors import DETECTORS
 from momantu_skills.perception.objects.geometric import GeometricDetector
 
 from momantu_bt import plugins
+from momantu_bt.detector import DETECTORS
 from momantu_bt.geometry import Pose2D
 from momantu_bt.messages import ObjectClass
 from momantu_bt.plugins import PluginError

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, TypeAlias
 
-from pydantic import Field
+from pydantic import AfterValidator, Field
 
 from momantu_bt.descriptions.quantities import (
     Angle,
@@ -21,6 +21,16 @@ Share: TypeAlias = Annotated[float, Field(ge=0.0, le=1.0)]
 Weight: TypeAlias = Annotated[float, Field(ge=0.0)]
 Spare: TypeAlias = Annotated[float, Measured("a length", ("m",), ge=0)]
 """A length that may be 0."""
+
+
+def _rising(counts: tuple[int, int]) -> tuple[int, int]:
+    if counts[0] > counts[1]:
+        raise ValueError(f"expected the smaller number first; found {[*counts]}")
+    return counts
+
+
+Counts: TypeAlias = Annotated[tuple[Count, Count], AfterValidator(_rising)]
+"""The fewest and the most of something."""
 
 
 class LocalizationConfig(Tunables):
@@ -61,9 +71,7 @@ class LocalizationConfig(Tunables):
         default=0.006,
         description="by which a scan at rest moves particles, and 0.7 times it in rad",
     )
-    particles: tuple[Count, Count] = Field(
-        default=(400, 20_000), description="fewest and most particles"
-    )
+    particles: Counts = Field(default=(400, 20_000), description="fewest and most particles")
     bin_size: tuple[Size, Angle] = Field(
         default=(0.10, 0.10), description="edge of a KLD bin, along the floor and in heading"
     )

@@ -1,10 +1,14 @@
 """A wrong world file is answered with every mistake, its place, and what would be right."""
 
+from importlib.metadata import EntryPoint
 from pathlib import Path
 
 import pytest
 from momantu_worlds.scenes.file.reader import WorldFileError, parse_world, read_world
 from momantu_worlds.scenes.loading import FOLDER, load_world
+
+from momantu_bt import plugins
+from momantu_bt.descriptions.tunables import TUNABLES
 
 TEXT = (FOLDER / "four_rooms.yaml").read_text(encoding="utf-8")
 PATH = Path("rooms.yaml")
@@ -237,11 +241,19 @@ TUNED = [
     ("localization: {beams: many}", "many", ["site.services.localization.beams"]),
     ("navigate: {controller: {weights: {haste: -1}}}", "-1}", ["controller.weights.haste"]),
     ("planning_scene: {voxl: 1 cm}", "voxl", ["did you mean 'voxel'?"]),
+    ("localization: {particles: [400, 200]}", "[400", ["expected the smaller number first"]),
+    ("torn: {a: 1}", "torn", ["the set of tunables 'torn'", "cannot be loaded", "doctor"]),
 ]
 
 
 @pytest.mark.parametrize(("services", "place", "words"), TUNED, ids=lambda c: str(c)[:25])
-def test_a_wrong_tunable_is_named_at_its_place(services, place, words):
+def test_a_wrong_tunable_is_named_at_its_place(monkeypatch, services, place, words):
+    torn, find = EntryPoint("torn", "no_such_module:Torn", TUNABLES.name), plugins.entry_points
+    monkeypatch.setattr(
+        plugins,
+        "entry_points",
+        lambda group: [*find(group), *([torn] if group == TUNABLES.name else [])],
+    )
     text = with_services(services)
     error = refusal(text)
     assert len(error.problems) == 1, error
