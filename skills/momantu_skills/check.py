@@ -16,22 +16,22 @@ from momantu_bt.symptom import Symptom
 from momantu_skills.navigation.localize.confidence import estimate, is_localized, sigmas
 
 NEAR = 1.5
-"""m from a place, or from the edge of a surface, that counts as near."""
+"""Distance from a place, or from the edge of a surface, that counts as near, m."""
 OPEN = 0.9
 """Share of the widest opening at which the gripper counts as open."""
 GAUGE = 0.003
-"""m by which the gripper's measured opening may be off."""
+"""Largest error of the gripper's measured opening, m."""
 ASTRAY = 0.10
-"""m by which the robot's own place may be off when it says how far it is from another."""
+"""Largest error of the robot's own position when it reports its distance from a place, m."""
 NO = ("NOT_HOLDING", "HOLDING", "NOT_LOCALIZED", "NOT_NEAR", "NOT_OPEN")
-"""Codes that answer the question with no."""
+"""Failure codes that mean that the answer is no."""
 Question: TypeAlias = Literal["holding", "not_holding", "localized", "near", "gripper_open"]
 
 
 class Check(Skill):
     """Check something that the robot believes. It moves nothing."""
 
-    what: Question = In(doc='the question; "near" needs `place`')
+    what: Question = In(doc='what to check; "near" needs `place`')
     place: str | None = In(None, doc='for "near": a place or surface of the site', names="place")
     failures = {
         "NOT_HOLDING": "the hand holds nothing",
@@ -52,7 +52,7 @@ class Check(Skill):
 
     @classmethod
     def rehearsal(cls, seed: int) -> Mapping[str, Any]:
-        """A question whose answer is yes."""
+        """Ask a question that is answered with yes."""
         return {"inputs": {"what": "gripper_open"}}
 
     def run(self, robot: Robot) -> Run:
@@ -65,7 +65,7 @@ class Check(Skill):
         yield ""
 
     def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
-        """The answer yes, as the world would put it; the same after each no that can be judged."""
+        """Claim that the answer is yes; a failure that can be checked denies it."""
         said = failure is None
         if failure is not None and failure.code not in NO:
             return None
@@ -113,7 +113,7 @@ class Check(Skill):
             )
 
     def _nearest(self, here: Pose2D) -> Pose2D:
-        """The place itself, or the point of the surface that is nearest to `here`, in the map."""
+        """Return the place itself, or the point of the surface nearest to `here`, in the map."""
         place = self.place or ""
         if place in self.site.places:
             return self.site.places[place]

@@ -24,23 +24,25 @@ with lazily():
 
 
 LOOKS = 3
-"""Fewest looks over a surface before a thing is said not to be there."""
+"""Fewest views of a surface before an object is reported as not found."""
 EXACT = 0.02
-"""m that a found thing may be off and still be got hold of, with fingers 0.1 m apart."""
+"""Position error of a found object that still allows a grasp, m, with the fingers 0.1 m apart."""
 
 
 class DetectObject(Skill):
-    """Look over a surface, measure what stands on it, and find the requested object.
+    """Look over a surface, measure the objects on it, and find the requested object.
 
-    The camera looks from the surface's middle outwards until it sees the object, then at that.
-    The surface is measured too: tables may stand 0.1 m and 5 degrees from where the site says,
-    and 3 cm higher or lower.
+    The camera looks at the surface from its middle outwards until it sees the object, then at the
+    object. The skill measures the surface too: a table may stand up to 0.1 m and 5 degrees away
+    from where the site places it, and 3 cm higher or lower.
     """
 
     object: ObjectClass = In(doc="what to find: its category and the sizes that are known")
     on: str = In(names="surface", doc="the surface that it stands on")
-    views: int = In(2, least=1, doc="from how many angles to see it before it counts as measured")
-    detector: str = In("geometric", names=DETECTORS.name, doc="what finds it in the pictures")
+    views: int = In(2, least=1, doc="number of views that must show the object")
+    detector: str = In(
+        "geometric", names=DETECTORS.name, doc="the detector that finds it in the pictures"
+    )
     found: DetectedObject = Out(doc="the best match; pose in odom, stamped")
     failures = {
         "OBJECT_NOT_FOUND": "no object on the surface is the requested one; data lists those found",
@@ -56,12 +58,12 @@ class DetectObject(Skill):
     planning_scene: PlanningScene = Needs()
 
     def __init__(self) -> None:
-        """Start with nothing seen."""
+        """Start without views."""
         super().__init__()
         self._views: list[View] = []
 
     def run(self, robot: Robot) -> Run:
-        """Look and measure until the object was seen in enough views, or no view is left."""
+        """Look and measure until enough views show the object, or no view is left."""
         corners = self._corners()
         region = regions.surface_region(corners)
         pending = surveys.looks_over(self, robot, corners, LOOKS)
@@ -90,7 +92,7 @@ class DetectObject(Skill):
         self.found = best
 
     def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
-        """It stands where it was found; or it stands on the surface where it was not found."""
+        """Claim that the object is where it was found; a failure denies it is on the surface."""
         if failure is None:
             return ObjectAt(self.object, self.found.pose.transform, EXACT)
         return ObjectOn(self.object, self.on) if failure.code == "OBJECT_NOT_FOUND" else None
@@ -137,5 +139,5 @@ class DetectObject(Skill):
 
 
 def _asked_of(things: Sequence[DetectedObject], accepted: float) -> DetectedObject | None:
-    """The best object whose score is good enough."""
+    """Return the object with the best score, if that score is high enough."""
     return next((thing for thing in things if thing.score >= accepted), None)

@@ -25,24 +25,24 @@ with lazily():
 
 
 BUDGET = 0.2
-"""s granted to making sense of both looks and to finding spots."""
+"""Time allowed for processing both views and finding spots, s."""
 LOOKS = 2
-"""Looks to the left and right of the place: each sees behind what hides from the other."""
+"""Number of views, to the left and right of the place: each shows what is hidden in the other."""
 HAND = 0.10
-"""m; breadth of what is to be set down where nothing is held and no size is given."""
+"""Assumed width of the object to place, m, when nothing is held and no size is given."""
 LEVEL = 0.01
-"""m that the surface may be higher or lower than measured; `place` feels for it over 0.025."""
+"""Largest error of the measured height, m; `place` searches for contact over 0.025 m."""
 
 
 class DetectPlane(Skill):
-    """Measure the level surface at a place: its height, outline, what stands on it, free spots."""
+    """Measure the level surface at a place: height, outline, objects on it and free spots."""
 
     near: Pose = In(doc="a place on the surface, such as a tag's pose")
     size: tuple[float, ...] | None = In(
         None, unit="m", doc="x, y (and z) of the object to place; default: the held one"
     )
     plane: SupportPlane = Out(
-        doc="the surface as seen within 0.6 m of `near`, where its frame lies, axes along odom's"
+        doc="the surface within 0.6 m of `near`; its frame is there, with axes parallel to odom's"
     )
     spots: tuple[Pose, ...] = Out(
         doc="free spots, best first, on the surface, x away from the robot, z up; odom"
@@ -60,12 +60,12 @@ class DetectPlane(Skill):
     planning_scene: PlanningScene = Needs()
 
     def __init__(self) -> None:
-        """Start with nothing needing room yet."""
+        """Start without a size of the object to place."""
         super().__init__()
         self._needed = 0.0
 
     def run(self, robot: Robot) -> Run:
-        """Look, measure, choose."""
+        """Look, measure, choose the spots."""
         near = self.frames.lookup(ODOM, self.near.frame).apply(self.near.position)
         corners, region = regions.place_region(near)
         snapshots: list[Snapshot] = []
@@ -89,7 +89,7 @@ class DetectPlane(Skill):
         self.plane, self.spots = found.plane, found.spots
 
     def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
-        """A level top there, and room at the best spot; or that there is what it did not find."""
+        """Claim a level surface with room at the best spot; a failure denies one of them."""
         if failure is None:
             spot = _point(self.spots[0].position)
             return PlaneAt(self.plane.pose.transform, LEVEL), RoomAt(spot, self._needed, LEVEL)
@@ -117,7 +117,7 @@ class DetectPlane(Skill):
         return surfaces.surroundings(seen, region, near, base, radius)
 
     def _radius(self) -> float:
-        """The radius of the circle that the object to place fits in, however it is turned, m."""
+        """Return the radius of the circle that the object to place fits in at any yaw, m."""
         held = self.planning_scene.held
         if self.size is not None:
             across = (*self.size[:2], *self.size[:1])[:2]

@@ -14,12 +14,12 @@ from momantu_bt.diagnosis.imports import import_cure, import_errors
 
 LIBRARIES = ("pinocchio", "coal", "ompl", "toppra", "numba", "scipy", "pyapriltags")
 PREPARATION = "momantu_skills.manipulation"
-"""Imported before the libraries, as skills do: it finds the OpenMP runtime that some need."""
+"""Imported before the libraries, as in the skills: it finds the OpenMP runtime that some need."""
 HEADLESS = "opencv-python-headless"
 
 
 def diagnose() -> Iterator[Diagnosis]:
-    """Diagnoses of the libraries that skills stand on; nothing if none of them is installed."""
+    """Diagnose the libraries that the skills need; return nothing if none of them is installed."""
     present = [name for name in LIBRARIES if importlib.util.find_spec(name) is not None]
     errors = import_errors([PREPARATION, *present] if present else [])
     for name, reason in errors.items():
@@ -31,7 +31,7 @@ def diagnose() -> Iterator[Diagnosis]:
 
 
 def _opencv() -> Diagnosis:
-    """Two distributions fill the folder cv2; the one for screens often cannot be loaded."""
+    """Diagnose cv2: two packages install it, and the one with a display often cannot be loaded."""
     error = import_errors(["cv2"]).get("cv2")
     headless = _is_headless()
     build = "the headless build" if headless else "the build for screens"
@@ -43,7 +43,7 @@ def _opencv() -> Diagnosis:
 
 
 def _is_headless() -> bool:
-    """Read from the folder itself: importing it may not work."""
+    """Return whether the headless build is installed; reads the folder, as the import may fail."""
     spec = importlib.util.find_spec("cv2")
     if spec is None or spec.origin is None:
         return False
@@ -59,10 +59,10 @@ def _pinned() -> str:
 
 
 def _lay_headless() -> None:
-    """Put the headless build over whatever fills cv2.
+    """Install the headless build over the installed cv2.
 
     Raises:
-        RuntimeError: pip could not; its last line.
+        RuntimeError: pip failed; the message is the last line that pip wrote.
     """
     command = ["install", "--quiet", "--no-deps", "--force-reinstall", _pinned()]
     done = subprocess.run(

@@ -25,14 +25,15 @@ with lazily():
 
 
 BUDGET = 0.05
-"""s granted to searching one picture."""
+"""Time allowed for searching one picture, s."""
 PICTURES = 4
-"""Pictures that are averaged once the tag is in the middle of the view."""
+"""Pictures to average once the tag is in the middle of the view."""
 LOOKS = 4
-"""Fewest looks over a surface after the one at its middle: a camera that turns also moves a
-little, and sees past what hid the tag."""
+"""Fewest views of a surface after the view of its middle. A camera that turns also moves a little,
+so that it may see past what hid the tag."""
 EXACT, SQUARE = 0.02, 0.05
-"""m and rad that a measured tag may be off: twice what the camera's mounting costs at most."""
+"""Largest errors of a measured tag, m and rad: twice the largest error from the camera's
+mounting."""
 
 
 class FindAprilTag(Skill):
@@ -40,9 +41,9 @@ class FindAprilTag(Skill):
 
     tag_id: int = In(least=0, doc="which tag")
     edge: float = In(unit="m", least=0.001, doc="length of the black square's side")
-    on: str | None = In(None, names="surface", doc="surface that it lies on; None: look around")
+    on: str | None = In(None, names="surface", doc="the surface it lies on; None: look around")
     tag_pose: Pose = Out(doc="centre of the tag, z out of it, x to its right; odom, stamped")
-    tag_sigma: float = Out(unit="m", doc="standard uncertainty of its position")
+    tag_sigma: float = Out(unit="m", doc="standard deviation of its position")
     failures = {"TAG_NOT_SEEN": "no picture of the sweep showed the tag; data lists other tags"}
     uses = {CAMERA_CARRIER}
     activities = {Activity.FIND_MARKER: ""}
@@ -53,7 +54,7 @@ class FindAprilTag(Skill):
     planning_scene: PlanningScene = Needs()
 
     def run(self, robot: Robot) -> Run:
-        """Sweep, look at it, average."""
+        """Sweep until the tag is seen, look at it, average the measurements."""
         others: set[int] = set()
         for point in self._points(robot):
             snapshot = yield from surveys.glance(self, robot, self.planning_scene, point)
@@ -70,7 +71,7 @@ class FindAprilTag(Skill):
         raise self._not_seen(others)
 
     def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
-        """The tag lies where it was measured; after a failure: it lies on the surface after all."""
+        """Claim that the tag is at the measured pose; a failure denies it is on the surface."""
         if failure is None:
             return TagAt(self.tag_id, self.tag_pose.transform, EXACT, SQUARE)
         unseen = failure.code == "TAG_NOT_SEEN" and self.on in self.site.surfaces
@@ -79,7 +80,7 @@ class FindAprilTag(Skill):
     def _watch(
         self, robot: Robot, first: tags.TagSighting, others: set[int]
     ) -> Generator[str | Compute, Any, list[tags.TagSighting]]:
-        """More pictures, with the tag in the middle of the view where that is possible."""
+        """Take more pictures, with the tag in the middle of the view where possible."""
         seen: list[tags.TagSighting] = []
         snapshot = yield from surveys.glance(
             self, robot, self.planning_scene, first.odom_from_tag.position

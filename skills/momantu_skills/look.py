@@ -16,11 +16,12 @@ from momantu_skills.gaze.look_at import WITHIN, look_at
 from momantu_skills.manipulation.scene.arm_scene import ArmScene
 
 AHEAD = 3.0
-"""m before the base, at the camera's own height."""
+"""Distance of the point to look at ahead of the base, m, at the camera's height."""
 DOWN = 1.0
-"""m before the base, on the floor: near enough to see what the base is about to meet."""
+"""Distance of the point on the floor ahead of the base, m: close enough to see the next
+obstacle."""
 SLACK = 0.03
-"""rad by which encoders and the camera's mounting turn the view beside what is asked of it."""
+"""Largest pointing error from the joint encoders and the camera's mounting, rad."""
 
 
 class Look(Skill):
@@ -45,22 +46,22 @@ class Look(Skill):
 
     @classmethod
     def rehearsal(cls, seed: int) -> Mapping[str, Any]:
-        """One target of the three."""
+        """Use one of the three kinds of target."""
         return {"inputs": {"surface": "table_a"}}
 
     def __init__(self) -> None:
-        """Start without a point."""
+        """Start without a target point."""
         super().__init__()
         self._target: tuple[float, float, float] | None = None
 
     def run(self, robot: Robot) -> Run:
-        """Work out the point, then look."""
+        """Compute the target point, then look at it."""
         x, y, z = (float(v) for v in self._point(robot))
         self._target = x, y, z
         yield from look_at(self, robot, self._target)
 
     def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
-        """The camera looks there, whether it is said or denied."""
+        """Claim that the camera looks at the point; a failure denies it."""
         if self._target is None or (failure is not None and failure.code != "OUT_OF_VIEW"):
             return None
         return CameraOn(robot.description.camera()[1].frame, self._target, WITHIN + SLACK)

@@ -31,7 +31,7 @@ with lazily():
 
 
 SURVEY = (0.05, 0.03)
-"""m and rad that the map itself is good for: one of its cells, and what scans tell of heading."""
+"""Accuracy of the map in m and rad: one cell, and the heading error that a scan can show."""
 
 
 class Navigate(Skill):
@@ -40,12 +40,12 @@ class Navigate(Skill):
     in_front_of: str | None = In(None, names="place", doc="a place, or a surface to look over")
     goal: Pose2D | None = In(None, doc="a pose in the map")
     within_reach_of: Pose | None = In(
-        None, doc="stand where the hand reaches this pose, or as near as its surface allows"
+        None, doc="drive to where the hand reaches this pose, or as near as its surface allows"
     )
     side: int = In(
-        0, least=0, doc="0: the best stand; 1, 2, …: the next best, to try from elsewhere"
+        0, least=0, doc="0: the best goal pose; 1, 2, …: the next best, to retry from elsewhere"
     )
-    tolerance: float = In(0.05, unit="m", least=0, doc="largest distance from the stand")
+    tolerance: float = In(0.05, unit="m", least=0, doc="largest distance from the goal pose")
     angle_tolerance: float = In(0.05, unit="rad", least=0, doc="largest heading error at the end")
     recovery: bool = In(True, doc="when blocked: look again, back up, turn, and retry")
 
@@ -75,7 +75,7 @@ class Navigate(Skill):
 
     @classmethod
     def rehearsal(cls, seed: int) -> Mapping[str, Any]:
-        """One destination of the three."""
+        """Use one of the three kinds of destination."""
         return {"inputs": {"in_front_of": "table_a"}}
 
     def __init__(self) -> None:
@@ -97,7 +97,7 @@ class Navigate(Skill):
         yield from trip.travel(vehicle, controller, destination, recovery=self.recovery)
 
     def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
-        """The base is on its stand, or where the hand reaches; or is where it doubts to be."""
+        """Claim that the base is at its goal or in reach; NOT_LOCALIZED denies the estimate."""
         if failure is not None and failure.code == "NOT_LOCALIZED":
             return estimate(self.localization)
         if self._going is None or self._going.chosen is None:
@@ -140,13 +140,13 @@ class Navigate(Skill):
             )
 
     def _surface(self) -> Surface | None:
-        """The surface that is driven up to."""
+        """Return the surface that the base drives up to."""
         if self.within_reach_of is not None:
             return surface_at(self._point(self.within_reach_of), self.site.surfaces.values())
         return self.site.surfaces.get(self.in_front_of or "")
 
     def _point(self, pose: Pose) -> tuple[float, float]:
-        """(x, y) in the map of a pose, as the map's place is believed now."""
+        """Return (x, y) of a pose in the map, by the current localization."""
         there = pose.position
         if pose.frame != MAP:
             there = self.frames.lookup(MAP, pose.frame).apply(there)

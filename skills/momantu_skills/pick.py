@@ -26,26 +26,28 @@ with lazily():
 
 
 THINKING = 0.4
-"""s that choosing a grasp and planning are given: twice the median."""
+"""Time allowed for choosing a grasp and planning, s: twice the median."""
 LEAST_WEIGHT = 0.5
-"""N by which the wrist must be heavier with the object: four times the sensor's noise."""
+"""Least increase of the load on the wrist with the object in the hand, N: four times the noise of
+the force sensor."""
 SQUEEZE = 0.03
-"""m less than the object's width that the fingers are asked to close to: enough for full force,
-and for missing it to show; closing all the way would make opening slower."""
+"""The fingers are commanded to close to the object's width less this, m. That is enough to reach
+the full force and to notice a missed object; closing completely would make opening slower."""
 BUMP = 25.0
-"""N on the wrist that stop the approach: enough to push a can aside, far from doing damage."""
+"""Contact force on the wrist that stops the approach, N: enough to push a can aside, too little to
+cause damage."""
 THERE = 0.03
-"""m from the pose within which a thing should have been seen to stand there."""
+"""Largest distance from the detected position at which the object counts as seen there, m."""
 
 
 class Pick(Skill):
     """Grasp a detected object and lift it: look, reach, close, check, lift, look again.
 
-    After a failure the hand is open and drawn back, unless something else held the arm.
+    After a failure the hand is open and retreated, unless another skill controlled the arm.
     """
 
-    object: DetectedObject = In(doc="what to grasp, as detected; pose in odom, not old")
-    lift: float = In(0.12, unit="m", least=0, doc="how far it is lifted straight up")
+    object: DetectedObject = In(doc="the detected object to grasp; recent pose in odom")
+    lift: float = In(0.12, unit="m", least=0, doc="height to lift it, straight up")
     failures = {
         "STALE_POSE": "the pose is too old, or something was touched since it was seen",
         "NOTHING_THERE": "the camera sees nothing where the object should stand",
@@ -70,7 +72,7 @@ class Pick(Skill):
     planning_scene: ArmScene = Needs()
 
     def run(self, robot: Robot) -> Run:
-        """The whole skill; each step is a method below."""
+        """Run all steps; each step is a method below."""
         arm = Arm(self, robot, self.planning_scene)
         self._check_start(arm)
         yield from arm.settle()
@@ -84,9 +86,10 @@ class Pick(Skill):
         yield from self._look_again(arm)
 
     def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
-        """It is in the hand; after a failure, the opposite of what the code says of hand or table.
+        """Claim that the object is in the hand; a failure denies this, or that it stood there.
 
-        What says nothing of either (no plan, a stale pose) cannot be contradicted.
+        A failure that says nothing about the hand or the table (no plan, an old pose) claims
+        nothing.
         """
         if failure is None or failure.code in ("GRASP_MISSED", "SLIPPED"):
             return Holding(True)
@@ -105,7 +108,7 @@ class Pick(Skill):
         check_fresh(self.object.pose, self.object.category, self.clock.now(), last, arm.hand)
 
     def _look(self, arm: Arm) -> Run:
-        """See the surroundings, and that something stands where the object should be."""
+        """Observe the surroundings and check that something stands where the object should be."""
         yield from self._turn_camera(arm)
         arm.observe()
         arm.scene.support_below(self.object)
@@ -120,7 +123,7 @@ class Pick(Skill):
             )
 
     def _turn_camera(self, arm: Arm) -> Run:
-        """Point the camera at the object as well as the robot can."""
+        """Point the camera at the object as closely as its joints allow."""
         try:
             yield from look_at(self, arm.robot, self.object.pose.position)
         except Failure as failure:
@@ -136,7 +139,7 @@ class Pick(Skill):
             raise Failure("NO_PLAN", failure.value.message, **failure.value.data) from None
 
     def _reach(self, arm: Arm, plan: reaching.PickPlan) -> Run:
-        """Open on the way to the pre-grasp, then go straight in."""
+        """Open the hand on the way to the pre-grasp, then approach in a straight line."""
         effector = arm.robot.description.end_effector
         opened = GripperCommand(effector.max_width, arm.force)
         for trajectory in plan.transit:
@@ -157,7 +160,7 @@ class Pick(Skill):
     def _close(
         self, arm: Arm, plan: reaching.PickPlan
     ) -> Generator[str | Compute, Any, Array | None]:
-        """Close with a force limit and judge the opening; the wrist's force before that."""
+        """Close with limited force and check the opening; measure the wrist's force first."""
         hand = arm.hand
         rest = yield from rested_force(arm.robot, self.frames, "feeling")
         squeezed = max(0.0, plan.grasp.width - SQUEEZE)
@@ -181,7 +184,7 @@ class Pick(Skill):
         return rest
 
     def _grasp_from_object(self, arm: Arm, plan: reaching.PickPlan) -> Transform:
-        """Where the object is in the hand: as detected, but centred between the fingers."""
+        """Return the object's pose in the hand: as detected, but centred between the fingers."""
         state = arm.state
         base_from_grasp = arm.group.tip_pose(arm.joints) @ arm.scene.model.tip_from_grasp
         odom_from_grasp = state.odom_from_base @ base_from_grasp
@@ -190,7 +193,7 @@ class Pick(Skill):
         return Transform((seen.position[0], planned.position[1], seen.position[2]), seen.quaternion)
 
     def _lift(self, arm: Arm, plan: reaching.PickPlan, rest: Array | None) -> Run:
-        """Lift; it must still be there, and weigh something."""
+        """Lift, then check that the object is still in the hand and adds weight."""
         yield from arm.follow(plan.lift, "lifting")
         loaded = yield from rested_force(arm.robot, self.frames, "weighing")
         weight = None if rest is None or loaded is None else float(rest[2] - loaded[2])
@@ -203,7 +206,7 @@ class Pick(Skill):
             raise Failure("SLIPPED", f"after lifting, {text}", weight=weight)
 
     def _set_back(self, arm: Arm, plan: reaching.PickPlan, rest: Array | None) -> Run:
-        """Lower again before the hand opens, while there still seems to be something in it."""
+        """Lower the hand before it opens, while the object still seems to be in it."""
         gap = abs(arm.state.gripper_width - plan.grasp.width)
         if gap <= arm.hand.width_tolerance:
             watch = bump(self.frames, rest, BUMP)
@@ -211,7 +214,7 @@ class Pick(Skill):
             yield from arm.follow(down, "setting back", watch)
 
     def _look_again(self, arm: Arm) -> Run:
-        """The place where it stood must be empty, unless the hand hides it."""
+        """Check that the place where the object stood is empty, unless the hand hides it."""
         yield "looking"
         arm.observe()
         thing = self.object
@@ -221,7 +224,7 @@ class Pick(Skill):
             raise Failure("SLIPPED", f"the {thing.category} still stands where it stood")
 
     def _give_up(self, arm: Arm, plan: reaching.PickPlan) -> Run:
-        """Open and draw back along the approach."""
+        """Open the hand and retreat along the approach."""
         yield from self._let_go(arm)
         yield from arm.follow(plan.retreat, "drawing back")
 
@@ -233,7 +236,7 @@ class Pick(Skill):
         self.planning_scene.touched()
 
     def _gripper_or_stuck(self, opening: Run) -> Run:
-        """A gripper that does not move is, to pick, an arm that does not."""
+        """Move the gripper; report a gripper that does not move as ARM_STUCK."""
         try:
             yield from opening
         except Failure as failure:

@@ -30,15 +30,15 @@ with lazily():
 
 
 THINKING = 0.4
-"""s that choosing a spot and planning are given: twice the median."""
+"""Time allowed for choosing a spot and planning, s: twice the median."""
 BESIDE = 0.02
-"""m from its spot within which a thing counts as set down there."""
+"""Largest distance from its spot at which the object counts as placed, m."""
 
 
 class Place(Skill):
-    """Set down the held object: look, carry it above a spot, lower, open, draw back, look again."""
+    """Place the held object on a free spot: look, carry, lower, open, retreat, look again."""
 
-    plane: SupportPlane = In(doc="the surface, as measured; pose in odom, not old")
+    plane: SupportPlane = In(doc="the measured surface; recent pose in odom")
     spots: tuple[Pose, ...] = In(doc="free spots on it, best first; odom, z up, on the surface")
     failures = {
         "NOTHING_HELD": "the hand holds nothing",
@@ -70,7 +70,7 @@ class Place(Skill):
         self._spot: Transform | None = None
 
     def run(self, robot: Robot) -> Run:
-        """The whole skill; each step is a method below."""
+        """Run all steps; each step is a method below."""
         arm = Arm(self, robot, self.planning_scene)
         held = self._check_start(arm)
         yield from arm.settle()
@@ -90,7 +90,7 @@ class Place(Skill):
         yield from self._look_again(arm, plan, held, before)
 
     def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
-        """It stands on its spot, whether that is said or denied; or that something is held."""
+        """Claim that the object stands on its spot; a failure denies this, or that it is held."""
         if failure is not None and failure.code == "NOTHING_HELD":
             return Holding(True)
         denied = failure is not None and failure.code in ("LOST", "TOPPLED")
@@ -110,9 +110,9 @@ class Place(Skill):
         return held
 
     def _look(self, arm: Arm, point: Array, around: Sequence[Array] = ()) -> Run:
-        """Take a picture of what stands around a point, as well as the camera can be turned.
+        """Take a picture of the surroundings of a point, with the camera turned as far as possible.
 
-        around: corners (n, 3) in odom of solids that an arm that carries the camera avoids.
+        around: corners (n, 3) in odom of solids to avoid, for an arm that carries the camera.
         """
         try:
             yield from look_at(self, arm.robot, point, around=around)
@@ -134,7 +134,7 @@ class Place(Skill):
             raise Failure("LOST", f"the {held.object.category} slipped out of the hand on the way")
 
     def _lower(self, arm: Arm, plan: PlacePlan, held: HeldObject) -> Run:
-        """Straight down until the surface carries part of the weight, where that can be felt."""
+        """Lower until the surface carries part of the weight, if the robot can feel that."""
         rest = yield from rested_force(arm.robot, self.frames, "feeling")
         watch = bump(self.frames, rest, arm.hand.contact_force, vertical=True)
         if watch is None:
@@ -152,7 +152,7 @@ class Place(Skill):
             )
 
     def _let_go(self, arm: Arm, held: HeldObject) -> Run:
-        """Open no wider than needed: other things may stand near."""
+        """Open no wider than needed, as other objects may stand close."""
         hand = arm.hand
         width = min(arm.open_width, arm.state.gripper_width + hand.margin)
         self.planning_scene.touched()
@@ -170,9 +170,9 @@ class Place(Skill):
         yield from arm.follow(arm.trajectory(path, arm.hand.lift_speed), "drawing back")
 
     def _look_again(self, arm: Arm, plan: PlacePlan, held: HeldObject, before: Array) -> Run:
-        """It must stand upright where it was set down, or a little beside, where it slipped to.
+        """Check that the object stands upright on its spot, or close to it if it slipped.
 
-        before: cells (n, 3) in odom that were occupied before; they are not what was set down.
+        before: cells (n, 3) in odom that were occupied before; they do not belong to the object.
         """
         pose = plan.odom_from_object
         yield from self._look(arm, pose.position, [pose.apply(hulls.object_corners(held.object))])

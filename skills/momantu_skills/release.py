@@ -1,4 +1,4 @@
-"""release: open the hand, and move it clear of what it held."""
+"""release: open the hand, and retreat from the object."""
 
 from __future__ import annotations
 
@@ -13,17 +13,18 @@ from momantu_skills.manipulation.hand.gripper import open_hand
 from momantu_skills.manipulation.scene.arm_scene import ArmScene
 
 OPEN = 0.01
-"""m short of its widest at which the gripper still counts as open: gauge and control."""
+"""The gripper counts as open up to this much below its widest opening, m: measurement and control
+error."""
 
 
 class Release(Skill):
-    """Open the gripper fully. It lets go of what it held, where it is."""
+    """Open the gripper fully and let go of the held object where it is."""
 
     back: float = In(
         0.0,
         unit="m",
         least=0,
-        doc="how far the open hand then draws back along its fingers, where it can, so that its "
+        doc="distance to retreat the open hand along its fingers, where possible, so that the "
         "next motion does not push the object",
     )
     failures = {
@@ -39,7 +40,7 @@ class Release(Skill):
     planning_scene: ArmScene = Needs()
 
     def run(self, robot: Robot) -> Run:
-        """Open, wait until it is, draw back."""
+        """Open, wait until the gripper is open, retreat."""
         config = HandConfig()
         holding = self.planning_scene.held is not None
         effector = robot.description.end_effector
@@ -53,7 +54,7 @@ class Release(Skill):
             yield from arm.back_off(self.back)
 
     def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
-        """The hand is open and empty, whether that is said or denied."""
+        """Claim that the hand is open and empty; a failure denies it."""
         if failure is not None and failure.code != "GRIPPER_STUCK":
             return None
         return GripperOpen(robot.description.end_effector.max_width - OPEN), Holding(False)

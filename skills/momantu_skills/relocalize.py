@@ -29,29 +29,31 @@ with lazily():
 
 
 WIDEN = (0.35, 0.35)
-"""m and rad by which the estimate is doubted at first: the most that a robot usually drifts."""
+"""Initial standard deviations around the old estimate, m and rad: the largest drift that is
+usual."""
 SURE = 0.9
-"""Fit that the neighbourhood of the old estimate must offer, or the whole map is searched: a wrong
-corner of a room can fit by 0.85."""
+"""Scan fit (0 to 1) that a pose near the old estimate must reach; below it the whole map is
+searched. A wrong corner of a room can reach 0.85."""
 LOOK = 1.6
-"""s at rest that the service's scans after a reset take."""
+"""Time at rest that the localization service needs for its scans after a reset, s."""
 TURNS = (math.radians(120.0), math.radians(360.0))
-"""rad turned about the estimate, then after a spread over the whole map."""
+"""Angles to turn, rad: around the estimate, then after particles were spread over the map."""
 RATE = 0.9
-"""rad/s: slow enough for a scan every five degrees."""
+"""Speed of the turn, rad/s: slow enough for one scan every five degrees."""
 BRAKE = 1.5
-"""rad/s2 of planned braking."""
+"""Planned deceleration, rad/s2."""
 DONE = 0.03
-"""rad."""
+"""Angle from its goal at which a turn ends, rad."""
 PATIENCE = 1.0
-"""s that something may stand in the way of a turn before the other way round is tried."""
+"""Time to wait for an obstacle to clear a turn, s, before turning the other way."""
 
 
 class Relocalize(Skill):
-    """Localize again: near the estimate first, then anywhere on the map.
+    """Localize the robot again: near the estimate first, then anywhere on the map.
 
-    First the particles are spread around the estimate and the robot turns to and fro. If the scans
-    still do not fit, particles are spread over the whole map and the robot turns once around.
+    First the particles are spread around the estimate and the robot turns to both sides. If the
+    scans still do not fit, the particles are spread over the whole map and the robot turns a full
+    circle.
     """
 
     everywhere: bool = In(False, doc="start with the whole map")
@@ -71,7 +73,7 @@ class Relocalize(Skill):
     planning_scene: ArmScene = Needs()
 
     def run(self, robot: Robot) -> Run:
-        """Local first, then global; each is judged at rest."""
+        """Search locally, then globally; judge each search at rest."""
         if robot.description.eye_in_hand:
             yield from tucking.take_in(self, robot, self.planning_scene)
         for stage in (1,) if self.everywhere else (0, 1):
@@ -98,7 +100,7 @@ class Relocalize(Skill):
         )
 
     def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
-        """The base is where it is now believed to be, or was no longer believed to be."""
+        """Claim that the base is at its estimated pose; NOT_LOCALIZED denies it."""
         if failure is not None and failure.code != "NOT_LOCALIZED":
             return None
         return estimate(self.localization)
@@ -110,9 +112,9 @@ class Relocalize(Skill):
             yield "look"
 
     def _turn(self, robot: Robot, angle: float) -> Run:
-        """Turn by odometry, as far as the newest scan leaves arm and base room, then the other way.
+        """Turn by odometry as far as the newest scan allows, then the other way.
 
-        Bounded in time: what stands there may go away, or not.
+        The time is limited, as an obstacle may not go away.
         """
         discs = self._discs(robot)
         end = self.clock.now() + 2.0 * angle / RATE
@@ -123,7 +125,7 @@ class Relocalize(Skill):
     def _turn_to(
         self, robot: Robot, angle: float, way: float, discs: Array, end: float
     ) -> Generator[str, None, bool]:
-        """Whether the turn towards one side was ended by its angle or its time, not by a hit."""
+        """Turn one way; False if an obstacle stopped the turn, True if its angle or time did."""
         before, turned = robot.state().odom_from_base.yaw, 0.0
         free = self.clock.now()
         while angle - turned > DONE and self.clock.now() < end:
@@ -140,7 +142,7 @@ class Relocalize(Skill):
         return True
 
     def _discs(self, robot: Robot) -> Array:
-        """Of base, arm and load (m, 3): the walls that a scan shows are as high as they are."""
+        """Return discs (m, 3) of base, arm and load: walls in a scan may be as high as these."""
         return discs(np.asarray(self.planning_scene.footprint(robot.state())))
 
     def _share(self, robot: Robot, rate: float, discs: Array) -> float:

@@ -23,11 +23,12 @@ with lazily():
 
 
 THINKING = 0.2
-"""s that planning is given: several times its median."""
+"""Time allowed for planning, s: several times its median."""
 CLOSE = 0.01
-"""rad or m from the pose at which the arm need not move."""
+"""Distance from the pose within which the arm need not move, rad or m."""
 REACHED = 0.03
-"""rad or m from the pose at which it is reached: trajectories end within 0.02, encoders err."""
+"""Distance from the pose at which it counts as reached, rad or m: trajectories end within 0.02, and
+encoders have an error."""
 
 
 class ResetPose(Skill):
@@ -37,7 +38,7 @@ class ResetPose(Skill):
     START_IN_COLLISION or ARM_STUCK.
     """
 
-    pose: str = In(doc="which of the robot's named poses", names="named_pose")
+    pose: str = In(doc="one of the robot's named poses", names="named_pose")
     failures = {
         "UNKNOWN_POSE": "the robot has no pose of that name",
         "NO_PLAN": "no collision-free way to the pose was found, or the pose itself collides",
@@ -53,7 +54,7 @@ class ResetPose(Skill):
     planning_scene: ArmScene = Needs()
 
     def run(self, robot: Robot) -> Run:
-        """Look, plan, move; the camera turns at the same time."""
+        """Look, plan, move; turn the camera at the same time."""
         wanted = self._wanted(robot)
         arm = Arm(self, robot, self.planning_scene)
         yield from arm.settle()
@@ -69,7 +70,7 @@ class ResetPose(Skill):
     def _way(
         self, arm: Arm, goal: Array
     ) -> Generator[str | Compute, Any, Sequence[JointTrajectory]]:
-        """The path to the pose; with a held object, only where the camera has looked."""
+        """Plan the path to the pose; with a held object, only through space that the camera saw."""
         held = self.planning_scene.held
         if held is None:
             return (yield from compute(lambda: arm.route([goal], held), THINKING))
@@ -80,7 +81,7 @@ class ResetPose(Skill):
         )
 
     def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
-        """The joints of arm and camera are where the pose has them, said or denied."""
+        """Claim that the joints of arm and camera are at the pose; a failure denies it."""
         wanted = robot.description.named_poses.get(self.pose)
         if wanted is None or (failure is not None and failure.code not in self.failures):
             return None
@@ -103,12 +104,12 @@ class ResetPose(Skill):
         return poses[self.pose]
 
     def _head(self, robot: Robot) -> str | None:
-        """The actuator of the camera, unless that is the arm, or there is none."""
+        """Return the actuator of the camera; None if the arm carries it or it is fixed."""
         carrier = robot.description.resolve_use(CAMERA_CARRIER)
         return None if carrier == ARM else carrier
 
     def _camera_goal(self, robot: Robot, wanted: dict[str, float]) -> JointPositions | None:
-        """The pose's positions of the camera's joints, if those are not the arm's."""
+        """Return the pose's positions of the camera's joints, if they are not joints of the arm."""
         carrier = self._head(robot)
         if carrier is None:
             return None
@@ -121,7 +122,7 @@ class ResetPose(Skill):
             robot.command(head, goal)
 
     def _finish_camera(self, robot: Robot, wanted: dict[str, float]) -> Run:
-        """Wait until the camera has arrived, at most as long as its slowest joint may take."""
+        """Wait for the camera to arrive, at most as long as its slowest joint may need."""
         goal = self._camera_goal(robot, wanted)
         if goal is None:
             return

@@ -1,6 +1,6 @@
-"""Compiling every kernel once, so that no run waits for them: half a minute on one core.
+"""Compile all numba kernels once, so that no run waits for it: half a minute on one core.
 
-`python -m momantu_skills.warm_up` is quick where the compiled kernels are there already.
+`python -m momantu_skills.warm_up` returns quickly if the compiled kernels exist already.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ from momantu_skills.navigation.plan.planner import plan
 
 
 def compile_kernels() -> None:
-    """Compile the arm's and the base's kernels into numba's cache."""
+    """Compile the kernels of arm and base into numba's cache."""
     arm_model.compile_kernels()
     compile_navigation()
 
 
 def compile_navigation() -> None:
-    """Call every kernel with the types that it is called with on the robot."""
+    """Call every navigation kernel with the argument types that are used on the robot."""
     cells = np.zeros((60, 60), np.uint8)
     cells[[0, -1], :] = cells[:, [0, -1]] = OCCUPIED
     cells.setflags(write=False)

@@ -14,12 +14,12 @@ class SceneConfig(Tunables):
     """How the planning scene sees its surroundings and judges what is held."""
 
     voxel: Size = Field(
-        default=0.02, description="edge of the cells: finer than any gap that the arm goes through"
+        default=0.02, description="edge of the cells: finer than gaps that the arm uses"
     )
     beyond_reach: Size = Field(
         default=0.35,
-        description="how far beyond what the robot reaches elbow, hand or load may still meet "
-        "something",
+        description="distance beyond the robot's reach where elbow, hand or load may meet "
+        "obstacles",
     )
     pixel_stride: int = Field(
         default=4,
@@ -27,21 +27,24 @@ class SceneConfig(Tunables):
         description="every n-th pixel in each direction: 7 mm apart at 1 m, denser than the cells",
     )
     points_per_voxel: int = Field(
-        default=2, ge=1, description="cells with fewer points are noise at depth edges"
+        default=2,
+        ge=1,
+        description="least points of an occupied cell; fewer are noise at depth edges",
     )
     thickness: Size = Field(
-        default=0.04, description="what is seen is at least this deep behind its visible face"
+        default=0.04, description="assumed depth of objects behind their visible face"
     )
     robot_padding: Size = Field(
         default=0.03,
-        description="around links and held object when they are taken out of a picture: depth "
+        description="margin around links and held object for removing them from a picture: depth "
         "noise, the camera's mounting error, and the lag between joints and picture",
     )
     surface_band: Size = Field(
-        default=0.015, description="points this near a support surface's height belong to it"
+        default=0.015, description="points within this height of a support surface belong to it"
     )
     width_tolerance: Size = Field(
-        default=0.012, description="change of the opening at which the held object is believed gone"
+        default=0.012,
+        description="change of the opening above which the held object counts as lost",
     )
     least_effort: Force = Field(
         default=3.0,
@@ -50,7 +53,7 @@ class SceneConfig(Tunables):
     doubt: int = Field(
         default=4,
         ge=1,
-        description="updates in a row that must speak against holding: 0.2 s at 20 Hz, longer "
+        description="successive updates that must contradict holding: 0.2 s at 20 Hz, longer "
         "than any bounce",
     )
 

@@ -36,21 +36,24 @@ Counts: TypeAlias = Annotated[tuple[Count, Count], AfterValidator(_rising)]
 class LocalizationConfig(Tunables):
     """Adaptive Monte Carlo localization (Thrun, Burgard, Fox: Probabilistic Robotics, ch. 8)."""
 
-    beams: Count = Field(default=60, description="beams of a scan that are weighed")
+    beams: Count = Field(default=60, description="beams of a scan that are compared with the map")
     hit_sigma: Size = Field(
         default=0.05,
         description="spread of hits about the map's surfaces: laser noise, the map's cells and "
         "small shifts of furniture together",
     )
     random_share: Share = Field(
-        default=0.15, gt=0.0, description="share of beams that may be anything"
+        default=0.15, gt=0.0, description="share of beams that may have any range (noise, people)"
     )
     trust: Share = Field(
         default=0.3,
         gt=0.0,
         description="exponent on a scan's likelihood, as neighbouring beams are not independent",
     )
-    reach: Size = Field(default=0.5, description="distance at which a beam counts as unexplained")
+    reach: Size = Field(
+        default=0.5,
+        description="distance from the map's surfaces above which a beam counts as unexplained",
+    )
     translation_noise: Weight = Field(
         default=0.12, description="standard deviation of odometry, m per metre driven"
     )
@@ -60,18 +63,18 @@ class LocalizationConfig(Tunables):
     turn_per_metre: Weight = Field(
         default=0.06, description="standard deviation of the heading, rad per metre driven"
     )
-    move: Size = Field(default=0.12, description="way by odometry after which a scan is weighed")
-    turn: Angle = Field(
-        default=0.08, gt=0.0, description="turn by odometry after which a scan is weighed"
-    )
+    move: Size = Field(default=0.12, description="distance driven after which a scan is used")
+    turn: Angle = Field(default=0.08, gt=0.0, description="turn after which a scan is used")
     rest_scans: int = Field(
-        default=15, ge=0, description="scans that are weighed at rest after a reset"
+        default=15, ge=0, description="scans that are used at rest after a reset"
     )
     rest_jitter: Spare = Field(
         default=0.006,
-        description="by which a scan at rest moves particles, and 0.7 times it in rad",
+        description="random motion of particles at each scan at rest; 0.7 times it in rad",
     )
-    particles: Counts = Field(default=(400, 20_000), description="fewest and most particles")
+    particles: Counts = Field(
+        default=(400, 20_000), description="smallest and largest number of particles"
+    )
     bin_size: tuple[Size, Angle] = Field(
         default=(0.10, 0.10), description="edge of a KLD bin, along the floor and in heading"
     )
@@ -83,7 +86,7 @@ class LocalizationConfig(Tunables):
     fast: Share = Field(default=0.2, description="decay per scan of augmented MCL's fast average")
     injected_most: Share = Field(default=0.1, description="largest share of random particles")
     global_spacing: Size = Field(
-        default=0.15, description="distance between the places that are tried on the whole map"
+        default=0.15, description="distance between the positions that are tried on the whole map"
     )
     global_headings: Count = Field(
         default=72, description="headings that are tried at each of them"
@@ -91,23 +94,27 @@ class LocalizationConfig(Tunables):
 
 
 class CriticWeights(Tunables):
-    """What each critic of the controller counts, in metres still to go; see `critics`."""
+    """Weights of the critics of the local controller, in metres of path length; see `critics`."""
 
-    collision: Weight = Field(default=60.0, description="meeting something; the earlier, the worse")
-    nearness: Weight = Field(default=1.0, description="being near something, times the speed there")
-    haste: Weight = Field(default=25.0, description="speed above what the room allows, squared")
+    collision: Weight = Field(default=60.0, description="a collision; an early one costs more")
+    nearness: Weight = Field(
+        default=1.0, description="being near an obstacle, times the speed there"
+    )
+    haste: Weight = Field(
+        default=25.0, description="speed above the limit for the clearance, squared"
+    )
     heading: Weight = Field(
-        default=0.7, description="looking away from the way to the goal, at the end"
+        default=0.7, description="heading away from the path to the goal, at the end"
     )
     smoothness: Weight = Field(default=0.05, description="changes of the turning speed, squared")
 
 
 class ControllerConfig(Tunables):
-    """Model predictive path integral control: how rollouts are drawn and weighed."""
+    """Model predictive path integral control: how rollouts are sampled and weighted."""
 
-    samples: int = Field(default=300, ge=3, le=10_000, description="rollouts per call")
+    samples: int = Field(default=300, ge=3, le=10_000, description="rollouts per control period")
     steps: int = Field(default=22, ge=2, le=200, description="steps of a rollout")
-    step: Time = Field(default=0.1, gt=0.0, le=1.0, description="length of one")
+    step: Time = Field(default=0.1, gt=0.0, le=1.0, description="duration of one step")
     knots: int = Field(
         default=6,
         ge=2,
@@ -116,61 +123,70 @@ class ControllerConfig(Tunables):
     speed_noise: LinearSpeed = Field(default=0.30, description="standard deviation of speeds drawn")
     turn_noise: AngularSpeed = Field(default=0.60, description="standard deviation of turns drawn")
     temperature: float = Field(
-        default=0.08, gt=0.0, description="of the rollouts' weights, in metres to the goal"
+        default=0.08,
+        gt=0.0,
+        description="temperature of the rollouts' weights, in metres to the goal",
     )
     weights: CriticWeights = CriticWeights()
 
 
 class PlannerConfig(Tunables):
-    """What a metre costs the global planner."""
+    """What the global planner charges for a metre of path."""
 
     nearness: Weight = Field(
-        default=6.0, description="cost of a metre right beside something, over one in the open"
+        default=6.0,
+        description="extra cost of a metre beside an obstacle, relative to one in the open",
     )
     tight: float = Field(
         default=40.0,
         gt=0.0,
-        description="cost of a metre where the footprint has no room to spare: only to leave such "
+        description="cost of a metre without clearance for the footprint; used only to leave such "
         "a place",
     )
     tight_by: Spare = Field(
         default=0.08,
-        description="missing room that is still let through at `tight`, for starts and goals "
-        "beside tables",
+        description="missing clearance still allowed, at the cost `tight`, for starts and goals "
+        "near tables",
     )
 
 
 class NavigationConfig(Tunables):
-    """Costmap, planner, controller and patience of `navigate`."""
+    """Parameters of `navigate`: costmap, planner, controller and time limits."""
 
-    period: Time = Field(default=0.1, ge=0.05, le=1.0, description="of the controller; whole ticks")
+    period: Time = Field(
+        default=0.1, ge=0.05, le=1.0, description="control period; a whole number of ticks"
+    )
     speed: LinearSpeed = Field(default=1.0, le=5.0, description="top speed")
-    margin: Size = Field(default=0.03, description="least room between footprint and anything")
+    margin: Size = Field(
+        default=0.03, description="least clearance between footprint and obstacles"
+    )
     comfort: Size = Field(default=0.12, description="decay length of the cost of nearness")
     near_speed: LinearSpeed = Field(
         default=0.3, description="speed allowed where only `margin` is left"
     )
-    far_clearance: Size = Field(default=0.4, description="room from which on full speed is allowed")
-    laser_reach: Size = Field(default=6.0, description="how far hits of the laser are kept")
+    far_clearance: Size = Field(
+        default=0.4, description="clearance above which full speed is allowed"
+    )
+    laser_reach: Size = Field(
+        default=6.0, description="range up to which laser hits enter the costmap"
+    )
     depth_reach: Size = Field(
-        default=3.0, description="how far points of the depth camera are kept"
+        default=3.0, description="range up to which points of the depth camera enter the costmap"
     )
     known_reach: Size = Field(
-        default=0.08, description="hits this near to the map's own obstacles are the map's"
+        default=0.08, description="hits nearer than this to the map's obstacles belong to those"
     )
-    depth_every: Size = Field(default=1.3, description="way between two looks at the depth picture")
+    depth_every: Size = Field(default=1.3, description="distance driven between two depth pictures")
     lowest_obstacle: Size = Field(
         default=0.06,
-        description="height above the floor from which on something is an obstacle, up "
+        description="height above the floor above which points are obstacles, up "
         "to the robot's own height",
     )
-    patience: Time = Field(default=6.0, description="time without getting nearer before recovery")
+    patience: Time = Field(default=6.0, description="time without progress before recovery")
     blocked_patience: Time = Field(
-        default=3.0, description="how long something may stand in the way"
+        default=3.0, description="time that an obstacle may block the path"
     )
     attempts: Count = Field(default=4, description="recoveries and approaches before giving up")
-    planning_time: Time = Field(
-        default=0.05, description="simulated time that planning a way takes"
-    )
+    planning_time: Time = Field(default=0.05, description="simulated duration of path planning")
     controller: ControllerConfig = ControllerConfig()
     planner: PlannerConfig = PlannerConfig()

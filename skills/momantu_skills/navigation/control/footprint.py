@@ -1,4 +1,4 @@
-"""The footprint as a few discs, so that one look-up per disc gives its clearance."""
+"""Approximate the footprint by a few discs, so that one look-up per disc gives its clearance."""
 
 from __future__ import annotations
 
@@ -7,15 +7,19 @@ import numpy as np
 from momantu_bt.geometry import Array
 
 SLACK = 0.015
-"""m by which a disc may stick out of the outline; without it corners ask for endless discs."""
+"""How far a disc may extend beyond the outline, m; without it corners would need endless discs."""
 SPACING = 0.02
-"""m between the points of the outline's inside that must be covered."""
+"""Distance between the sample points inside the outline that must be covered, m."""
 MOST = 12
-"""Discs at most: enough for a rectangular base, or a round one with an outstretched arm."""
+"""Largest number of discs: enough for a rectangular base, or a round one with an outstretched
+arm."""
 
 
 def discs(outline: Array) -> Array:
-    """Discs (m, 3) of x, y, radius that cover a convex outline (k, 2), counter-clockwise, m.
+    """Cover a convex outline (k, 2), counter-clockwise, m, with discs (m, 3) of x, y, radius.
+
+    The algorithm is greedy: each step takes the disc that covers most points that are not covered
+    yet, so the first disc is that of the base.
 
     Greedy: the disc that covers most of what is still bare comes next, so the first is the base.
 
@@ -35,12 +39,12 @@ def discs(outline: Array) -> Array:
 
 
 def half_width(outline: Array) -> float:
-    """Largest reach to the left or right, m: the room that driving straight needs."""
+    """Return the largest extent to the left or right, m: the clearance needed to drive straight."""
     return float(np.abs(np.asarray(outline)[:, 1]).max())
 
 
 def _inside(outline: Array) -> tuple[Array, Array]:
-    """Points (n, 2) inside a convex outline, and their distance (n,) to its sides."""
+    """Return points (n, 2) inside a convex outline, and their distances (n,) to its sides."""
     low, high = outline.min(axis=0), outline.max(axis=0)
     x, y = (np.arange(a, b + SPACING, SPACING) for a, b in zip(low, high, strict=True))
     points = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)

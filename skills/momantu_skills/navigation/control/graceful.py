@@ -17,35 +17,38 @@ from momantu_skills.navigation.map.costmap import Costmap, room
 from momantu_skills.navigation.map.fields import Field
 
 TURN_IN = 1.3
-"""k1 of the paper: how much the heading is bent towards the goal's axis."""
+"""k1 of the paper: how strongly the heading turns towards the goal's axis."""
 FOLLOW = 3.5
-"""k2 of the paper: how fast the heading follows."""
+"""k2 of the paper: how fast the actual heading follows the wanted one."""
 SLOW_IN_CURVES = 0.5
-"""Speed divides by 1 + this * curvature^2 (1/m)."""
+"""The speed is divided by 1 + this * curvature^2 (1/m)."""
 TOP_SPEED = 0.95
-"""m/s: the last metre is driven with care."""
+"""Top speed on the approach, m/s: the last metre is driven slowly."""
 CREEP = 0.06
-"""m/s towards the very end."""
+"""Lowest speed, at the end of the approach, m/s."""
 EASE = 1.8
-"""1/s: speed per metre to go, near the goal, where commands are late by a scan."""
+"""Speed per metre of remaining distance near the goal, 1/s; commands are late by one scan."""
 BRAKE = 0.5
-"""m/s2 of planned braking, half of what the base can do."""
+"""Planned deceleration, m/s2: half of what the base can do."""
 ARRIVED = 0.012
-"""m before the goal's line at which the base stops; braking from `CREEP` takes the rest."""
+"""Distance before the goal's line at which the base stops, m; braking from `CREEP` covers the
+rest."""
 STEP = 0.1
-"""s per step of the simulated approach."""
+"""Time step of the simulated approach, s."""
 LONGEST = 12.0
-"""s that an approach may take."""
+"""Longest duration of an approach, s."""
 CRAWL = 0.5 * CREEP
-"""m/s: an approach so bent that it is slower than this does not count as one. How long it crawls
-hangs on millimetres, so that what is simulated says little about what happens."""
+"""Lowest allowed speed of an approach, m/s. An approach that curves so much that it must be slower
+is rejected: its duration depends on millimetres, so the simulation would not predict what
+happens."""
 
 
 @dataclass(frozen=True, slots=True)
 class Arrival:
-    """End of a simulated approach. ahead, left: of the goal, in its own frame, m. yaw: off it, rad.
+    """End of a simulated approach. ahead, left: error in the goal's frame, m. yaw: error, rad.
 
-    room: least room on the way, m. seconds: it takes. Infinite errors when it does not arrive.
+    room: least clearance on the way, m. seconds: duration. Errors are infinite if it does not
+    arrive.
     """
 
     ahead: float
@@ -55,7 +58,7 @@ class Arrival:
     seconds: float
 
     def within(self, distance: float, angle: float, margin: float) -> bool:
-        """Whether it ends near enough to the goal, with room all along."""
+        """Return whether it ends within tolerance of the goal and keeps the margin all the way."""
         return (
             math.hypot(self.ahead, self.left) < distance
             and abs(self.yaw) < angle
@@ -64,7 +67,7 @@ class Arrival:
 
 
 def command(pose: Pose2D, goal: Pose2D, limits: BaseLimits) -> tuple[float, float] | None:
-    """Next (m/s, rad/s) towards the goal; None at the goal's line, where the base must stop."""
+    """Return the next (m/s, rad/s) towards the goal; None at the goal's line: stop there."""
     x, y, yaw = float(pose.x), float(pose.y), float(pose.yaw)
     goal_x, goal_y, goal_yaw = float(goal.x), float(goal.y), float(goal.yaw)
     v, w = _law(x, y, yaw, goal_x, goal_y, goal_yaw, limits.angular, _top(limits))
@@ -79,7 +82,7 @@ def simulate(
     costmap: Costmap,
     discs: Array,
 ) -> Arrival:
-    """Where the law leads from a pose and a measured (m/s, rad/s), and how much room it leaves."""
+    """Simulate the approach from a pose and a measured (m/s, rad/s), with its least clearance."""
     start = np.array([pose.x, pose.y, pose.yaw, *speed], dtype=np.float64)
     end = np.array([goal.x, goal.y, goal.yaw], dtype=np.float64)
     bounds = np.array(
@@ -94,7 +97,7 @@ def simulate(
 
 
 def _top(limits: BaseLimits) -> float:
-    """Fastest that the base goes on its approach, m/s."""
+    """Return the top speed on the approach, m/s."""
     return min(TOP_SPEED, limits.linear)
 
 

@@ -11,15 +11,15 @@ from momantu_bt.geometry import Array
 from momantu_bt.robot import BaseLimits
 
 REACTION = 0.2
-"""s during which a command goes on before braking begins: one controller period and one scan."""
+"""Time that a command stays in effect before braking begins, s: one control period and one scan."""
 HARD_MARGIN = 0.02
-"""m that must remain between the footprint and any hit of the newest scan."""
+"""Least distance between the footprint and any hit of the newest scan, m."""
 NEAR = 1.6
-"""m: hits farther than this cannot be reached before the next scan."""
+"""Hits farther away than this, m, cannot be reached before the next scan."""
 NOISE = 0.002
-"""m by which a hit that is within the margin already may come nearer: rounding, not motion."""
+"""How much nearer a hit inside the margin may come, m: tolerance for rounding errors."""
 STEP = 0.05
-"""s per step of the look ahead."""
+"""Time step of the prediction, s."""
 
 
 def safe_share(
@@ -29,11 +29,11 @@ def safe_share(
     discs: Array,
     hits: Array,
 ) -> float:
-    """The largest of 1, 3/4, 1/2, 1/4, 0 by which a command may be driven without touching a hit.
+    """Return the largest of 1, 3/4, 1/2, 1/4, 0 that scales a command to a safe one.
 
-    command, speed: (m/s, rad/s) wanted and measured. discs: footprint (m, 3). hits: (n, 2) of the
-    newest scan; both in the base frame. What is within the margin already is let be: only ways
-    that bring it nearer are forbidden.
+    command, speed: (m/s, rad/s), commanded and measured. discs: footprint (m, 3). hits: (n, 2) of
+    the newest scan; both in the base frame. A hit that is inside the margin already does not forbid
+    motion: only commands that bring it nearer are refused.
     """
     near = hits[np.hypot(hits[:, 0], hits[:, 1]) < NEAR]
     bounds = np.array([limits.linear_acceleration, limits.angular_acceleration])
@@ -74,7 +74,7 @@ def _clear(wanted: Array, bounds: Array, discs: Array, hits: Array) -> bool:
 
 @numba.njit(cache=True)
 def _away(x: float, y: float, c: float, s: float, discs: Array, hit: Array) -> float:
-    """Distance from a hit to the footprint at (x, y), heading (cos, sin)."""
+    """Return the distance from a hit to the footprint at (x, y), heading (cos, sin)."""
     least = 1e9
     for i in range(discs.shape[0]):
         px = x + c * discs[i, 0] - s * discs[i, 1]

@@ -16,17 +16,18 @@ from momantu_skills.navigation.map.fields import Field, sample
 from momantu_skills.navigation.plan.planner import Plan
 
 CLOSE = 0.3
-"""m to go from which on the heading at the end does not matter."""
+"""Remaining distance below which the heading at the end of a rollout does not matter, m."""
 SLOPE = 0.1
-"""m to either side of a point between which the slope of the distance to go is measured."""
+"""Offset to either side of a point for computing the slope of the remaining distance, m."""
 FARTHEST, STEEPEST = 1e5, 100.0
-"""m, and m per 2 `SLOPE`, beyond which the distance to go is that of a place no way leads from."""
+"""Limits of the remaining distance, m, and of its change over 2 `SLOPE`; above them a cell counts
+as having no path to the goal."""
 DETOUR = 3.0
-"""m by which a rollout may seem to get farther from the goal at most."""
+"""Largest distance that a rollout may seem to move away from the goal, m."""
 
 
 class Mppi:
-    """Remembers the last plan of controls and improves it at each call."""
+    """The controller: keeps the last control sequence and improves it at each call."""
 
     def __init__(
         self,
@@ -60,13 +61,13 @@ class Mppi:
         self.restart()
 
     def restart(self) -> None:
-        """Forget the last controls: the base was driven by something else."""
+        """Forget the last controls, because another controller has driven the base."""
         self._controls = np.zeros((self._config.steps, 2))
 
     def command(
         self, pose: Pose2D, speed: tuple[float, float], costmap: Costmap, discs: Array, plan: Plan
     ) -> tuple[float, float]:
-        """Next (m/s, rad/s) from a pose in the map and the measured (m/s, rad/s)."""
+        """Return the next (m/s, rad/s) for a pose in the map and the measured (m/s, rad/s)."""
         c = self._config
         shift = max(1, round(self._period / c.step))
         self._controls = np.concatenate(
@@ -120,9 +121,9 @@ def _cost(
     limits: Array,
     weights: critics.Critics,
 ) -> float:
-    """One rollout of a unicycle within acceleration limits: the sum of its `critics`.
+    """Simulate a rollout of a unicycle within acceleration limits; return its `critics`' sum.
 
-    A rollout ends where it meets something.
+    A rollout ends at its first collision.
     """
     x, y, yaw, v, w = start[0], start[1], start[2], start[3], start[4]
     steps = controls.shape[0]
@@ -167,6 +168,6 @@ def _to_go(cost_to_go: Field, frame: Array, x: float, y: float) -> float:
 def _slope(
     cost_to_go: Field, frame: Array, x: float, y: float, along_x: float, along_y: float
 ) -> float:
-    """Difference of the distance to go between two points on either side of (x, y), m."""
+    """Return the difference of the remaining distance between two points beside (x, y), m."""
     ahead = _to_go(cost_to_go, frame, x + along_x, y + along_y)
     return ahead - _to_go(cost_to_go, frame, x - along_x, y - along_y)

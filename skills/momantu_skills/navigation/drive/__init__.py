@@ -1,1 +1,1 @@
-"""A whole trip: the vehicle, its moves, cruising, arriving, recovering."""
+"""A whole trip: the vehicle, simple moves, following a path, arriving, recovering."""

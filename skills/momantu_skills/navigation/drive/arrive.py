@@ -1,4 +1,4 @@
-"""Arriving: reach the goal pose within its tolerance, and correct what was missed."""
+"""Arriving: reach the goal pose within its tolerance, and correct remaining errors."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from momantu_skills.navigation.drive.moves import Move, creep, turn_to
 from momantu_skills.navigation.drive.vehicle import Vehicle
 
 CORRECTIONS = 4
-"""Manoeuvres at the goal before it counts as unreachable to that accuracy."""
+"""Corrections at the goal before it counts as unreachable with that accuracy."""
 SETTLE = 0.35
-"""s at rest before the pose is judged: three scans."""
+"""Time at rest before the pose is checked, s: three scans."""
 
 
 def within(pose: Pose2D, goal: Pose2D, distance: float, angle: float) -> bool:
-    """Whether a pose meets a goal's tolerances, m and rad."""
+    """Return whether a pose is within a goal's tolerances, m and rad."""
     return pose.distance_to(goal) <= distance and abs((goal.inverse() @ pose).yaw) <= angle
 
 
 def arrive(vehicle: Vehicle, goal: Callable[[], Pose2D], distance: float, angle: float) -> Move:
-    """Reach `goal()` (map) within m and rad. False when no approach from here would.
+    """Reach `goal()` (map) within m and rad; False if no approach from here would succeed.
 
     Raises:
         Failure: NO_PROGRESS when the corrections are used up.
@@ -59,7 +59,7 @@ def _square_up(vehicle: Vehicle, goal: Callable[[], Pose2D], angle: float) -> Mo
 
 
 def _nudge(vehicle: Vehicle, goal: Pose2D, distance: float, angle: float) -> Move:
-    """Straight and turning corrections, which serve when the base is not beside its goal."""
+    """Correct by driving straight and turning, which works if the goal is not to the side."""
     off = goal.inverse() @ vehicle.pose()
     if abs(off.y) > 0.9 * distance:
         return False

@@ -1,4 +1,4 @@
-"""Cruising: drive from where the base is to where arriving begins."""
+"""Cruising: drive from where the base is to where the approach begins."""
 
 from __future__ import annotations
 
@@ -18,25 +18,26 @@ from momantu_skills.navigation.drive.route import Route, no_way, route_to
 from momantu_skills.navigation.drive.vehicle import Vehicle
 
 REPLAN = 2.0
-"""s between plans even where nothing crosses the path: the map's unknown parts come into view."""
+"""Time between plans, s, even if nothing blocks the path: unknown parts of the map come into
+view."""
 TURN_FIRST = 0.9
-"""rad off the path's direction at which a standing base turns on the spot first."""
+"""Angle to the path above which a base at rest turns on the spot first, rad."""
 NEAR = 0.25
-"""Weighted metres from the lead-in at which the way has ended."""
+"""Distance from the lead-in, in weighted metres, at which cruising ends."""
 APPROACH_FROM = 2.0
-"""m from the stand within which the approach is tried in simulation."""
+"""Distance from the goal pose within which the approach is simulated, m."""
 DETOURS = 8
-"""Replans onto a longer way before the base is said to go round in circles."""
+"""Replans to a longer path before the base is reported to drive in circles."""
 LONGEST_BACK = 0.8
-"""m that the base backs off from a table to get its arm free."""
+"""Longest distance that the base backs up from a table to free its arm, m."""
 PROGRESS = 0.1
-"""Weighted metres nearer that count as progress."""
+"""Decrease of the remaining distance that counts as progress, in weighted metres."""
 
 Drive = Generator[str | Compute, Any, None]
 
 
 def leave(vehicle: Vehicle, heading: float) -> Drive:
-    """Back off until arm and load are free and the base can turn to `heading`."""
+    """Back up until arm and load are free and the base can turn to `heading`."""
     pose = vehicle.pose()
 
     def free(at: Pose2D) -> bool:
@@ -54,9 +55,9 @@ def leave(vehicle: Vehicle, heading: float) -> Drive:
 
 
 def cruise(vehicle: Vehicle, mppi: Mppi, route: Route, distance: float) -> Drive:
-    """Drive until the approach to the route's stand is sure to end within `distance` m of it.
+    """Drive until a simulated approach to the route's goal pose ends within `distance` m of it.
 
-    Ends at the latest at the lead-in. Raises PATH_BLOCKED or NO_PROGRESS.
+    Ends at the lead-in at the latest. Raises PATH_BLOCKED or NO_PROGRESS.
     """
     watch = _Watch(vehicle, route)
     mppi.restart()
@@ -101,7 +102,7 @@ def _replanned(vehicle: Vehicle, route: Route, watch: _Watch) -> Generator[Any, 
 
 
 class _Watch:
-    """Keeps time: when to plan again, and when progress has stopped."""
+    """Timers: when to plan again, and when the base has stopped making progress."""
 
     def __init__(self, vehicle: Vehicle, route: Route) -> None:
         self._vehicle = vehicle
@@ -111,7 +112,7 @@ class _Watch:
         self.planned(route)
 
     def planned(self, route: Route) -> None:
-        """Follow a new plan from now on; a longer path is a detour."""
+        """Take over a new plan; count a longer path as a detour."""
         self._planned_at = self._vehicle.now()
         to_go = route.to_go(self._vehicle, self._vehicle.pose())
         if to_go > self._best + 1.0:
@@ -123,14 +124,14 @@ class _Watch:
             )
 
     def replan_due(self, route: Route, pose: Pose2D) -> bool:
-        """Whether the plan is old, or something has come to stand on its path."""
+        """Return whether the plan is old, or an obstacle has appeared on its path."""
         age = self._vehicle.now() - self._planned_at
         if age > REPLAN:
             return True
         return age > 0.4 and route.crossed(self._vehicle, pose)
 
     def check(self, to_go: float) -> None:
-        """Raise NO_PROGRESS when the base has not got nearer for too long."""
+        """Raise NO_PROGRESS if the remaining distance has not fallen for too long."""
         now = self._vehicle.now()
         if to_go < self._best - PROGRESS:
             self._best, self._best_at = to_go, now

@@ -1,4 +1,4 @@
-"""Manoeuvres into a nearby pose: the approach itself, or what must be done before it."""
+"""Short manoeuvres to a nearby pose: the approach itself, or the moves that prepare it."""
 
 from __future__ import annotations
 
@@ -15,30 +15,31 @@ from momantu_skills.navigation.drive.moves import Move, back_off, can_turn, clea
 from momantu_skills.navigation.drive.vehicle import Vehicle
 
 AIM = 0.5
-"""Share of the tolerance that an approach must promise, so that noise does not spoil it."""
+"""Share of the tolerance that a simulated approach must meet, as a reserve for noise."""
 TURN_AT_END = 0.35
-"""rad that may be left to a turn on the spot at the goal."""
+"""Heading error at the goal that a turn on the spot may correct, rad."""
 BACKS = 0.15
-"""m between the retreats that are tried."""
+"""Distance between the back-up distances that are tried, m."""
 FARTHEST_BACK = 1.2
-"""m of retreat at most."""
+"""Largest distance to back up, m."""
 HOP = 1.3
-"""m that are driven straight between two turns on the spot, at most."""
+"""Longest straight drive between two turns on the spot, m."""
 TURN_TIME = 1.0
-"""rad/s on average over a turn, for comparing manoeuvres."""
+"""Average turning speed, rad/s, for comparing manoeuvres."""
 DRIVE_TIME = 0.4
-"""m/s on average over a short straight."""
+"""Average speed of a short straight drive, m/s."""
 BACK_SPEED = 0.25
-"""m/s on average backwards."""
+"""Average speed when backing up, m/s."""
 SWITCH = 0.5
-"""s lost at each change of direction."""
+"""Time lost at each change of direction, s."""
 
 
 def prepare(vehicle: Vehicle, goal: Pose2D, distance: float) -> Move:
-    """Do what makes a goal (map) reachable by `run_in` within `distance` m.
+    """Prepare the base so that `run_in` reaches a goal (map) within `distance` m.
 
-    Backing into it when it lies straight behind; else nothing, a retreat, or turning towards the
-    goal, driving there and turning again, whichever is quickest; False when none has room.
+    If the goal lies straight behind, the base backs up to it. Otherwise the quickest of these is
+    chosen: nothing, backing up, or turning towards the goal, driving there and turning again.
+    Returns False if there is no room for any of them.
     """
     vehicle.sense()
     behind = straight_behind(vehicle, goal, distance)
@@ -56,7 +57,7 @@ def prepare(vehicle: Vehicle, goal: Pose2D, distance: float) -> Move:
 
 
 def straight_behind(vehicle: Vehicle, goal: Pose2D, distance: float) -> float | None:
-    """How far behind the base the goal lies, m, when backing up leads into it, else None."""
+    """Return how far behind the base the goal lies, m, if backing up reaches it, else None."""
     here = vehicle.pose().inverse() @ goal
     aligned = abs(here.y) < AIM * distance and abs(here.yaw) < TURN_AT_END
     if not (aligned and -FARTHEST_BACK < here.x < -AIM * distance):
@@ -66,21 +67,21 @@ def straight_behind(vehicle: Vehicle, goal: Pose2D, distance: float) -> float | 
 
 @dataclass(frozen=True, slots=True)
 class Retreat:
-    """How far to back up for the approach to succeed, m (0: not at all); seconds: both take."""
+    """How far to back up before the approach, m (0: not at all); seconds: time for both."""
 
     back: float
     seconds: float
 
 
 def approach_is_sure(vehicle: Vehicle, goal: Pose2D, distance: float) -> bool:
-    """Whether `run_in`, begun now, ends within `distance` m of the goal with room all along."""
+    """Return whether a simulated `run_in` ends within `distance` m, with clearance all the way."""
     return _arrival(vehicle, vehicle.pose(), vehicle.speed(), goal).within(
         distance * AIM, TURN_AT_END, _margin(vehicle, goal)
     )
 
 
 def quickest_retreat(vehicle: Vehicle, goal: Pose2D, distance: float) -> Retreat | None:
-    """The quickest way to back up and approach, backing up by 0 m included; None without room."""
+    """Return the quickest back-up and approach, including 0 m; None if there is no room."""
     pose, best = vehicle.pose(), None
     for back in (float(b) for b in np.arange(0.0, FARTHEST_BACK + 0.01, BACKS)):
         if back > 0.0 and not clear_behind(vehicle, pose, back):
@@ -102,12 +103,12 @@ def _arrival(
 
 
 def _margin(vehicle: Vehicle, goal: Pose2D) -> float:
-    """Room that an approach must keep: the goal itself may offer less than the usual margin."""
+    """Return the clearance of an approach: the goal itself may have less than the usual margin."""
     return min(vehicle.config.margin, vehicle.room(goal, whole=False) - 0.005)
 
 
 def hop_bearing(vehicle: Vehicle, goal: Pose2D) -> float | None:
-    """Direction to the goal (map, rad) when the way there and both turns have room, else None."""
+    """Return the direction to the goal (map, rad) if drive and turns have room, else None."""
     pose = vehicle.pose()
     way = pose.distance_to(goal)
     if not 0.02 < way < HOP:
@@ -141,7 +142,7 @@ def _hop(vehicle: Vehicle, goal: Pose2D, bearing: float) -> Move:
 
 
 def run_in(vehicle: Vehicle, goal: Callable[[], Pose2D]) -> Move:
-    """Follow the approach to `goal()` (map); True at its line, False when time is up.
+    """Follow the approach to `goal()` (map); True at its line, False when time runs out.
 
     Raises:
         Failure: PATH_BLOCKED when something stands in the way.

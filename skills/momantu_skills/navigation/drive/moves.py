@@ -1,4 +1,4 @@
-"""Simple moves: turn on the spot, back away, creep. Each ends, and says how it ended."""
+"""Simple moves: turn on the spot, back up, creep. Each move returns whether it succeeded."""
 
 from __future__ import annotations
 
@@ -11,30 +11,31 @@ from momantu_bt.skill import Compute
 from momantu_skills.navigation.drive.vehicle import Vehicle
 
 Move = Generator[str | Compute, Any, bool]
-"""Yields phases; returns whether it got where it was sent."""
+"""A move: yields phases and returns whether it reached its goal."""
 
 TURN_BRAKE = 0.6
-"""Share of the base's angular deceleration that turns count on."""
+"""Share of the base's angular deceleration that turns use."""
 TURN_DONE = 0.015
-"""rad: a third of the usual tolerance."""
+"""Angle from its goal at which a turn ends, rad: a third of the usual tolerance."""
 TURN_LEAST = 0.06
-"""rad/s: slow enough to end within `TURN_DONE`, fast enough to end."""
+"""Lowest turning speed, rad/s: slow enough to stop within `TURN_DONE`, fast enough to keep
+moving."""
 BACK_SPEED = 0.3
-"""m/s backwards, where no laser looks."""
+"""Speed backwards, m/s; no laser covers the space behind."""
 CREEP_BRAKE = 0.4
-"""m/s2 of planned braking."""
+"""Planned deceleration, m/s2."""
 CREEP_DONE = 0.01
-"""m."""
+"""Distance from its goal at which creeping ends, m."""
 BACK_STEP = 0.1
-"""m between the places that are checked behind the base."""
+"""Distance between the positions that are checked behind the base, m."""
 SWEEP = 9
-"""Headings at which a turn is checked: every 20 degrees of a half turn."""
+"""Headings that are checked for a turn: every 20 degrees of a half turn."""
 STALL = 3.0
-"""s beyond twice the time that a move needs after which it is given up."""
+"""A move is aborted after twice the time that it needs plus this, s."""
 
 
 def turn_to(vehicle: Vehicle, yaw: float, phase: str = "turn") -> Move:
-    """Turn on the spot to a heading in the map; False when something stands in the way."""
+    """Turn on the spot to a heading in the map; False if an obstacle is in the way."""
     gap = abs(wrap_angle(yaw - vehicle.pose().yaw))
     fastest = vehicle.limits.angular
     brake = TURN_BRAKE * vehicle.limits.angular_acceleration
@@ -54,7 +55,7 @@ def turn_to(vehicle: Vehicle, yaw: float, phase: str = "turn") -> Move:
 
 
 def can_turn(vehicle: Vehicle, pose: Pose2D, yaw: float) -> bool:
-    """Whether arm and load stay clear while the base turns on the spot from `pose` to `yaw`."""
+    """Return whether arm and load stay clear when the base turns from `pose` to `yaw`."""
     turn = wrap_angle(yaw - pose.yaw)
     steps = max(1, math.ceil(SWEEP * abs(turn) / math.pi))
     headings = (pose.yaw + turn * (k + 1) / steps for k in range(steps))
@@ -62,7 +63,7 @@ def can_turn(vehicle: Vehicle, pose: Pose2D, yaw: float) -> bool:
 
 
 def back_off(vehicle: Vehicle, distance: float, phase: str = "back off") -> Move:
-    """Drive straight back; False when the costmap has no room behind before that."""
+    """Drive straight back; False if the costmap shows no room before the end of the distance."""
     start = vehicle.odom_from_base()
     deadline = vehicle.now() + 2.0 * distance / BACK_SPEED + STALL
     while vehicle.now() < deadline:
@@ -83,7 +84,7 @@ def back_off(vehicle: Vehicle, distance: float, phase: str = "back off") -> Move
 
 
 def creep(vehicle: Vehicle, target: Pose2D, phase: str = "creep") -> Move:
-    """Straight ahead or back until level with a pose in the map that lies before or behind."""
+    """Drive straight until level with a pose in the map that lies ahead or behind."""
     deadline = vehicle.now() + STALL + 20.0 * abs(_ahead(vehicle, target))
     while vehicle.now() < deadline:
         left = _ahead(vehicle, target)
@@ -102,7 +103,7 @@ def creep(vehicle: Vehicle, target: Pose2D, phase: str = "creep") -> Move:
 
 
 def clear_behind(vehicle: Vehicle, pose: Pose2D, distance: float) -> bool:
-    """Whether the base (and its load) can back up that far, or at least does not come nearer."""
+    """Return whether the base (with its load) can back up that far, or at least gets no nearer."""
     steps = max(1, math.ceil(distance / BACK_STEP))
     for whole in (False, True):
         least = min(vehicle.config.margin, vehicle.room(pose, whole=whole) - 1e-3)

@@ -1,4 +1,4 @@
-"""Choosing a stand among candidates, and keeping a path that leads there."""
+"""Choosing a goal pose among candidates, and keeping a path that leads to it."""
 
 from __future__ import annotations
 
@@ -14,27 +14,28 @@ from momantu_skills.navigation.plan.goals import Stand
 from momantu_skills.navigation.plan.planner import UNREACHED, Plan, plan
 
 LEAD_IN = (0.6, 0.4, 0.2, 0.0)
-"""m before the goal, on its axis, where the way hands over to the approach; longest first."""
+"""Distances before the goal, on its axis, where the path ends and the approach begins, m; longest
+first."""
 TRIED = 5
-"""Stands for which a way is sought before giving up."""
+"""Goal poses for which a path is searched before giving up."""
 EXTRA = 0.02
-"""m that the planner keeps beyond the footprint."""
+"""Clearance that the planner adds to the footprint, m."""
 LOOK_AHEAD = 4.0
-"""m of the path that are watched for new obstacles."""
+"""Length of the path ahead that is watched for new obstacles, m."""
 CROSSED_BY = 0.05
-"""m of missing room on the path that asks for a new one."""
+"""Missing clearance on the path that causes a new plan, m."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Route:
-    """stand: where it ends (map). lead_in: where the approach begins (map). plan: leads there."""
+    """stand: the goal pose (map). lead_in: where the approach begins (map). plan: leads there."""
 
     stand: Pose2D
     lead_in: Pose2D
     plan: Plan
 
     def to_go(self, vehicle: Vehicle, pose: Pose2D) -> float:
-        """Weighted metres from a pose to the lead-in; large where the plan does not reach."""
+        """Return weighted metres from a pose to the lead-in; large outside the plan."""
         row, column = vehicle.costmap.grid.index(pose.x, pose.y)
         rows, columns = self.plan.cost.shape
         if not (0 <= row < rows and 0 <= column < columns):
@@ -42,7 +43,7 @@ class Route:
         return float(self.plan.cost[row, column])
 
     def crossed(self, vehicle: Vehicle, pose: Pose2D) -> bool:
-        """Whether something now stands on the path before the base."""
+        """Return whether an obstacle is on the path ahead of the base."""
         field, grid = vehicle.costmap.field, vehicle.costmap.grid
         away = np.hypot(self.plan.path[:, 0] - pose.x, self.plan.path[:, 1] - pose.y)
         ahead = self.plan.path[int(np.argmin(away)) :]
@@ -52,7 +53,7 @@ class Route:
         return bool((room < planning_radius(vehicle) - CROSSED_BY).any())
 
     def heading(self, pose: Pose2D, ahead: float = 0.5) -> float:
-        """Direction from a pose to the path `ahead` m farther on, rad."""
+        """Return the direction from a pose to the point of the path `ahead` m farther on, rad."""
         away = np.hypot(self.plan.path[:, 0] - pose.x, self.plan.path[:, 1] - pose.y)
         first = int(np.argmin(away))
         beyond = np.nonzero(away[first:] > ahead)[0]
@@ -61,12 +62,12 @@ class Route:
 
 
 def planning_radius(vehicle: Vehicle) -> float:
-    """Room that driving straight needs on either side of the base's axis, m."""
+    """Return the clearance that driving straight needs on either side of the base's axis, m."""
     return vehicle.half_width + EXTRA
 
 
 def free_stands(vehicle: Vehicle, stands: list[Stand]) -> list[Stand]:
-    """The nearest free stand of each variant, best variant first."""
+    """Return the nearest free stand of each variant, best variant first."""
     best: dict[int, Stand] = {}
     for stand in stands:
         free = vehicle.room(stand.pose, whole=False) > vehicle.config.margin
@@ -76,13 +77,13 @@ def free_stands(vehicle: Vehicle, stands: list[Stand]) -> list[Stand]:
 
 
 def first_choice(vehicle: Vehicle, stands: list[Stand], side: int) -> Stand | None:
-    """The `side`-th best free stand, whether or not it can be reached; None if none is free."""
+    """Return the `side`-th best free stand, reachable or not; None if none is free."""
     free = free_stands(vehicle, stands)
     return free[side % len(free)] if free else None
 
 
 def choose(vehicle: Vehicle, stands: list[Stand], side: int) -> Route:
-    """A route to the `side`-th best stand that is free and can be reached.
+    """Return a route to the `side`-th best stand that is free and can be reached.
 
     Raises:
         Failure: GOAL_BLOCKED, PATH_BLOCKED or NO_PATH.
@@ -104,7 +105,7 @@ def choose(vehicle: Vehicle, stands: list[Stand], side: int) -> Route:
 
 
 def route_to(vehicle: Vehicle, stand: Pose2D) -> Route | None:
-    """The cheapest way to a stand, by way of a lead-in on its axis; None if there is no way."""
+    """Return the cheapest path to a stand through a lead-in on its axis; None if there is none."""
     for distance in LEAD_IN:
         lead_in = stand @ Pose2D(-distance, 0.0, 0.0)
         wanted = vehicle.config.margin if distance else -math.inf
@@ -117,7 +118,7 @@ def route_to(vehicle: Vehicle, stand: Pose2D) -> Route | None:
 
 
 def no_way(vehicle: Vehicle, stand: Pose2D) -> Failure:
-    """PATH_BLOCKED when the map alone has a path, else NO_PATH."""
+    """Return PATH_BLOCKED if the map without sensed obstacles has a path, else NO_PATH."""
     pose = vehicle.pose()
     known = _planned(vehicle, stand, known=True)
     where = f"({stand.x:.2f}, {stand.y:.2f})"
@@ -128,7 +129,7 @@ def no_way(vehicle: Vehicle, stand: Pose2D) -> Failure:
 
 
 def _planned(vehicle: Vehicle, goal: Pose2D, *, known: bool = False) -> Plan | None:
-    """The cheapest way from where the base is; see `planner.plan`."""
+    """Plan the cheapest path from the base's position; see `planner.plan`."""
     config, radius = vehicle.config, planning_radius(vehicle)
     return plan(
         vehicle.costmap, vehicle.pose(), goal, radius, config.comfort, config.planner, known=known

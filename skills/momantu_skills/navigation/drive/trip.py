@@ -1,4 +1,4 @@
-"""A whole trip: localize, choose where to stand, drive there, recover, or give up."""
+"""A whole trip: localize, choose a goal pose, drive there, recover, or give up."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ from momantu_skills.navigation.plan.goals import Stand
 Trip = Generator[str | Compute, Any, None]
 
 SURE_WITHIN = 2.5
-"""s that localization gets at the start: its scans at rest take 1.5 s."""
+"""Time for localization to become certain at the start, s: its scans at rest take 1.5 s."""
 RECOVERABLE = ("PATH_BLOCKED", "NO_PROGRESS", "GOAL_BLOCKED", "NO_PATH")
 LOCAL = 1.5
-"""m from the goal within which it is reached by manoeuvres instead of by a planned way."""
+"""Distance from the goal below which the base uses manoeuvres instead of a planned path, m."""
 PATIENCE = (1.0, 3.0, 6.0)
-"""s that recoveries wait: what stands in the way may be on its way."""
+"""Waiting times of successive recoveries, s: an obstacle may be moving away."""
 WALK = 3.0
-"""m: nearer goals that were seen are kept in odometry's frame, which does not jump."""
+"""Goals that were measured from nearer than this, m, are kept in odom, which does not jump."""
 
 
 class Destination:
-    """Candidate stands (map), computed at each request, and the tolerance to meet.
+    """Candidate stands (map), computed at each request, and the goal tolerance.
 
-    in_odom: the chosen stand stays fixed in odometry's frame, for what was measured from here.
-    chosen: the stand of the newest attempt, map; None before the first.
+    in_odom: keep the chosen stand fixed in odom, for goals measured from the current place. chosen:
+    the stand of the newest attempt, map; None before the first.
     """
 
     def __init__(
@@ -52,7 +52,7 @@ class Destination:
 
 
 def travel(vehicle: Vehicle, mppi: Mppi, to: Destination, *, recovery: bool) -> Trip:
-    """Go there, and recover where that is allowed.
+    """Drive to the destination; recover from failures where that is allowed.
 
     Raises:
         Failure: NOT_LOCALIZED, GOAL_BLOCKED, NO_PATH, PATH_BLOCKED, NO_PROGRESS.
@@ -71,7 +71,7 @@ def travel(vehicle: Vehicle, mppi: Mppi, to: Destination, *, recovery: bool) -> 
 
 
 def be_sure(vehicle: Vehicle) -> Trip:
-    """Wait a little until localization is sure; NOT_LOCALIZED when it is not."""
+    """Wait briefly until localization is certain; NOT_LOCALIZED if it is not."""
     end = vehicle.now() + SURE_WITHIN
     while not is_localized(vehicle.localization):
         if vehicle.now() > end:
@@ -113,9 +113,9 @@ def _go(vehicle: Vehicle, mppi: Mppi, to: Destination) -> Trip:
 
 
 def _straight_back(vehicle: Vehicle, to: Destination) -> Trip | Any:
-    """Whether the first choice lay straight behind and was backed into.
+    """Back up to the first choice if it lies straight behind; return whether it was reached.
 
-    No way is planned: the arm may stand out too far for any turn.
+    No path is planned: the arm may extend too far for any turn.
     """
     distance, angle = to.tolerance
     first = first_choice(vehicle, to.stands(), to.side)
@@ -127,14 +127,14 @@ def _straight_back(vehicle: Vehicle, to: Destination) -> Trip | Any:
 
 
 def _near(vehicle: Vehicle, goal: Pose2D, distance: float) -> Trip | Any:
-    """Whether the goal is near enough to be reached by a manoeuvre, which is then done."""
+    """Try a manoeuvre if the goal is near enough; return whether the approach is prepared."""
     if vehicle.pose().distance_to(goal) > LOCAL:
         return False
     return (yield from prepare(vehicle, goal, distance))
 
 
 def _line_up(vehicle: Vehicle, goal: Pose2D, distance: float) -> Trip:
-    """At the lead-in, but the approach is not sure: turn or hop until it is."""
+    """At the lead-in, turn or drive short straights until a simulated approach succeeds."""
     if approach_is_sure(vehicle, goal, distance):
         return
     yield from vehicle.stop("line up")
@@ -149,7 +149,7 @@ def _kept(vehicle: Vehicle, stand: Pose2D, in_odom: bool) -> Callable[[], Pose2D
 
 
 def _recover(vehicle: Vehicle, attempt: int) -> Trip:
-    """Forget what was seen and look again; then back up; then turn as well."""
+    """Recover: clear the costmap and look again; then also back up; then also turn."""
     yield from vehicle.stop("recover")
     vehicle.costmap.clear_ahead(vehicle.pose())
     vehicle.sense()

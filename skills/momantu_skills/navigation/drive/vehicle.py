@@ -1,4 +1,4 @@
-"""The vehicle: what the base senses, and the only place that commands it."""
+"""The vehicle: what the base senses, and the only code that commands it."""
 
 from __future__ import annotations
 
@@ -24,26 +24,27 @@ with lazily():
     from momantu_skills.navigation.map import costmap
 
 GAZE = (2.0, 0.0, 0.1)
-"""Where the camera looks while driving, base frame, m: two metres ahead, at the floor."""
+"""Point that the camera looks at while driving, base frame, m: two metres ahead, near the floor."""
 POSTURE_CHANGE = 0.02
-"""rad (or m) by which a joint must move before the footprint is asked for anew."""
+"""Joint motion after which the footprint is computed again, rad (or m)."""
 OUTLINE_CHANGE = 0.01
-"""m by which the footprint must change before its discs are computed anew."""
+"""Change of the footprint after which its discs are computed again, m."""
 TURN_BETWEEN_LOOKS = 0.8
-"""rad of turning that counts like `depth_every` metres: about half of a camera's view."""
+"""Turn that counts like `depth_every` metres of driving, rad: about half of a camera's view."""
 HANDS_OVER = 0.03
-"""m above a surface's nominal top that arm and load must keep to count as being over it."""
+"""Height above a surface's nominal top from which arm and load count as being over it, m."""
 AT_REST = 0.01
-"""m/s and rad/s below which the base stands."""
+"""Speed below which the base counts as standing, m/s and rad/s."""
 
 
 class Vehicle:
-    """Senses once per control period and drives for one. Poses are in the map unless named.
+    """Sense once per control period and drive for one. Poses are in the map unless said otherwise.
 
-    The laser is taken to be fixed to the base.
+    The laser is assumed to be fixed to the base.
 
-    base_discs: of the base alone, which every obstacle meets. low_discs: with what hangs lower of
-    arm and load than the surface that is driven up to. discs: with all of arm and load.
+    base_discs: discs of the base alone, which collides with every obstacle. low_discs: with the
+    parts of arm and load that are lower than the surface that the base drives up to. discs: with
+    all of arm and load.
     """
 
     def __init__(
@@ -55,7 +56,7 @@ class Vehicle:
         config: NavigationConfig,
         top: float = 0.0,
     ) -> None:
-        """top: height of the surface that is driven up to, m; arms reach over it."""
+        """top: height of the surface that the base drives up to, m; the arm may reach over it."""
         site, description = skill.site, robot.description
         if site.map_file is None:
             raise ValueError(f"site {site.name!r} has no map_file to drive in")
@@ -83,28 +84,28 @@ class Vehicle:
         self.blocked_total = 0.0
 
     def now(self) -> float:
-        """The world's clock, s."""
+        """Return the world's clock, s."""
         return self._clock.now()
 
     def pose(self) -> Pose2D:
-        """`map_from_base` of now."""
+        """Return the current `map_from_base`."""
         return self.map_from_odom() @ self.odom_from_base()
 
     def odom_from_base(self) -> Pose2D:
-        """Odometry of now."""
+        """Return the current odometry."""
         return Pose2D.from_transform(self._robot.state().odom_from_base)
 
     def map_from_odom(self) -> Pose2D:
-        """Localization's newest word."""
+        """Return the newest result of localization."""
         return Pose2D.from_transform(self._frames.lookup(MAP, ODOM))
 
     def speed(self) -> tuple[float, float]:
-        """Measured m/s and rad/s."""
+        """Return the measured m/s and rad/s."""
         state = self._robot.state()
         return state.linear, state.angular
 
     def sense(self, *, depth: bool = True) -> None:
-        """Take a scan into the costmap, and a depth picture when the last one is far behind."""
+        """Add a scan to the costmap, and a depth picture if the last one was taken far behind."""
         pose = self.pose()
         self._follow_footprint()
         scan = read_laser(self._robot)
@@ -150,7 +151,7 @@ class Vehicle:
         self._looked = pose
 
     def _gaze_goal(self) -> JointPositions | None:
-        """Where a head looks while driving; an arm or a fixed camera does not move."""
+        """Return where a head looks while driving; None for a camera on the arm or a fixed one."""
         description = self._robot.description
         if self._head is None:
             return None
@@ -188,7 +189,7 @@ class Vehicle:
         return int(self.now() / self.config.period + 1e-6)
 
     def stop(self, phase: str) -> Run:
-        """Brake and wait until the base stands, at most as long as braking can take, twice."""
+        """Brake and wait until the base stands, at most twice the braking time."""
         longest = 2.0 * max(
             self.limits.linear / self.limits.linear_acceleration,
             self.limits.angular / self.limits.angular_acceleration,
@@ -198,18 +199,18 @@ class Vehicle:
             yield from self._command(BaseVelocity(0.0, 0.0), phase)
 
     def stands(self) -> bool:
-        """Whether the base is at rest."""
+        """Return whether the base is at rest."""
         linear, angular = self.speed()
         return abs(linear) < AT_REST and abs(angular) < AT_REST
 
     def wait(self, seconds: float, phase: str) -> Run:
-        """Stand still."""
+        """Wait without moving."""
         end = self.now() + seconds - 1e-6
         while self.now() < end:
             yield from self._command(BaseVelocity(0.0, 0.0), phase)
 
     def room(self, pose: Pose2D, *, whole: bool) -> float:
-        """Room at a pose, m: with all of arm and load (`whole`), or what hangs low of them."""
+        """Return the clearance at a pose, m: with all of arm and load (`whole`), or low parts."""
         return self.costmap.room(pose, self.discs if whole else self.low_discs)
 
 
