@@ -1,7 +1,7 @@
-"""The public names for nodes of your own; the built-in nodes are beside this file, by family.
+"""The public names for writing your own nodes. The built-in nodes are in the modules here.
 
-A node is a subclass of `TreeNode` or `Decorator` with a `spec` (made by `control`, `decorator` or
-`leaf`) and a `step`. See docs/writing_a_node.md.
+A node is a subclass of `TreeNode` or `Decorator` with a `spec` and a method `step`. Make the spec
+with `control`, `decorator` or `leaf`. See docs/writing_a_node.md.
 """
 
 from __future__ import annotations

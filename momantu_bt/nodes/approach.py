@@ -19,9 +19,10 @@ from momantu_bt.tree.catalogue.spec import Dialect, decorator, input_port
 class PathLongerOnApproach(Decorator):
     """Ticks the child while the new path is a long detour; otherwise SUCCESS.
 
-    A detour leads to the same end as the path before, is not that path, and is more than
-    `length_factor` times as long, where the path before was shorter than `prox_len`. The path
-    before is kept while the child runs, and over ends and halts.
+    The new path is compared with the last one. It is a detour when it ends at the same pose but
+    differs from the last path, when the last path is shorter than `prox_len`, and when the new one
+    is more than `length_factor` times as long. The last path is not replaced while the child runs,
+    and it is kept when the node ends or is halted.
     """
 
     spec = decorator(
@@ -41,7 +42,7 @@ class PathLongerOnApproach(Decorator):
         self.before: tuple[Any, ...] = ()
 
     def step(self) -> Status:
-        """Compare the paths."""
+        """Compare the new path with the last one; tick the child when it is a detour."""
         self.state = RUNNING
         path = tuple(self.inputs["path"])
         if self._is_detour(path):
@@ -72,7 +73,7 @@ def length(path: Sequence[Any]) -> float:
 
 
 def _place(pose: Any) -> Any:
-    """Where a pose is, whenever that was true."""
+    """A pose without its time stamp."""
     return (pose.frame, pose.transform) if isinstance(pose, Pose) else pose
 
 

@@ -1,4 +1,4 @@
-"""Ask and Confirm: a person decides. The tick waits for the answer, so the world holds still."""
+"""Ask and Confirm: a person decides. The tick waits for the answer, and simulated time stops."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ YES, NO = "yes", "no"
 
 
 def _wrong_default(node: Node) -> Objection | None:
-    """The default is one of the choices, where both are written out."""
+    """The default must be one of the choices; checked when both are literals."""
     choices, default = node.ports.get("choices"), node.ports.get("default")
     if not isinstance(choices, Literal) or not isinstance(default, Literal):
         return None
@@ -34,7 +34,7 @@ def _wrong_default(node: Node) -> Objection | None:
 
 
 class _Asking(TreeNode):
-    """Asks in its first tick; RUNNING only where the run is interrupted instead."""
+    """Asks in its first tick; RUNNING only when the run is interrupted instead of answered."""
 
     def __init__(self, parts: Parts) -> None:
         super().__init__(parts)
@@ -42,11 +42,11 @@ class _Asking(TreeNode):
 
     @property
     def role(self) -> Role:
-        """Its role for a reader: an action, here a person's."""
+        """Its role in displays: an action, by a person."""
         return Role.ACT
 
     def step(self) -> Status:
-        """Ask, and judge the answer."""
+        """Ask, and turn the answer into a status."""
         values = self.inputs.all()
         self.label = label(self.model, values)
         self.state = RUNNING
@@ -76,7 +76,7 @@ class _Asking(TreeNode):
 
 
 class _PersonOutside:
-    """The run's person, asked through the outside, so that a replay can answer."""
+    """Asks the person, and records the answer so that a replay can give it again."""
 
     def __init__(self, context: RunContext) -> None:
         self._context = context
@@ -88,7 +88,7 @@ class _PersonOutside:
 
 
 class Ask(_Asking):
-    """SUCCESS with the answer written; FAILURE with NO_ANSWER when there is none."""
+    """Writes the answer and returns SUCCESS; FAILURE with NO_ANSWER when nobody answers."""
 
     spec = leaf(
         "Ask",
@@ -108,17 +108,17 @@ class Ask(_Asking):
         self.answer = parts.key("answer")
 
     def question(self, values: dict[str, Any]) -> Question:
-        """As the tree file writes it."""
+        """The question as the tree file has it."""
         return Question(values["question"], values["choices"], values["default"])
 
     def judge(self, said: str, question: Question) -> Status:
-        """Write it."""
+        """Write the answer."""
         self.answer.write(said)
         return SUCCESS
 
 
 class Confirm(_Asking):
-    """SUCCESS for yes; FAILURE with DECLINED for no, with NO_ANSWER when there is none."""
+    """SUCCESS for yes; FAILURE with DECLINED for no, with NO_ANSWER when nobody answers."""
 
     spec = leaf(
         "Confirm",
@@ -131,13 +131,13 @@ class Confirm(_Asking):
     )
 
     def question(self, values: dict[str, Any]) -> Question:
-        """A question of yes or no."""
+        """A question whose choices are yes and no."""
         default = values["default"]
         said = None if default is None else YES if default else NO
         return Question(values["question"], (YES, NO), said)
 
     def judge(self, said: str, question: Question) -> Status:
-        """Yes or no."""
+        """SUCCESS for yes, FAILURE for no."""
         if said == YES:
             return SUCCESS
         return self.fail(DECLINED, f"the answer to {question.text!r} is no")

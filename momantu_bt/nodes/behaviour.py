@@ -1,8 +1,8 @@
 """Behaviours of py_trees as leaves of our trees.
 
-An entry point of the group `momantu_bt.behaviours` names a `py_trees.behaviour.Behaviour` class, or
-what `behaviour(…)` makes of one that has ports. What a behaviour says in a tick comes from outside
-the tree: it is recorded, and a replay takes it from the record without the behaviour.
+An entry point of the group `momantu_bt.behaviours` names a `py_trees.behaviour.Behaviour` class. If
+the behaviour has ports, it names the result of `behaviour(…)` instead. The result of each tick is
+recorded; a replay takes it from the record and does not run the behaviour.
 """
 
 from __future__ import annotations
@@ -35,14 +35,14 @@ BEHAVIOUR_ERROR = "BEHAVIOUR_ERROR"
 
 
 class Through(StrEnum):
-    """How values reach a behaviour and come back."""
+    """How a behaviour gets its inputs and returns its outputs."""
 
     CONSTRUCTOR = "constructor"
-    """Each start makes a behaviour, with the inputs as named arguments; outputs are attributes."""
+    """Each start makes a behaviour, with inputs as keyword arguments; outputs are attributes."""
     ATTRIBUTES = "attributes"
-    """Inputs are set as attributes before each start; outputs are attributes."""
+    """Inputs are set as attributes before each start; outputs are read from attributes."""
     BLACKBOARD = "blackboard"
-    """Inputs are written to py_trees' blackboard before each start, and outputs read from there."""
+    """Inputs are written to py_trees' blackboard before each start; outputs are read from it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,14 +67,14 @@ def behaviour(
 ) -> Declaration:
     """Declare the ports of a behaviour, for an entry point of the group `momantu_bt.behaviours`.
 
-    ports: made by `input_port` and `output_port`; their names are those of the arguments,
+    ports: made by `input_port` and `output_port`, with the names of the behaviour's arguments,
     attributes or keys. through: "constructor", "attributes" or "blackboard"; see `Through`.
-    failure: the code of its FAILURE; the sentence is its feedback message. codes: further codes,
-    of what it raises as `momantu_bt.Failure`. doc: one sentence, unless the docstring of the class
-    says it.
+    failure: the failure code for its FAILURE; the behaviour's feedback message becomes the
+    failure's message. codes: further codes that it raises as `momantu_bt.Failure`. doc: one
+    sentence; by default the docstring of the class.
 
     Raises:
-        ValueError: `through` is none of these three.
+        ValueError: `through` is not one of the three.
     """
     if through not in {*Through}:
         names = ", ".join(Through)
@@ -85,14 +85,14 @@ def behaviour(
 
 
 def declared(plugin: object) -> Declaration | None:
-    """What an entry point names, as a declaration; None where it is neither of the two."""
+    """The declaration of an entry point's object; None for neither a class nor a declaration."""
     if isinstance(plugin, type) and issubclass(plugin, Behaviour):
         return behaviour(plugin)
     return plugin if isinstance(plugin, Declaration) else None
 
 
 def behaviour_objection(name: str, plugin: object, built_in: Collection[str]) -> str | None:
-    """Why trees cannot use this behaviour; None when they can. built_in: spellings of nodes."""
+    """Why trees cannot use this behaviour, or None. built_in: names of the built-in nodes."""
     declaration = declared(plugin)
     if declaration is None:
         return f"{plugin!r} is not a py_trees Behaviour class and not made by `behaviour(…)`"
@@ -108,7 +108,7 @@ def behaviour_objection(name: str, plugin: object, built_in: Collection[str]) ->
 
 
 def _cannot_be_made(declaration: Declaration) -> str | None:
-    """Why the constructor would refuse its arguments, or there is no `update`; else None."""
+    """Why the class cannot be instantiated (arguments do not fit, `update` is missing), or None."""
     kind = declaration.kind
     if inspect.isabstract(kind):
         return f"{kind.__name__} has no {', '.join(sorted(kind.__abstractmethods__))}"
@@ -122,7 +122,7 @@ def _cannot_be_made(declaration: Declaration) -> str | None:
             f"{error}; behaviour(…, through='constructor') gives it the inputs too"
         )
     except ValueError:
-        return None  # Python knows no signature of it
+        return None  # Python cannot tell its signature
     return None
 
 
@@ -131,7 +131,7 @@ def _list(*names: str) -> str:
 
 
 def node_class(name: str, plugin: object) -> type[BehaviourLeaf]:
-    """The class of the leaves that run a behaviour. name: of the leaf, in YAML and in XML."""
+    """Make the node class that runs a behaviour. name: the node's name in YAML and XML."""
     declaration = declared(plugin)
     assert declaration is not None
     spec = leaf(
@@ -146,10 +146,11 @@ def node_class(name: str, plugin: object) -> type[BehaviourLeaf]:
 
 
 class BehaviourLeaf(TreeNode):
-    """Ticks a behaviour: `initialise` and `update` at a start, `update` while it runs.
+    """Ticks a behaviour: `initialise` and `update` when it starts, `update` while it runs.
 
-    `terminate` follows its end, or with INVALID a halt. It is made, and its `setup(clock=…)`
-    called, before its first start. INVALID from `update` is a failure.
+    At its end `terminate` is called with the status, on a halt with INVALID. Before the first
+    start the behaviour is made and its `setup(clock=…)` is called. When `update` returns INVALID,
+    the node fails.
     """
 
     declaration: ClassVar[Declaration]
@@ -164,12 +165,12 @@ class BehaviourLeaf(TreeNode):
 
     @property
     def role(self) -> Role:
-        """Its role for a reader: an action."""
+        """Its role in displays: an action."""
         return Role.ACT
 
     @property
     def note(self) -> str:
-        """The behaviour's feedback while it runs."""
+        """The behaviour's feedback message while it runs."""
         return self._feedback
 
     def step(self) -> Status:
@@ -199,14 +200,14 @@ class BehaviourLeaf(TreeNode):
             try:
                 running.stop(PyTreesStatus.INVALID)
             except Exception as error:
-                running.status = PyTreesStatus.INVALID  # it has been halted, and once is enough
+                running.status = PyTreesStatus.INVALID  # never terminate it twice
                 self.context.remark(f"{self.where}: while it was halted: {_words(error)}")
 
     def _ticked(self, begins: bool, inputs: Mapping[str, Any]) -> tuple[str, str, dict[str, Any]]:
         """The status, the feedback message and, with SUCCESS, the outputs of one tick.
 
         Raises:
-            Failure: what the behaviour raised, BEHAVIOUR_ERROR for any other exception.
+            Failure: the behaviour raised it, or BEHAVIOUR_ERROR, it raised another exception.
         """
         watchdog = self.context.watchdog
         watchdog.begin_step()
@@ -231,7 +232,7 @@ class BehaviourLeaf(TreeNode):
         return status.value, running.feedback_message or "", self._given(running) if done else {}
 
     def _begun(self, inputs: Mapping[str, Any]) -> Behaviour:
-        """The behaviour with its inputs; made and set up where there is none yet."""
+        """The behaviour with its inputs set; the first call makes it and calls its `setup`."""
         declaration, made = self.declaration, self._behaviour
         if declaration.through is Through.CONSTRUCTOR:
             made = declaration.kind(name=self.name, **inputs)
@@ -250,7 +251,7 @@ class BehaviourLeaf(TreeNode):
         return made
 
     def _given(self, running: Behaviour) -> dict[str, Any]:
-        """The outputs that are wired."""
+        """The values of the outputs that are connected to keys."""
         found = {}
         for name, output in self.outputs.items():
             on_board = self.declaration.through is Through.BLACKBOARD

@@ -1,8 +1,9 @@
 """IfThenElse and WhileDoElse: one child decides which of the others runs.
 
-IfThenElse asks once, then stays with its branch; WhileDoElse asks on each tick and halts the
-branch that is no longer meant. Without an else, a condition that fails makes the node fail. A
-condition that is skipped makes the node SKIPPED.
+IfThenElse ticks the condition until it ends, then keeps to the chosen branch. WhileDoElse ticks
+the condition on each tick; when the choice changes it halts the other branch. Without an else
+branch, the node fails when the condition fails. When the condition is skipped, the node returns
+SKIPPED.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ def _branches(walk: Walk, node: Node, before: Known) -> After:
 
 
 class IfThenElse(TreeNode):
-    """`if` (child 0), `then` (child 1), `else` (child 2)."""
+    """Children: `if` (0), `then` (1) and, optionally, `else` (2)."""
 
     spec = control(
         "IfThenElse",
@@ -44,7 +45,7 @@ class IfThenElse(TreeNode):
     branch = 0
 
     def step(self) -> Status:
-        """Ask while no branch is chosen; then tick the branch."""
+        """Tick the condition while no branch is chosen; then tick the branch."""
         self.state = RUNNING
         if self.branch == 0:
             asked = self.kids[0].execute()
@@ -67,12 +68,12 @@ class IfThenElse(TreeNode):
         return status
 
     def clear(self) -> None:
-        """No branch is chosen."""
+        """Forget which branch was chosen."""
         self.branch = 0
 
 
 class WhileDoElse(TreeNode):
-    """The condition (child 0), what to do while it holds (1), what to do while it does not (2)."""
+    """Children: the condition (0), the branch while it holds (1), the branch while it fails (2)."""
 
     spec = control(
         "WhileDoElse",
@@ -85,7 +86,7 @@ class WhileDoElse(TreeNode):
     )
 
     def step(self) -> Status:
-        """Ask, halt the other branch, tick the one that is meant."""
+        """Tick the condition, halt the other branch, tick the chosen one."""
         self.state = RUNNING
         condition, *branches = self.kids
         asked = condition.execute()

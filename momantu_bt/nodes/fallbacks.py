@@ -7,8 +7,9 @@
 | FAILURE       | the next child; at the end FAILURE    |
 | SKIPPED       | the next child; SKIPPED when all were |
 
-It fails with the last failure; those before stand beside it. AsyncFallback returns RUNNING
-between two children. RoundRobin starts with the child after the one that ended it last time.
+It fails with the failure of the last child; the earlier failures are listed in its `beside`.
+AsyncFallback returns RUNNING between two children. RoundRobin starts with the child after the one
+with which it ended last time.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from momantu_bt.tree.model import Node
 
 
 class Fallback(TreeNode):
-    """Goes on where it was; starts over after its end."""
+    """While RUNNING it continues with the current child; after its end it starts with the first."""
 
     spec = control(
         "Fallback", "fallback", "Children in turn until one succeeds.", flow=until_success
@@ -37,7 +38,7 @@ class Fallback(TreeNode):
     skipped = 0
 
     def step(self) -> Status:
-        """Tick children from the current one on."""
+        """Tick the current child and those after it."""
         if self.state is IDLE:
             self.skipped = 0
         if self.at == 0:
@@ -68,17 +69,17 @@ class Fallback(TreeNode):
         return self.fail_with(with_beside(self.failures_seen))
 
     def clear(self) -> None:
-        """Back to the first child."""
+        """Start with the first child again."""
         self.at = self.skipped = 0
 
 
 class AsyncFallback(Fallback):
-    """A fallback that lets a tick pass between two children."""
+    """A fallback that returns RUNNING between two children."""
 
     spec = control(
         "AsyncFallback",
         "async_fallback",
-        "A fallback that can be interrupted in between.",
+        "A fallback that can be interrupted between two children.",
         flow=until_success,
     )
 
@@ -92,12 +93,13 @@ def _any_first(walk: Walk, node: Node, before: Known) -> After:
 
 
 class RoundRobin(TreeNode):
-    """One child at a time, each start the next one.
+    """Runs one child; each start begins with the next one.
 
-    A child's SUCCESS is its own, and next time the one after it begins. A FAILURE hands on to
-    the child after, and so does a child that is skipped, which is asked again in a later tick.
-    When all have failed (or are skipped) it fails with the last failure, and next time begins
-    with the first, as after a halt. Without `wrap_around` nothing comes after the last child.
+    When a child succeeds, the node succeeds, and the next start begins with the child after it.
+    When a child fails or is skipped, the child after it is ticked; a skipped child is tried again
+    in a later tick. When all children have failed or are skipped, the node fails with the last
+    failure, and the next start begins with the first child. So it does after a halt. Without
+    `wrap_around` the node does not go from the last child to the first.
     """
 
     spec = control(

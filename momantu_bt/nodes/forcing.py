@@ -1,4 +1,4 @@
-"""Inverter, ForceSuccess, ForceFailure, ElseFail: the child's end, changed.
+"""Inverter, ForceSuccess, ForceFailure, ElseFail: decorators that change the child's result.
 
 | child returns   | Inverter | ForceSuccess | ForceFailure | ElseFail                |
 |-----------------|----------|--------------|--------------|-------------------------|
@@ -38,7 +38,7 @@ def _failing(walk: Walk, node: Node, before: Known) -> After:
 
 
 class _Changing(Decorator):
-    """Ticks the child, and answers with what `end` makes of its end."""
+    """Ticks the child; when it ends, returns the status from `end`."""
 
     def step(self) -> Status:
         """Tick the child."""
@@ -55,7 +55,7 @@ class _Changing(Decorator):
 
 
 class Inverter(_Changing):
-    """Success becomes failure and failure success."""
+    """Turns SUCCESS into FAILURE and FAILURE into SUCCESS."""
 
     spec = decorator(
         "Inverter",
@@ -66,14 +66,14 @@ class Inverter(_Changing):
     )
 
     def end(self, status: Status) -> Status:
-        """FAILURE for SUCCESS, and the other way round."""
+        """The opposite status."""
         if status is FAILURE:
             return SUCCESS
         return self.fail(FAILED, f"{self.child.name} succeeded, which counts as failure here")
 
 
 class ForceSuccess(_Changing):
-    """Whatever the child's end: success."""
+    """Succeeds when the child ends, also when it fails."""
 
     spec = decorator(
         "ForceSuccess",
@@ -90,7 +90,7 @@ class ForceSuccess(_Changing):
 
 
 class ForceFailure(_Changing):
-    """Whatever the child's end: failure, the child's own where it has one."""
+    """Fails when the child ends, with the child's failure if it failed."""
 
     spec = decorator(
         "ForceFailure",
@@ -108,12 +108,12 @@ class ForceFailure(_Changing):
 
 
 class ElseFail(_Changing):
-    """The child's failure becomes the cause of one with the code that the tree gives."""
+    """When the child fails, fails with the code that the tree gives; the cause is the child's."""
 
     spec = decorator(
         "ElseFail",
         "else_fail",
-        "When the child fails, fails with a code of one's own; the child's failure is its cause.",
+        "When the child fails, fails with a code of your own; the child's failure is its cause.",
         input_port("code", CodeText, "upper-case words joined by underscores"),
         input_port("message", str, "one sentence for a person", ""),
         dialect=Dialect.OURS,
@@ -127,7 +127,7 @@ class ElseFail(_Changing):
         self.inputs = parts.inputs()
 
     def end(self, status: Status) -> Status:
-        """A failure with the code; SUCCESS as it is."""
+        """Fail with the code when the child failed; SUCCESS stays."""
         if status is not FAILURE:
             return status
         cause = self.failure_of(self.child)

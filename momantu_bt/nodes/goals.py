@@ -1,4 +1,4 @@
-"""GoalUpdated, GoalUpdatedController, GoalUpdater: Nav2's nodes that look at the goal."""
+"""GoalUpdated, GoalUpdatedController, GoalUpdater: Nav2's nodes that watch or pass on the goal."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ GOAL_PORTS = (
     input_port("goal", object, "the goal that is watched; $goal unless given", None),
     input_port("goals", object, "the goals that are watched; $goals unless given", None),
 )
-"""Ports of nodes that look at the goal."""
+"""Ports of nodes that watch the goal."""
 GOAL_NAMES = ("goal", "goals")
-"""Their names, which are also those of the keys that they mean unless they are given."""
+"""The ports' names. A port that the tree leaves out reads the key of the same name."""
 
 
 def peek(inputs: Inputs, name: str) -> Any:
-    """An input's value; MISSING where its key has none."""
+    """An input's value; MISSING when its key has no value."""
     try:
         return inputs[name]
     except Failure as failure:
@@ -33,18 +33,18 @@ def peek(inputs: Inputs, name: str) -> Any:
 
 
 class Goals:
-    """The goal and the goals that a node watches, and what they were when it last looked."""
+    """Watches the keys goal and goals, and remembers their last values."""
 
     def __init__(self, inputs: Inputs) -> None:
         self._inputs = inputs
         self._last: tuple[Any, Any] = (MISSING, MISSING)
 
     def remember(self) -> None:
-        """Take them as they are."""
+        """Remember the current values."""
         self._last = (peek(self._inputs, "goal"), peek(self._inputs, "goals"))
 
     def have_changed(self) -> bool:
-        """Whether one of them differs from what was remembered; then they are remembered."""
+        """Whether a value differs from the remembered one; then remember the current values."""
         last = self._last
         self.remember()
         return not all(_same(new, old) for new, old in zip(self._last, last, strict=True))
@@ -55,15 +55,15 @@ def _same(left: Any, right: Any) -> bool:
         return True
     try:
         return bool(left == right)
-    except ValueError:  # arrays inside: what cannot be compared counts as new
+    except ValueError:  # it holds arrays, which `==` cannot compare: count it as changed
         return False
 
 
 class GoalUpdated(TreeNode):
     """SUCCESS when a goal has changed since the last tick, else FAILURE.
 
-    At its start it looks for the first time and fails. A parent that resets its children (every
-    reactive one while another child runs) starts it anew each time.
+    In the first tick after a start it fails. A reactive parent resets it whenever another child
+    runs, so there every tick is a first tick.
     """
 
     spec = leaf(
@@ -81,7 +81,7 @@ class GoalUpdated(TreeNode):
         self.goals = Goals(parts.inputs(*GOAL_NAMES))
 
     def step(self) -> Status:
-        """Look."""
+        """Compare the goal with its value in the last tick."""
         if self.state is IDLE:
             self.goals.remember()
         elif self.goals.have_changed():
@@ -90,12 +90,12 @@ class GoalUpdated(TreeNode):
 
 
 class GoalUpdatedController(Decorator):
-    """Starts the child first, and again whenever a goal has changed; RUNNING in between."""
+    """Starts the child at its own start and whenever a goal changes; RUNNING in between."""
 
     spec = decorator(
         "GoalUpdatedController",
         "goal_updated_controller",
-        "Starts the child first and at each new goal.",
+        "Runs the child at the start and again at each new goal.",
         *GOAL_PORTS,
         may_be_empty=GOAL_NAMES,
         dialect=Dialect.NAV2,
@@ -108,7 +108,7 @@ class GoalUpdatedController(Decorator):
         self.due = True
 
     def step(self) -> Status:
-        """Tick the child when it is at work, or due."""
+        """Tick the child if it is running or has to start."""
         if self.state is IDLE:
             self.goals.remember()
             self.due = True
@@ -124,12 +124,16 @@ _SOURCES = {"output_goal": "input_goal", "output_goals": "input_goals"}
 
 
 class GoalUpdater(Decorator):
-    """Writes the inputs that have a value to the outputs of their names, then ticks the child."""
+    """Copies the goal, the goals or both to other keys, then ticks the child.
+
+    `input_goal` goes to `output_goal`, `input_goals` to `output_goals`. An input without a value is
+    not copied.
+    """
 
     spec = decorator(
         "GoalUpdater",
         "goal_updater",
-        "Hands a goal on to the child; a goal from elsewhere would take its place.",
+        "Copies a goal to the key that the child reads, then ticks the child.",
         input_port("input_goal", object, "the goal", None),
         input_port("input_goals", object, "the goals", None),
         output_port("output_goal", object, "the key that the child reads", None),
@@ -146,7 +150,7 @@ class GoalUpdater(Decorator):
         self.outputs = parts.outputs()
 
     def step(self) -> Status:
-        """Hand on what there is, and tick the child."""
+        """Copy the inputs that have a value, and tick the child."""
         for name, output in self.outputs.items():
             value = peek(self.inputs, _SOURCES[name])
             if value is not None and value is not MISSING:

@@ -89,7 +89,7 @@ class SetBlackboard(TreeNode):
         self.key = parts.key("key")
 
     def step(self) -> Status:
-        """Write it."""
+        """Write the value."""
         self.key.write(self.inputs["value"])
         return SUCCESS
 
@@ -112,6 +112,6 @@ class UnsetBlackboard(TreeNode):
         self.key = parts.key("key")
 
     def step(self) -> Status:
-        """Clear it."""
+        """Remove the value."""
         self.key.write(MISSING)
         return SUCCESS

@@ -1,4 +1,4 @@
-"""Repeat, RetryUntilSuccessful, KeepRunningUntilFailure, ForEach, RunOnce: the child again.
+"""Repeat, RetryUntilSuccessful, KeepRunningUntilFailure, ForEach, RunOnce: decorators that loop.
 
 | child returns | Repeat            | RetryUntilSuccessful | KeepRunningUntilFailure |
 |---------------|-------------------|----------------------|-------------------------|
@@ -7,8 +7,9 @@
 | RUNNING       | RUNNING           | RUNNING              | RUNNING                 |
 | SKIPPED       | SKIPPED           | SKIPPED              | RUNNING                 |
 
-After a round that began and ended within one tick a tick passes, so that what is around can
-interrupt; after a longer one the next begins at once. -1 rounds are without end.
+After a round that began and ended within one tick, the node returns RUNNING, so that nodes above
+it can interrupt. After a longer round the next one begins in the same tick. -1 means no limit of
+rounds.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ def _until_failure(walk: Walk, node: Node, before: Known) -> After:
 
 
 def _once(walk: Walk, node: Node, before: Known) -> After:
-    """Later, the child is skipped and what it wrote is still there, or its end is repeated."""
+    """After the first end: skipped with the child's writes still there, or its result again."""
     end = as_child(walk, node, before)
     return After(end.success, meet(end.failure, before), before)
 
@@ -56,7 +57,7 @@ class Repeat(Decorator):
         self.count = 0
 
     def step(self) -> Status:
-        """Rounds until the child runs, ends otherwise, or a tick is to pass."""
+        """Run rounds until the child returns RUNNING, fails, or ended within one tick."""
         cycles: int = self.inputs["cycles"]
         self.state = RUNNING
         while self.count < cycles or cycles == -1:
@@ -78,11 +79,11 @@ class Repeat(Decorator):
 
     @property
     def note(self) -> str:
-        """Which round it is."""
+        """The number of the current round."""
         return f"round {self.count + 1}"
 
     def clear(self) -> None:
-        """No rounds yet."""
+        """Forget the rounds."""
         self.count = 0
 
 
@@ -106,7 +107,7 @@ class RetryUntilSuccessful(Decorator):
         self.count = 0
 
     def step(self) -> Status:
-        """Tries until the child runs, ends otherwise, or a tick is to pass."""
+        """Try until the child returns RUNNING, succeeds, or failed within one tick."""
         attempts: int = self.inputs["attempts"]
         self.state = RUNNING
         while self.count < attempts or attempts == -1:
@@ -127,11 +128,11 @@ class RetryUntilSuccessful(Decorator):
 
     @property
     def note(self) -> str:
-        """Which try it is."""
+        """The number of the current try."""
         return f"try {self.count + 1}"
 
     def clear(self) -> None:
-        """No tries yet."""
+        """Forget the tries."""
         self.count = 0
 
 
@@ -160,8 +161,9 @@ class KeepRunningUntilFailure(Decorator):
 class ForEach(Decorator):
     """Runs the child for each item of a list.
 
-    The items are read when it starts; `as` holds the item of the round. SUCCESS after the last
-    item (at once for an empty list), FAILURE with the child's; a skipped round counts as done.
+    The list is read when the node starts; the key of `as` holds the current item. SUCCESS after
+    the last item (at once for an empty list). FAILURE when the child fails. When the child is
+    skipped, the next item follows.
     """
 
     spec = decorator(
@@ -206,17 +208,17 @@ class ForEach(Decorator):
         return SUCCESS
 
     def clear(self) -> None:
-        """The list is read again."""
+        """Forget the list; the next start reads it again."""
         self.items = None
 
 
 class RunOnce(Decorator):
-    """Runs the child to its end once in the life of the tree; then SKIPPED, or that end again."""
+    """Runs the child to its end once per run; after that returns SKIPPED, or the same result."""
 
     spec = decorator(
         "RunOnce",
         "run_once",
-        "Runs the child once in the life of the tree.",
+        "Runs the child only once in a run of the tree.",
         input_port("then_skip", bool, "skipped afterwards, instead of repeating the result", True),
         flow=_once,
         around=lambda node: "once only",

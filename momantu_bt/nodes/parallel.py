@@ -1,9 +1,10 @@
-"""Parallel, ParallelAll: children side by side; one that has ended is not ticked again.
+"""Parallel, ParallelAll: tick all children on each tick; one that has ended is not ticked again.
 
-Parallel ends as soon as `success_count` children have succeeded, or `failure_count` have failed,
-or success has become impossible; what still runs is halted. ParallelAll lets all of them end,
-then fails when `max_failures` or more have failed. A count of -1 means all of them, -2 all but
-one. SKIPPED when all children were skipped; where all must succeed, a skipped one does not count.
+Parallel ends as soon as `success_count` children have succeeded, `failure_count` have failed, or
+success has become impossible; children that still run are halted. ParallelAll waits until all
+children have ended, then fails when `max_failures` or more have failed. A count of -1 means all
+children, -2 all but one. The node is SKIPPED when all children are skipped. If all children must
+succeed, a skipped child is not counted.
 """
 
 from __future__ import annotations
@@ -19,14 +20,14 @@ from momantu_bt.tree.model import Literal, Node
 
 
 def _together(walk: Walk, node: Node, before: Known) -> After:
-    """Children side by side: what one writes is not sure while another runs."""
+    """After a parallel node it is not known which children have written their outputs."""
     ends = [walk(child, before) for child in node.children]
     skipped = before if all(end.skipped.reached for end in ends) else NEVER
     return After(before, before, skipped)
 
 
 def all_together(walk: Walk, node: Node, before: Known) -> After:
-    """The same; where all of them must succeed, what each leaves is known."""
+    """As `_together`; if all children must succeed, the outputs of all of them are known."""
     if node.ports.get("success_count", Literal(-1)) != Literal(-1):
         return _together(walk, node, before)
     ends = [walk(child, before) for child in node.children]
@@ -42,13 +43,13 @@ class _Parallel(TreeNode):
         self.clear()
 
     def clear(self) -> None:
-        """No child has ended yet."""
+        """Forget which children have ended."""
         self.ended: set[int] = set()
         self.succeeded = 0
         self.failures_seen: list[FailureValue] = []
 
     def _tick_child(self, index: int) -> bool:
-        """Tick one child that has not ended; whether it was skipped."""
+        """Tick a child unless it has ended; return whether it was skipped."""
         if index in self.ended:
             return False
         child = self.kids[index]
@@ -78,7 +79,7 @@ class _Parallel(TreeNode):
 
 
 class Parallel(_Parallel):
-    """Ends as soon as its end is decided."""
+    """Ends as soon as its result is decided."""
 
     spec = control(
         "Parallel",
@@ -91,7 +92,7 @@ class Parallel(_Parallel):
     )
 
     def step(self) -> Status:
-        """Tick all that have not ended, asking after each one whether that decides."""
+        """Tick each child that has not ended; after each, check whether the result is decided."""
         most, need = len(self.kids), self._count("success_count")
         limit, all_needed = self._count("failure_count"), self.inputs["success_count"] < 0
         if need > most or limit > most:
@@ -124,7 +125,7 @@ class ParallelAll(_Parallel):
     )
 
     def step(self) -> Status:
-        """Tick all that have not ended."""
+        """Tick each child that has not ended."""
         most, limit = len(self.kids), self._count("max_failures")
         if limit > most:
             return self.fail(FAILED, f"has {most} children, but waits for {limit} failures")

@@ -8,7 +8,7 @@
 | FAILURE       | FAILURE, all are halted                      | the same                  |
 | SKIPPED       | the next child; SKIPPED when all were        | the same                  |
 
-Both tick from the first child on each time, also those that have ended.
+Both tick the children from the first one on each tick, including those that have ended.
 """
 
 from __future__ import annotations
@@ -22,12 +22,15 @@ from momantu_bt.tree.catalogue.spec import Dialect, control, input_port
 
 
 class PipelineSequence(TreeNode):
-    """Children before `reached` have been passed once: it no longer waits for them."""
+    """A sequence that keeps ticking the children before the current one, without waiting for them.
+
+    reached: index of the current child.
+    """
 
     spec = control(
         "PipelineSequence",
         "pipeline_sequence",
-        "A sequence that goes on ticking the children it has passed, and waits for them no more.",
+        "A sequence that keeps ticking earlier children, without waiting for them again.",
         dialect=Dialect.NAV2,
         concurrent=True,
         flow=again(in_turn),
@@ -36,7 +39,7 @@ class PipelineSequence(TreeNode):
     reached = 0
 
     def step(self) -> Status:
-        """Tick from the first on."""
+        """Tick the children from the first one on."""
         skipped = 0
         for index, child in enumerate(self.kids):
             status = child.execute()
@@ -51,7 +54,7 @@ class PipelineSequence(TreeNode):
         return SKIPPED if skipped == len(self.kids) else SUCCESS
 
     def clear(self) -> None:
-        """No child has been passed."""
+        """Start with the first child again."""
         self.reached = 0
 
     def _failed(self, child: TreeNode) -> Status:
@@ -67,14 +70,14 @@ class NonblockingSequence(TreeNode):
     spec = control(
         "NonblockingSequence",
         "nonblocking_sequence",
-        "Ticks all children on each tick until all succeed in one.",
+        "Ticks all children on each tick until all succeed in the same tick.",
         dialect=Dialect.NAV2,
         concurrent=True,
         flow=again(all_together),
     )
 
     def step(self) -> Status:
-        """Tick all of them."""
+        """Tick all children."""
         found: list[Status] = []
         for child in self.kids:
             status = child.execute()
@@ -90,15 +93,16 @@ class NonblockingSequence(TreeNode):
 
 
 class PersistentSequence(TreeNode):
-    """A sequence whose place is a key of the blackboard: it outlasts halts, and may be set.
+    """A sequence that keeps the index of its current child in a key of the blackboard.
 
-    A failure sends it back to the first child, and so does its end.
+    The index stays when the node is halted, and other nodes may set it. It goes back to 0 when the
+    node ends, with success or failure.
     """
 
     spec = control(
         "PersistentSequence",
         "persistent_sequence",
-        "A sequence that keeps its place on the blackboard.",
+        "A sequence that keeps the index of its current child on the blackboard.",
         input_port("current_child_idx", int, "the key that holds the place, from 0"),
         dialect=Dialect.NAV2,
         keys=("current_child_idx",),
@@ -111,7 +115,7 @@ class PersistentSequence(TreeNode):
         self.cell = parts.key("current_child_idx")
 
     def step(self) -> Status:
-        """Tick children from the place on."""
+        """Tick the child at the index, and those after it."""
         at: int = self.inputs["current_child_idx"]
         if at < 0:
             return self.fail(WRONG_TYPE, f"${self.cell.name} is {at}; places count from 0")

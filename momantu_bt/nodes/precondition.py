@@ -16,11 +16,11 @@ from momantu_bt.values.kinds import ScriptText
 
 
 class Precondition(Decorator):
-    """Asks `if` before the child starts; when it does not hold, the status that `else` names.
+    """Evaluates `if` before the child starts; if it is false, returns the status that `else` names.
 
-    Once the child has been ticked it is not asked again until the child has ended. A halt is no
-    end: as in BehaviorTree.CPP, a child that was halted starts again unasked. `fail_if` and
-    `skip_if` are asked at each start.
+    The condition is not evaluated again until the child has ended. As in BehaviorTree.CPP, a halt
+    does not count as an end: a child that was halted starts again without a check. Use `fail_if`
+    or `skip_if` for a condition that is evaluated at each start.
     """
 
     spec = decorator(
@@ -46,7 +46,7 @@ class Precondition(Decorator):
         self.admitted = False
 
     def step(self) -> Status:
-        """Ask unless the child is under way, then tick it."""
+        """Evaluate the condition unless the child has started, then tick the child."""
         self.admitted = self.admitted or self.code.holds()
         if not self.admitted:
             instead = Status[self.inputs["else"]]
@@ -60,5 +60,5 @@ class Precondition(Decorator):
         return self.pass_on(status)
 
     def renew(self) -> None:
-        """The next start asks again."""
+        """Evaluate the condition again at the next start."""
         self.admitted = False

@@ -1,4 +1,4 @@
-"""LoopInt, LoopDouble, LoopString, LoopBool: the child once for each item of a queue.
+"""LoopInt, LoopDouble, LoopString, LoopBool: run the child once for each item of a queue.
 
 | child returns   | the loop                                                  |
 |-----------------|-----------------------------------------------------------|
@@ -6,8 +6,8 @@
 | FAILURE         | FAILURE                                                   |
 | RUNNING         | RUNNING                                                   |
 
-When no item is left (or there was none) it ends with `if_empty`. The queue is read when the node
-starts; what is on the blackboard keeps its items.
+When the queue is empty, at the start or later, the node ends with the status `if_empty`. The node
+copies the queue when it starts; the list on the blackboard is not changed.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def _spec(type_: str, yaml: str, item: type) -> NodeSpec:
         input_port(
             "if_empty",
             Literal["SUCCESS", "FAILURE", "SKIPPED"],
-            "the result when the queue is empty, at last or from the start",
+            "the result when the queue is empty, at the start or in the end",
             "SUCCESS",
         ),
         output_port("value", item, "the key that holds the item", None),
@@ -44,7 +44,7 @@ def _spec(type_: str, yaml: str, item: type) -> NodeSpec:
 
 
 class QueueLoop(Decorator):
-    """value: the output for the item of the round, None where nothing is wired."""
+    """Base of the four loops. value: the output for the current item; None: not connected."""
 
     def __init__(self, parts: Parts) -> None:
         super().__init__(parts)
@@ -54,7 +54,7 @@ class QueueLoop(Decorator):
         self.in_round = False
 
     def step(self) -> Status:
-        """Take an item unless the child is at work, then tick the child."""
+        """Take the next item unless the child is running, then tick the child."""
         if self.state is IDLE:
             self.in_round = False
             self.left = deque(self.inputs["queue"])
@@ -74,11 +74,11 @@ class QueueLoop(Decorator):
 
     @property
     def note(self) -> str:
-        """The number of waiting items."""
+        """The number of items left."""
         return f"{len(self.left)} left"
 
     def clear(self) -> None:
-        """The queue is read again."""
+        """Forget the queue; the next start reads it again."""
         self.left.clear()
         self.in_round = False
 
@@ -88,24 +88,24 @@ class QueueLoop(Decorator):
 
 
 class LoopInt(QueueLoop):
-    """Over integers."""
+    """A loop over integers."""
 
     spec = _spec("LoopInt", "loop_int", int)
 
 
 class LoopDouble(QueueLoop):
-    """Over numbers."""
+    """A loop over numbers."""
 
     spec = _spec("LoopDouble", "loop_number", float)
 
 
 class LoopString(QueueLoop):
-    """Over texts."""
+    """A loop over texts."""
 
     spec = _spec("LoopString", "loop_text", str)
 
 
 class LoopBool(QueueLoop):
-    """Over yes and no."""
+    """A loop over booleans."""
 
     spec = _spec("LoopBool", "loop_bool", bool)

@@ -1,8 +1,9 @@
-"""RateController, DistanceController, SpeedController, SingleTrigger: Nav2's decorators of pace.
+"""RateController, DistanceController, SpeedController, SingleTrigger: limit how often a child runs.
 
-Each starts its child first, and later when it is due; a child that is RUNNING is ticked on every
-tick, and its status is the node's. In between the node is RUNNING. Time is the world's clock's,
-the way and the speed are odometry's; without a world the robot does not move.
+Each controller starts its child in its first tick, and again whenever the child is due. A child
+that is RUNNING is ticked on every tick, and its status is the node's. Between two runs of the child
+the node is RUNNING. Time is that of the world's clock; distance and speed come from odometry.
+Without a world the robot does not move.
 """
 
 from __future__ import annotations
@@ -22,11 +23,11 @@ from momantu_bt.tree.catalogue.flow import again, around
 from momantu_bt.tree.catalogue.spec import Dialect, decorator, input_port
 
 SLOWEST = 0.001
-"""Hz: the least of a rate, which one is divided by."""
+"""Lowest valid rate, Hz; a period is 1 / rate."""
 
 
 class _Paced(Decorator):
-    """Subclasses say when the child is due, and what its start and its success mean to them."""
+    """The base of the controllers; subclasses define when the child is due."""
 
     def __init__(self, parts: Parts) -> None:
         super().__init__(parts)
@@ -34,17 +35,17 @@ class _Paced(Decorator):
         self.first = True
 
     def begin(self) -> None:
-        """The node starts."""
+        """Called when the node starts."""
 
     def is_due(self) -> bool:
-        """Whether the child is to be started, which it is the first time anyway."""
+        """Whether to start the child; the first tick starts it in any case."""
         raise NotImplementedError(f"{type(self).__name__} has no is_due()")
 
     def succeeded(self) -> None:
-        """The child has succeeded."""
+        """Called when the child has succeeded."""
 
     def step(self) -> Status:
-        """Tick the child when it is at work, or due."""
+        """Tick the child if it is running or due."""
         if self.state is IDLE:
             self.first = True
             self.begin()
@@ -60,12 +61,12 @@ class _Paced(Decorator):
 
 
 class RateController(_Paced):
-    """Due when 1 / `hz` has passed since the child's last success, or since the start."""
+    """The child is due 1 / `hz` after its last success, or after the node's start."""
 
     spec = decorator(
         "RateController",
         "rate_controller",
-        "Starts the child at most so often.",
+        "Runs the child at most `hz` times per second.",
         input_port("hz", float, "starts per second", 10.0, "Hz", least=SLOWEST),
         dialect=Dialect.NAV2,
         flow=again(around),
@@ -75,26 +76,26 @@ class RateController(_Paced):
     period = 0.0
 
     def begin(self) -> None:
-        """The time begins; `hz` is read."""
+        """Read `hz` and start the period."""
         self.since = self.context.now
         self.period = 1.0 / self.inputs["hz"]
 
     def is_due(self) -> bool:
-        """Whether the period is over."""
+        """Whether the period has passed."""
         return self.context.now - self.since >= self.period - CLOCK_SLACK
 
     def succeeded(self) -> None:
-        """The time begins again."""
+        """Start the period again."""
         self.since = self.context.now
 
 
 class DistanceController(_Paced):
-    """Due when the robot is `distance` from where the child last succeeded, or the node began."""
+    """The child is due `distance` away from where it last succeeded or the node started."""
 
     spec = decorator(
         "DistanceController",
         "distance_controller",
-        "Starts the child each time the robot has come so far.",
+        "Runs the child each time the robot has moved by `distance`.",
         input_port("distance", float, "how far", 1.0, "m", least=0),
         input_port("global_frame", str, "where it is measured", "odom"),
         input_port("robot_base_frame", str | None, "what is measured; the robot's base", None),
@@ -106,11 +107,11 @@ class DistanceController(_Paced):
     origin: Array | None = None
 
     def begin(self) -> None:
-        """The way begins here."""
+        """Measure the distance from here."""
         self.origin = self._position()
 
     def is_due(self) -> bool:
-        """Whether the robot has come far enough."""
+        """Whether the robot has moved by `distance`."""
         here = self._position()
         if here is None or self.origin is None:
             return False
@@ -118,7 +119,7 @@ class DistanceController(_Paced):
         return math.dist(here, self.origin) >= distance
 
     def succeeded(self) -> None:
-        """The distance begins again."""
+        """Measure the distance from here again."""
         self.origin = self._position()
 
     def _position(self) -> Array | None:
@@ -133,16 +134,17 @@ class DistanceController(_Paced):
 
 
 class SpeedController(_Paced):
-    """Due after a period that is read off the robot's speed when the one before is over.
+    """The child is due after a period that depends on the robot's speed.
 
-    The rate goes from `min_rate` at `min_speed` to `max_rate` at `max_speed`. A goal that has
-    changed makes the child due at once, and the period the shortest.
+    The rate rises from `min_rate` at `min_speed` to `max_rate` at `max_speed`. Each new period is
+    computed when the previous one is over. When a goal changes, the child is due at once, and the
+    next period is the shortest one.
     """
 
     spec = decorator(
         "SpeedController",
         "speed_controller",
-        "Starts the child the more often the faster the robot drives, and at a new goal.",
+        "Runs the child more often the faster the robot drives, and at each new goal.",
         input_port(
             "min_rate", float, "starts per second at the lowest speed", 0.1, "Hz", least=SLOWEST
         ),
@@ -166,12 +168,12 @@ class SpeedController(_Paced):
         self.goals = Goals(self.inputs)
 
     def begin(self) -> None:
-        """The shortest period begins."""
+        """Start with the shortest period."""
         self.goals.remember()
         self._restart()
 
     def is_due(self) -> bool:
-        """Whether the period is over; then the next one is as long as the speed says."""
+        """Whether the period has passed; if so, compute the next one from the speed."""
         if self.goals.have_changed():
             self._restart()
             self.first = True
@@ -202,12 +204,12 @@ class SpeedController(_Paced):
 
 
 class SingleTrigger(Decorator):
-    """Runs the child to its end once; FAILURE from then on, until the node is restarted."""
+    """Runs the child to its end once; then returns FAILURE until the node is restarted."""
 
     spec = decorator(
         "SingleTrigger",
         "single_trigger",
-        "Runs the child once, then fails until it is started anew.",
+        "Runs the child once, then fails until the node is restarted.",
         dialect=Dialect.NAV2,
         flow=around,
         around=lambda node: "once at each start",
@@ -216,7 +218,7 @@ class SingleTrigger(Decorator):
     triggered = False
 
     def step(self) -> Status:
-        """Tick the child until its end."""
+        """Tick the child until it ends."""
         if self.state is IDLE:
             self.triggered = False
         self.state = RUNNING

@@ -1,4 +1,4 @@
-"""ReactiveSequence, ReactiveFallback: every tick asks from the first child on.
+"""ReactiveSequence, ReactiveFallback: each tick begins with the first child again.
 
 | child returns | ReactiveSequence                  | ReactiveFallback                  |
 |---------------|-----------------------------------|-----------------------------------|
@@ -19,12 +19,12 @@ from momantu_bt.tree.catalogue.spec import control
 
 
 class ReactiveSequence(TreeNode):
-    """Guards first, then the work: a guard that fails ends the work at once."""
+    """A sequence that ticks earlier children again; if one of them fails, later ones are halted."""
 
     spec = control(
         "ReactiveSequence",
         "reactive_sequence",
-        "Earlier children are asked again on each tick.",
+        "A sequence that ticks earlier children again on each tick.",
         flow=again(in_turn),
     )
 
@@ -50,12 +50,12 @@ class ReactiveSequence(TreeNode):
 
 
 class ReactiveFallback(TreeNode):
-    """Ticks its children from the first one on, at each tick."""
+    """A fallback that ticks earlier children again on each tick."""
 
     spec = control(
         "ReactiveFallback",
         "reactive_fallback",
-        "Earlier children are asked again on each tick.",
+        "A fallback that ticks earlier children again on each tick.",
         flow=again(until_success),
     )
 

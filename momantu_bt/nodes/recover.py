@@ -1,9 +1,10 @@
 """Recover and Handle: a failure's code decides what happens next.
 
-Recover runs `try`; a failure runs the handler of its code, then `try` again, `attempts` times in
-all. A code without a handler fails at once; a handler that fails ends it, with the first failure
-as its cause. What `try` wrote is taken back before it runs again. Handle runs `try` once, and the
-handler's result is the result.
+Recover runs `try`. When it fails, Recover runs the handler for the failure's code, then `try`
+again, up to `attempts` times in all. It fails at once when no handler names the code. When a
+handler fails, it fails too, and the failure of `try` is the cause. Before `try` runs again, the
+keys that it wrote get back their old values. Handle runs `try` once; when it fails, the handler's
+result is the node's result.
 
 | `try` returns | Recover                         | Handle                             |
 |---------------|---------------------------------|------------------------------------|
@@ -37,13 +38,13 @@ from momantu_bt.tree.show.printing import text
 
 @dataclass(frozen=True, slots=True)
 class Catch:
-    """Codes and the node that answers them; None just tries again."""
+    """Failure codes and the handler's node; None means just try again."""
 
     codes: tuple[str, ...]
     node: TreeNode | None
 
     def names(self, failure: FailureValue) -> bool:
-        """Whether one of the codes is the failure's; `grip.TOO_FAR` asks for the node as well."""
+        """Whether the failure has one of the codes; `grip.TOO_FAR` also needs the node `grip`."""
         for code in self.codes:
             kind, dot, narrowed = code.rpartition(".")
             if code == failure.code:
@@ -61,7 +62,7 @@ def _came_from(failure: FailureValue, kind: str) -> bool:
 
 
 def _words(handler: TreeNode) -> str:
-    """What a handler is about to do: the steps of a list, the child of a round robin."""
+    """Describe what a handler will do: the steps of a list, the next child of a round robin."""
     if isinstance(handler, RoundRobin):
         return f"{text(handler.kids[handler.at].model)} ({handler.at + 1} of {len(handler.kids)})"
     if handler.role is Role.STEPS:
@@ -72,7 +73,7 @@ def _words(handler: TreeNode) -> str:
 class Catching(TreeNode):
     """The base of Recover and Handle.
 
-    children: `try`, then the handlers' nodes. caught: the cell that handlers see as failure.
+    children: `try`, then the handlers' nodes. caught: the cell that handlers read as `$failure`.
     """
 
     def __init__(self, parts: Parts) -> None:
@@ -90,12 +91,12 @@ class Catching(TreeNode):
         return tuple(self._answered)
 
     def clear(self) -> None:
-        """No failure is being handled."""
+        """Forget the failure that is being handled."""
         self.handling = self.first = None
 
     @property
     def note(self) -> str:
-        """Its note while it runs: how it handles a failure."""
+        """The note while it runs: which failure it handles, and how."""
         if self.handling is None or self.first is None:
             return ""
         handler = self.handling.node
@@ -118,7 +119,7 @@ class Catching(TreeNode):
 
 
 def _handled(walk: Walk, node: Node, failed: Known) -> list[After]:
-    """What is known after each handler, which also knows the failure."""
+    """What is known after each handler; the handler can read `$failure`."""
     return [
         walk(handler.node, failed.having(FAILURE_KEY, Key(FailureValue, handler.place)))
         for handler in node.handlers
@@ -143,7 +144,7 @@ def _handled_once(walk: Walk, node: Node, before: Known) -> After:
 
 
 def _left_over(node: Node, failing: Failing) -> Codes:
-    """Codes that no handler names, and those of the handlers."""
+    """Codes of `try` that no handler names, and codes with which the handlers fail."""
     named = {code for handler in node.handlers for code in handler.codes}
     left = NO_CODES if ANY in named else failing.children - named
     return left | failing.handlers
@@ -154,12 +155,12 @@ def _tries(node: Node) -> list[str]:
 
 
 class Recover(Catching):
-    """Runs `try`; when it fails runs the handler of its code, then `try` again."""
+    """Runs `try`; when it fails, runs the handler of its code, then `try` again."""
 
     spec = control(
         "Recover",
         "recover",
-        "Runs `try`; when it fails runs the handler of its code, then `try` again.",
+        "Runs `try`; when it fails, runs the handler of its code, then `try` again.",
         input_port("attempts", int, "how often `try` runs at most", least=1),
         dialect=Dialect.OURS,
         children=(1, 1),
@@ -179,11 +180,11 @@ class Recover(Catching):
 
     @property
     def role(self) -> Role:
-        """Its note: the number of tries."""
+        """Its role in displays."""
         return Role.RECOVERY
 
     def step(self) -> Status:
-        """Go on with the handler, or with `try`."""
+        """Continue with the handler or with `try`."""
         if self.state is not RUNNING:
             self._start_over()
         self.state = RUNNING
@@ -195,11 +196,11 @@ class Recover(Catching):
 
     @property
     def note(self) -> str:
-        """Which try it is, or what it does about a failure before the next."""
+        """The number of the try, or how it handles the failure before the next try."""
         return f"try {self.count + 1}" if self.handling is None else super().note
 
     def clear(self) -> None:
-        """No tries yet."""
+        """Forget the tries."""
         super().clear()
         self.count = 0
 
@@ -210,7 +211,7 @@ class Recover(Catching):
             node.renew()
 
     def _try(self) -> Status:
-        """Tick `try`. RUNNING with `handling` set when its failure is to be handled."""
+        """Tick `try`; when it fails and a handler fits, set `handling` and return RUNNING."""
         body = self.kids[0]
         status = self._noting_writes(body)
         if status is RUNNING:
@@ -231,7 +232,7 @@ class Recover(Catching):
         return RUNNING
 
     def _noting_writes(self, body: TreeNode) -> Status:
-        """Tick `try`, remembering what its cells held before it first wrote them."""
+        """Tick `try`; remember the old values of the keys that it writes."""
         journal = self.context.writes
         seen = len(journal)
         status = body.execute()
@@ -261,12 +262,12 @@ class Recover(Catching):
 
 
 class Handle(Catching):
-    """Runs `try`; when it fails the result of its code's handler is the result."""
+    """Runs `try`; when it fails, runs the handler of its code and returns the handler's result."""
 
     spec = control(
         "Handle",
         "handle",
-        "Runs `try`; when it fails the result of its code's handler is the result.",
+        "Runs `try`; when it fails, runs the handler of its code and returns its result.",
         dialect=Dialect.OURS,
         children=(1, 1),
         positions=("try",),
@@ -276,7 +277,7 @@ class Handle(Catching):
     )
 
     def step(self) -> Status:
-        """Go on with the handler, or with `try`."""
+        """Continue with the handler or with `try`."""
         self.state = RUNNING
         if self.handling is None:
             body = self.kids[0]

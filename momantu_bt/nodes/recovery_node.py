@@ -30,16 +30,16 @@ def _recovering(walk: Walk, node: Node, before: Known) -> After:
 
 
 class RecoveryNode(TreeNode):
-    """The first child; when it fails the second one, then the first one again.
+    """Runs the first child; when it fails, runs the second child, then the first one again.
 
-    It succeeds with the first child. It fails when that has failed once more than
-    `number_of_retries`, or when the second child fails or is skipped.
+    It succeeds when the first child succeeds. It fails when the first child has failed
+    `number_of_retries` + 1 times, or when the second child fails or is skipped.
     """
 
     spec = control(
         "RecoveryNode",
         "recovery_node",
-        "Runs the first child; when it fails the second one, and then the first one again.",
+        "Runs the first child; when it fails, runs the second one, then the first one again.",
         input_port(
             "number_of_retries", int, "how often the first child runs once more", 1, least=0
         ),
@@ -57,7 +57,7 @@ class RecoveryNode(TreeNode):
         self.recovering: FailureValue | None = None
 
     def step(self) -> Status:
-        """Tick the child whose turn it is, and the other one after its end."""
+        """Tick the current child; when it has ended, tick the other one if needed."""
         self.state = RUNNING
         while True:
             failure = self.recovering
@@ -67,12 +67,12 @@ class RecoveryNode(TreeNode):
 
     @property
     def note(self) -> str:
-        """Which try it is, and what it recovers from."""
+        """The number of the try, and the failure from which it recovers."""
         doing = f", recovering from {self.recovering.code}" if self.recovering else ""
         return f"try {self.retries + 1}{doing}"
 
     def clear(self) -> None:
-        """No tries yet."""
+        """Forget the tries."""
         self.retries = 0
         self.recovering = None
 
@@ -83,7 +83,7 @@ class RecoveryNode(TreeNode):
             return RUNNING
         if status is not FAILURE:
             self._finish()
-            self.state = IDLE  # skipped, it is as if it had never started
+            self.state = IDLE  # a skipped node counts as not started
             return status
         failure, most = self.failure_of(work), self.inputs["number_of_retries"]
         if self.retries >= most:

@@ -1,4 +1,4 @@
-"""TestNode: a leaf that does what a test prescribes."""
+"""TestNode: a leaf that ends as a test demands, in place of a skill."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _SCRIPTS = ("return_status_script", "success_script", "failure_script", "post_sc
 
 
 def _prescribed(walk: Walk, node: Node, before: Known) -> After:
-    """After the scripts that follow its end; each of them may fail."""
+    """What is known after the scripts that run at its end; each of them may fail."""
     walk.script(node, "return_status_script", before)
     good = walk.script(node, "success_script", before)
     bad = walk.script(node, "failure_script", before)
@@ -39,10 +39,10 @@ def _codes(node: Node, failing: Failing) -> Codes:
 
 
 class TestNode(TreeNode):
-    """RUNNING for `async_delay`, then its scripts run and it ends as prescribed.
+    """RUNNING for `async_delay`; then it runs its scripts and ends with the prescribed status.
 
-    scripts: `return_status_script`, `success_script`, `failure_script` and `post_script`, those
-    that are given; `post_script` runs after either of the two before it.
+    scripts: those of `return_status_script`, `success_script`, `failure_script` and `post_script`
+    that the tree gives. `post_script` runs after `success_script` or `failure_script`.
     """
 
     spec = leaf(
@@ -67,7 +67,7 @@ class TestNode(TreeNode):
         codes=_codes,
     )
 
-    __test__ = False  # pytest would take it for a class of tests
+    __test__ = False  # tell pytest that this is not a test class
 
     def __init__(self, parts: Parts) -> None:
         super().__init__(parts)
@@ -95,7 +95,7 @@ class TestNode(TreeNode):
         return status
 
     def clear(self) -> None:
-        """The time starts again."""
+        """Restart the delay."""
         self.begun = None
 
     def _run(self, name: str, due: bool) -> None:

@@ -19,7 +19,10 @@ _parsed: Callable[[str], script.Script] = lru_cache(maxsize=256)(parse)
 
 
 class Code:
-    """A script on a board. `read` gives its text: usually a constant, possibly a wire's value."""
+    """A script and the board that it reads and writes.
+
+    read: returns the script's text, a constant or the value of a key.
+    """
 
     def __init__(self, read: Callable[[], str], board: Board) -> None:
         self._read = read
@@ -31,7 +34,7 @@ class Code:
         return self._read()
 
     def run(self) -> object:
-        """Run it; ScriptError or Failure SCRIPT_ERROR when that cannot be done."""
+        """Run the script and return its value; ScriptError or Failure SCRIPT_ERROR if it fails."""
         try:
             parsed = _parsed(self._read())
         except ScriptSyntaxError as error:
@@ -39,7 +42,7 @@ class Code:
         return parsed.run(self._board)
 
     def holds(self) -> bool:
-        """Run it as a condition."""
+        """Run the script as a condition; return whether it is true."""
         return truth(self.run())
 
 
@@ -65,7 +68,7 @@ class Script(TreeNode):
         self.code = code_at(parts, "code")
 
     def step(self) -> Status:
-        """Run it."""
+        """Run the script."""
         self.code.run()
         return SUCCESS
 
@@ -83,7 +86,7 @@ class ScriptCondition(Script):
     )
 
     def step(self) -> Status:
-        """Ask it."""
+        """Evaluate the condition."""
         if self.code.holds():
             return SUCCESS
         return self.fail(FAILED, f"`{self.code.text}` does not hold")

@@ -7,7 +7,7 @@
 | FAILURE       | FAILURE, back to the first    | FAILURE, stays at this child     |
 | SKIPPED       | the next child; SKIPPED when all were | the same                 |
 
-AsyncSequence returns RUNNING between two children, so that what is around it can interrupt.
+AsyncSequence returns RUNNING between two children, so that nodes above it can interrupt it.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ from momantu_bt.tree.catalogue.spec import control
 
 
 class Sequence(TreeNode):
-    """Goes on where it was; starts over after a failure."""
+    """While RUNNING it continues with the current child; after its end it starts over."""
 
     spec = control(
         "Sequence",
         "sequence",
-        "Children in turn until one fails; goes on where it was.",
+        "Runs its children in turn until one fails; continues with the child that was running.",
         flow=in_turn,
         in_turn=True,
     )
@@ -38,13 +38,13 @@ class Sequence(TreeNode):
 
     @property
     def role(self) -> Role:
-        """A list of steps is a frame; its variants are nodes like others."""
+        """Its role in displays: a plain list of steps; the variants are ordinary nodes."""
         if type(self) is not Sequence:
             return Role.PLAIN
         return Role.STEPS if self.model.name is None else Role.NAMED_STEPS
 
     def step(self) -> Status:
-        """Tick children from the current one on."""
+        """Tick the current child and those after it."""
         if self.state is IDLE:
             self.skipped = 0
         self.state = RUNNING
@@ -79,12 +79,12 @@ class Sequence(TreeNode):
 
 
 class AsyncSequence(Sequence):
-    """A sequence that lets a tick pass between two children."""
+    """A sequence that returns RUNNING between two children."""
 
     spec = control(
         "AsyncSequence",
         "async_sequence",
-        "A sequence that can be interrupted in between.",
+        "A sequence that can be interrupted between two children.",
         flow=in_turn,
         in_turn=True,
     )
@@ -106,7 +106,7 @@ class SequenceWithMemory(Sequence):
     pauses = True
 
     def clear(self) -> None:
-        """Keep the place; that is its memory."""
+        """Keep the current child; a halt does not reset it."""
 
     def renew(self) -> None:
         """Back to the first child."""

@@ -1,7 +1,7 @@
-"""Switch2 to Switch6: the child of the case that equals a variable, else the last child.
+"""Switch2 to Switch6: run the child of the case that equals a variable, else the last child.
 
-The variable is asked on each tick; a child that is no longer meant is halted. The chosen child's
-status is the node's. A variable without a value chooses the last child.
+The variable is read on each tick; when the choice changes, the child that was running is halted.
+The chosen child's status is the node's status. A variable without a value selects the last child.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ def _spec(cases: int) -> NodeSpec:
 
 
 def _variable(node: Node) -> list[str]:
-    """Its ports in words: the cases stand before the children."""
+    """Its ports in words, without the cases: displays show those beside the children."""
     plain = {name: value for name, value in node.ports.items() if not name.startswith("case_")}
     return ports_in_words(node, plain)
 
@@ -60,7 +60,7 @@ def _roles(node: Node) -> list[str]:
 
 
 class Switch(TreeNode):
-    """Children: one for each case in order, then the one for everything else."""
+    """Children: one for each case, in order, then the default."""
 
     def __init__(self, parts: Parts) -> None:
         super().__init__(parts)
@@ -68,7 +68,7 @@ class Switch(TreeNode):
         self.at: int | None = None
 
     def step(self) -> Status:
-        """Choose, halt the child that is no longer meant, tick the chosen one."""
+        """Choose a child, halt the previous one if it is another, tick the chosen one."""
         chosen = self._chosen()
         if self.at is not None and self.at != chosen:
             self.kids[self.at].reset()
@@ -83,7 +83,7 @@ class Switch(TreeNode):
         return status
 
     def clear(self) -> None:
-        """No child is chosen."""
+        """Forget which child was chosen."""
         self.at = None
 
     def _chosen(self) -> int:
@@ -99,39 +99,39 @@ class Switch(TreeNode):
 
 
 class Switch2(Switch):
-    """Of two cases."""
+    """A switch with two cases."""
 
     spec = _spec(2)
 
 
 class Switch3(Switch):
-    """Of three cases."""
+    """A switch with three cases."""
 
     spec = _spec(3)
 
 
 class Switch4(Switch):
-    """Of four cases."""
+    """A switch with four cases."""
 
     spec = _spec(4)
 
 
 class Switch5(Switch):
-    """Of five cases."""
+    """A switch with five cases."""
 
     spec = _spec(5)
 
 
 class Switch6(Switch):
-    """Of six cases."""
+    """A switch with six cases."""
 
     spec = _spec(6)
 
 
 def is_case(value: Any, case: Any) -> bool:
-    """Whether a value matches a case: equal as it is, as text or as a number.
+    """Whether a value matches a case: they are equal, or equal as texts or as numbers.
 
-    A text that reads as a number is one. Numbers are equal within `EPSILON`; `true` is not one.
+    A text such as "3" counts as a number, `true` does not. Numbers are equal within `EPSILON`.
     """
     value, case = (_bare(value), _bare(case))
     if type(value) is type(case) and value == case:

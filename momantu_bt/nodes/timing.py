@@ -1,4 +1,4 @@
-"""Timeout, Delay, Sleep: time by the world's clock, never by the wall's."""
+"""Timeout, Delay, Sleep. They measure time by the world's clock, never by the wall clock."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from momantu_bt.tree.catalogue.wording import duration_text
 
 
 def seconds(inputs: Inputs) -> float:
-    """The time of a node whose inputs are `duration` and `msec`, one of which is given."""
+    """The time, s, of a node with the inputs `duration` and `msec`, of which one is given."""
     duration: float | None = inputs["duration"]
     if duration is not None:
         return duration
@@ -27,9 +27,10 @@ def seconds(inputs: Inputs) -> float:
 
 
 class Timeout(Decorator):
-    """Halts a child that runs too long and fails with TIMEOUT; what was running is its cause.
+    """Halts a child that runs too long, and fails with TIMEOUT.
 
-    The time runs from this node's start; 0 or less means no limit. Otherwise the child's status.
+    The failure's cause says what was running. Time counts from this node's start; a limit of 0 or
+    less means no limit. Within the limit, the node returns the child's status.
     """
 
     spec = decorator(
@@ -50,7 +51,7 @@ class Timeout(Decorator):
         self.begun: float | None = None
 
     def step(self) -> Status:
-        """Tick the child while there is time."""
+        """Tick the child; halt it when its time is up."""
         limit = seconds(self.inputs)
         if self.begun is None:
             self.begun = self.context.now
@@ -74,7 +75,7 @@ class Timeout(Decorator):
 
 
 class Delay(Decorator):
-    """RUNNING for a while, then the child; the next start waits again."""
+    """Returns RUNNING for a while, then ticks the child; each start waits again."""
 
     spec = decorator(
         "Delay",
@@ -108,12 +109,12 @@ class Delay(Decorator):
         return self.pass_on(status)
 
     def clear(self) -> None:
-        """The wait starts again."""
+        """Forget the wait; the next start waits again."""
         self.begun = None
 
 
 class Sleep(TreeNode):
-    """RUNNING for a while, then SUCCESS."""
+    """Returns RUNNING for a while, then SUCCESS."""
 
     spec = leaf(
         "Sleep", "wait", "Waits.", *time_ports("how long"), xml={"duration": ""}, one_of=TIME
@@ -126,7 +127,7 @@ class Sleep(TreeNode):
 
     @property
     def role(self) -> Role:
-        """Waiting is doing something."""
+        """Its role in displays: waiting counts as an action."""
         return Role.ACT
 
     def step(self) -> Status:

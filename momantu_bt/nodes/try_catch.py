@@ -1,4 +1,4 @@
-"""TryCatch: children in turn; when one fails the last child cleans up, and the node fails.
+"""TryCatch: runs children in turn; when one fails, the last child cleans up and the node fails.
 
 | where | child returns | TryCatch                                        |
 |-------|---------------|-------------------------------------------------|
@@ -9,8 +9,8 @@
 | catch | RUNNING       | RUNNING                                         |
 | catch | any other     | FAILURE, with the failure that led here         |
 
-With `catch_on_halt` the last child is ticked once when the node is halted while it tries; if it
-is RUNNING then, it is halted too.
+With `catch_on_halt`, a halt before any failure ticks the last child once; if it returns RUNNING, it
+is halted too.
 """
 
 from __future__ import annotations
@@ -45,12 +45,12 @@ def _cleaned_up(walk: Walk, node: Node, before: Known) -> After:
 
 
 class TryCatch(TreeNode):
-    """`kids[:-1]` are tried, `kids[-1]` cleans up."""
+    """Tries the children `kids[:-1]`; `kids[-1]` cleans up after a failure."""
 
     spec = control(
         "TryCatch",
         "try_catch",
-        "All children but the last in turn; when one fails the last one cleans up, and it fails.",
+        "Runs all but the last child in turn; when one fails, runs the last one, and then fails.",
         input_port("catch_on_halt", bool, "the last child also cleans up after a halt", False),
         children=(2, None),
         flow=_cleaned_up,
@@ -64,7 +64,7 @@ class TryCatch(TreeNode):
         self.caught: FailureValue | None = None
 
     def step(self) -> Status:
-        """Go on trying, or cleaning up."""
+        """Continue with the children or with the clean-up."""
         if self.state is IDLE:
             self.skipped = 0
             self.caught = None
@@ -101,13 +101,13 @@ class TryCatch(TreeNode):
             super().halt()
 
     def clear(self) -> None:
-        """Nothing has been tried."""
+        """Forget all progress."""
         self.at = self.skipped = 0
         self.caught = None
 
     @property
     def note(self) -> str:
-        """Why it cleans up."""
+        """The failure after which it cleans up."""
         return "" if self.caught is None else f"{self.caught.code}: cleaning up"
 
     def _cleans_up_halted(self) -> bool:

@@ -1,7 +1,7 @@
-"""WasEntryUpdated, SkipUnlessUpdated, WaitValueUpdate: has a key been written since the last time.
+"""WasEntryUpdated, SkipUnlessUpdated, WaitValueUpdate: react to a key that was written.
 
-A key that has a value counts as written the first time it is looked at; one that has none never
-does. What was seen outlasts an end and a halt.
+Each node remembers the last write that it has seen, also when it ends or is halted. The first time
+it looks, a key that has a value counts as written. A key without a value never does.
 """
 
 from __future__ import annotations
@@ -62,14 +62,14 @@ class WasEntryUpdated(TreeNode):
         self.watch = Watch(parts.key("entry"))
 
     def step(self) -> Status:
-        """Look."""
+        """Check whether the key was written."""
         if self.watch.is_new():
             return SUCCESS
         return self.fail(FAILED, f"${self.watch.cell.name} has not been written")
 
 
 class SkipUnlessUpdated(Decorator):
-    """Ticks a child that is at work; otherwise starts it when the key was written."""
+    """Starts the child when the key was written, and ticks it until it ends; otherwise SKIPPED."""
 
     spec = decorator(
         "SkipUnlessUpdated",
@@ -90,7 +90,7 @@ class SkipUnlessUpdated(Decorator):
         self.at_work = False
 
     def step(self) -> Status:
-        """Tick the child, or `instead`."""
+        """Tick the child, or return `instead` while the key has no new value."""
         if not self.at_work and not self.watch.is_new():
             return self.instead
         status = self.child.execute()
@@ -100,12 +100,12 @@ class SkipUnlessUpdated(Decorator):
         return self.pass_on(status)
 
     def clear(self) -> None:
-        """The child has been halted."""
+        """Forget that the child was running."""
         self.at_work = False
 
 
 class WaitValueUpdate(SkipUnlessUpdated):
-    """The same, but RUNNING while it waits."""
+    """As `SkipUnlessUpdated`, but returns RUNNING while it waits for a write."""
 
     spec = decorator(
         "WaitValueUpdate",
