@@ -1,9 +1,9 @@
 """The base class of all nodes: status, conditions, halting and bookkeeping.
 
-Nodes tick and stop as in BehaviorTree.CPP 4: `execute` asks the conditions, then `step`, then runs
-the scripts that follow an end. `state` is what a parent decides by (IDLE, RUNNING, or an end not
-yet collected); `shown` is the newest result, for people: it is IDLE again as soon as a node above
-starts anew, without a change of its own in the journal.
+Nodes tick and stop as in BehaviorTree.CPP 4: `execute` evaluates the conditions, calls `step`, and
+runs the scripts for the end (`on_success`, `on_failure`, `after`). A node has two statuses. Parents
+use `state`: IDLE, RUNNING, or the result until the parent resets it. Displays use `shown`, the
+newest result. It becomes IDLE again when a node above restarts; the journal has no entry for that.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from momantu_bt.tree.show.printing import text
 
 
 class BuildError(MomantuError):
-    """The model cannot become nodes: the checker would have said so."""
+    """Nodes cannot be built from a model. The checker finds all such mistakes before."""
 
 
 _RESULTS = (RUNNING, SUCCESS, FAILURE, SKIPPED)
@@ -39,7 +39,7 @@ _RESULTS = (RUNNING, SUCCESS, FAILURE, SKIPPED)
 
 
 def ticked_in(error: BaseException) -> TreeNode | None:
-    """The innermost node in whose tick or halt an exception was raised; None outside of nodes."""
+    """The innermost node whose tick or halt raised an exception; None if no node did."""
     owners = (frame.f_locals.get("self") for frame, _ in traceback.walk_tb(error.__traceback__))
     return next((each for each in reversed([*owners]) if isinstance(each, TreeNode)), None)
 
@@ -57,8 +57,8 @@ _TOP = _Top()
 class Parts:
     """The parts that a node is built from, such as its children and its ports.
 
-    kids: its children, those of handlers after the others. answers: codes of each handler, and
-    its node; None just tries again. caught: the cell that handlers see as `$failure`.
+    kids: its children, then the handlers' nodes. answers: the codes and the node of each handler;
+    the node None means try again. caught: the cell that handlers read as `$failure`.
     """
 
     model: Node
@@ -71,7 +71,7 @@ class Parts:
     caught: Cell | None = None
 
     def inputs(self, *keys: str) -> Inputs:
-        """Readers of its inputs. keys: inputs that mean the keys of their names unless given.
+        """Readers of its inputs. keys: inputs that read the key of the same name by default.
 
         Raises:
             ConversionError: a literal does not fit its port.
@@ -80,14 +80,14 @@ class Parts:
         return inputs_of(self.ports, {**defaults, **self.model.ports}, self.board)
 
     def outputs(self) -> dict[str, Output]:
-        """Its outputs that are wired, by port."""
+        """Its outputs that are connected to keys, by port name."""
         return outputs_of(self.ports, self.model.ports, self.board)
 
     def key(self, port: str) -> Cell:
-        """The cell that a port is wired to.
+        """The cell of the key that a port names.
 
         Raises:
-            BuildError: the port is not wired to a key.
+            BuildError: the port does not name a key.
         """
         value = self.model.ports.get(port)
         if not isinstance(value, Reference):
@@ -96,12 +96,12 @@ class Parts:
 
 
 class TreeNode:
-    """One node of a running tree. Subclasses write `step`, and `clear` for what they remember.
+    """One node of a running tree. Subclasses define `step`, and `clear` to reset their state.
 
-    spec: what a kind of node says of itself. model: what the tree file says. label: the same in
-    one line, with values once it has started. index: its number in the order of the file.
-    runs, failures, ticks, seconds: how often it started, failed, was ticked, and for how long
-    it was active by the world's clock.
+    spec: the declaration of this kind of node. model: the node as the tree file defines it. label:
+    one line of text for displays; after the start it includes the inputs' values. index: its number
+    in file order. runs, failures, ticks: how often it started, failed and was ticked. seconds: how
+    long it was active, by the world's clock.
     """
 
     spec: ClassVar[NodeSpec]
@@ -132,39 +132,39 @@ class TreeNode:
             node for child in self.kids for node in (child, *child.below)
         )
 
-    # what subclasses write
+    # Methods that subclasses define.
 
     @abstractmethod
     def step(self) -> Status:
-        """One tick of the node itself; its conditions have been asked."""
+        """One tick of the node itself, after its conditions were evaluated."""
 
     def clear(self) -> None:
-        """Forget progress (indices, counts, timers): the node is being halted."""
+        """Reset progress (indices, counts, timers); called when the node is halted."""
 
     def renew(self) -> None:
-        """Forget what outlasts an end (RoundRobin's position): a recovery starts from scratch."""
+        """Reset state that is kept after an end, such as RoundRobin's index; for a recovery."""
 
     @property
     def note(self) -> str:
-        """The text beside the name while it runs: a phase, a count of tries."""
+        """Text to show beside the name while it runs, such as a phase or the number of tries."""
         return ""
 
     @property
     def role(self) -> Role:
-        """Its role for a reader."""
+        """Its role in displays."""
         return Role.PLAIN
 
     @property
     def answered(self) -> tuple[int, ...]:
-        """The number of failures that each of its handlers has handled."""
+        """For each handler, how many failures it has handled."""
         return ()
 
     @property
     def above(self) -> TreeNode | None:
-        """The node that ticks it; None of the root."""
+        """The node that ticks it; None for the root."""
         return self._above if isinstance(self._above, TreeNode) else None
 
-    # what parents call
+    # Methods that parents call.
 
     def execute(self) -> Status:
         """Tick the node and return its status, SKIPPED included."""
@@ -198,7 +198,7 @@ class TreeNode:
         return new
 
     def halt(self) -> None:
-        """End whatever is running here and below; safe to call in any state."""
+        """Stop this node and all nodes below it; safe to call in any state."""
         self.reset_children()
         self.clear()
         self._count_seconds()
@@ -207,7 +207,7 @@ class TreeNode:
             self.show(IDLE)
 
     def halt_node(self) -> None:
-        """Halt, then run `on_halt`; a script that fails there is remarked on and passed over."""
+        """Halt, then run `on_halt`; if that script fails, only publish a remark."""
         self.halt()
         if self.conditions is not None:
             try:
@@ -216,7 +216,7 @@ class TreeNode:
                 self.context.remark(f"{self.where}: on_halt: {error}")
 
     def reset(self) -> None:
-        """Back to IDLE, halting it when it is running."""
+        """Set `state` to IDLE; halt the node first if it is running."""
         if self.state is RUNNING:
             self.halt_node()
         self.state = IDLE
@@ -231,7 +231,7 @@ class TreeNode:
 
     @property
     def shown(self) -> Status:
-        """The newest result, for people."""
+        """The newest result, for displays."""
         node = self
         while isinstance(node._above, TreeNode):
             if node._shown_in_run != node._above.runs:
@@ -240,14 +240,14 @@ class TreeNode:
         return self._shown
 
     def show(self, status: Status) -> None:
-        """Change the shown status and note it in the journal; RUNNING again for a new `note`."""
+        """Set the shown status and record it in the journal; with RUNNING also a changed `note`."""
         self._shown = status
         self._shown_in_run = self._above.runs
         note = self.note if status is RUNNING else ""
         failure = self.failure if status is FAILURE else None
         self.context.changes.append(Change(self, status, note, failure))
 
-    # names and failures
+    # Names and failures.
 
     @property
     def where(self) -> str:
@@ -260,7 +260,7 @@ class TreeNode:
         return FAILURE
 
     def fail(self, code: str, message: str, cause: FailureValue | None = None) -> Status:
-        """Fail with a failure of this node's own; the same one again when nothing differs."""
+        """Fail with a failure of this node; the previous value is reused when it is the same."""
         value = self._raised
         if value is None or (code, message, cause) != (value.code, value.message, value.cause):
             value = self._raised = self.own(FailureValue(code, message, cause=cause))
@@ -268,18 +268,18 @@ class TreeNode:
         return FAILURE
 
     def own(self, value: FailureValue) -> FailureValue:
-        """The failure as one of this node: with its name, type and place."""
+        """A copy of the failure with this node's name, type and place."""
         kind = self.model.target or self.model.type
         return replace(value, node=self.name, place=self.place, node_type=kind)
 
     def failure_of(self, child: TreeNode) -> FailureValue:
-        """Why a child that returned FAILURE did so."""
+        """The failure of a child that returned FAILURE."""
         return child.failure or child.own(FailureValue(FAILED, "failed without a reason"))
 
-    # bookkeeping
+    # Bookkeeping.
 
     def _conditioned(self, conditions: Conditions) -> Status:
-        """One tick with the conditions asked before it and the scripts run after an end."""
+        """One tick, with the conditions before it and the scripts after an end."""
         new = conditions.before(self.state)
         if new is None:
             if self.state is not RUNNING:
@@ -309,6 +309,6 @@ class TreeNode:
 
 
 def _name(model: Node) -> str:
-    """Its own name, else the subtree's, else its spelling in YAML, else the skill's."""
+    """The node's name; if it has none, the subtree's, its name in YAML, or the skill's."""
     spec = NODES.get(model.type)
     return model.name or model.target or (model.type if spec is None else spec.yaml[0])

@@ -1,4 +1,4 @@
-"""Admitting a skill's outputs: whether they fit their ports' types, made immutable."""
+"""Checks that a skill's outputs fit their ports' types, and makes them immutable."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from momantu_bt.values.kinds import ValueKind, ValueType, kind_of
 
 
 def admit(value: Any, port: Port) -> Any:
-    """The value made immutable, as the port takes it: an int becomes a float where one is asked.
+    """Check that a value fits the port, and make it immutable; an int becomes a float if needed.
 
     Raises:
-        Failure: WRONG_TYPE, with what came and what was expected.
+        Failure: WRONG_TYPE, the value does not fit; the message says what was expected.
     """
     try:
         return _admitted(value, kind_of(port.type))
@@ -35,10 +35,10 @@ def admit(value: Any, port: Port) -> Any:
 
 
 def admit_output(value: Any, port: Port) -> Any:
-    """The same, with a number wherever there should be one.
+    """As `admit`, but NaN is not allowed either.
 
     Raises:
-        Failure: WRONG_TYPE, also for a NaN: nobody may move by one.
+        Failure: WRONG_TYPE, the value does not fit or holds a NaN. A robot must never get one.
     """
     admitted = admit(value, port)
     where = None if type(admitted) in _WITHOUT_NAN else nan_in(admitted)
@@ -55,20 +55,20 @@ def admit_output(value: Any, port: Port) -> Any:
 
 
 def type_text(annotation: ValueType) -> str:
-    """A type as a person writes it in Python."""
+    """A type as Python code."""
     return annotation.__name__ if isinstance(annotation, type) else str(annotation)
 
 
 _WITHOUT_NAN = frozenset((bool, int, str, NoneType))
-"""Types of values that hold no NaN."""
+"""Types whose values cannot hold a NaN."""
 
 
 class _MisfitError(Exception):
-    """A value does not fit a kind."""
+    """The value does not fit the kind."""
 
 
 def _admitted(value: Any, kind: ValueKind) -> Any:
-    """Raises _MisfitError."""
+    """The value converted to a kind; raises _MisfitError if it does not fit."""
     match kind:
         case kinds.Number():
             return _number(value, kind)

@@ -1,4 +1,4 @@
-"""Walking through a value of any type: to make it immutable, or to search it for NaN."""
+"""Functions that go through all parts of a value: to make it immutable, or to find a NaN."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 _PLAIN = frozenset((bool, int, float, str, NoneType))
-"""Types of values that are immutable as they are."""
+"""Types whose values are always immutable."""
 
 
 def freeze(value: Any) -> Any:
-    """The same value made immutable: lists become tuples, arrays read-only, mappings proxies."""
+    """Make a value immutable: lists become tuples, arrays read-only, mappings read-only proxies."""
     if type(value) in _PLAIN:
         return value
     if type(value) in (list, tuple):
@@ -30,16 +30,16 @@ def freeze(value: Any) -> Any:
 
 
 def retuple(value: list[Any] | tuple[Any, ...], items: list[Any]) -> tuple[Any, ...]:
-    """The items as a tuple; the value itself where it is a tuple of these very items."""
+    """The items as a tuple; the value itself if it is already a tuple of these objects."""
     if isinstance(value, tuple) and all(a is b for a, b in zip(items, value, strict=True)):
         return value
     return tuple(items)
 
 
 def nan_in(value: Any) -> tuple[str, ...] | None:
-    """The way to a NaN in a value, by names of fields, keys and places in lists; None: it has none.
+    """Find a NaN in a value: its path of field names, keys and indices, or None.
 
-    Looks into lists, mappings, arrays and dataclasses.
+    Searches lists, mappings, arrays and dataclasses.
     """
     stack: list[tuple[tuple[str, ...], Any]] = [((), value)]
     seen: set[int] = set()

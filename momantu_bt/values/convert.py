@@ -1,7 +1,7 @@
 """Converting values of tree files to the types of ports.
 
-Used twice: by the checker on every literal, and by the engine on everything that reaches an
-input, so `convert` leaves alone what is of the right type already.
+The checker converts every literal; the engine converts every value that an input reads. So
+`convert` returns a value that already has the right type unchanged.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ from momantu_bt.values.types import label
 from momantu_bt.values.words import ConversionError, in_words, shown, unfit
 
 _BOOLS = {"true": True, "1": True, "false": False, "0": False}
-"""What BehaviorTree.CPP takes for a bool within a text."""
+"""The texts that BehaviorTree.CPP reads as a bool."""
 
 
 def convert(value: Any, port: Port) -> Any:
-    """A value as the port's type, immutable; one that already fits is returned unchanged.
+    """Convert a value to the port's type, immutable; a value that already fits stays unchanged.
 
-    Numbers with units become SI numbers, mappings become the port's dataclass, lists tuples.
+    Numbers with units become SI numbers, mappings the port's dataclass, lists tuples.
 
     Raises:
-        ConversionError: it does not fit, or a number is out of the port's bounds.
+        ConversionError: the value does not fit, or a number is out of the port's bounds.
     """
     found = _convert(value, kind_of(port.type), port.unit)
     if port.bounded:
@@ -42,7 +42,7 @@ def convert(value: Any, port: Port) -> Any:
 
 
 def _check_bounds(value: Any, found: Any, port: Port) -> None:
-    """Each number of a list by itself; an item that is not a number has no bounds."""
+    """Check a number, or each number of a list; items that are not numbers have no bounds."""
     for number in found if isinstance(found, tuple) else (found,):
         if isinstance(number, int | float) and not port.allows(number):
             said = value if isinstance(value, str) else shown(number)
@@ -51,7 +51,7 @@ def _check_bounds(value: Any, found: Any, port: Port) -> None:
 
 
 def natural(value: Any) -> Any:
-    """A value that no port types yet: quantities become SI numbers, containers immutable.
+    """Convert a value without a port: quantities become SI numbers, containers immutable.
 
     A text that only looks like a quantity (`5 apples`) stays a text.
     """
@@ -120,7 +120,7 @@ def _to_either(value: Any, kind: kinds.Either, unit: str | None) -> Any:
 
 
 _HOLDERS = (kinds.Items, kinds.Table)
-"""Kinds of which a value of the very type may hold what does not fit, or may change."""
+"""Kinds with parts: a value of the right class may still have parts that do not fit."""
 
 
 def _to_items(value: Any, kind: kinds.Items, unit: str | None) -> tuple[Any, ...]:
@@ -144,7 +144,7 @@ def _list(value: Any, kind: ValueKind) -> list[Any] | tuple[Any, ...]:
 def _each(
     value: list[Any] | tuple[Any, ...], kinds: tuple[ValueKind, ...], unit: str | None
 ) -> tuple[Any, ...]:
-    """The items as their kinds; the same tuple where nothing has changed."""
+    """Convert each item to its kind; returns the same tuple if nothing has changed."""
     items = []
     for index, (item, kind) in enumerate(zip(value, kinds, strict=True)):
         try:
@@ -155,7 +155,7 @@ def _each(
 
 
 def _to_queue(value: Any, kind: kinds.QueueOf) -> tuple[Any, ...]:
-    """A list; or a text, split at each `;` as BehaviorTree.CPP does; or one value alone."""
+    """Convert a list, one value, or a text that is split at each `;` as in BehaviorTree.CPP."""
     if isinstance(value, str):
         texts = value.removesuffix(";").split(";") if value else []
         value = [_item(text, kind.item) for text in texts]
@@ -165,7 +165,7 @@ def _to_queue(value: Any, kind: kinds.QueueOf) -> tuple[Any, ...]:
 
 
 def _item(text: str, kind: ValueKind) -> Any:
-    """One of the values in a text of several, as its type would be written alone."""
+    """Convert one value of a text with several."""
     if isinstance(kind, kinds.Text):
         return text
     text = text.strip()
@@ -185,7 +185,7 @@ def _to_table(value: Any, kind: kinds.Table, unit: str | None) -> Mapping[Any, A
 
 
 def _to_array(value: Any) -> Any:
-    """A list of numbers, or of such lists, each perhaps with a unit."""
+    """Convert a list of numbers, with or without units, or a list of such lists."""
     if isinstance(value, np.ndarray):
         return freeze(value)
     try:

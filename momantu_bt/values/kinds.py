@@ -1,8 +1,8 @@
 """The kinds of values that a port can take.
 
-A port's type is a Python annotation. `kind_of` reads it into one of the kinds below, with its
-parts. Whoever treats types differently (labels, the checker, conversion, schemas, examples)
-matches the kind and never takes an annotation apart. mypy tells where a kind is forgotten.
+A port's type is a Python annotation. `kind_of` turns it into one of the kinds below. Code that
+handles types differently (labels, the checker, conversion, schemas, examples) matches on the kind
+and never inspects an annotation. mypy reports a match that forgets a kind.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ ValueType: TypeAlias = Any
 _T = TypeVar("_T")
 
 
-# types that only ports of built-in nodes have
+# Types for ports of built-in nodes only.
 
 
 class ScriptText(str):
@@ -47,15 +47,15 @@ class CodeText(str):
 
 
 class Queue(Generic[_T]):
-    """The type of a port that takes a list, one value, or a text of values with `;` between."""
+    """The type of a port that takes a list, one value, or a text of values separated by `;`."""
 
 
-# the kinds
+# The kinds.
 
 
 @dataclass(frozen=True, slots=True)
 class _Kind:
-    """type: the annotation that it was read from."""
+    """The base of the kinds. type: the annotation from which it was made."""
 
     type: ValueType
 
@@ -73,7 +73,7 @@ class Unknown(_Kind):
 
 
 class Nothing(_Kind):
-    """None."""
+    """The value None."""
 
     __slots__ = ()
 
@@ -85,7 +85,7 @@ class Truth(_Kind):
 
 
 class Number(_Kind):
-    """An int or a float; `type` says which. A float has perhaps a unit, which the port knows."""
+    """An int or a float, see `type`. A float may have a unit; the port holds it."""
 
     __slots__ = ()
 
@@ -129,28 +129,28 @@ class Choice(_Kind):
 
 @dataclass(frozen=True, slots=True)
 class Items(_Kind):
-    """A list of any length; as a value it is a tuple."""
+    """A list of any length. Its values are tuples."""
 
     item: ValueKind
 
 
 @dataclass(frozen=True, slots=True)
 class Fixed(_Kind):
-    """A list with a kind for each item; as a value it is a tuple."""
+    """A list of fixed length, with a kind for each item. Its values are tuples."""
 
     items: tuple[ValueKind, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class QueueOf(_Kind):
-    """The items of a `Queue`; as a value it is a tuple."""
+    """A `Queue`. Its values are tuples."""
 
     item: ValueKind
 
 
 @dataclass(frozen=True, slots=True)
 class Table(_Kind):
-    """A mapping; as a value it is read-only."""
+    """A mapping. Its values are read-only."""
 
     key: ValueKind
     item: ValueKind
@@ -196,12 +196,12 @@ class Part:
 
 
 def kind_of(type_: ValueType) -> ValueKind:
-    """The kind of a type; each type is read once."""
+    """The kind of a type; results are cached."""
     return _of_class(type_) if isinstance(type_, type) else _of_form(_Form(type_))
 
 
 def is_type(annotation: ValueType) -> bool:
-    """Whether an annotation says what values it takes."""
+    """Whether an annotation is a type that values can be checked against."""
     return isinstance(annotation, type) or not isinstance(kind_of(annotation), Unknown)
 
 
@@ -214,7 +214,7 @@ def without_none(kind: ValueKind) -> tuple[ValueKind, ...]:
 
 @cache
 def parts_of(type_: type) -> tuple[Part, ...]:
-    """The fields of a dataclass that its constructor takes, in their order."""
+    """The fields of a dataclass that its constructor takes, in order."""
     hints = get_type_hints(type_)
     taken = inspect.signature(type_).parameters
     empty = inspect.Parameter.empty
@@ -258,11 +258,11 @@ _EXACTLY: Mapping[Any, ValueKind] = {
     **{each: Items(each, ANYTHING) for each in _LISTS},
     **{each: Table(each, ANYTHING, ANYTHING) for each in _MAPPINGS},
 }
-"""Classes whose subclasses are of another kind."""
+"""Classes for which only the class itself has the kind, not its subclasses."""
 
 
 def _is_checkable(type_: type) -> bool:
-    """Whether `isinstance` takes it; most protocols it does not."""
+    """Whether `isinstance` accepts the type; it rejects most protocols."""
     try:
         isinstance(None, type_)
     except TypeError:
@@ -272,7 +272,10 @@ def _is_checkable(type_: type) -> bool:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Form:
-    """A type that is not a class, by its identity: `A | B` and `B | A` are equal, yet differ."""
+    """A cache key for a type that is not a class.
+
+    It compares by identity, as `A | B` and `B | A` are equal but need different kinds.
+    """
 
     type: ValueType
 

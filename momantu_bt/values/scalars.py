@@ -1,6 +1,6 @@
 """Converting single values: choices, booleans, numbers and texts.
 
-All raise ConversionError where a value does not fit.
+All functions raise ConversionError if a value does not fit.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _MISREAD |= {"True": "true", "TRUE": "true", "False": "false", "FALSE": "false"}
 
 
 def to_choice(value: Any, choices: tuple[Any, ...]) -> Any:
-    """One of the values of a `Literal`."""
+    """Convert to one of the values of a `Literal`."""
     for choice in choices:
         if type(choice) is type(value) and choice == value:
             return choice
@@ -31,7 +31,7 @@ def to_choice(value: Any, choices: tuple[Any, ...]) -> Any:
 
 
 def to_enum(value: Any, type_: type[Enum]) -> Any:
-    """A member of an enum, by its value or name."""
+    """Convert to a member of an enum, by its value or name."""
     if isinstance(value, type_):
         return value
     for item in type_:
@@ -47,7 +47,7 @@ def _listed(value: Any, choices: Sequence[Any]) -> str:
 
 
 def to_bool(value: Any) -> bool:
-    """True or false."""
+    """Convert to True or False."""
     if isinstance(value, bool):
         return value
     if isinstance(value, str) and value in _MISREAD:
@@ -56,7 +56,7 @@ def to_bool(value: Any) -> bool:
 
 
 def to_number(value: Any, type_: type, unit: str | None) -> int | float:
-    """A number in SI units. unit: what it is in when the text says no unit."""
+    """Convert to a number in SI units. unit: the unit of a number that is given without one."""
     number = value
     if isinstance(value, str):
         number = _measured(value, type_, unit)
@@ -85,7 +85,7 @@ def _measured(text: str, type_: type, unit: str | None) -> Any:
 
 
 def _plain_number(text: str) -> Any:
-    """`010` and `2.50` as numbers: XML has no others; any other text as it is."""
+    """Read a text such as `010` or `2.50` as a number, as XML has only texts; else return it."""
     if not _NUMBER.fullmatch(text) or len(text) > _LONGEST_NUMBER:
         return text
     try:
@@ -96,7 +96,7 @@ def _plain_number(text: str) -> Any:
 
 
 def to_text(value: Any, type_: type[str]) -> Any:
-    """A text."""
+    """Convert to a text."""
     if isinstance(value, str):
         return value
     if type_ is CodeText:

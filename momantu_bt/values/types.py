@@ -1,4 +1,4 @@
-"""Port types by the names that trees use, and which type may flow into which."""
+"""The names of port types in tree files, and which types fit which ports."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ _LIST_OF = "list of "
 
 
 def parse_type(text: str) -> ValueType:
-    """`text`, `pose2d`, `list of number` as a Python type.
+    """The Python type for a name in tree files, such as `text`, `pose2d` or `list of number`.
 
     Raises:
-        KeyError: no type has this name; the argument is the unknown part.
+        KeyError: no type has this name; its argument is the unknown part of the name.
     """
     text = text.strip()
     depth = 0
@@ -28,7 +28,7 @@ def parse_type(text: str) -> ValueType:
 
 
 def label(type_: ValueType) -> str:
-    """A type in the words of tree files: "list of pose", "text or pose2d", "'a' or 'b'"."""
+    """A type as tree files name it: "list of pose", "text or pose2d", "'a' or 'b'"."""
     return _label(kind_of(type_))
 
 
@@ -65,9 +65,9 @@ def _list_label(items: tuple[ValueKind, ...]) -> str:
 
 
 def assignable(source: ValueType, target: ValueType) -> bool:
-    """Whether a value of type `source` can be right for a port of type `target`.
+    """Whether a value of type `source` can fit a port of type `target`.
 
-    Errs on the side of yes where only the value can tell: `any`, unions, choices of texts.
+    Returns True when only the value can decide: for `any`, unions and choices of texts.
     """
     return _assignable(kind_of(source), kind_of(target))
 

@@ -16,19 +16,19 @@ class ConversionError(ValueError):
 
 
 def in_words(value: Any) -> str:
-    """A value inside a text."""
+    """A value as it is inserted into a text."""
     if isinstance(value, bool):
         return "true" if value else "false"
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
 def render(parts: Sequence[Any]) -> str:
-    """Text from its parts, references replaced by their values."""
+    """Join the parts of a text; values are inserted as text."""
     return "".join(piece if isinstance(piece, str) else in_words(piece) for piece in parts)
 
 
 def unfit(value: Any, type_: ValueType, unit: str | None) -> ConversionError:
-    """The error of a value that cannot be of a type. unit: of a number."""
+    """Make the error for a value that does not fit a type. unit: the unit of a number."""
     wanted = label(type_)
     if unit is not None:
         wanted += f" in {unit}, or with one of the units {', '.join(units_of(unit)) or unit}"
@@ -38,7 +38,7 @@ def unfit(value: Any, type_: ValueType, unit: str | None) -> ConversionError:
 
 
 def shown(value: Any) -> str:
-    """A value as a message names it."""
+    """A value as a message shows it."""
     if value is None:
         return "nothing"
     if isinstance(value, bool):

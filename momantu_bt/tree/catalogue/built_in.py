@@ -1,7 +1,7 @@
 """The table of built-in nodes. A new one needs a file in `momantu_bt/nodes` and a line here.
 
-The language finds its own nodes by name, as it finds plug-ins: what reads and checks trees imports
-none of them.
+The tree language imports its own nodes by name, as it does plug-ins. So the code that reads and
+checks trees does not depend on the modules of nodes.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ BUILT_IN: Mapping[str, str] = {
     "PathLongerOnApproach": "approach",
     "GoalUpdated": "goals",
 }
-"""Type and module of each, in the order of lists; the class is named as the type."""
+"""Type and module of each node, in the order in which lists show them; its class has that name."""
 
 ADAPTERS: Mapping[str, str] = {"momantu_bt.behaviours": "behaviour"}
-"""Entry-point groups whose plug-ins are made into leaves, and the file that makes them."""
+"""Entry point groups whose plug-ins are turned into leaves, and the module that does it."""

@@ -10,7 +10,7 @@ from momantu_bt.failure import FAILED, INPUT_MISSING, SCRIPT_ERROR, WRONG_TYPE
 from momantu_bt.tree.model import Node
 
 Codes: TypeAlias = frozenset[str]
-"""Codes, bare and as `grip.TOO_FAR`. UNKNOWN stands for any."""
+"""Failure codes, plain (`TOO_FAR`) or with the node (`grip.TOO_FAR`). UNKNOWN means any code."""
 UNKNOWN = "?"
 NO_CODES: Codes = frozenset()
 
@@ -22,8 +22,8 @@ ANY_NODE: Codes = frozenset({FAILED, INPUT_MISSING, WRONG_TYPE, SCRIPT_ERROR})
 class Failing:
     """What is known about the nodes below a node.
 
-    children: codes of its children. handlers: codes of what its handlers run. named: the codes
-    that its port `code` can hold.
+    children: codes with which its children can fail. handlers: codes with which its handlers can
+    fail. named: the codes that its port `code` can have.
     """
 
     children: Codes
@@ -36,7 +36,7 @@ CodeFlow: TypeAlias = Callable[[Node, Failing], Codes]
 
 
 def joined(*parts: Codes) -> Codes:
-    """All codes of some sets: a set of them itself where it has them all, to copy no big ones."""
+    """The union of some sets; if one contains all others, that set itself, to avoid a copy."""
     distinct = set(parts)
     largest = max(distinct, key=len, default=NO_CODES)
     if all(part <= largest for part in distinct):
@@ -45,11 +45,11 @@ def joined(*parts: Codes) -> Codes:
 
 
 def passed_on(node: Node, failing: Failing) -> Codes:
-    """The children's and the handlers' codes, and those of every node."""
+    """The codes of the children and handlers, and those of every node."""
     return joined(failing.children, failing.handlers, ANY_NODE)
 
 
 def and_also(*codes: str) -> CodeFlow:
-    """The same, and codes of the node's own."""
+    """As `passed_on`, with further codes of the node itself."""
     own = ANY_NODE | frozenset(codes)
     return lambda node, failing: joined(failing.children, failing.handlers, own)

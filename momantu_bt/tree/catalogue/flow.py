@@ -1,7 +1,7 @@
-"""How knowledge about keys flows through a node with children.
+"""Which keys surely have a value after a node, given those before it.
 
-A flow says it for one kind of node. `walk(child, before)` gives what is known after each end that
-the child can have. The flows here are those that several kinds share.
+A flow is a function that computes this for one kind of node. It calls `walk(child, before)` for
+what is known after each possible end of a child. The flows here are used by several kinds of nodes.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from momantu_bt.tree.model import Node
 
 @dataclass(frozen=True, slots=True)
 class After:
-    """What is known after success, after failure, and where the node was skipped."""
+    """What is known after a node's success, after its failure, and when it was skipped."""
 
     success: Known
     failure: Known
@@ -24,18 +24,18 @@ class After:
 
     @property
     def passed(self) -> Known:
-        """After an end that a sequence goes on from."""
+        """What is known when a sequence continues after the node: success or skipped."""
         return meet(self.success, self.skipped)
 
 
 @dataclass(frozen=True, slots=True)
 class Walk:
-    """What a flow asks about the nodes below it, and of the checker.
+    """What a flow can ask the checker about the nodes below it.
 
-    into: what is known after each end that a node can have. removed: keys of the tree's board that
-    nodes, or something below them, may take away. rewritten: keys that they write, as far as it is
-    known what. outputs: what is known when the outputs of a node have been written. script: what is
-    known after the script at a port of a node.
+    into: what is known after each possible end of a node. removed: keys that nodes, or nodes below
+    them, may remove. rewritten: keys that a node writes, with what is known about the values.
+    outputs: what is known after a node has written its outputs. script: what is known after the
+    script at a port of a node.
     """
 
     into: Callable[[Node, Known], After]
@@ -45,7 +45,7 @@ class Walk:
     script: Callable[[Node, str, Known], Known]
 
     def __call__(self, node: Node, before: Known) -> After:
-        """What is known after each end that the node can have."""
+        """What is known after each possible end of the node."""
         return self.into(node, before)
 
 
@@ -54,7 +54,7 @@ Flow: TypeAlias = Callable[[Walk, Node, Known], After]
 
 
 def again(flow: Flow) -> Flow:
-    """Children may be asked again after a later one has run, which took keys away or wrote them."""
+    """A flow for nodes that run earlier children again, after later ones wrote or removed keys."""
 
     def known_each_time(walk: Walk, node: Node, before: Known) -> After:
         known = before.lacking(walk.removed(node)).rewritten(walk.rewritten(node))
@@ -64,7 +64,7 @@ def again(flow: Flow) -> Flow:
 
 
 def in_turn(walk: Walk, node: Node, before: Known) -> After:
-    """Each child after the success of the one before."""
+    """Each child runs after the success of the one before it."""
     known, failures, all_skipped = before, [NEVER], True
     for child in node.children:
         after = walk(child, known)
@@ -75,7 +75,7 @@ def in_turn(walk: Walk, node: Node, before: Known) -> After:
 
 
 def until_success(walk: Walk, node: Node, before: Known) -> After:
-    """Each child after the failure of the one before."""
+    """Each child runs after the failure of the one before it."""
     known, successes, all_skipped = before, [NEVER], True
     for child in node.children:
         after = walk(child, known)
@@ -86,7 +86,7 @@ def until_success(walk: Walk, node: Node, before: Known) -> After:
 
 
 def anywhere(walk: Walk, node: Node, before: Known) -> After:
-    """It may begin with any child, and end after any: nothing new is sure."""
+    """The node may begin with any child and end after any: no new key is sure."""
     for child in node.children:
         walk(child, before)
     return After(before, before)
@@ -98,13 +98,13 @@ def as_child(walk: Walk, node: Node, before: Known) -> After:
 
 
 def around(walk: Walk, node: Node, before: Known) -> After:
-    """The child may be ended early, and the node fails then."""
+    """The node may stop the child early; it fails then."""
     end = as_child(walk, node, before)
     return After(end.success, meet(end.failure, before), end.skipped)
 
 
 def perhaps(walk: Walk, node: Node, before: Known) -> After:
-    """The child may not run at all, and the node may end in any way all the same."""
+    """The child may not run at all; the node may then still succeed or fail."""
     end = as_child(walk, node, before)
     return After(meet(end.success, before), meet(end.failure, before), meet(end.skipped, before))
 
@@ -118,5 +118,5 @@ def unsure(walk: Walk, node: Node, before: Known) -> After:
 
 
 def as_written(walk: Walk, node: Node, before: Known) -> After:
-    """Of a leaf: with success its outputs are written."""
+    """The flow of a leaf: after success its outputs are written."""
     return After(walk.outputs(node, before), before)

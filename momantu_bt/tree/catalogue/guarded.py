@@ -19,7 +19,7 @@ FUNCTIONS = ("flow", "codes", "objection", "port_words", "around", "roles")
 
 
 def guarded(spec: NodeSpec) -> NodeSpec:
-    """The spec of a plugged-in node; its functions raise PluginError for whatever they raise."""
+    """The spec of a plug-in's node, with functions that turn any exception into a PluginError."""
     having = {name: getattr(spec, name) for name in FUNCTIONS}
     given: dict[str, Any] = {
         name: _guarded(spec, name, each) for name, each in having.items() if each is not None

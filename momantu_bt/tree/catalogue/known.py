@@ -19,9 +19,9 @@ from momantu_bt.values.types import assignable
 class Key:
     """A key that has a value.
 
-    type: of the value. literals: all that the value can be, where those are written in the file
-    and nothing has overwritten it. place: where it was written. either: what it is on one way or
-    another here, where those have nothing in common.
+    type: of the value. literals: every possible value, if all are literals in the file; else empty.
+    place: where the key was written. either: alternatives with different types, when the ways that
+    lead here write different things.
     """
 
     type: ValueType
@@ -38,7 +38,7 @@ class Key:
 
 @dataclass(frozen=True, slots=True)
 class Known:
-    """Keys that surely have a value here; None when this point is never reached."""
+    """The keys that surely have a value at a point. keys: None if the point is never reached."""
 
     keys: Mapping[str, Key] | None
 
@@ -52,17 +52,17 @@ class Known:
         return None if self.keys is None else self.keys.get(name)
 
     def having(self, name: str, key: Key) -> Known:
-        """The same with one more key."""
+        """A copy with one more key."""
         return self.having_all({name: key})
 
     def having_all(self, keys: Mapping[str, Key]) -> Known:
-        """The same with further keys."""
+        """A copy with further keys."""
         return self if self.keys is None or not keys else Known({**self.keys, **keys})
 
     def rewritten(self, keys: Iterable[tuple[str, Key]]) -> Known:
-        """The same where some keys that have a value may have been written again.
+        """A copy for a point where some keys that have a value may have been written again.
 
-        What was known of a value stays: it is right the first time.
+        The old value stays possible; a new one of a type that does not fit becomes an alternative.
         """
         if self.keys is None:
             return self
@@ -76,7 +76,7 @@ class Known:
         return Known(having)
 
     def lacking(self, names: Iterable[str]) -> Known:
-        """The same without some keys."""
+        """A copy without some keys."""
         if self.keys is None:
             return self
         gone = self.keys.keys() & set(names)
@@ -89,7 +89,7 @@ NEVER = Known(None)
 
 
 def meet(*points: Known) -> Known:
-    """What is known if any one of these points was passed."""
+    """What is known when the run has passed one of these points, but not which."""
     reached = [point.keys for point in points if point.keys is not None]
     if not reached:
         return NEVER
@@ -101,7 +101,7 @@ def meet(*points: Known) -> Known:
 
 
 def both(*points: Known) -> Known:
-    """What is known after all of these points; where they differ, the later one counts."""
+    """What is known when the run has passed all of these points; later ones count more."""
     if not all(point.reached for point in points):
         return NEVER
     return Known({name: key for point in points for name, key in (point.keys or {}).items()})
@@ -120,7 +120,7 @@ def _either(left: Key, right: Key) -> Key:
 
 
 def _one_or_other(left: Key, right: Key) -> Key:
-    """Each type once, with the place where it was written first."""
+    """The alternatives of both keys; each type once, with the place of its first write."""
     by_type: list[Key] = []
     for key in (*(left.either or (left,)), *(right.either or (right,))):
         if all(key.type != known.type for known in by_type):
@@ -129,13 +129,13 @@ def _one_or_other(left: Key, right: Key) -> Key:
 
 
 def literal_type(value: Literal) -> ValueType:
-    """The type of a written value where no port says otherwise: a quantity is a number."""
+    """The type of a literal that no port defines; a quantity such as `3 m` is a number."""
     plain = natural(value.value)
     return type(plain) if isinstance(plain, bool | int | float | str) else object
 
 
 def part_type(type_: ValueType, parts: tuple[str, ...]) -> ValueType:
-    """The type of a part of a value; `object` where it cannot be told.
+    """The type of a part of a value; `object` when it is unknown.
 
     Raises:
         KeyError: the type has no such part; the arguments are the part and the valid ones.

@@ -23,7 +23,7 @@ _Installed: TypeAlias = Mapping[str, EntryPoint]
 
 
 class NodeClass(Protocol):
-    """A node's class as the language knows it; the engine makes nodes of it."""
+    """The class of a node. The tree language uses only its `spec`; the engine makes instances."""
 
     spec: ClassVar[NodeSpec]
 
@@ -33,7 +33,7 @@ def _objection(name: str, plugin: object) -> str | None:
 
 
 PLUGINS: Group[type[NodeClass]] = Group("momantu_bt.nodes", "node", _objection)
-"""Nodes that other packages bring, by YAML spelling."""
+"""Nodes from plug-ins, by YAML name."""
 
 
 def _behaviour_objection(name: str, plugin: object) -> str | None:
@@ -42,15 +42,19 @@ def _behaviour_objection(name: str, plugin: object) -> str | None:
 
 
 DOCTOR = "run momantu-bt doctor"
-"""What to do about a broken one."""
+"""The hint for a broken plug-in."""
 
 BEHAVIOURS: Group[object] = Group("momantu_bt.behaviours", "behaviour", _behaviour_objection)
-"""Behaviours of py_trees that other packages bring, by their names in trees."""
+"""py_trees behaviours from plug-ins, by their names in trees."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Tables:
-    """classes: by canonical type. The specs: by type, by YAML spelling, by number of cases."""
+    """The tables of all nodes.
+
+    classes: by canonical type. specs: by canonical type. spelled: specs by YAML name. switches:
+    specs of switches by number of cases. modifiers: the kind of each modifier by its YAML name.
+    """
 
     classes: Mapping[str, type[NodeClass]]
     specs: Mapping[str, NodeSpec]
@@ -60,7 +64,7 @@ class _Tables:
 
 
 class Table(Mapping[K, V]):
-    """A table of nodes that is read, and its nodes imported, at its first use."""
+    """A table of nodes. Its first use imports the nodes."""
 
     def __init__(self, read: Callable[[_Tables], Mapping[K, V]]) -> None:
         self._read = read
@@ -76,15 +80,15 @@ class Table(Mapping[K, V]):
 
 
 NODES: Table[str, NodeSpec] = Table(lambda tables: tables.specs)
-"""What each node says of itself, by canonical type."""
+"""The spec of each node, by canonical type."""
 SPELLED: Table[str, NodeSpec] = Table(lambda tables: tables.spelled)
-"""The same by YAML spelling."""
+"""The spec of each node, by YAML name."""
 SWITCHES: Table[int, NodeSpec] = Table(lambda tables: tables.switches)
-"""The switches by their number of cases; in YAML all are `switch`."""
+"""The specs of switches by number of cases; in YAML all of them are named `switch`."""
 NODE_CLASSES: Table[str, type[NodeClass]] = Table(lambda tables: tables.classes)
-"""Classes by canonical type."""
+"""The class of each node, by canonical type."""
 MODIFIERS: Table[str, str] = Table(lambda tables: tables.modifiers)
-"""Reserved modifier names of YAML, and what each one is: `key`, `condition` or `decorator`."""
+"""Names of YAML modifiers, each with its kind: `key`, `condition` or `decorator`."""
 
 
 def of_dialect(dialect: Dialect) -> list[str]:
@@ -93,19 +97,19 @@ def of_dialect(dialect: Dialect) -> list[str]:
 
 
 def plugged_in() -> list[str]:
-    """Types of the nodes that other packages bring, sorted."""
+    """Types of the nodes from plug-ins, sorted."""
     return sorted(NODES.keys() - BUILT_IN.keys())
 
 
 def is_ours(name: str) -> bool:
-    """Whether a node stands in our namespace in XML: BehaviorTree.CPP and Nav2 lack it."""
+    """Whether a node is in Momantu's namespace in XML, as BehaviorTree.CPP and Nav2 lack it."""
     return name in BUILT_IN and NODES[name].dialect is Dialect.OURS
 
 
 def why_broken(name: str) -> str | None:
-    """Why the node or behaviour of another package cannot be used; None where it can.
+    """Why a plug-in's node or behaviour cannot be used; None if it can or does not exist.
 
-    name: its spelling in YAML or its type in XML; of no such node, None.
+    name: its name in YAML or its type in XML.
     """
     spelled = {type_of(spelling): spelling for spelling in PLUGINS}
     try:
@@ -119,7 +123,7 @@ def why_broken(name: str) -> str | None:
 
 
 def _tables() -> _Tables:
-    """The tables of today's plug-ins; groups give the same mapping while these are the same."""
+    """The tables for the installed plug-ins; they are made again only when plug-ins change."""
     global _newest
     found = PLUGINS.installed(), BEHAVIOURS.installed()
     if _newest is None or found[0] is not _newest[0] or found[1] is not _newest[1]:
@@ -128,21 +132,21 @@ def _tables() -> _Tables:
 
 
 _newest: tuple[_Installed, _Installed, _Tables] | None = None
-"""What the tables were read from, and the tables."""
+"""The plug-ins from which the tables were made, and the tables."""
 
 
 def _bridge() -> Any:
-    """The module that makes leaves of behaviours; py_trees is imported with it."""
+    """The module that turns behaviours into leaves; importing it imports py_trees."""
     return _module(ADAPTERS[BEHAVIOURS.name])
 
 
 def _module(name: str) -> Any:
-    """A module of nodes; found by name, as plug-ins are, so that the language imports no node."""
+    """Import a module of nodes by name, so that the tree language does not depend on nodes."""
     return import_module(f"momantu_bt.nodes.{name}")
 
 
 def _spellings() -> frozenset[str]:
-    """YAML spellings of the built-in nodes."""
+    """YAML names of the built-in nodes."""
     return frozenset(name for kind in _built_in().values() for name in kind.spec.yaml)
 
 
@@ -155,7 +159,7 @@ def _built_in() -> Mapping[str, type[NodeClass]]:
 
 
 def _read(nodes: _Installed, behaviours: _Installed) -> _Tables:
-    """All installed nodes without the broken ones; `load` of their group raises the reason."""
+    """The tables of all working nodes. For a broken one, `load` of its group raises the reason."""
     classes = dict(_built_in())
     for name in nodes:
         with suppress(PluginError):

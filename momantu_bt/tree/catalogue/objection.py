@@ -25,9 +25,9 @@ _LATER = "give the entry point and the spec another name"
 
 
 def node_objection(name: str, plugin: object, built_in: Collection[str]) -> str | None:
-    """Why trees cannot use this as a node; None when they can.
+    """Why trees cannot use a plug-in as a node; None if they can.
 
-    name: of the entry point. built_in: spellings of the built-in nodes.
+    name: of the entry point. built_in: YAML names of the built-in nodes.
     """
     if not isinstance(plugin, type):
         return f"{type(plugin).__name__} is not a class"
@@ -47,12 +47,12 @@ def node_objection(name: str, plugin: object, built_in: Collection[str]) -> str 
 
 
 def type_of(name: str) -> str:
-    """The canonical type of a node by its YAML spelling: `EveryNth` for `every_nth`."""
+    """The canonical type for a YAML name: `EveryNth` for `every_nth`."""
     return "".join(word.capitalize() for word in name.split("_"))
 
 
 def bad_name(name: str, built_in: Collection[str]) -> str | None:
-    """Why no node can be called so; None when one can."""
+    """Why a node cannot have this name; None if it can."""
     if not _NAME.fullmatch(name):
         return f"{name!r} is not a name for a node: lower-case letters, digits and underscores"
     if name in built_in or type_of(name) in BUILT_IN or type_of(name) == SUBTREE:
@@ -71,7 +71,7 @@ def _bad_spelling(name: str, spec: NodeSpec) -> str | None:
 
 
 def _bad_types(spec: NodeSpec) -> str | None:
-    """The first argument of the spec that is not what it has to be."""
+    """What is wrong with the first argument of the spec that has a wrong type; None if all fit."""
     for argument in FUNCTIONS:
         value = getattr(spec, argument)
         if value is None and argument not in ("flow", "codes"):
@@ -118,7 +118,7 @@ def _bad_spec(spec: NodeSpec) -> str | None:
 
 
 def bad_port(name: str, port: Port) -> str | None:
-    """The problem of a node's port; None when it is right."""
+    """What is wrong with a node's port; None if it is right."""
     if port.name in ("child", "children"):
         return f"the port {name}.{port.name} would hide what stands below the node; rename it"
     if not isinstance(port.doc, str) or not port.doc.strip():

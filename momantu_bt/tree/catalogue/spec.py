@@ -22,29 +22,29 @@ class Kind(StrEnum):
 
 
 class Dialect(StrEnum):
-    """Whose trees know a node."""
+    """The library that a node comes from."""
 
     BTCPP = "btcpp"
     """BehaviorTree.CPP."""
     NAV2 = "nav2"
-    """Nav2's plug-ins for it."""
+    """Nav2's plug-ins for BehaviorTree.CPP."""
     OURS = "momantu"
-    """Ours alone; in XML it stands in our namespace."""
+    """Momantu's own nodes; in XML they are in Momantu's namespace."""
 
 
 class Scripts(StrEnum):
-    """What the checker does with scripts at a node's ports."""
+    """How the checker treats the scripts at a node's ports."""
 
     ASKED = "asked"
-    """They are read before the node runs; what they write is not counted on."""
+    """Their reads are checked; nothing that they write is relied on."""
     RUN = "run"
-    """The node runs them: what they write is known after it."""
+    """The node runs them, so the keys that they write are known after it."""
     OWN = "own"
-    """The node's flow reads them itself."""
+    """The node's `flow` handles them itself."""
 
 
 class Objection(NamedTuple):
-    """A value that a node cannot have. port: whose value."""
+    """What is wrong with the value of a port."""
 
     port: str
     message: str
@@ -55,26 +55,29 @@ class Objection(NamedTuple):
 class NodeSpec:
     """One kind of node.
 
-    type: canonical name, the tag in XML. yaml: the spellings, preferred first. first: the port
-    that a scalar in YAML means. modifier: the YAML spelling may stand beside a node key. children:
-    least and most (None: any). positions: what each child is, where they have names of their own
-    in YAML (if, then, else). handlers: takes `catch:`; tries_again: a handler may be `again`. xml:
-    attribute names of BehaviorTree.CPP for ports named otherwise; empty for a port that it does not
-    have. switch: how many cases it has.
+    Names and files:
+        type: the canonical name, which is the tag in XML. yaml: its names in YAML, the preferred
+        one first. first: the port that a bare value in YAML sets. modifier: in YAML it may also be
+        a key beside another node. children: fewest and most (None: no limit). positions: YAML keys
+        of the children, for nodes whose children have names (if, then, else). handlers: it takes
+        `catch:`. tries_again: a handler may be `again`. xml: attribute names in XML for ports that
+        BehaviorTree.CPP names differently; empty for a port that it lacks. switch: number of cases.
 
-    one_of: groups of inputs, exactly one of which is given. keys: ports that mean a key and not its
-    value; in XML its bare name will do. may_be_empty: inputs whose key need not hold a value.
-    item: the output that holds what the child of a loop works on, and the input where it comes
-    from. copies: outputs that get the value of an input. removes: the port whose key loses its
-    value. scripts: what becomes of scripts at ports. objection: what is wrong with its values.
+    For the checker:
+        one_of: groups of inputs; a tree gives exactly one input of each. keys: ports that take a
+        key itself instead of its value; in XML the bare name is enough. may_be_empty: inputs whose
+        key may have no value. item: of a loop, the output with the current item and the input with
+        the list. copies: for each such output, the input whose value it gets. removes: the port
+        whose key is removed. scripts: see `Scripts`. objection: checks the ports' values.
+        concurrent: the children run at the same time. in_turn: each child runs once, in order.
+        condition: a leaf that tests something and ends at once. retries: it runs the first child
+        again after a failure. flow: which keys surely have a value after the node; the default
+        relies on nothing that the children write. codes: the failure codes of the node.
 
-    concurrent: children run side by side. in_turn: children are asked once, one after the other.
-    condition: a leaf that asks something and ends at once. retries: it runs its first child again
-    when that has failed. flow: how what is known of keys passes through it; the default counts on
-    nothing that its children write. codes: which failure codes come out of it.
-
-    title: what it is called in words, the spelling unless given. port_words: its ports in words.
-    around: a decorator in the line of its child. roles: what each child is, in words.
+    For displays:
+        title: the node's name in words; by default its name in YAML. port_words: its ports in
+        words. around: a decorator's text in the line of its child. roles: each child's role in
+        words.
     """
 
     type: str
@@ -144,7 +147,7 @@ class Further(TypedDict, total=False):
 
 
 def control(type_: str, yaml: str, doc: str, *ports: Port, **further: Unpack[Further]) -> NodeSpec:
-    """A node that decides which of its children run; at least one unless `children` says more."""
+    """A node that decides which of its children run; by default it has one child or more."""
     further.setdefault("children", (1, None))
     return NodeSpec(type_, (yaml,), Kind.CONTROL, doc, by_name(*ports), **further)
 
@@ -152,7 +155,7 @@ def control(type_: str, yaml: str, doc: str, *ports: Port, **further: Unpack[Fur
 def decorator(
     type_: str, yaml: str, doc: str, *ports: Port, **further: Unpack[Further]
 ) -> NodeSpec:
-    """A node around one child, which may be written beside it; a bare value is its first port."""
+    """A node around one child. In YAML it may stand beside it; a bare value sets its first port."""
     further.setdefault("modifier", True)
     further.setdefault("positions", ("child",))
     further.setdefault("children", (1, 1))
@@ -167,7 +170,7 @@ def leaf(
     *ports: Port,
     **further: Unpack[Further],
 ) -> NodeSpec:
-    """A node without children; a bare value goes to its first port."""
+    """A node without children; in YAML a bare value sets its first port."""
     spellings = (yaml,) if isinstance(yaml, str) else yaml
     further.setdefault("first", ports[0].name if ports else None)
     further.setdefault("flow", as_written)
@@ -175,12 +178,12 @@ def leaf(
 
 
 def by_name(*ports: Port) -> dict[str, Port]:
-    """Ports as `NodeSpec.ports` holds them."""
+    """The ports by name, for `NodeSpec.ports`."""
     return {port.name: port for port in ports}
 
 
 def output_port(name: str, type_: Any, doc: str, default: Any = MISSING) -> Port:
-    """An output of a node; with the default None it need not be wired."""
+    """An output of a node; with the default None a tree may leave it out."""
     return Port(name, "out", type_, doc, default)
 
 
@@ -200,7 +203,7 @@ def input_port(
 
 
 def time_ports(doc: str) -> tuple[Port, Port]:
-    """A time in either spelling, ours and BehaviorTree.CPP's; exactly one is given."""
+    """The ports `duration` and `msec` (BehaviorTree.CPP's); a tree gives exactly one of them."""
     return (
         input_port("duration", float, doc, None, unit="s", least=0),
         input_port("msec", int, f"{doc}, in milliseconds", None, least=0),

@@ -22,7 +22,7 @@ def value_text(value: PortValue) -> str:
 
 
 def port_text(node: Node, port: str) -> str:
-    """The value of one port; `?` where it is not given."""
+    """The value of one port; `?` if the tree does not give it."""
     return value_text(node.ports.get(port, _UNKNOWN))
 
 
@@ -35,7 +35,7 @@ def ports_in_words(node: Node, ports: Mapping[str, PortValue]) -> list[str]:
 
 
 def script_text(script: str) -> str:
-    """A script as YAML spells it."""
+    """A script as a YAML file writes it."""
     try:
         return yaml_spelling(script)
     except ScriptSyntaxError:

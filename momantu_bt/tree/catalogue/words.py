@@ -8,16 +8,16 @@ SUBTREE = "SubTree"
 """Canonical type of a node that runs another tree of the document; `Node.target` names it."""
 
 AUTOREMAP = "_autoremap"
-"""Port of a SubTree: whether every key inside that no wire names is the same key outside."""
+"""Port of a SubTree: whether all other keys inside are the outside keys of the same name."""
 
 FORCED: Mapping[str, str] = {"success": "ForceSuccess", "failure": "ForceFailure"}
-"""What the modifier `force:` makes of its value."""
+"""The decorator for each value of the modifier `force:`."""
 
 PRE_CONDITIONS = ("fail_if", "succeed_if", "skip_if", "while")
-"""Conditions asked before a node's tick, in this order (BehaviorTree.CPP's)."""
+"""Conditions that are evaluated before a node's tick, in this order (BehaviorTree.CPP's)."""
 
 POST_SCRIPTS = ("on_success", "on_failure", "on_halt", "after")
-"""Scripts run when a node ends: so, or (`after`) with success or failure."""
+"""Scripts that run when a node succeeds, fails or is halted; `after` runs on success or failure."""
 
 CONDITIONS = (*PRE_CONDITIONS, *POST_SCRIPTS)
 """Keys of `Node.conditions`."""
@@ -38,4 +38,4 @@ NODE_KEYS = ("name", "note", "disabled")
 """Modifiers that are neither decorators nor conditions."""
 
 WORDS_OF_TREES = ("again", "any", "child", "children", "try", "catch", "then", "else", "do")
-"""Words that stand where a node's name could, and mean something else."""
+"""Words that can be in the place of a node's name in YAML but are not nodes."""
