@@ -8,8 +8,10 @@ from typing import Annotated
 import typer
 
 from momantu_bt.cli.shared.listing import listing
+from momantu_bt.errors import MomantuError
 from momantu_bt.messages import plain
-from momantu_bt.world import AboutWorld, WorldEntry
+from momantu_bt.plugins import PluginError
+from momantu_bt.world import AboutWorld, Site, WorldEntry
 from momantu_bt.world_plugins import WORLDS
 
 worlds = typer.Typer(rich_markup_mode=None, invoke_without_command=True)
@@ -40,7 +42,7 @@ def show_one(
 ) -> None:
     """Show one world."""
     entry = WORLDS.load(name)
-    site = entry.site()
+    site = _site(name, entry)
     more = entry.about() if isinstance(entry, AboutWorld) else {}
     if as_json:
         about = {
@@ -69,6 +71,16 @@ def show_one(
         typer.echo(f"\n{section}")
         for what, words in lines.items():
             typer.echo(f"  {what}: {words}")
+
+
+def _site(name: str, entry: WorldEntry) -> Site:
+    try:
+        return entry.site()
+    except MomantuError:
+        raise
+    except Exception as error:  # a plug-in's code, which may raise anything
+        message = f"the world {name!r} cannot be read: {type(error).__name__}: {error}"
+        raise PluginError(message) from error
 
 
 def _about(entry: WorldEntry) -> str:

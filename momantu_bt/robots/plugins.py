@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeAlias
 
+from momantu_bt.errors import MomantuError
 from momantu_bt.plugins import Files, Group, PluginError
 from momantu_bt.robot import RobotDescription
 from momantu_bt.robots.reader import read_robot
@@ -20,10 +21,17 @@ def load_robot(name: str) -> RobotDescription:
     """The robot of a name, or of a path.
 
     Raises:
-        PluginError: no robot has this name; the message names the nearest ones.
+        PluginError: no robot has this name (with the nearest ones), or its function raises.
         RobotFileError: its file is wrong.
     """
-    return ROBOTS.load(name)()
+    describe = ROBOTS.load(name)
+    try:
+        return describe()
+    except MomantuError:
+        raise
+    except Exception as error:  # a plug-in's code, which may raise anything
+        message = f"the robot {name!r} cannot be read: {type(error).__name__}: {error}"
+        raise PluginError(message) from error
 
 
 def _objection(name: str, plugin: Any) -> str | None:

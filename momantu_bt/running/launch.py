@@ -38,7 +38,7 @@ from momantu_bt.tree.check.named_world import world_of
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.registry import Registry
 from momantu_bt.values.convert import natural
-from momantu_bt.world import World
+from momantu_bt.world import World, WorldError
 from momantu_bt.world_plugins import NoWorld
 
 Watch: TypeAlias = Callable[[Executor], Sequence[Observer]]
@@ -155,7 +155,13 @@ def _open(
     description = registry.description(options.robot or entry.default_robot)
     _check_uses(kinds, description)
     _check_sensors(needed, description)
-    return entry.open(description, options.seed, referee=options.referee)
+    try:
+        return entry.open(description, options.seed, referee=options.referee)
+    except MomantuError:
+        raise
+    except Exception as error:  # a plug-in's code, which may raise anything
+        message = f"the world {name!r} could not start: {type(error).__name__}: {error}"
+        raise WorldError(message, hint="Tell its authors, or choose another world.") from error
 
 
 def check_world(

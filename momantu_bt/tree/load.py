@@ -85,7 +85,7 @@ def _override(document: Document, values: Mapping[str, Any], problems: Problems)
         if given is not None:
             key_place, place = given.key_places[name], given.places[name]
         if name not in known:
-            hint = valid_names(name, document.values or known, "its values")
+            hint = valid_names(name, document.values or known, "values in it")
             problems.error("unknown-value", key_place, f"the tree has no value {name!r}", hint)
         document.values[name] = Literal(value)
         document.value_places[name] = place

@@ -251,3 +251,15 @@ def test_a_skill_that_breaks_a_promise_does_not_pass(
     assert said.endswith("[broken]\n")
     assert main(["skills", "test", "od"]) == 2
     assert "did you mean 'odd'?" in capsys.readouterr().err
+
+
+def test_a_robot_whose_function_raises_is_named(
+    monkeypatch: pytest.MonkeyPatch, capsys: Out
+) -> None:
+    def torn() -> None:
+        raise OSError("the disk is gone")
+
+    monkeypatch.setattr(ROBOTS, "load", lambda name: torn)
+    assert main(["robots", "show", "hall"]) == 2
+    said = capsys.readouterr().err
+    assert said == "momantu-bt: the robot 'hall' cannot be read: OSError: the disk is gone\n"

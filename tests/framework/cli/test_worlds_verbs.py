@@ -4,9 +4,12 @@ import json
 
 import pytest
 
+import momantu_bt
 from momantu_bt.cli import main
 from momantu_bt.geometry import Pose2D
-from momantu_bt.world import Site, Surface
+from momantu_bt.testing.description import small_robot
+from momantu_bt.tree.registry import Registry
+from momantu_bt.world import Site, Surface, WorldError
 from momantu_bt.world_plugins import WORLDS
 
 Out = pytest.CaptureFixture[str]
@@ -51,3 +54,29 @@ def test_show_of_a_world_that_tells_no_more(monkeypatch: pytest.MonkeyPatch, cap
     monkeypatch.setattr(WORLDS, "load", lambda name: Plain())
     assert main(["worlds", "show", "hall", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["about"] == {}
+
+
+class Torn(Plain):
+    """A world whose code raises what nobody expects."""
+
+    def site(self) -> Site:
+        raise OSError("the disk is gone")
+
+
+def test_a_world_whose_site_raises_is_named(monkeypatch: pytest.MonkeyPatch, capsys: Out) -> None:
+    monkeypatch.setattr(WORLDS, "load", lambda name: Torn())
+    assert main(["worlds", "show", "hall"]) == 2
+    said = capsys.readouterr().err
+    assert said == "momantu-bt: the world 'hall' cannot be read: OSError: the disk is gone\n"
+
+
+def test_a_world_that_raises_when_it_opens_could_not_start(tmp_path) -> None:
+    class Leaking(Plain):
+        def open(self, *_: object, **__: object) -> None:
+            raise KeyError("keel")
+
+    path = tmp_path / "t.yaml"
+    path.write_text("momantu_bt: 1\ntrees: {Main: succeed}\n", encoding="utf-8")
+    registry = Registry(worlds={"hall": Leaking()}, robots={"carrier": small_robot})
+    with pytest.raises(WorldError, match="the world 'hall' could not start: KeyError: 'keel'"):
+        momantu_bt.run(path, world="hall", registry=registry)
