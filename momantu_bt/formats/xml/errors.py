@@ -125,7 +125,8 @@ def _prefix(
     hint = "remove it"
     if near is not None:
         declared = f'xmlns:{near}="{prefixes[near]}"'
-        hint = f"did you mean {near}? It is declared by {declared} in the first element"
+        meant = "" if near == name else f"did you mean {near}? "
+        hint = f"{meant}write {declared} in the first element"
     where = _before(place, lines, f"{name}:", len(name))
     return Problem("syntax", f"the prefix `{name}:` is not declared", where, hint)
 

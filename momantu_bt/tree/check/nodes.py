@@ -132,6 +132,10 @@ def _without_first(places: Mapping[str, Place]) -> dict[str, Place]:
     return {name: place for name, place in places.items() if name != FIRST_INPUT}
 
 
+def _children(count: int) -> str:
+    return "1 child" if count == 1 else f"{count or 'no'} children"
+
+
 def _check_children(context: Context, node: Node, signature: Signature) -> None:
     if signature.spec is None:
         if node.children:
@@ -141,13 +145,13 @@ def _check_children(context: Context, node: Node, signature: Signature) -> None:
     least, most = signature.spec.children
     count = len(node.children)
     if count < least and not signature.spec.positions:
-        message = f"{signature.said} has {count or 'no'} children; at least {least}"
+        message = f"{signature.said} has {_children(count)}; at least {least}"
         context.problems.error("children", node.place, message)
     elif count < least and count == 0 and signature.spec.positions == ("child",):
         message = f"{signature.said} has no child"
         context.problems.error("children", node.place, message, _child_hint(context, node))
     elif most is not None and count > most:
-        message = f"{signature.said} has {count} children; at most {most}"
+        message = f"{signature.said} has {_children(count)}; at most {most}"
         context.problems.error("children", node.place, message)
 
 

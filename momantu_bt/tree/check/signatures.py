@@ -11,7 +11,7 @@ from momantu_bt.formats.places import Place
 from momantu_bt.plugins import PluginError, installed_names
 from momantu_bt.robot import RobotDescription
 from momantu_bt.skill import Port, Skill
-from momantu_bt.tree.catalogue import AUTOREMAP, NODES, SUBTREE, NodeSpec
+from momantu_bt.tree.catalogue import AUTOREMAP, NODES, SUBTREE, NodeSpec, is_ours
 from momantu_bt.tree.catalogue.nodes import DOCTOR, why_broken
 from momantu_bt.tree.language import is_xml
 from momantu_bt.tree.model import BROKEN, Document, Node, Tree
@@ -140,11 +140,17 @@ def report_unknown_node(context: Context, node: Node) -> None:
     if broken is not None:
         context.problems.error("broken-plugin", node.place, broken, DOCTOR)
         return
-    spellings = [spec.yaml[0] for spec in NODES.values()]
+    xml = context.in_xml(node.place)
+    spellings = [_tag(type_) if xml else spec.yaml[0] for type_, spec in NODES.items()]
     skills = [*context.document.trees, *context.registry.skills]
     near = nearest(name, [*skills, *spellings])
     hint = f"did you mean {near}?" if near else valid_names(name, skills, "trees and skills")
     context.problems.error("unknown-node", node.place, f"no node is called {name!r}", hint)
+
+
+def _tag(type_: str) -> str:
+    """The tag of a node of the language in XML."""
+    return f"momantu:{type_}" if is_ours(type_) else type_
 
 
 def _why_broken(context: Context, name: str) -> str | None:

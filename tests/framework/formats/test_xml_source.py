@@ -117,6 +117,7 @@ def test_lines_end_in_any_way(ending: str) -> None:
         ("<root><!-- a «-»- b --></root>", "inside a comment", ""),
         ("<root «x»:y='1'/>", "prefix `x:` is not declared", ""),
         ("<root «momntu»:y='1'/>", "prefix `momntu:`", "did you mean momantu?"),
+        ("<root «momantu»:y='1'/>", "prefix `momantu:`", 'write xmlns:momantu="urn:momantu-bt:1"'),
         ("«<!DOCTYPE» root [<!ENTITY a 'b'>]><root>&a;</root>", "no <!DOCTYPE>", "remove it"),
         ("<root>«\x01»</root>", "cannot stand in XML", ""),
     ],
