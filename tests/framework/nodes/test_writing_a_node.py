@@ -278,3 +278,11 @@ def test_a_word_of_a_spec_that_raises_is_named(calm):
     code, said = calm("show tree.yaml", tree, further="around=lambda n: 1 / 0", kind="decorator")
     assert code == 2
     assert "the node 'calm' is broken: its spec's `around` raised ZeroDivisionError" in said
+
+
+def test_a_control_node_that_is_not_installed_is_told_so(tmp_path, capsys):
+    tree = tmp_path / "tree.yaml"
+    tree.write_text("momantu_bt: 1\ntrees:\n  Main:\n    - majority: [succeed]\n", encoding="utf-8")
+    assert main(["check", str(tree)]) == 2
+    said = "".join(capsys.readouterr())
+    assert "a control node of another package has to be installed" in said

@@ -27,6 +27,8 @@ def read_leaf(node: Node, value: Raw, spec: NodeSpec | None, reading: Reading) -
         node.type = BROKEN
     elif isinstance(value, Items):
         hint = f"write `{said(node)}: {{port: value}}`, or begin with `sequence:`"
+        if node.type not in (SUBTREE, *NODES):
+            hint += "; a control node of another package has to be installed"
         reading.misfit(node, value, f"{said(node)} takes ports, no list", hint)
     elif value.value is not None or value.quoted:
         name = FIRST_INPUT if spec is None else spec.first
