@@ -1,1 +1,1 @@
-"""Pointing the camera, by head or by arm: at a place, over a surface, along a path of the hand."""
+"""Pointing the camera, with a head or an arm: at a point, over a surface, along the hand's path."""

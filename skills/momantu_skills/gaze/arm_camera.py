@@ -1,4 +1,4 @@
-"""Planning where an arm moves so that its camera sees a point."""
+"""Planning how an arm moves so that its camera sees a point."""
 
 from __future__ import annotations
 
@@ -24,29 +24,30 @@ from momantu_skills.manipulation.model.collision import CollisionWorld, Obstacle
 from momantu_skills.manipulation.scene.arm_scene import ArmScene
 
 THINKING = 0.2
-"""s that choosing a posture and planning the way are given: twice the median."""
+"""Time allowed for choosing a posture and planning the path, s: twice the median."""
 CANDIDATES = 4000
-"""Random postures that are turned towards the point; a twentieth of them come to see it well."""
+"""Random postures that are turned towards the point; one in twenty gets a good view of it."""
 NEARBY = 64
-"""Postures tried around the one that the arm has."""
+"""Postures that are tried around the current one."""
 SPREAD = (0.15, 0.4)
-"""rad; standard deviations of those."""
+"""Standard deviations of those postures, rad."""
 ALMOST = 1.2
-"""rad off the point from which a posture is turned towards it; from farther the way is long."""
+"""Largest angle to the point from which a posture is turned towards it, rad; larger angles need a
+long motion."""
 ON_IT = 0.01
-"""rad off the line of sight at which the point is on it."""
+"""Angle to the line of sight within which the point counts as on it, rad."""
 TESTED = 400
-"""Postures that are checked for collisions at most."""
+"""Most postures that are checked for collisions."""
 ENOUGH = 6
-"""Postures to which a way is searched: the planner takes the first that it can reach."""
+"""Postures to which a path is searched: the planner takes the first that it can reach."""
 BESIDE = 0.3
-"""m from the base's axis within which a point has no near side."""
+"""Distance from the base's axis within which a point may be seen from any side, m."""
 CLEAR = 0.03
-"""m around the line of sight in which nothing known may stand."""
+"""Radius around the line of sight that must be free of known obstacles, m."""
 LONGEST_ARM = 2.0
-"""m from the camera within which the robot's own body may stand before it."""
+"""Distance from the camera within which the robot's own body may be in the view, m."""
 ENDS = 0.12
-"""m at both ends of that line which do not count: the hand, and what is looked at."""
+"""Length at both ends of that line that is not checked, m: the hand, and the viewed object."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,13 +104,13 @@ def gaze(
 def plan_gaze(
     arm: Arm, point_odom: Array, within: float, around: tuple[Obstacle, ...] = ()
 ) -> list[JointTrajectory]:
-    """The path to the quickest good posture whose camera sees a point (3,) in odom.
+    """Plan the path to the quickest good posture whose camera sees a point (3,) in odom.
 
-    within: rad off the optical axis at which the point may lie, where the axis itself is hidden
-    by what the hand holds. around: solids to keep away from, beside what the scene knows.
+    within: largest angle of the point to the optical axis, rad, if the held object hides the axis.
+    around: solids to avoid, in addition to those of the scene.
 
     Raises:
-        Failure: OUT_OF_VIEW when no posture sees it; NO_PLAN, START_IN_COLLISION.
+        Failure: OUT_OF_VIEW if no posture sees it; NO_PLAN, START_IN_COLLISION.
     """
     state, held = arm.state, arm.service.held
     point = state.odom_from_base.inverse().apply(point_odom)
@@ -133,7 +134,7 @@ def plan_gaze(
 
 
 def _ranked(arm: Arm, held: HeldObject | None, ray: Array, point: Array) -> Array:
-    """Postures (k, n) of the arm that have the point on the ray, cheapest first."""
+    """Postures (k, n) of the arm with the point on the ray, cheapest first."""
     model, start = arm.scene.model, arm.joints
     eye, config = model.eye, GazeConfig()
     sensor = model.description.camera()[1]
@@ -155,7 +156,7 @@ def _ranked(arm: Arm, held: HeldObject | None, ray: Array, point: Array) -> Arra
 
 
 def _starts(arm: Arm, start: Array, ray: Array, point: Array) -> Array:
-    """Postures (m, n) worth turning: around the arm's own, and the library's that nearly point."""
+    """Start postures (m, n): around the current one, and library ones that almost see it."""
     eye, library = arm.scene.model.eye, _library(arm.scene.model)
     spread = np.repeat(SPREAD, NEARBY // len(SPREAD))[:, None]
     near = start + spread * arm.skill.random.normal(size=(len(spread), len(start)))
@@ -167,7 +168,7 @@ def _starts(arm: Arm, start: Array, ray: Array, point: Array) -> Array:
 
 
 def _well_placed(cameras: Array, point: Array, sensor: CameraSensor) -> NDArray[np.bool_]:
-    """(m,) whether the point has a depth that is measured, seen from the robot's side of it."""
+    """Whether the point is at a measurable depth, and seen from the robot's side of it: (m,)."""
     way = point - cameras[:, :3, 3]
     depth = np.einsum("mi,mi->m", cameras[:, :3, 2], way)
     fits = (depth > sensor.min_depth) & (depth < sensor.max_depth)
@@ -178,7 +179,7 @@ def _well_placed(cameras: Array, point: Array, sensor: CameraSensor) -> NDArray[
 
 
 def _penalty(cameras: Array, ray: Array, point: Array, config: GazeConfig) -> Array:
-    """(m,) s that a view may take longer to reach than a perfect one and still be preferred."""
+    """Extra cost (m,) of a view, s: how much longer than a perfect one it may take to reach."""
     way = point - cameras[:, :3, 3]
     length = np.linalg.norm(way, axis=1)
     near, far = config.distances
@@ -190,7 +191,7 @@ def _penalty(cameras: Array, ray: Array, point: Array, config: GazeConfig) -> Ar
 
 
 def _free(arm: Arm, world: CollisionWorld, postures: Array, point: Array) -> list[Array]:
-    """The first postures that touch nothing and have nothing known between camera and point."""
+    """The first postures without collision and with a free line from camera to point."""
     eye = arm.scene.model.eye
     index = [arm.group.names.index(name) for name in eye.names]
     base_from_odom = arm.state.odom_from_base.inverse()
@@ -211,14 +212,14 @@ def _free(arm: Arm, world: CollisionWorld, postures: Array, point: Array) -> lis
 
 
 def _between(camera: Array, point: Array) -> Array:
-    """Points (n, 3) on the line from the camera to a point, both ends left out."""
+    """Points (n, 3) on the line from the camera to a point, without both ends."""
     length = float(np.linalg.norm(point - camera))
     along = np.arange(ENDS, max(ENDS, min(length, LONGEST_ARM)), CLEAR)
     return np.asarray(camera + along[:, None] * ((point - camera) / length))
 
 
 def _hidden(camera: Array, point: Array, cells: Array) -> bool:
-    """Whether one of cells (n, 3) stands on the line from the camera to the point."""
+    """Whether one of cells (n, 3) is on the line from the camera to the point."""
     way = point - camera
     length = float(np.linalg.norm(way))
     offsets = cells - camera

@@ -14,24 +14,25 @@ from momantu_bt.service import HeldObject
 from momantu_skills.manipulation.scene.scene import Scene
 
 ENOUGH = math.radians(12.0)
-"""rad around the line of sight that should be free of the hand; more is no better."""
+"""Angle around the line of sight that should be free of the hand, rad; more gives no advantage."""
 LEAST = math.radians(3.0)
-"""rad around it below which what is held hides the view."""
+"""Angle around it below which the held object hides the view, rad."""
 DIRECTIONS = 12
-"""Ways to move the line of sight off the optical axis."""
+"""Number of directions in which the line of sight may move off the optical axis."""
 BEFORE = 0.03
-"""m before the lens at which things begin to hide something; its own housing is nearer."""
+"""Distance before the lens above which a body hides something, m; the camera's housing is
+nearer."""
 LENS = 0.02
-"""m around the lens: a body that reaches there is the camera's own."""
+"""Distance around the lens within which a body belongs to the camera, m."""
 
 
 def line_of_sight(scene: Scene, state: RobotState, held: HeldObject | None, within: float) -> Array:
-    """Unit vector (3,) in the camera's optical frame along which it sees past hand and load.
+    """Unit vector (3,) in the optical frame of a line of sight that passes hand and held object.
 
-    The optical axis if that is free, else the nearest direction at most `within` rad off it.
+    It is the optical axis if that is free, else the nearest direction at most `within` rad off it.
 
     Raises:
-        Failure: OUT_OF_VIEW when what is held, or the hand itself, hides all of them.
+        Failure: OUT_OF_VIEW if the held object or the hand itself hides all directions.
     """
     rays = _rays(within)
     bodies = _in_the_way(scene, state, held)
@@ -72,14 +73,14 @@ def _in_the_way(scene: Scene, state: RobotState, held: HeldObject | None) -> lis
 
 
 def _around_lens(corners: Array) -> bool:
-    """Whether a convex body (n, 3), optical frame, reaches to the lens: see `LENS`."""
+    """Whether a convex body (n, 3), optical frame, is around the lens: see `LENS`."""
     return bool((ConvexHull(corners).equations[:, 3] <= LENS).all())
 
 
 def outline(corners: Array) -> Array | None:
-    """Convex outline (k, 2) of a convex body's corners (n, 3) as a camera sees it; see `BEFORE`.
+    """Convex outline (k, 2) of a convex body's corners (n, 3) in the camera's view; see `BEFORE`.
 
-    x / z and y / z of the optical frame, counter-clockwise. None if it lies behind.
+    x / z and y / z of the optical frame, counter-clockwise. None if the body is behind the camera.
     """
     first, second = corners[:, None], corners[None]
     rise = second[..., 2] - first[..., 2]
@@ -97,7 +98,7 @@ def outline(corners: Array) -> Array | None:
 
 
 def clearance(ray: Array, seen: Array) -> float:
-    """Angle from a ray (3,) to the nearest point of an outline (k, 2), rad; 0 within."""
+    """Angle from a ray (3,) to the nearest point of an outline (k, 2), rad; 0 inside."""
     first = np.column_stack([seen, np.ones(len(seen))])
     second = np.roll(first, -1, axis=0)
     inward = np.cross(first, second)

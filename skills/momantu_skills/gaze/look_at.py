@@ -1,4 +1,4 @@
-"""Pointing the camera at a place and waiting until the picture is still."""
+"""Pointing the camera at a point and waiting until the picture is still."""
 
 from __future__ import annotations
 
@@ -22,13 +22,15 @@ with lazily():
 
 
 WITHIN = 0.10
-"""rad off the optical axis that still counts as looking at a point: a tenth of most views."""
+"""Angle off the optical axis that still counts as looking at a point, rad: a tenth of most
+views."""
 ARRIVED = 0.01
-"""rad (or m) between a joint and its goal: above measurement and control error."""
+"""Largest distance between a joint and its goal, rad (or m): above measurement and control
+error."""
 STILL = 0.02
-"""rad/s and m/s below which a picture is not blurred, above the noise of reported speeds."""
+"""Speed below which a picture is not blurred, rad/s and m/s; above the noise of reported speeds."""
 PATIENCE = 1.5
-"""s beyond twice the fastest travel after which the camera counts as stuck."""
+"""The camera counts as stuck after twice the fastest motion plus this, s."""
 
 
 def look_at(
@@ -39,17 +41,17 @@ def look_at(
     within: float = WITHIN,
     around: Sequence[Array] = (),
 ) -> Run:
-    """Bring `point_odom` (3,), m, into the middle of the first camera's view, and let it rest.
+    """Point the first camera at `point_odom` (3,), m, and wait until it is still.
 
-    A head is turned; an arm that carries the camera goes where the camera sees the point, past
-    what the hand holds; a fixed camera sees it or not. The calling skill declares CAMERA_CARRIER
-    in `uses`, needs the planning scene, and has OUT_OF_VIEW among its `failures`. Usage:
-    `yield from look_at(self, robot, point)`. within: rad off the axis that is good enough.
-    around: corners (n, 3) in odom of solids that an arm keeps away from beside what is known.
+    A head is turned. An arm that carries the camera moves to where the camera sees the point past
+    the held object. With a fixed camera the point is either in view or not. The calling skill
+    declares CAMERA_CARRIER in `uses`, needs the planning scene, and has OUT_OF_VIEW among its
+    `failures`. Usage: `yield from look_at(self, robot, point)`. within: largest angle off the axis,
+    rad. around: corners (n, 3) in odom of solids that an arm avoids, in addition to known ones.
 
     Raises:
-        Failure: OUT_OF_VIEW when the limits forbid it, when the camera does not get there in
-            time, or when its arm finds no way.
+        Failure: OUT_OF_VIEW if the joint limits forbid it, if the camera does not arrive in
+            time, or if no path for its arm was found.
     """
     point = np.asarray(point_odom, dtype=np.float64)
     carrier = robot.description.resolve_use(CAMERA_CARRIER)
@@ -64,14 +66,14 @@ def look_at(
 def _reach_out(
     skill: Skill, robot: Robot, point: Array, within: float, around: Sequence[Array]
 ) -> Run:
-    """Move the arm; the planner is loaded here, for robots with a head need none to look."""
+    """Move the arm; the planner is imported here, as robots with a head do not need one to look."""
     yield from arm_camera.gaze(
         skill, robot, skill.services["planning_scene"], point, within, around
     )
 
 
 def _turn(skill: Skill, robot: Robot, carrier: str, point: Array, within: float) -> Run:
-    """Turn the joints of a head, which meet no obstacle."""
+    """Turn the joints of a head, which cannot hit an obstacle."""
     description = robot.description
     goal = _goal(skill, robot, carrier, point, within)
     deadline = skill.clock.now() + 2.0 * _travel(description, robot.state(), goal) + PATIENCE
@@ -90,7 +92,7 @@ def _turn(skill: Skill, robot: Robot, carrier: str, point: Array, within: float)
 
 
 def _wait(skill: Skill, robot: Robot, point_odom: Array, within: float) -> Run:
-    """A fixed camera sees the point or not, once the base rests."""
+    """Wait until the base rests; then check whether the fixed camera sees the point."""
     deadline = skill.clock.now() + PATIENCE
     while not _base_still(robot.state()) and skill.clock.now() < deadline:
         yield "look"

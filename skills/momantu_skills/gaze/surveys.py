@@ -1,4 +1,4 @@
-"""Looking over a surface: several views of one region."""
+"""Viewing a surface completely, with several views."""
 
 from __future__ import annotations
 
@@ -18,24 +18,23 @@ from momantu_skills.gaze.look_at import look_at
 from momantu_skills.perception.camera.snapshot import take
 
 OFF_AXIS = math.radians(12.0)
-"""How far from the middle of the picture a looked-at point may lie: it is still well inside."""
+"""Largest angle of the point to the middle of the picture, rad: still well inside."""
 OVERLAP = 0.7
-"""Share of the field of view by which neighbouring views of a sweep are apart at most."""
+"""Largest distance between neighbouring views, as a share of the field of view."""
 SIDESTEP = 0.12
-"""m beside a thing where further looks at it go, so that it falls on other pixels."""
+"""Offset of further views of an object, m, so that it is seen by other pixels."""
 NEAR, TABLE = 1.0, 0.6
-"""m; distance and height of what is looked at where nothing is known: a table ahead."""
+"""Assumed distance and height of the point to look at if nothing is known, m: a table ahead."""
 AROUND = tuple(math.radians(angle) for angle in (0.0, 40.0, -40.0, 80.0, -80.0))
-"""rad; bearings of those looks: neighbouring views of 60 degrees overlap by a third."""
+"""Bearings of those views, rad: neighbouring views of 60 degrees overlap by a third."""
 
 
 def glance(
     skill: Skill, robot: Robot, scene: PlanningScene, point_odom: Array
 ) -> Generator[str | Compute, Any, Snapshot | None]:
-    """Look at a point (3,) in odom and take a picture; None when it cannot be looked at.
+    """Look at a point (3,) in odom and take a picture; None if the camera cannot look at it.
 
-    The planning scene sees the picture too: from here things may be in view that the hand hides
-    later.
+    The planning scene gets the picture too: the hand may hide some of its contents later.
     """
     try:
         yield from look_at(skill, robot, point_odom, within=OFF_AXIS)
@@ -49,9 +48,10 @@ def glance(
 
 
 def looks_over(skill: Skill, robot: Robot, corners: Array, at_least: int) -> list[Array]:
-    """Points (3,) in odom to look at so that a surface of these corners (k, 3) is seen whole.
+    """Points (3,) in odom to look at so that the whole surface with these corners (k, 3) is seen.
 
-    From where the camera is, or, where an arm will carry it elsewhere, from above the base.
+    They are computed for the camera's current position, or for one above the base if an arm will
+    move the camera.
     """
     sensor = robot.description.camera()[1]
     moved = robot.description.eye_in_hand
@@ -60,7 +60,7 @@ def looks_over(skill: Skill, robot: Robot, corners: Array, at_least: int) -> lis
 
 
 def around(skill: Skill, robot: Robot) -> list[Array]:
-    """Points (3,) in odom to look at where nothing is known: ahead, then to both sides."""
+    """Points (3,) in odom to look at if nothing is known: ahead, then to both sides."""
     odom_from_base = skill.frames.lookup(ODOM, robot.description.base_frame)
     points = []
     for bearing in AROUND:
@@ -70,7 +70,7 @@ def around(skill: Skill, robot: Robot) -> list[Array]:
 
 
 def beside(thing: Array, camera: Array, count: int) -> Array:
-    """The point (3,) to look at for the `count`-th further view of an object at (3,)."""
+    """The point (3,) to look at in the `count`-th further view of an object at (3,)."""
     if count == 1:
         return thing
     away = thing[:2] - camera[:2]
@@ -82,11 +82,11 @@ def beside(thing: Array, camera: Array, count: int) -> Array:
 def sweep(
     corners_odom: Array, camera_odom: Array, camera: CameraSensor, at_least: int
 ) -> list[Array]:
-    """Points (3,) to look at, one after the other, so that a surface is seen whole.
+    """Points (3,) to look at, one after the other, so that the whole surface is seen.
 
-    corners_odom: (k, 3) of the surface's convex outline. The views share the bearings that the
-    outline spans as seen from `camera_odom`; they are ordered from the middle outwards, and each
-    looks at the middle of the surface along its bearing.
+    corners_odom: (k, 3) of the surface's convex outline. The bearings of the views are spread
+    evenly over the outline as seen from `camera_odom`, from the middle outwards. Each view looks at
+    the middle of the surface along its bearing.
     """
     centre = corners_odom.mean(axis=0)
     ahead = math.atan2(centre[1] - camera_odom[1], centre[0] - camera_odom[0])

@@ -1,7 +1,7 @@
-"""Looking first where a path of the hand leads through space that no picture has shown.
+"""Looking first at parts of the hand's path that no picture has shown.
 
-The scene holds for free what it has not seen. That is wrong often enough where the map knows of
-furniture: a narrow view leaves out what stands at a table's end, and the cupboard beside it.
+The scene treats space that was not seen as free. Near furniture that is often wrong: a narrow view
+may miss objects at a table's end, or the cupboard beside it.
 """
 
 from __future__ import annotations
@@ -20,21 +20,21 @@ from momantu_skills.manipulation.arm import Arm
 from momantu_skills.manipulation.scene.surroundings import within
 
 FURTHER = 2
-"""Looks that a way is worth; what cannot be seen after them stays in doubt."""
+"""Most additional views per path; what is still unseen after them is accepted."""
 TALL = 0.3
-"""m above a surface up to which things stand on it that the hand could knock over."""
+"""Height above a surface up to which objects may stand that the hand could knock over, m."""
 BESIDE = 0.15
-"""m along the floor to what the map knows within which the hand may meet it: half a hand's width,
-and what furniture stands beside its place. No map tells how high it is; high above a surface, so
-far within its edges, the hand meets nothing, but a wall may stand at an edge."""
+"""Distance along the floor to a mapped obstacle within which the hand may hit it, m: half a hand's
+width, plus the usual displacement of furniture. Maps do not contain heights. High above a surface,
+and this far inside its edges, the hand hits nothing, but a wall may stand at an edge."""
 BEHIND = (0.0, 0.08)
-"""m behind the place between the pads: the points of the hand that are asked about."""
+"""Distances behind the centre between the pads, m: the points of the hand that are checked."""
 EVERY = 4
-"""Points of a trajectory from one that is asked about to the next: about 0.16 s."""
+"""Every n-th point of a trajectory is checked: about every 0.16 s."""
 STAYED = 0.02
-"""rad or m that the arm may have moved and a plan still begin where it is."""
+"""Largest motion of the arm since planning after which a plan is still valid, rad or m."""
 ALONG = 3
-"""Points of the hand's way that must be in doubt to be worth a look: one may be noise."""
+"""Number of unseen points on the hand's path that justify a view: one may be noise."""
 
 
 P = TypeVar("P")
@@ -46,10 +46,10 @@ def planned_in_sight(
     way: Callable[[P], Sequence[JointTrajectory]],
     thinking: float,
 ) -> Generator[str | Compute, Any, P]:
-    """A plan whose unseen stretches have been looked at, as far as the camera can be turned.
+    """A plan whose unseen parts were looked at, as far as the camera can be turned.
 
-    way: of a plan, one trajectory after the other. thinking: s that one planning is given. A
-    camera that the hand carries is brought to where it sees the way, and the plan begins there.
+    way: returns a plan's trajectories, in order. thinking: time allowed for one planning, s. A
+    camera on the hand is moved to where it sees the path, and the plan begins there.
     """
     made: P = yield from compute(plan, thinking)
     for _ in range(FURTHER):
@@ -74,9 +74,9 @@ def planned_in_sight(
 
 
 def blind_spot(arm: Arm, transit: Sequence[JointTrajectory]) -> Array | None:
-    """The middle (3,), in odom, of an unseen stretch over surfaces or near known obstacles.
+    """The middle (3,), in odom, of an unseen part of the path over surfaces or near obstacles.
 
-    None: nowhere.
+    None if there is no such part.
     """
     points = _hand_along(arm, transit)
     inner, low = np.zeros((2, len(points)), dtype=np.bool_)

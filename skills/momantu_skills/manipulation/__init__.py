@@ -1,4 +1,4 @@
-"""Arms and hands: model, collisions, planning, grasps, and the planning scene."""
+"""Arms and hands: model, collision checks, motion planning, grasps, and the planning scene."""
 
 from momantu_skills.openmp import ensure_openmp
 

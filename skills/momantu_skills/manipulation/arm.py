@@ -1,4 +1,4 @@
-"""One arm in one run of a skill: its state, its surroundings, its motions."""
+"""One arm during one run of a skill: its state, its surroundings, its motions."""
 
 from __future__ import annotations
 
@@ -25,19 +25,22 @@ with lazily():
     from momantu_skills.manipulation.scene import scene
 
 SLOW = 2.0
-"""Scaled rad per rad or m above which a joint is slow (see Group.scale)."""
+"""A joint is slow if it needs more than this many scaled rad per rad or m (see Group.scale)."""
 SETTLE_TICKS = 20
-"""Ticks to wait for a stop at most: 1 s, longer than any braking."""
+"""Most ticks to wait for a stop: 1 s, longer than any braking."""
 LEAN_PENALTY = 2.0
-"""s per rad: turning what is held upside down on the way costs about as much."""
+"""Cost of tilting a held object, s per rad: turning it upside down on the way costs about as much
+time."""
 BLIND_PENALTY = 6.0
-"""s: a camera below the hand cannot look down past what the hand holds upright."""
+"""Cost of a grasp with the camera below the hand, s: held upright, the object hides the camera's
+view down."""
 AROUND = 0.08
-"""m beyond half the widest opening, from between the pads, where what is grasped may be."""
+"""How far from the centre between the pads the grasped object may extend, m beyond half the widest
+opening."""
 
 
 class Arm:
-    """What skills that move the arm share. `service` is the run's planning scene."""
+    """State and motions shared by the skills that move the arm. `service` is the planning scene."""
 
     def __init__(self, skill: Skill, robot: Robot, service: ArmScene) -> None:
         self.skill, self.robot, self.service = skill, robot, service
@@ -48,17 +51,17 @@ class Arm:
 
     @property
     def state(self) -> RobotState:
-        """The robot's state of now."""
+        """The robot's current state."""
         return self.robot.state()
 
     @property
     def joints(self) -> Array:
-        """The arm's joints (n,) of now, within their limits."""
+        """The arm's current joint positions (n,), within their limits."""
         return self.scene.model.joints(self.robot.state())
 
     @property
     def force(self) -> float:
-        """The gripper's closing force, N: as configured, or as much as it has."""
+        """The gripper's closing force, N: the configured one, or its largest if that is less."""
         return min(self.hand.force, self.scene.model.description.end_effector.max_force)
 
     @property
@@ -71,9 +74,9 @@ class Arm:
         self.service.observe(take(self.robot, self.skill.frames))
 
     def seeds(self, start: Array, count: int) -> Array:
-        """Starts (count, n) for inverse kinematics: here, then random ones.
+        """Start postures (count, n) for inverse kinematics: the current one, then random ones.
 
-        Every other one leaves slow joints where they are, for moving them takes long.
+        Every second one keeps slow joints at their current positions, as moving them takes long.
         """
         lower = np.where(self.group.endless, -np.pi, self.group.lower)
         upper = np.where(self.group.endless, np.pi, self.group.upper)
@@ -84,14 +87,14 @@ class Arm:
         return np.asarray(seeds)
 
     def carry_penalty(self, grasp_from_object: Transform) -> float:
-        """Seconds a grasp may cost more than one that is upright in the pose for carrying."""
+        """Extra cost of a grasp, s, if it tilts the object in the carrying pose."""
         pose = self.scene.model.description.named_poses["carry"]
         joints = np.array([pose.get(name, 0.0) for name in self.group.names])
         tip_from_object = self.scene.model.tip_from_grasp @ grasp_from_object
         return LEAN_PENALTY * _lean(self.group.tip_matrix(joints)[:3, :3], tip_from_object)
 
     def blind_penalty(self, object_from_grasp: Transform) -> float:
-        """Seconds a grasp may cost more than one that leaves a camera on the hand below it."""
+        """Extra cost of a grasp, s, if it leaves a hand camera below the hand."""
         camera = self.scene.model.grasp_from_camera
         if camera is None:
             return 0.0
@@ -99,14 +102,14 @@ class Arm:
         return BLIND_PENALTY if above < 0.0 else 0.0
 
     def posed(self, pose: Mapping[str, float]) -> Array:
-        """Joints (n,) of a named pose, turned the short way; those that it leaves out stay."""
+        """Joints (n,) of a named pose, turned the short way; joints that it does not name stay."""
         now = self.joints
         names = zip(self.group.names, now, strict=True)
         goal = np.array([pose.get(name, position) for name, position in names])
         return self.group.nearest_turn(goal, now)
 
     def turned(self, path: Array, reference: Array) -> Array:
-        """A path (k, n) or joints (n,) with endless joints turned as one to meet `reference`."""
+        """Shift endless joints of a path (k, n) or joints (n,) by full turns to `reference`."""
         first = path if path.ndim == 1 else path[0]
         return np.asarray(path + (self.group.nearest_turn(first, reference) - first))
 
@@ -119,9 +122,10 @@ class Arm:
         cut: scene.Cut | None = None,
         extra: tuple[collision.Obstacle, ...] = (),
     ) -> list[JointTrajectory]:
-        """Trajectories, one after the other, from here to the first reachable of `goals`.
+        """Plan trajectories, one after the other, from here to the first reachable of `goals`.
 
-        Transits keep the configured margin; a start that does not is left by an escape first.
+        Free motions keep the configured margin. A start that is nearer to obstacles is left first,
+        by a short escape motion.
 
         width, cut, extra: see `Scene.world`.
 
@@ -152,7 +156,7 @@ class Arm:
         start: Array,
         goals: Sequence[Array],
     ) -> Array | None:
-        """A path on which the held object stays upright, or else any path."""
+        """A path on which the held object stays upright, or any path if there is none."""
         if not world.free(start):
             return None
         found = self.planner.path(start, goals, self._upright(world, held, start, goals))
@@ -171,7 +175,7 @@ class Arm:
         return follow(self.robot, self.skill.clock, ARM, trajectory, phase, until)
 
     def settle(self) -> Generator[str, None, None]:
-        """Wait until the arm stands still: its last motion may have been cut off."""
+        """Wait until the arm stands still: its last motion may have been aborted."""
         last = self.joints
         for _ in range(SETTLE_TICKS):
             yield "settling"
@@ -181,9 +185,9 @@ class Arm:
             last = now
 
     def reversed(self, trajectory: JointTrajectory, speed: float | None = None) -> JointTrajectory:
-        """The path back along a trajectory, from where the arm is to its start.
+        """Return back along a trajectory, from the arm's current position to its start.
 
-        speed: of the hand, m/s; that of lifting if None.
+        speed: of the hand, m/s; the lifting speed if None.
         """
         back = trajectory.positions[::-1]
         nearest = int(np.argmin(np.abs(back - self.joints).max(axis=1)))
@@ -191,7 +195,7 @@ class Arm:
         return self.trajectory(path, speed or self.hand.lift_speed)
 
     def line(self, start: Array, base_from_tip: Transform) -> Array | None:
-        """Joints (k, n) along the straight line from `start` to a tip pose; None if it breaks."""
+        """Joints (k, n) on the straight line from `start` to a tip pose; None if not reachable."""
         targets = straight_line(
             self.group.tip_matrix(start), base_from_tip.matrix, self.hand.linear_step
         )
@@ -199,10 +203,10 @@ class Arm:
         return np.vstack([start, path]) if reached == len(targets) else None
 
     def back_off(self, distance: float) -> Generator[str, None, None]:
-        """Draw the hand back along its fingers, from wherever it is, where that can be done.
+        """Retreat the hand along its fingers from its current position, where possible.
 
-        Not where the arm would meet something; what the fingers may be around does not count.
-        Raises Failure ARM_STUCK.
+        The arm does not move where it would hit an obstacle; objects between the fingers are
+        ignored. Raises Failure ARM_STUCK.
         """
         start = self.joints
         path = self.line(start, self.group.tip_pose(start) @ Transform((-distance, 0.0, 0.0)))
@@ -218,7 +222,7 @@ class Arm:
         )
 
     def lean(self, held: HeldObject, q: Array) -> float:
-        """Angle of what is held from upright at joints (n,), rad."""
+        """Tilt of the held object from upright at joints (n,), rad."""
         tip_from_object = self.scene.model.tip_from_grasp @ held.grasp_from_object
         return _lean(self.group.tip_matrix(q)[:3, :3], tip_from_object)
 
@@ -229,7 +233,7 @@ class Arm:
         start: Array,
         goals: Sequence[Array],
     ) -> planner.Valid:
-        """Free, and what is held leans no more than configured, or than start and goals ask."""
+        """Test: no collision, and a tilt of at most the configured one, or start's and goals'."""
         if held is None:
             return world.free
         ends = [self.lean(held, q) for q in (start, *goals)]
@@ -262,7 +266,7 @@ class Arm:
         return path
 
     def _checked(self, path: Array, world: collision.CollisionWorld) -> list[JointTrajectory]:
-        """One trajectory that rounds corners where it may, or one per straight piece."""
+        """One trajectory that rounds corners where possible, or one per straight segment."""
         if len(path) == 2:
             return [self.trajectory(path)]
         for radius in self.planning.rounding:
@@ -296,7 +300,7 @@ def straight_line(start: Array, end: Array, step: float) -> Array:
 
 
 def _between(first: Transform, last: Transform, share: float) -> Transform:
-    """Straight in position; shortest arc in rotation, near enough by normalised blending."""
+    """Linear in position; rotation by normalised blending, close to the shortest arc."""
     sign = math.copysign(1.0, float(first.quaternion @ last.quaternion))
     return Transform(
         first.position + share * (last.position - first.position),

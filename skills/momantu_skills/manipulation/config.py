@@ -1,4 +1,4 @@
-"""Tunables of manipulation, each with its unit and reason."""
+"""Tunables of manipulation, each with its unit and the reason for its value."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from momantu_bt.descriptions.tunables import Tunables
 
 
 class SceneConfig(Tunables):
-    """How the planning scene sees its surroundings and judges what is held."""
+    """How the planning scene processes depth pictures and decides whether an object is held."""
 
     voxel: Size = Field(
         default=0.02, description="edge of the cells: finer than gaps that the arm uses"
@@ -60,82 +60,90 @@ class SceneConfig(Tunables):
 
 @dataclass(frozen=True)
 class PlanningConfig:
-    """How motions are searched. A search ends after a count of steps, never by a clock."""
+    """How motions are planned. A search ends after a number of steps, never after a time."""
 
     step: float = 0.06
-    """Scaled rad between two collision checks of a motion; the hand then moves about 4 cm."""
+    """Distance between two collision checks of a motion, scaled rad; the hand then moves about 4
+    cm."""
     margins: tuple[float, ...] = (0.012, 0.004)
-    """m; clearance that transits keep from surroundings, tried in turn: depth noise and half a
-    cell's corner; then what is left of it where things stand close. Half of it is enough where a
-    spline rounds a corner."""
+    """Clearances that free motions keep from the surroundings, m, tried in turn. The first covers
+    depth noise and half a cell's diagonal; the second is for narrow places. Where a spline rounds a
+    corner, half of it is enough."""
     searches: int = 1500
-    """Growths of a search tree after which it gives up: about 0.3 s."""
+    """Extensions of a search tree after which the search gives up: about 0.3 s."""
     attempts: int = 2
-    """Searches, of which the quickest path is taken."""
+    """Number of searches; the quickest path is used."""
     rounding: tuple[float, ...] = (0.5, 0.25, 0.1)
-    """rad around a corner in which the spline may cut it, tried in turn: stops cost time."""
+    """Distances from a corner at which the spline may start to round it, rad, tried in turn; stops
+    cost time."""
     range: float = 1.2
-    """Scaled rad; longest branch of the tree."""
+    """Longest branch of the search tree, scaled rad."""
     shortcut_rounds: int = 60
-    """Random shortcuts tried on a path."""
+    """Number of random shortcuts that are tried on a path."""
     densify: float = 0.1
-    """rad between waypoints given to the spline, so that it does not cut corners."""
+    """Distance between waypoints given to the spline, rad, so that it does not cut corners."""
     speed: float = 0.95
-    """Share of the speed and acceleration limits that is used: drivers refuse what passes them."""
+    """Share of the speed and acceleration limits that is used: drivers reject commands beyond the
+    limits."""
     sample: float = 0.04
-    """s between points of a timed trajectory."""
+    """Time between points of a timed trajectory, s."""
     tilt: float = 1.05
-    """rad; how far a held object may lean while it is moved, where that is possible: 60 degrees."""
+    """Largest tilt of a held object during a motion where possible, rad: 60 degrees."""
 
 
 @dataclass(frozen=True)
 class GazeConfig:
-    """What makes a good view from a camera that the arm carries."""
+    """What makes a good view for a camera that the arm carries."""
 
     distances: tuple[float, float] = (0.45, 0.9)
-    """m between camera and point: nearer shows little of a table, farther measures it worse."""
+    """Range of distances between camera and point, m: from nearer the view shows little of a table,
+    from farther the measurement is worse."""
     distance_penalty: float = 6.0
-    """s per m nearer or farther."""
+    """Cost of a distance outside that range, s per m."""
     elevations: tuple[float, float] = (0.45, 1.1)
-    """rad by which the view goes down: flatter, things hide each other; steeper, they lose their
-    sides."""
+    """Range of downward angles of the view, rad: at smaller angles objects hide each other, at
+    larger angles their sides are not visible."""
     elevation_penalty: float = 5.0
-    """s per rad flatter or steeper."""
+    """Cost of an angle outside that range, s per rad."""
     roll_penalty: float = 1.5
-    """s for a picture that lies on its side: it is wider than high, and so are tables."""
+    """Cost of a picture rotated by 90 degrees, s: pictures are wider than high, and so are
+    tables."""
     tilt_slack: float = 0.1
-    """rad by which what leans already may lean more."""
+    """How much an object that is tilted already may tilt further, rad."""
 
 
 @dataclass(frozen=True)
 class HandConfig:
-    """How the hand approaches, closes, feels and lets go."""
+    """How the hand approaches, closes, measures contact and releases."""
 
     approach: float = 0.10
-    """m of straight line before a grasp."""
+    """Length of the straight approach to a grasp, m."""
     near_margin: float = 0.006
-    """m; clearance from all but the object while the hand is at it: camera mounting error."""
+    """Clearance from everything but the object while the hand is at it, m: error of the camera's
+    mounting."""
     approach_speed: float = 0.10
-    """m/s on that line: what is met by error is pushed softly."""
+    """Speed of the approach, m/s: slow, so that an unexpected contact pushes gently."""
     lift_speed: float = 0.15
-    """m/s when lifting and retreating."""
+    """Speed of lifting and retreating, m/s."""
     lower_speed: float = 0.03
-    """m/s when lowering until contact: one tick late is 1.5 mm, below 50 N on a table."""
+    """Speed of lowering until contact, m/s: a delay of one tick is 1.5 mm, less than 50 N on a
+    table."""
     above: float = 0.03
-    """m above a spot where lowering begins: height error of the surface and sag of the arm."""
+    """Height above a spot where lowering begins, m: height error of the surface and sag of the
+    arm."""
     below: float = 0.025
-    """m below a spot where lowering gives up."""
+    """Depth below a spot where lowering gives up, m."""
     contact_force: float = 5.0
-    """N; change of the vertical load that counts as contact: 20 sigma of the sensor."""
+    """Change of the vertical load that counts as contact, N: 20 sigma of the sensor."""
     force: float = 45.0
-    """N; closing force: holds 0.4 kg at a friction of 0.1, dents nothing."""
+    """Closing force, N: holds 0.4 kg at a friction coefficient of 0.1 without damage."""
     margin: float = 0.03
-    """m wider than the object when letting go beside other things."""
+    """Opening beyond the object's width when releasing next to other objects, m."""
     width_tolerance: float = 0.012
-    """m between measured diameter and gripper opening that a good grasp may show."""
+    """Largest difference between measured diameter and gripper opening in a good grasp, m."""
     close_time: float = 3.0
-    """s after which closing or opening is given up."""
+    """Time limit for closing or opening, s."""
     linear_step: float = 0.01
-    """m between solved poses on a straight line."""
+    """Distance between inverse kinematics solutions on a straight line, m."""
     old_pose: float = 60.0
-    """s; a pose older than this is not touched."""
+    """Largest age of a pose that is still used for contact, s."""

@@ -1,1 +1,1 @@
-"""Perception: points, planes, objects on them, tags."""
+"""Perception: point clouds, planes, the objects on them, tags."""

@@ -1,4 +1,4 @@
-"""AprilTags in RGB-D pictures: corners from colour, the pose from depth."""
+"""AprilTags in RGB-D pictures: corners from the colour picture, the pose from depth."""
 
 from __future__ import annotations
 
@@ -17,24 +17,25 @@ from momantu_bt.service import Snapshot
 
 FAMILY = "tag36h11"
 GAMMA = 2.2
-"""Of the camera's colours. Undone, because it lets white bleed into a tag's black border, which
-makes the tag seem 1.6 % farther."""
+"""Gamma of the camera's colours. It is reversed, because otherwise white bleeds into a tag's black
+border and the tag seems 1.6 % farther away."""
 PIXEL_CENTRE = 0.5
-"""px; the tag library gives the middle of the first pixel 0.5, pinhole matrices here give it 0."""
+"""Pixel coordinate of the first pixel's centre, px: 0.5 in the tag library, 0 in the pinhole
+matrices here."""
 LEAST_MARGIN = 15.0
-"""Decision margin of the decoded bits below which a tag is not believed."""
+"""Decision margin of the decoded bits below which a tag is ignored."""
 EDGE_TOLERANCE = 0.12
-"""Relative difference of a measured edge from the told one up to which it is that tag."""
+"""Largest relative difference between the measured and the given edge of the tag."""
 LEAST_DEPTHS = 30
-"""Depth pixels on a tag that make a plane of it."""
+"""Fewest depth pixels on a tag for fitting its plane."""
 PLANE_OUTLIER = 3.0
-"""Times the median residual at which a depth pixel is left out of the plane."""
+"""Multiple of the median residual above which a depth pixel is left out of the plane."""
 UNIT_CORNERS = np.array([[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]])
-"""A tag's corners in the library's order, x to the right and y up on the printed tag, in edges."""
+"""A tag's corners in the library's order, x right and y up on the printed tag, in edge lengths."""
 
 
 FLOOR = 0.001
-"""m; no sighting is surer than this, whatever its misfit says."""
+"""Least uncertainty of a measured position, m, whatever its misfit."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -50,7 +51,7 @@ class SeenTag:
 
 
 def find_tags(image: CameraImage) -> dict[int, Array]:
-    """Corners (4, 2) in px of every tag in a picture, by id; the larger one where an id repeats."""
+    """Corners (4, 2) in px of every tag in a picture, by id; the larger one if an id repeats."""
     grey = _linear()[image.color[..., 1]]
     found: dict[int, Array] = {}
     for detection in _detector().detect(np.ascontiguousarray(grey)):
@@ -64,11 +65,11 @@ def find_tags(image: CameraImage) -> dict[int, Array]:
 
 
 def locate(image: CameraImage, tag_id: int, corners: Array, edge: float) -> SeenTag | None:
-    """Pose of a tag whose black square is `edge` m wide, from its corners (4, 2) in px and depth.
+    """Pose of a tag with a black square `edge` m wide, from its corners (4, 2) in px and depth.
 
-    The plane through the tag's depth pixels, met by the rays of its corners, gives four points in
-    space; the pose is the least-squares fit of a square to them (Kabsch 1976). There is no
-    two-fold ambiguity. None when depth is missing or the tag is not of that size.
+    The rays through the corners meet the plane of the tag's depth pixels in four points; the pose
+    is the least-squares fit of a square to them (Kabsch 1976). This has no two-fold ambiguity. None
+    if depth is missing or the tag is not of that size.
     """
     plane = _plane_of(image, corners)
     if plane is None:
@@ -93,8 +94,8 @@ def _rays(pixels: Array, intrinsics: Array) -> Array:
 def _plane_of(image: CameraImage, corners: Array) -> tuple[Array, float] | None:
     """Unit normal (3,) and distance n.p of the tag's plane in the optical frame.
 
-    Along a plane 1/z is linear in the pixel's coordinates, and its noise is even there because
-    depth noise grows with z2; so the fit is plain least squares, once repeated without outliers.
+    On a plane 1/z is linear in the pixel coordinates. Its noise is uniform there, because depth
+    noise grows with z2. Therefore the fit is plain least squares, repeated once without outliers.
     """
     pixels = _pixels_within(image.depth.shape, corners)
     z = image.depth[pixels[:, 1], pixels[:, 0]].astype(np.float64)
@@ -158,7 +159,7 @@ def _detector() -> pyapriltags.Detector:
 
 @dataclass(frozen=True, slots=True)
 class TagSighting:
-    """sigma: standard uncertainty of the position within the picture, m; stamp: s."""
+    """sigma: standard deviation of the position within the picture, m; stamp: s."""
 
     odom_from_tag: Transform
     sigma: float
@@ -166,7 +167,7 @@ class TagSighting:
 
 
 def search(snapshot: Snapshot, tag_id: int, edge: float) -> tuple[set[int], TagSighting | None]:
-    """The ids of all tags in a picture, and the requested tag's pose, if it can be measured."""
+    """Find the ids of all tags in a picture, and the requested tag's pose if it can be measured."""
     tags = find_tags(snapshot.image)
     if tag_id not in tags:
         return set(tags), None
@@ -178,10 +179,10 @@ def search(snapshot: Snapshot, tag_id: int, edge: float) -> tuple[set[int], TagS
 
 
 def average(sightings: Sequence[TagSighting]) -> TagSighting:
-    """One pose of several: weighted by 1/sigma2, turned to the mean of their quaternions.
+    """Average several poses: weights 1/sigma2, rotation from the mean of their quaternions.
 
-    Its sigma adds the scatter of the positions to what the sightings say themselves; errors that
-    all pictures share, such as the camera's mounting, are not in it.
+    The resulting sigma adds the scatter of the positions to the sightings' own sigmas; errors
+    common to all pictures, such as the camera's mounting, are not included.
     """
     positions = np.array([s.odom_from_tag.position for s in sightings])
     weights = np.array([1.0 / s.sigma**2 for s in sightings])

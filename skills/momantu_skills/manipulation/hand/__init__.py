@@ -1,1 +1,1 @@
-"""The hand at work: grasps, the gripper, picking up, setting down, and checks of both."""
+"""The hand: grasps, the gripper, picking up, placing, and the checks of both."""

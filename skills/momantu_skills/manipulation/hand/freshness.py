@@ -1,4 +1,4 @@
-"""Whether a pose is still good enough to touch what it names."""
+"""Whether a measured pose is recent enough to touch the object."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from momantu_skills.manipulation.config import HandConfig
 
 
 def check_fresh(pose: Pose, what: str, now: float, last_contact: float, config: HandConfig) -> None:
-    """Refuse poses in another frame, too old, or older than the last contact.
+    """Reject poses in another frame, too old, or older than the last contact.
 
     Raises:
-        Failure: STALE_POSE, saying which of these it is.
+        Failure: STALE_POSE; its sentence says which of these it is.
     """
     if pose.frame != ODOM:
         raise Failure(

@@ -1,4 +1,4 @@
-"""Grasps of a measured shape, from many directions, in the object's own frame."""
+"""Grasp candidates for a measured shape, from many directions, in the object's frame."""
 
 from __future__ import annotations
 
@@ -14,42 +14,44 @@ from momantu_bt.messages import DetectedObject
 from momantu_bt.robot import EndEffector
 
 AZIMUTHS = 24
-"""Directions around an upright cylinder."""
+"""Number of approach directions around an upright cylinder."""
 TILTS = (0.0, math.radians(15), math.radians(30), math.radians(50))
-"""rad by which the fingers point below the horizontal."""
+"""Angles of the fingers below the horizontal, rad."""
 HEIGHTS = (0.5, 0.62, 0.78)
-"""Where along the object's height it is held, as shares of it."""
+"""Heights of the grasp, as shares of the object's height."""
 TOP_TURNS = 12
-"""Directions of the fingers when they come from above."""
+"""Number of finger directions in a grasp from above."""
 SLACK = 0.004
-"""m between palm and object: half of what the detection is wrong by, the rest only pushes."""
+"""Clearance between palm and object, m: half of the detection error; beyond that the palm only
+pushes."""
 OUT = 0.006
-"""m farther out at each try to get the open fingers clear of the object."""
+"""Step by which a grasp is moved outwards until the open fingers clear the object, m."""
 ROOM = 0.004
-"""m between open fingers and object: what the detection is wrong by."""
+"""Clearance between open fingers and object, m: the detection error."""
 PAD_SHARE = 0.012
-"""m of the pads' length that must lie beyond the object's axis, so that they close on it."""
+"""Length of the pads that must extend beyond the object's axis, m, so that they close on it."""
 FACE_SHARE = 0.035
-"""m of a box's flat faces that the pads must cover, wherever its axis is: flat faces, unlike a
-cylinder's, do not slide out of them. More than half of a usual pad."""
+"""Overlap of the pads with a box's flat faces that a grasp needs, m, wherever the axis is: flat
+faces, unlike a cylinder's, do not slide out. More than half of a usual pad."""
 BEYOND_PENALTY = 20.0
-"""s per metre that the axis lies beyond the pads' middle: what is held there wants to swing."""
+"""Cost, s per metre of the axis beyond the pads' middle: an object held there may swing."""
 OPENING = 0.014
-"""m by which the open gripper must be wider than the object."""
+"""How much wider than the object the open gripper must be, m."""
 TOP_PENALTY = 3.0
-"""s; a grasp from above cannot be carried upright and hides what it holds."""
+"""Cost of a grasp from above, s: the object cannot be carried upright, and the hand hides it."""
 TILT_PENALTY = 1.5
-"""s per rad of tilt: the same to a lesser degree."""
+"""Cost per rad of tilt, s: the same disadvantages to a smaller extent."""
 OFF_CENTRE_PENALTY = 4.0
-"""s per share of the height away from HEIGHTS[0]: what is held far from its middle swings."""
+"""Cost of a distance from HEIGHTS[0], s per share of the height: an object held far from its middle
+may swing."""
 
 
 @dataclass(frozen=True, eq=False)
 class Grasp:
     """One way to hold an object.
 
-    object_from_grasp: the grasp frame's pose when the fingers close. width: between the pads
-    then, m. penalty: seconds that another grasp may cost more and still be preferred.
+    object_from_grasp: the grasp frame's pose when the fingers close. width: between the pads then,
+    m. penalty: cost in seconds; another grasp may take this much longer and still be preferred.
     """
 
     object_from_grasp: Transform
@@ -60,11 +62,11 @@ class Grasp:
 def grasps_for(
     thing: DetectedObject, hand: EndEffector, palm: Array, fingers: Sequence[Array] = ()
 ) -> list[Grasp]:
-    """Every grasp worth trying, in a fixed order; empty when the object is too wide.
+    """All useful grasps, in a fixed order; empty if the object is too wide.
 
     palm: corners (n, 3) of the hand's body in the grasp frame, m. fingers: planes (k, 4) around
-    each open finger there, outward normal and offset: towards their knuckles fingers may leave
-    less room than between the pads, and then they hold the object farther out.
+    each open finger in the same frame, outward normal and offset. If the clearance near the
+    knuckles is less than between the pads, the fingers hold the object farther out.
     """
     found: list[Grasp] = []
     for width, direction, top in _approaches(thing):
@@ -124,7 +126,7 @@ def _from_side(
 
 
 def _farthest(thing: DetectedObject, hand: EndEffector, direction: float) -> float:
-    """How far the grasp frame may stay behind the object's axis at most, m."""
+    """Largest distance of the grasp frame behind the object's axis, m."""
     if thing.shape == "cylinder":
         return hand.pad_length / 2 - PAD_SHARE
     along = abs(math.cos(direction)) * thing.size[0] + abs(math.sin(direction)) * thing.size[1]
@@ -132,9 +134,9 @@ def _farthest(thing: DetectedObject, hand: EndEffector, direction: float) -> flo
 
 
 def _setback(local: Array, hand: EndEffector, palm: Array) -> float:
-    """How far the grasp frame stays behind the object's axis so that the palm clears it, m.
+    """Distance of the grasp frame behind the object's axis at which the palm clears it, m.
 
-    local: points (n, 3) of the object, in the grasp frame if it were on the axis.
+    local: points (n, 3) of the object, in the grasp frame if that were on the axis.
     """
     reach_y, reach_z = np.abs(palm[:, 1]).max(), np.abs(palm[:, 2]).max()
     before = local[(np.abs(local[:, 1]) <= reach_y) & (np.abs(local[:, 2]) <= reach_z)]
@@ -143,7 +145,7 @@ def _setback(local: Array, hand: EndEffector, palm: Array) -> float:
 
 
 def _outwards(local: Array, fingers: Sequence[Array], back: float, farthest: float) -> float | None:
-    """`back`, or more where open fingers would be in the object; None beyond `farthest`, m."""
+    """`back`, or more if open fingers would touch the object; None if more than `farthest`, m."""
     while back <= farthest:
         moved = local + np.array((back, 0.0, 0.0))
         inside = (
@@ -175,7 +177,7 @@ def _from_above(
 
 
 def _flipped(grasp: Grasp) -> Grasp:
-    """The same grasp with the hand turned by half a turn about its fingers' direction."""
+    """The same grasp with the hand rotated by 180 degrees about its approach direction."""
     turn = Transform((0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0))
     return Grasp(grasp.object_from_grasp @ turn, grasp.width, grasp.penalty)
 

@@ -1,4 +1,4 @@
-"""Opening and closing the gripper, and feeling what the wrist carries."""
+"""Opening and closing the gripper, and measuring the load on the wrist."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ from momantu_bt.robot import Robot, WristWrench
 from momantu_bt.skill import Clock
 
 RESTING = 3
-"""Ticks in a row without movement after which the fingers have come to rest."""
+"""Successive ticks without movement after which the fingers count as at rest."""
 MOVEMENT = 1.5e-3
-"""m of change between two ticks that is movement: three sigma of the width's noise."""
+"""Change between two ticks that counts as movement, m: three sigma of the width's noise."""
 PRESSING = 0.7
-"""Share of the force limit at which the fingers press on something."""
+"""Share of the force limit above which the fingers press on something."""
 OPEN_TOLERANCE = 0.006
-"""m from the asked opening at which the gripper counts as open."""
+"""Largest distance from the wanted opening at which the gripper counts as open, m."""
 
 
 def move_gripper(
     robot: Robot, clock: Clock, width: float, force: float, timeout: float, phase: str
 ) -> Generator[str, None, float]:
-    """Move the fingers until they are at `width` or press on something; the opening reached, m.
+    """Move the fingers to `width` or until they press on something; return the opening reached, m.
 
-    Never fails: what the opening means is the caller's to judge. Opening ends only at the width,
-    for it begins with letting the force go, during which nothing moves.
+    It never fails: the caller decides what the opening means. Opening ends only at the width,
+    because it begins with a release of force, during which nothing moves.
     """
     actuator = robot.description.end_effector.actuator
     goal = GripperCommand(width, force)
@@ -47,7 +47,7 @@ def move_gripper(
 
 
 def wrist_force(robot: Robot, frames: FrameBuffer) -> Array | None:
-    """Force (3,) that the load puts on the wrist, in odom, N; None on robots that cannot feel."""
+    """Force (3,) of the load on the wrist, in odom, N; None on robots without a force sensor."""
     name = next(
         (n for n, s in robot.description.sensors.items() if isinstance(s, WristWrench)), None
     )
@@ -61,7 +61,7 @@ def wrist_force(robot: Robot, frames: FrameBuffer) -> Array | None:
 def rested_force(
     robot: Robot, frames: FrameBuffer, phase: str, ticks: int = 5
 ) -> Generator[str, None, Array | None]:
-    """Mean of the wrist's force over some ticks at rest, in odom, N."""
+    """Mean force on the wrist over some ticks at rest, in odom, N."""
     forces = []
     for _ in range(ticks):
         force = wrist_force(robot, frames)
@@ -75,9 +75,9 @@ def rested_force(
 def bump(
     frames: FrameBuffer, rest: Array | None, limit: float, vertical: bool = False
 ) -> Callable[[Robot], bool] | None:
-    """A watch that says yes when the force differs from `rest` by more than `limit` N.
+    """A function that returns True when the force differs from `rest` by more than `limit` N.
 
-    vertical: only the upward change counts. None when nothing can be felt.
+    vertical: use only the upward change. None if the robot has no force sensor.
     """
     if rest is None:
         return None
@@ -99,7 +99,7 @@ def open_hand(
     """Open to `width`.
 
     Raises:
-        Failure: GRIPPER_STUCK when the fingers do not get there.
+        Failure: GRIPPER_STUCK if the fingers do not reach the width.
     """
     reached = yield from move_gripper(robot, clock, width, force, timeout, "opening")
     if reached < width - 2 * OPEN_TOLERANCE:

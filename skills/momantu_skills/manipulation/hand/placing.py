@@ -1,4 +1,4 @@
-"""Choosing where and how to set down the held object, and the motions for it."""
+"""Choosing where and how to place the held object, and planning the motions for it."""
 
 from __future__ import annotations
 
@@ -15,27 +15,28 @@ from momantu_bt.service import HeldObject
 from momantu_skills.manipulation.arm import Arm
 
 YAWS = 16
-"""Turns about the vertical in which an object is set down."""
+"""Number of yaw angles in which an object may be placed."""
 SEEDS = 6
-"""Starts of the inverse kinematics per candidate."""
+"""Start postures of the inverse kinematics per candidate."""
 POSTURES = 2
-"""Postures kept per candidate, the quickest to reach."""
+"""Postures kept per candidate, those that are quickest to reach."""
 ENOUGH = 4
-"""Candidates with which a way is searched."""
+"""Candidates for which a path is searched."""
 TESTED = 900
-"""Postures whose lowering and retreat are tested at most."""
+"""Most postures for which lowering and retreat are checked."""
 DROP = 0.006
-"""m above the measured surface at which a hand that feels nothing lets go: such a fall topples
-nothing, and a surface that much higher is not pressed hard."""
+"""Height above the measured surface at which a hand without force sensor releases, m: such a fall
+topples nothing, and a surface that is this much higher is not pressed hard."""
 SPOT_PENALTY = 0.5
-"""s per rank of a spot: the first are the better ones."""
+"""Cost per rank of a spot, s: the first spots are the better ones."""
 
 
 @dataclass(frozen=True, eq=False)
 class PlacePlan:
-    """The motions of setting down. odom_from_object: where the object will stand.
+    """The motions for placing. odom_from_object: where the object will stand.
 
-    lower: down past the surface, for a hand that feels it; blind: to just above it, for others.
+    lower: down past the surface, for a hand with force sensor; blind: to just above the surface,
+    for other hands.
     """
 
     odom_from_object: Transform
@@ -53,11 +54,11 @@ class _Candidate:
 
 
 def plan_place(arm: Arm, held: HeldObject, spots: Sequence[Pose]) -> PlacePlan:
-    """A spot, a turn, the path above it and the path down.
+    """Choose a spot and a yaw; plan the path above the spot and the path down.
 
     Raises:
-        Failure: NO_PLACE_POSE when the hand cannot set it down upright on any spot, NO_PLAN when
-            no way leads above those where it could, START_IN_COLLISION.
+        Failure: NO_PLACE_POSE if the hand cannot place it upright on any spot, NO_PLAN if no
+            path leads above the spots where it could, START_IN_COLLISION.
     """
     candidates = _feasible(arm, held, spots)
     transit = arm.route([c.lower[0] for c in candidates], held)
@@ -74,7 +75,7 @@ def plan_place(arm: Arm, held: HeldObject, spots: Sequence[Pose]) -> PlacePlan:
 
 
 def retreat_of(arm: Arm, held: HeldObject) -> Transform:
-    """tip_from_retreated: back along the fingers, out of reach of what was set down."""
+    """tip_from_retreated: back along the fingers, clear of the placed object."""
     return Transform((-arm.hand.approach, 0.0, 0.0))
 
 
@@ -139,7 +140,7 @@ def _postures(
 
 
 def _standing(spot: Pose, held: HeldObject, yaw: float) -> Transform:
-    """odom_from_object with the object upright on a spot, turned by `yaw`."""
+    """odom_from_object with the object upright on a spot, at a yaw of `yaw`."""
     x, y, z = spot.position
     turn = yaw + spot.transform.yaw
     return Transform(

@@ -1,4 +1,4 @@
-"""Choosing grasps that can be approached, held and lifted, and the motions for one of them."""
+"""Choosing grasps that can be approached, held and lifted, and planning the motions for one."""
 
 from __future__ import annotations
 
@@ -17,22 +17,24 @@ from momantu_skills.manipulation.model.collision import CollisionWorld, Obstacle
 from momantu_skills.manipulation.model.hulls import object_corners
 
 SEEDS = 6
-"""Starts of the inverse kinematics per grasp: three in four find a posture where there is one."""
+"""Start postures of the inverse kinematics per grasp: they find a solution for three of four
+reachable grasps."""
 FROM_BEHIND = -0.3
-"""Cosine between the fingers' direction and the direction from base to object below which a grasp
-would reach around the object; those are not tried."""
+"""Grasps are skipped if the cosine between the fingers' direction and the direction from base to
+object is below this: they would reach around the object."""
 POSTURES = 3
-"""Postures kept per grasp, the quickest to reach."""
+"""Postures kept per grasp, those that are quickest to reach."""
 ENOUGH = 5
-"""Grasps with which a way is searched: the planner takes the first it can reach."""
+"""Grasps for which a path is searched: the planner takes the first that it can reach."""
 TESTED = 1800
-"""Postures whose approach and lift are tested at most."""
+"""Most postures for which approach and lift are checked."""
 CUT = (0.025, 0.025, 0.03)
-"""m around the object in which cells are its own: detection error and a cell's diagonal."""
+"""Margin around the object within which cells belong to it, m: detection error and a cell's
+diagonal."""
 BESIDE = 0.003
-"""m between the open hand and the object until it closes: less than the palm keeps."""
+"""Clearance between open hand and object until it closes, m: less than the palm's."""
 SKIN = 0.004
-"""m around the object that the hand keeps on its way to it."""
+"""Clearance between hand and object on the way to it, m."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,11 +59,11 @@ class PickPlan:
 
 
 def plan_pick(arm: Arm, thing: DetectedObject, lift: float) -> PickPlan:
-    """Grasp, approach, lift and the path to them.
+    """Choose a grasp; plan its approach, its lift and the path to them.
 
     Raises:
-        Failure: NO_GRASP when no grasp can be reached, NO_PLAN when none of those that can has a
-            way to it, START_IN_COLLISION.
+        Failure: NO_GRASP if no grasp can be reached, NO_PLAN if no path leads to any of those
+            that can, START_IN_COLLISION.
     """
     reaches = reachable(arm, thing, lift)
     state = arm.state
@@ -83,10 +85,10 @@ def plan_pick(arm: Arm, thing: DetectedObject, lift: float) -> PickPlan:
 
 
 def reachable(arm: Arm, thing: DetectedObject, lift: float) -> list[Reach]:
-    """Grasps whose approach, closing and lift are all possible, best first.
+    """Grasps with possible approach, closing and lift, best first.
 
     Raises:
-        Failure: NO_GRASP, with how many grasps failed at which step.
+        Failure: NO_GRASP, with the number of grasps that failed at each step.
     """
     effector = arm.scene.model.description.end_effector
     model = arm.scene.model
@@ -142,7 +144,7 @@ def _postures(
 
 
 class _Check:
-    """Tests a posture at a grasp: hand, approach and lift; counts what fails where."""
+    """Checks hand, approach and lift of a posture at a grasp; counts the failures per step."""
 
     def __init__(self, arm: Arm, thing: DetectedObject, lift: float) -> None:
         self._arm, self._thing, self._lift = arm, thing, lift
@@ -193,7 +195,7 @@ class _Check:
 
 
 def _around(arm: Arm, state: RobotState, thing: DetectedObject) -> CollisionWorld:
-    """The object alone, as something that an open hand must not touch before it closes."""
+    """The object alone, as an obstacle that an open hand must not touch before it closes."""
     base_from_object = state.odom_from_base.inverse() @ thing.pose.transform
     solid = Obstacle("target", base_from_object.apply(object_corners(thing)))
     posture = arm.scene.model.configuration(state, arm.open_width)

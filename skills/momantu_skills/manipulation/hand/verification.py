@@ -9,35 +9,35 @@ from momantu_bt.geometry import Array, Transform
 from momantu_bt.messages import DetectedObject
 
 INSIDE = 0.012
-"""m around an object in which points are its own."""
+"""Margin around an object within which points belong to it, m."""
 ABOVE = 0.012
-"""m above the support below which points are the support's."""
+"""Height above the support below which points belong to the support, m."""
 SOME = 25
-"""Points (every fourth pixel each way) that show something: of a can there are 150 at 1 m."""
+"""Points (every fourth pixel in each direction) that prove an object: a can at 1 m has 150."""
 TOP = 0.02
-"""m below the expected top in which an upright object shows points."""
+"""An upright object shows points within this of its expected top, m."""
 AROUND = 0.12
-"""m around a spot in which a toppled object still lies."""
+"""Distance from a spot within which a toppled object is still found, m."""
 LYING = 0.75
-"""Share of the height below which what stands there has fallen over."""
+"""Share of its height below which an object counts as toppled."""
 THIN = 0.01
-"""m; half of the least width that a thing which stands has."""
+"""Half of the smallest width of a standing object, m."""
 STEP = 0.004
-"""m between two places that are tried."""
+"""Distance between two positions that are tried, m."""
 CLOSE = 0.03
-"""m around an outline in which it must stand alone."""
+"""Margin around an outline that must be free of other points, m."""
 STRAY = 0.1
-"""Share of the points that may lie there all the same: depth noise."""
+"""Share of the points that may lie in that margin: depth noise."""
 MISFIT = 0.006
-"""m from an outline that its points lie in the mean, at most."""
+"""Largest mean distance of the points from an outline, m."""
 FEW = 8
-"""Points that show a top where the hand hides most of it."""
+"""Points that prove a top if the hand hides most of it."""
 KNOWN = 0.03
-"""m around what was seen before in which nothing counts as new: a cell and a half."""
+"""Distance from earlier points within which nothing counts as new, m: one and a half cells."""
 
 
 def points_of(points: Array, pose: Transform, thing: DetectedObject, support: float) -> Array:
-    """Those of points (n, 3) that lie on an object at `odom_from_object`, above its support."""
+    """Points (n, 3) that lie on an object at `odom_from_object`, above its support."""
     local = pose.inverse().apply(points)
     half = np.array(thing.size) / 2 + INSIDE
     if thing.shape == "cylinder":
@@ -49,7 +49,7 @@ def points_of(points: Array, pose: Transform, thing: DetectedObject, support: fl
 
 
 def stands_there(points: Array, pose: Transform, thing: DetectedObject, support: float) -> bool:
-    """Whether the picture's points (n, 3), odom, show something where the object should be."""
+    """Whether the picture's points (n, 3), odom, show something at the object's place."""
     return len(points_of(points, pose, thing, support)) >= SOME
 
 
@@ -75,7 +75,7 @@ def standing(points: Array, pose: Transform, thing: DetectedObject, support: flo
 
 
 def unseen_before(points: Array, before: Array) -> Array:
-    """Those of points (n, 3) that lie apart from everything (m, 3) that was seen earlier."""
+    """Points (n, 3) that are not near any point (m, 3) that was seen earlier."""
     if not len(before) or not len(points):
         return points
     apart, _ = cKDTree(before).query(points, distance_upper_bound=KNOWN)
@@ -85,11 +85,11 @@ def unseen_before(points: Array, before: Array) -> Array:
 def beside(
     points: Array, pose: Transform, thing: DetectedObject, support: float
 ) -> Transform | None:
-    """Where points (n, 3) show the object upright a little beside its spot, or None.
+    """Where points (n, 3) show the object upright next to its spot, or None.
 
-    It slips while the fingers close and open. pose: `odom_from_object` at the spot. That was free
-    for it, so nothing else has its middle within the object's outline there. What is taken for it
-    has its height and outline, and stands alone.
+    The object may slip while the fingers close and open. pose: `odom_from_object` at the spot. The
+    spot was free, so no other object has its centre within the outline there. The match must have
+    the object's height and outline and must stand alone.
     """
     half = np.array(thing.size) / 2
     local, rise = pose.inverse().apply(points)[:, :2], points[:, 2] - support
@@ -115,14 +115,14 @@ def beside(
 
 
 def _shifts(reach: float) -> Array:
-    """Places (k, 2) at most `reach` m from a spot."""
+    """Positions (k, 2) at most `reach` m from a spot."""
     steps = np.arange(-reach, reach + STEP / 2, STEP)
     places = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
     return np.asarray(places[np.linalg.norm(places, axis=1) <= reach])
 
 
 def _outside(flat: Array, half: Array, shape: str) -> Array:
-    """How far points (..., 2) lie outside an upright object's outline, m; negative within."""
+    """Distance of points (..., 2) outside an upright object's outline, m; negative inside."""
     if shape == "cylinder":
         return np.asarray(np.linalg.norm(flat, axis=-1) - half.max())
     over = np.abs(flat) - half

@@ -1,1 +1,1 @@
-"""The robot's body for planning: URDF, hulls, kinematics, collision checks."""
+"""The robot's body for planning: URDF, convex hulls, kinematics, collision checks."""

@@ -1,4 +1,4 @@
-"""A robot's body for planning: links, hulls, chains of joints. Everything in the base frame."""
+"""A robot's body for planning: links, hulls, chains of joints. All poses are in the base frame."""
 
 from __future__ import annotations
 
@@ -20,18 +20,19 @@ from momantu_skills.manipulation.model.hulls import link_hulls
 from momantu_skills.manipulation.model.urdf import base_urdf
 
 PACE = 1.5
-"""rad/s; speed of a usual arm's joints, to which those of a group are compared."""
+"""Speed of a usual arm's joints, rad/s; the joints of a group are scaled relative to it."""
 JUMP = 0.25
-"""rad between two solved poses of a straight line, 1 cm apart; more is another arm posture."""
+"""Largest joint motion between two solutions 1 cm apart on a straight line, rad; more means another
+arm configuration."""
 NEAR, TURN = 5e-4, 3e-3
-"""m and rad to which inverse kinematics solves: well below calibration errors."""
+"""Tolerances of inverse kinematics, m and rad: well below calibration errors."""
 
 
 @dataclass(frozen=True)
 class Group:
     """A chain of n joints from the base to a tip, with limits (endless joints: infinite).
 
-    scale (n,): turns joint angles into equal times. The rest: see `kinematics`.
+    scale (n,): converts joint angles to equal times. For the other fields see `kinematics`.
     """
 
     names: tuple[str, ...]
@@ -46,7 +47,7 @@ class Group:
 
     @property
     def pace(self) -> float:
-        """rad/s; a scaled radian takes 1 / pace seconds on each joint. Less on a slow arm."""
+        """Speed in rad/s: a scaled radian takes 1 / pace s on each joint. Less on a slow arm."""
         return min(PACE, float(np.median(self.velocity)))
 
     @property
@@ -56,12 +57,12 @@ class Group:
 
     @property
     def endless(self) -> NDArray[np.bool_]:
-        """(n,) which joints turn for ever."""
+        """Which joints (n,) can turn without limit."""
         return np.asarray(~np.isfinite(self.lower))
 
     @cached_property
     def chain(self) -> kin.Chain:
-        """The joints as the compiled kinematics take them."""
+        """The joints in the form that the compiled kinematics take."""
         weights = (self.velocity / self.pace) ** 2
         limits = (self.lower, self.upper)
         return kin.Chain(self.origins, self.axes, self.slides, self.tip, *limits, weights)
@@ -92,7 +93,7 @@ class Group:
         return found, good
 
     def trace(self, targets: Array, start: Array) -> tuple[Array, int]:
-        """Joints along poses (k, 4, 4) a centimetre apart: (reached, n), and how many there are."""
+        """Joints along poses (k, 4, 4) a centimetre apart: (reached, n), and their number."""
         path, reached = kin.trace(
             self.chain, np.ascontiguousarray(targets), np.array(start), NEAR, TURN, JUMP
         )
@@ -105,21 +106,22 @@ class Group:
     def point(
         self, starts: Array, ray: Array, target: Array, rounds: int = 12
     ) -> tuple[Array, Array]:
-        """Turn a ray (3,) of the tip towards a point (3,) in base, from joints (m, n).
+        """Rotate a ray (3,) of the tip towards a point (3,) in base, from joints (m, n).
 
-        Returns joints (m, n) within the limits, moved little, and the angles left (m,), rad.
+        Returns joints (m, n) within the limits, with little motion, and the remaining angles (m,),
+        rad.
         """
         found, left = kin.point(self.chain, starts, ray, target, rounds, TURN)
         return found, left
 
     def nearest_turn(self, q: Array, reference: Array) -> Array:
-        """The same posture with endless joints (.., n) within half a turn of `reference` (n,)."""
+        """The same posture, with endless joints (.., n) within half a turn of `reference` (n,)."""
         turns = np.round((q - reference) / (2 * np.pi)) * (2 * np.pi)
         return np.where(self.endless, q - turns, q)
 
 
 class ArmModel:
-    """Kinematics and hulls of the whole robot, for one planning group that is moved."""
+    """Kinematics and hulls of the whole robot; one planning group moves."""
 
     def __init__(self, description: RobotDescription, group: str = "arm") -> None:
         self.description = description
@@ -139,16 +141,16 @@ class ArmModel:
         }
 
     def joints(self, state: RobotState) -> Array:
-        """Joints of the planning group (n,) as measured, clipped into their limits."""
+        """Measured joints of the planning group (n,), clipped to their limits."""
         q = np.array([state.position(name) for name in self.group.names])
         return np.asarray(np.clip(q, self.group.lower, self.group.upper))
 
     def configuration(self, state: RobotState, width: float | None = None) -> Array:
-        """All joints (nq,) in pinocchio's order; fingers from a width, the measured one if None."""
+        """All joints (nq,) in pinocchio's order; fingers from a width, or as measured if None."""
         return self.posture(state.joints(), state.gripper_width if width is None else width)
 
     def posture(self, joints: Mapping[str, float], width: float) -> Array:
-        """All joints (nq,) from those given, the others at 0, and the gripper's opening in m."""
+        """All joints (nq,) from the given ones and the gripper's opening in m; the others are 0."""
         q = np.zeros(self.pin.nq)
         for name, value in joints.items():
             if name in self._index:
@@ -158,7 +160,7 @@ class ArmModel:
         return q
 
     def link_poses(self, q: Array) -> dict[str, Array]:
-        """base_from_link (4, 4) of the tip and every link with a hull, at all joints (nq,)."""
+        """base_from_link (4, 4) of the tip and of every link with a hull, at all joints (nq,)."""
         data = self._data
         pin.framesForwardKinematics(self.pin, data, q)
         return {link: np.array(data.oMf[i].homogeneous) for link, i in self.frame_ids.items()}
@@ -172,7 +174,7 @@ class ArmModel:
 
     @property
     def tip_from_grasp(self) -> Transform:
-        """The grasp frame in the tip, the link that the end effector names as its frame."""
+        """The grasp frame relative to the tip, the link that is the end effector's frame."""
         effector = self.description.end_effector
         return Transform((effector.grasp_offset, 0.0, 0.0))
 
@@ -180,7 +182,7 @@ class ArmModel:
     def palm(self) -> Array:
         """Corners (n, 3) of the hand without its fingers, in the grasp frame, m.
 
-        Those of the links that may touch what is grasped and do not move against the tip.
+        They come from the links that may touch the grasped object and are fixed to the tip.
         """
         effector = self.description.end_effector
         tip = self.pin.frames[self.frame_ids[effector.frame]]
@@ -197,9 +199,9 @@ class ArmModel:
 
     @cached_property
     def open_fingers(self) -> tuple[Array, ...]:
-        """Planes (k, 4) around each link of the fingers, opened wide, in the grasp frame, m.
+        """Planes (k, 4) around each link of the fully opened fingers, in the grasp frame, m.
 
-        Outward normal and offset: a point is inside where all are negative.
+        Outward normal and offset: a point is inside if all values are negative.
         """
         effector = self.description.end_effector
         joint = self.pin.frames[self.frame_ids[effector.frame]].parentJoint
@@ -215,7 +217,7 @@ class ArmModel:
 
     @cached_property
     def grasp_from_camera(self) -> Transform | None:
-        """The first camera in the grasp frame, where it is fixed to the hand, else None."""
+        """The first camera's pose in the grasp frame if it is fixed to the hand, else None."""
         if not self.description.eye_in_hand or self.eye.names != self.group.names:
             return None
         joints = np.zeros(len(self.group.names))
@@ -224,7 +226,7 @@ class ArmModel:
 
     @cached_property
     def beyond_eye(self) -> frozenset[str]:
-        """Links with hulls that move with the first camera, or against it alone."""
+        """Links with hulls that move with the first camera, or that move relative to it alone."""
         frame = self.pin.frames[self.pin.getFrameId(self.description.camera()[1].frame)]
         below = set(self.pin.subtrees[int(frame.parentJoint)])
         return frozenset(
@@ -237,7 +239,7 @@ class ArmModel:
     def eye(self) -> Group:
         """The group's joints that move the first camera, with the camera's frame as the tip.
 
-        Raises ValueError where the arm does not carry it.
+        Raises ValueError if the arm does not carry it.
         """
         description = self.description
         if not description.eye_in_hand:
@@ -246,7 +248,7 @@ class ArmModel:
 
 
 def arm_model(description: RobotDescription) -> ArmModel:
-    """The model of a description; built once per process."""
+    """Return the model of a description; built once per process."""
     return _cached(_Key(description))
 
 
@@ -277,7 +279,7 @@ def chain_group(
     tip: str,
     joint_limits: Mapping[str, JointLimit],
 ) -> Group:
-    """Those of joints `names` that lead to a link; others on the way stand at 0."""
+    """The chain of those joints in `names` that lead to a link; others on the way stay at 0."""
     joints: list[Joint] = []
     origins: list[Array] = []
     after = np.eye(4)

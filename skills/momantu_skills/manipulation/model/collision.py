@@ -1,4 +1,4 @@
-"""Collision checks of the robot, and what it holds, with itself and its surroundings."""
+"""Collision checks of the robot and its held object, with itself and the surroundings."""
 
 from __future__ import annotations
 
@@ -17,13 +17,14 @@ from momantu_skills.manipulation.model.hulls import convex
 from momantu_skills.manipulation.model.shapes import BodyShapes
 
 FLOOR = 0.01
-"""m above which the floor's box ends: no moving link belongs below it."""
+"""Height of the top of the floor's box, m: no moving link belongs below it."""
 SAMPLES = 200
-"""Random postures in which pairs of links that always touch are looked for."""
+"""Random postures for finding pairs of links that always touch."""
 SELF_MARGIN = 0.008
-"""m; clearance between the robot's own links on transits, for a path is only checked at points."""
+"""Clearance between the robot's own links on free motions, m, as a path is checked at points
+only."""
 ALWAYS = 0.95
-"""Share of the postures in which a pair touches because its hulls overlap for good."""
+"""Share of the postures in which a pair must touch to count as always overlapping."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,13 +38,13 @@ class Obstacle:
 
 @dataclass(frozen=True, eq=False)
 class Attached:
-    """What the tip carries: corners (n, 3) of its hull in the tip's frame, m."""
+    """The held object: corners (n, 3) of its hull in the tip's frame, m."""
 
     corners: Array
 
 
 class BodyPairs:
-    """The robot's own shapes, and which pairs of links are worth checking."""
+    """The robot's own shapes, and the pairs of links that need checks."""
 
     def __init__(self, model: ArmModel) -> None:
         self.model = model
@@ -103,15 +104,15 @@ class BodyPairs:
 
 @lru_cache(maxsize=4)
 def body_pairs(model: ArmModel) -> BodyPairs:
-    """The shapes and pairs of a model; built once per process."""
+    """Return the shapes and pairs of a model; built once per process."""
     return BodyPairs(model)
 
 
 class CollisionWorld:
-    """Collision checks for one situation: posture of the rest, surroundings, what is held.
+    """Collision checks for one situation: other joints, surroundings, held object.
 
-    cells: centres (n, 3) of occupied cells in a frame that `base_from_cells` places. margin: m of
-    clearance to surroundings. touching: (link or "held", obstacle name) pairs that may touch.
+    cells: centres (n, 3) of occupied cells, in a frame whose pose is `base_from_cells`. margin:
+    clearance to surroundings, m. touching: (link or "held", obstacle name) pairs that may touch.
     """
 
     def __init__(
@@ -163,17 +164,17 @@ class CollisionWorld:
         )
 
     def free(self, q: Array) -> bool:
-        """Whether joints (n,) of the planning group touch nothing."""
+        """Whether the robot touches nothing at joints (n,) of the planning group."""
         self.checks += 1
         self._q[self._index] = q
         return not pin.computeCollisions(self._pin, self._data, self._manager, self._q, True)
 
     def path_free(self, path: Array) -> bool:
-        """Whether every one of joints (k, n) touches nothing."""
+        """Whether the robot touches nothing at each of joints (k, n)."""
         return all(self.free(q) for q in path)
 
     def touching(self, q: Array) -> list[tuple[str, str]]:
-        """Names of all pairs that touch at joints (n,), for messages and tests."""
+        """Names of all touching pairs at joints (n,), for messages and tests."""
         self._q[self._index] = q
         pin.computeCollisions(self._pin, self._data, self._geometry, self._shapes, self._q, False)
         objects = self._geometry.geometryObjects
@@ -210,7 +211,7 @@ class CollisionWorld:
         return int(self._geometry.addGeometryObject(shape))
 
     def _strangers(self) -> list[int]:
-        """Shapes of the links that what is held must not touch: all but the hand."""
+        """Shapes of the links that the held object must not touch: all except the hand."""
         touch = self.body.model.description.end_effector.touch_links
         links = self.body.links
         return [shape for link, shapes in links.items() if link not in touch for shape in shapes]

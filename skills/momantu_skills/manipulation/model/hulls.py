@@ -1,4 +1,4 @@
-"""Convex hulls of links and things: for collision checks, self-filter masks and footprints."""
+"""Convex hulls of links and objects: for collision checks, self-filtering and footprints."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from momantu_bt.messages import DetectedObject
 from momantu_skills.manipulation.model.urdf import CollisionPart
 
 MOST_CORNERS = 80
-"""Hulls are reduced to about this many corners, the price of quick checks: an arm's link of usual
-size shrinks by up to 7 mm, a hand by 2 mm, a torso or base by up to 27 mm."""
+"""Hulls are reduced to about this many corners, to keep checks fast. An arm link of usual size
+shrinks by up to 7 mm, a hand by 2 mm, a torso or base by up to 27 mm."""
 ROUND = 16
-"""Corners of a circle when a cylinder becomes a prism."""
+"""Corners of the polygon that replaces a cylinder's circle."""
 SPHERE = 64
-"""Directions in which a sphere's hull has corners."""
+"""Number of hull corners of a sphere."""
 
 
 _SIDES = np.array(
@@ -33,13 +33,13 @@ _SIDES = np.array(
     dtype=np.float64,
 )
 DIRECTIONS = _SIDES / np.linalg.norm(_SIDES, axis=1, keepdims=True)
-"""(13, 3): the slabs between which a link is enclosed (a 26-DOP, Klosowski et al. 1998)."""
+"""(13, 3): the normals of the slabs that enclose a link (a 26-DOP, Klosowski et al. 1998)."""
 
 
 def hull_points(points: Array, most: int = MOST_CORNERS) -> Array:
-    """Corners (k, 3) of the convex hull of points (n, 3), thinned to the extreme ones.
+    """Corners (k, 3) of the convex hull of points (n, 3), reduced to the extreme ones.
 
-    Thinning keeps, for `most` evenly spread directions, the farthest corner.
+    The reduction keeps the farthest corner in each of `most` evenly distributed directions.
     """
     corners = points[ConvexHull(points).vertices]
     if len(corners) <= most:
@@ -123,7 +123,7 @@ def link_hulls(parts: Iterable[CollisionPart]) -> dict[str, Array]:
 
 
 class LinkMask:
-    """Encloses hulls in slabs, to tell quickly which points lie within."""
+    """Encloses hulls in slabs, for a fast test of which points lie inside."""
 
     def __init__(self, hulls: Mapping[str, Array], padding: float) -> None:
         self.names = tuple(hulls)
@@ -135,7 +135,7 @@ class LinkMask:
         self._radii += padding
 
     def covers(self, points: Array, poses: Mapping[str, Array]) -> NDArray[np.bool_]:
-        """(n,) which points (n, 3) lie within a link at its pose base_from_link (4, 4)."""
+        """Which of points (n, 3) lie within a link at its pose base_from_link (4, 4): (n,)."""
         inside = np.zeros(len(points), dtype=bool)
         for i, name in enumerate(self.names):
             pose = poses[name]
@@ -159,7 +159,7 @@ def floor_outline(corners: Array) -> Array:
 
 
 def object_corners(thing: DetectedObject, padding: float = 0.0) -> Array:
-    """Corners (n, 3) of an object's hull in its own frame, `padding` m larger on every side."""
+    """Corners (n, 3) of an object's hull in its frame, enlarged by `padding` m on every side."""
     x, y, z = (edge + 2 * padding for edge in thing.size)
     if thing.shape == "cylinder":
         return prism(max(x, y) / 2, z)

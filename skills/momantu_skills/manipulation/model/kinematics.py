@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from momantu_bt.geometry import Array
 
 DAMPING = 1e-4
-"""Damped least squares' lambda squared, in m2 of weighted joint motion: keeps steps near
-singular arms short and costs a few iterations elsewhere."""
+"""Lambda squared of damped least squares, in m2 of weighted joint motion: it keeps steps small near
+singularities and costs a few iterations elsewhere."""
 LONGEST_STEP = 0.35
-"""rad (or scaled m) a joint moves in one iteration at most: the linearisation holds that far."""
+"""Largest motion of a joint in one iteration, rad (or scaled m): the range of the linearisation."""
 
 
 class Chain(NamedTuple):
@@ -136,9 +136,9 @@ def _stepped(chain, q, jacobian, e):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def descend(chain, target, q, rounds, near, turn):  # type: ignore[no-untyped-def]
-    """Damped least squares from `q` to `target`: joints (n,) and whether they are there.
+    """Damped least squares from `q` to `target`: joints (n,) and whether they reach it.
 
-    near, turn: tolerances in m and rad. Limits hold after every step.
+    near, turn: tolerances in m and rad. Limits are applied after every step.
     """
     q = q.copy()
     for _ in range(rounds):
@@ -155,7 +155,7 @@ def descend(chain, target, q, rounds, near, turn):  # type: ignore[no-untyped-de
 
 @njit(cache=True)
 def solve(chain, targets, seeds, rounds, near, turn):  # type: ignore[no-untyped-def]
-    """Every target (m, 4, 4) from every seed (s, n): joints (m, s, n) and success (m, s)."""
+    """Solve each target (m, 4, 4) from each seed (s, n): joints (m, s, n) and success (m, s)."""
     m, s, n = len(targets), len(seeds), seeds.shape[1]
     found, good = np.empty((m, s, n)), np.zeros((m, s), dtype=np.bool_)
     for i in range(m):
@@ -173,9 +173,9 @@ def solve(chain, targets, seeds, rounds, near, turn):  # type: ignore[no-untyped
 
 @njit(cache=True)
 def trace(chain, targets, start, near, turn, jump):  # type: ignore[no-untyped-def]
-    """Follow poses (k, 4, 4) closely spaced, from `start`: joints (k, n), how many were reached.
+    """Follow poses (k, 4, 4) at small distances from `start`: joints (k, n), number reached.
 
-    Stops where a pose cannot be reached, or a joint would move more than `jump` between two.
+    It stops at an unreachable pose, or if a joint would move more than `jump` between two poses.
     """
     path = np.empty((len(targets), len(start)))
     q = start
@@ -202,7 +202,7 @@ def poses(chain, postures):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _off_ray(r, p, ray, target):  # type: ignore[no-untyped-def]
-    """Rotation vector (3,) in base from the tip's ray to the target, the angle, the line's way."""
+    """Rotation vector (3,) in base from ray to target, angle, the line's direction, length."""
     way = target - p
     length = max(1e-9, np.sqrt(way[0] ** 2 + way[1] ** 2 + way[2] ** 2))
     way = way / length
@@ -223,10 +223,11 @@ def _off_ray(r, p, ray, target):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def point(chain, starts, ray, target, rounds, near):  # type: ignore[no-untyped-def]
-    """Turn the tip's `ray` (3,) towards `target` (3,) from each of starts (m, n).
+    """Rotate the tip's `ray` (3,) towards `target` (3,) from each of starts (m, n).
 
-    Damped least squares on the angle between ray and line of sight: two conditions, so that all
-    other freedom of the joints is left as it is. Joints (m, n) and the angles left over (m,).
+    Damped least squares on the angle between the ray and the line of sight. These are two
+    conditions; the other degrees of freedom stay as they are. Returns joints (m, n) and the
+    remaining angles (m,).
     """
     found, left = starts.copy(), np.empty(len(starts))
     for k in range(len(starts)):

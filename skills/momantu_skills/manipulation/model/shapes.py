@@ -13,20 +13,21 @@ from momantu_skills.manipulation.model.hulls import convex, load_mesh, part_poin
 from momantu_skills.manipulation.model.urdf import CollisionPart
 
 LONGEST_HULL = 0.4
-"""m; longer links keep their mesh: the hull around a torso with shoulders and neck would swallow
-the arm folded before it. Checks against a mesh are slower, and few."""
+"""Longest link that is replaced by its hull, m. Longer links keep their mesh: the hull around a
+torso with shoulders and neck would include the arm folded in front of it. Checks against a mesh are
+slower, but few."""
 
 
 class BodyShapes:
     """One hull per link, or the meshes of long links, placed in a pinocchio model.
 
-    geometry: all of them. links: indices of each link's shapes in it.
+    geometry: all shapes. links: indices of each link's shapes in it.
     """
 
     def __init__(
         self, model: pin.Model, hulls: Mapping[str, Array], parts: Iterable[CollisionPart]
     ) -> None:
-        """hulls: corners (k, 3) in the link's frame. parts: of which they are made."""
+        """hulls: corners (k, 3) in the link's frame. parts: the collision parts of each link."""
         self.geometry = pin.GeometryModel()
         self.links: dict[str, list[int]] = {link: [] for link in hulls}
         self._pin = model
@@ -58,7 +59,7 @@ class BodyShapes:
         return int(self._pin.frames[self._frames[link]].parentJoint)
 
     def adjacent(self, one: str, other: str) -> bool:
-        """Whether links share a joint, or sit on the same one."""
+        """Whether two links share a joint, or are fixed to the same one."""
         a, b = self.joint(one), self.joint(other)
         parents = self._pin.parents
         return a == b or int(parents[a]) == b or int(parents[b]) == a

@@ -1,4 +1,4 @@
-"""A robot's URDF as planning needs it: rooted at the base, every joint with a plain angle."""
+"""A robot's URDF in the form that planning needs: rooted at the base, one angle per joint."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from momantu_bt.geometry import Transform
 
 
 class UrdfSource(Protocol):
-    """What reading a URDF needs; a robot's description is one."""
+    """What reading a URDF needs; a robot's description provides it."""
 
     @property
     def urdf(self) -> Path:
@@ -24,7 +24,7 @@ class UrdfSource(Protocol):
 
     @property
     def base_frame(self) -> str:
-        """The link that everything hangs below."""
+        """The root link."""
         ...
 
     @property
@@ -51,7 +51,7 @@ class CollisionPart:
 class BaseUrdf:
     """text: URDF without anything above the base, continuous joints as revolute ones.
 
-    continuous: names of the joints that turn for ever.
+    continuous: names of the joints that turn without limit.
     """
 
     text: str
@@ -60,11 +60,11 @@ class BaseUrdf:
 
 
 def base_urdf(description: UrdfSource) -> BaseUrdf:
-    """Cut a URDF down to what hangs below the base frame.
+    """Reduce a URDF to what is below the base frame.
 
-    Virtual base joints above the base would add degrees of freedom; pinocchio gives continuous
-    joints two coordinates, and readers take their limits as (0, 0): they become revolute with
-    +-pi here, and whoever plans treats their range as endless.
+    Virtual joints above the base would add degrees of freedom. Pinocchio gives continuous joints
+    two coordinates, and URDF readers take their limits as (0, 0). Therefore they become revolute
+    here with limits of +-pi, and planners treat their range as endless.
     """
     root = parse_urdf(description.urdf.read_bytes(), str(description.urdf))
     keep = _links_below(root, description.base_frame)

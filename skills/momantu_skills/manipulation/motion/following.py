@@ -1,4 +1,4 @@
-"""Following a trajectory tick by tick, and noticing when the arm lags behind."""
+"""Following a trajectory tick by tick, and detecting an arm that lags behind."""
 
 from __future__ import annotations
 
@@ -13,20 +13,22 @@ from momantu_bt.robot import Robot
 from momantu_bt.skill import Clock
 
 LAG = 0.35
-"""rad or m behind the trajectory that is normal at full speed: two ticks of delay."""
+"""Lag behind the trajectory that is normal at full speed, rad or m: two ticks of delay."""
 PATIENCE = 0.3
-"""s for which an arm that lags must not get on to count as stuck."""
+"""Time without progress after which a lagging arm counts as stuck, s."""
 SETTLE = 1.5
-"""s after the trajectory's end in which the joints must arrive, or still get on."""
+"""Time after the trajectory's end for the joints to arrive or to make progress, s."""
 SLOWEST = 4.0
-"""Times its duration that a trajectory may take, for an arm slower than it says."""
+"""Longest duration of a trajectory, as a multiple of its planned one, for an arm slower than
+specified."""
 ASIDE = 0.15
-"""rad or m beside its path at which an arm is not merely late."""
+"""Distance beside its path above which an arm is not merely late, rad or m."""
 ARRIVED = 0.02
-"""rad or m from the end at which the joints have arrived."""
+"""Distance from the end within which the joints have arrived, rad or m."""
 STILL = 2e-3
-"""rad or m a joint may move between two ticks and still stand: measurement noise and creep.
-Speeds do not work for this: a clamped joint may report one while its position stays."""
+"""Largest motion of a joint between two ticks that counts as standing still, rad or m: measurement
+noise and creep. Reported speeds cannot be used: a blocked joint may report one although its
+position does not change."""
 CODE = "ARM_STUCK"
 
 Watch = Callable[[Robot], bool]
@@ -40,13 +42,14 @@ def follow(
     phase: str = "moving",
     until: Watch | None = None,
 ) -> Generator[str, None, bool]:
-    """Command a trajectory each tick until it has arrived and stands still: True.
+    """Command a trajectory tick by tick; True once the arm has arrived and stands still.
 
-    until: asked each tick; when it says yes the actuator brakes along the path, and the answer
-    is False. Yields the phase. An arm that is late but gets on along its path is waited for.
+    until: called at each tick; when it returns True, the actuator brakes along the path and the
+    result is False. Yields the phase. An arm that is late but makes progress on its path is waited
+    for.
 
     Raises:
-        Failure: ARM_STUCK, when the joints stay behind or never arrive; the actuator is stopped.
+        Failure: ARM_STUCK if the joints lag behind or never arrive; the actuator is stopped.
     """
     began = clock.now()
     delay = _Delay(trajectory)
@@ -69,17 +72,17 @@ def follow(
 
 
 class _Delay:
-    """Distinguishes a late arm from a stuck one, by its progress along the trajectory."""
+    """Distinguishes a late arm from a stuck one by its progress along the trajectory."""
 
     def __init__(self, trajectory: JointTrajectory) -> None:
         self._trajectory = trajectory
         self._at = 0
-        """Index of the farthest point it has come near to."""
+        """Index of the farthest point that the arm has come near."""
         self._advanced = 0.0
-        """When it last got on, s after the start."""
+        """Time of the last progress, s after the start."""
 
     def hopeless(self, positions: Array, after: float) -> bool:
-        """Whether joints (n,) that are there `after` seconds will not arrive any more."""
+        """Whether joints at `positions` (n,), `after` seconds from the start, cannot arrive."""
         trajectory = self._trajectory
         times = trajectory.times
         due = min(int(np.searchsorted(times, after, side="right")), len(times) - 1)
@@ -113,7 +116,7 @@ def brake(
 
 
 def expected(trajectory: JointTrajectory, after: float) -> Array:
-    """Joints (n,) a trajectory asks for `after` seconds, interpolated linearly."""
+    """Joints (n,) of a trajectory after `after` seconds, interpolated linearly."""
     times = trajectory.times
     at = min(max(after, 0.0), trajectory.duration)
     i = min(int(np.searchsorted(times, at, side="right")), len(times) - 1)

@@ -1,4 +1,4 @@
-"""Search a collision-free path to any of several goal postures, or out of a touching posture."""
+"""Plan a collision-free path to any of several goal postures, or out of a collision."""
 
 from __future__ import annotations
 
@@ -17,35 +17,36 @@ from momantu_skills.manipulation.model.collision import CollisionWorld
 Valid = Callable[[Array], bool]
 
 ROOM = 0.4
-"""Scaled rad that the first search may stray past start and goals on slow joints."""
+"""How far the first search may move slow joints beyond start and goals, scaled rad."""
 LEAST_GAIN = 0.01
-"""s that a shortcut must save."""
+"""Least time that a shortcut must save, s."""
 WIDE = 1.3 * np.pi
-"""rad around the start in which endless joints are searched."""
+"""Range around the start in which endless joints are searched, rad."""
 
 ou.setLogLevel(ou.LogLevel.LOG_NONE)  # it warns of every reseeding, which is what we want
 
 
 LIFTS = (0.02, 0.04, 0.08)
-"""m the tip is lifted, the first thing tried: what is touched mostly lies below."""
+"""Heights by which the tip is lifted first, m: most contacts are below it."""
 RADII = (0.05, 0.1, 0.2, 0.35)
-"""Scaled rad of random motions, tried from small to large."""
+"""Sizes of random motions, scaled rad, from small to large."""
 TRIES = 40
-"""Random motions of each size."""
+"""Number of random motions of each size."""
 
 
 class Planner:
-    """Paths for one group of joints. Everything it draws comes from `random`."""
+    """Paths for one group of joints. All random numbers come from `random`."""
 
     def __init__(self, group: Group, random: np.random.Generator, config: PlanningConfig) -> None:
         self.group, self.random, self.config = group, random, config
 
     def path(self, start: Array, goals: Sequence[Array], valid: Valid) -> Array | None:
-        """Waypoints (k, n) from `start` to one of `goals`, all of it valid; None if not found.
+        """Valid waypoints (k, n) from `start` to one of `goals`; None if no path was found.
 
-        `start` must be valid. Goals that are not are left out; endless joints of the others are
-        turned the short way. First straight lines, nearest goal first; then RRT-Connect (Kuffner
-        and LaValle 2000) with slow joints kept near where they are; then with all room there is.
+        `start` must be valid. Invalid goals are skipped; endless joints of the others take the
+        short way. First straight lines are tried, nearest goal first; then RRT-Connect (Kuffner and
+        LaValle 2000) with slow joints kept near their positions; then RRT-Connect with their full
+        range.
         """
         turned = [self.group.nearest_turn(np.asarray(goal), start) for goal in goals]
         ends = sorted((g for g in turned if valid(g)), key=lambda g: self.duration(start, g))
@@ -62,11 +63,11 @@ class Planner:
         return None
 
     def duration(self, start: Array, goal: Array) -> float:
-        """Seconds a straight joint motion takes at full speed, accelerations left out."""
+        """Seconds of a straight joint motion at full speed, without acceleration."""
         return float(np.max(np.abs(goal - start) / self.group.velocity))
 
     def length(self, path: Array) -> float:
-        """Seconds that the pieces of a path (k, n) take at full speed, one after the other."""
+        """Seconds that the segments of a path (k, n) take at full speed, one after the other."""
         steps = np.abs(np.diff(path, axis=0)) / self.group.velocity
         return float(steps.max(axis=1).sum())
 
@@ -75,7 +76,7 @@ class Planner:
         return all(valid(q) for q in self.line(start, goal))
 
     def line(self, start: Array, goal: Array) -> Array:
-        """Joints (k, n) along a straight line, checks as far apart as the configuration says."""
+        """Joints (k, n) along a straight line, at the configured distance between checks."""
         length = float(np.linalg.norm((goal - start) * self.group.scale))
         count = max(2, int(np.ceil(length / self.config.step)) + 1)
         return start + np.linspace(0.0, 1.0, count)[:, None] * (goal - start)
@@ -113,7 +114,7 @@ class Planner:
         return np.array([state[0:n] for state in path.getStates()]) / scale
 
     def _shortened(self, path: Array, valid: Valid) -> Array:
-        """Straight lines between random points of the path wherever they are valid and quicker.
+        """Replace parts of the path by straight lines that are valid and quicker, at random points.
 
         After Geraerts and Overmars, "Creating High-quality Paths for Motion Planning", 2007.
         """
@@ -152,14 +153,14 @@ def _at(path: Array, where: float) -> Array:
 
 
 def _distinct(path: Array) -> Array:
-    """Without waypoints that repeat the one before."""
+    """The path without repeated waypoints."""
     keep = np.ones(len(path), dtype=bool)
     keep[1:] = np.abs(np.diff(path, axis=0)).max(axis=1) > 1e-6
     return path[keep]
 
 
 class _Counter:
-    """Ends a search after so many questions whether it should end."""
+    """Ends a search after a number of calls."""
 
     def __init__(self, most: int) -> None:
         self.left = most
@@ -183,10 +184,10 @@ def escape(
     bare: CollisionWorld,
     random: np.random.Generator,
 ) -> Array | None:
-    """Joints (k, n) from a touching `start` to a posture that is free in `world`, or None.
+    """Joints (k, n) from a `start` in collision to a posture free in `world`, or None.
 
-    On the way nothing new is touched in `bare`, the same world without margin: the motion only
-    leaves contacts. First straight up, then small random motions of all joints.
+    `bare` is the same world without margin. On the way the robot touches nothing new in it: the
+    motion only leaves contacts. It is first straight up, then small random motions of all joints.
     """
     allowed = set(bare.touching(start))
     for path in (*_lifts(group, start), *_wiggles(group, start, random)):

@@ -15,9 +15,9 @@ from momantu_skills.manipulation.config import PlanningConfig
 from momantu_skills.manipulation.model.arm_model import Group
 
 PER_WAYPOINT = 10
-"""Grid points between two waypoints: fewer miss the spline's curvature at corners."""
+"""Grid points between two waypoints: with fewer the spline's curvature at corners is missed."""
 SHORTEST = 1e-4
-"""rad or m; a path shorter than this is not a motion."""
+"""Length below which a path is not a motion, rad or m."""
 
 logging.getLogger("toppra").setLevel(logging.ERROR)
 toppra.setup_logging("ERROR")
@@ -35,7 +35,7 @@ def densified(path: Array, distance: float) -> Array:
 def rounded(path: Array, distance: float, radius: float) -> Array:
     """Like `densified`, without the points (k, n) within `radius` of a corner.
 
-    A spline through what is left goes round the corner instead of through it.
+    A spline through the remaining points rounds the corner.
     """
     pieces = [path[:1]]
     last = len(path) - 2
@@ -58,12 +58,11 @@ def timed(
 ) -> JointTrajectory:
     """The fastest trajectory along waypoints (k, n), at rest at both ends.
 
-    tip_speed: the tip moves no faster than this, m/s. rounding: see `rounded`.
-    Method: Pham and Pham, "A New Approach to Time-Optimal Path Parameterization Based on
-    Reachability Analysis" (TOPP-RA), 2018.
+    tip_speed: largest speed of the tip, m/s. rounding: see `rounded`. Method: Pham and Pham, "A New
+    Approach to Time-Optimal Path Parameterization Based on Reachability Analysis" (TOPP-RA), 2018.
 
     Raises:
-        ValueError: no timing within the limits; only a path that jumps back can cause it.
+        ValueError: no timing within the limits; only a discontinuous path can cause it.
     """
     dense = (
         densified(path, config.densify)
@@ -101,7 +100,7 @@ def at_rest(group: Group, q: Array) -> JointTrajectory:
 
 
 def _slowdown(group: Group, positions: Array, velocities: Array, tip_speed: float) -> float:
-    """Factor (at least 1) by which time is stretched so that the tip keeps its speed."""
+    """Factor (at least 1) that stretches time so that the tip keeps its speed limit."""
     speeds = [
         float(np.linalg.norm((group.jacobian(q) @ v)[:3]))
         for q, v in zip(positions, velocities, strict=True)

@@ -1,1 +1,1 @@
-"""Localization: Monte Carlo localization, and how far to trust it."""
+"""Localization: Monte Carlo localization, and when its estimate is reliable."""

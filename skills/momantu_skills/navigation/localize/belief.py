@@ -1,4 +1,4 @@
-"""The estimate of a weighted cloud of planar poses: its main cluster and its whole spread."""
+"""The estimate from a weighted set of planar poses: mean of the main cluster, full covariance."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from momantu_bt.geometry import Array, Pose2D
 
 CLUSTER_RADIUS = 0.4
-"""Particles this near (m, and rad) to the heaviest spot belong to the same hypothesis."""
+"""Particles within this distance (m, and rad) of the heaviest cell belong to the same
+hypothesis."""
 
 
 def mean_pose(poses: Array, weights: Array) -> Pose2D:
@@ -32,9 +33,9 @@ def differences(poses: Array, center: Pose2D) -> Array:
 
 
 def main_cluster(poses: Array, weights: Array, guess: Pose2D) -> Pose2D:
-    """Mean of the heaviest cluster: around `guess` where that still holds most of the weight.
+    """Mean of the heaviest cluster; stays with `guess` while most of the weight is around it.
 
-    Three mean-shift steps from the guess, or from the heaviest cell of a coarse grid.
+    Three mean-shift steps, from the guess or from the heaviest cell of a coarse grid.
     """
     if weights[_near(poses, guess)].sum() < 0.5 * weights.sum():
         guess = _heaviest(poses, weights)
@@ -47,7 +48,7 @@ def main_cluster(poses: Array, weights: Array, guess: Pose2D) -> Pose2D:
 
 
 def covariance(poses: Array, weights: Array, center: Pose2D) -> Array:
-    """(3, 3) second moment of the whole cloud about `center`: other hypotheses count."""
+    """(3, 3) covariance of all particles about `center`, so other hypotheses enlarge it."""
     delta = differences(poses, center)
     share = weights / weights.sum()
     return np.asarray((delta * share[:, None]).T @ delta)

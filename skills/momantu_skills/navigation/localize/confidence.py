@@ -9,26 +9,27 @@ from momantu_bt.geometry import Array
 from momantu_bt.service import Localization
 
 POSITION_SIGMA = 0.15
-"""m: half of the narrowest room for error in a doorway one metre wide."""
+"""Largest standard deviation of the position, m: half of the smallest tolerance in a doorway one
+metre wide."""
 YAW_SIGMA = 0.12
-"""rad: 7 degrees."""
+"""Largest standard deviation of the yaw, rad: 7 degrees."""
 QUALITY = 0.7
-"""Fit of the newest scan below which the estimate is doubted; usual is 0.95 and more."""
+"""Least fit of the newest scan (0 to 1); the usual fit is 0.95 or more."""
 
 
 def sigmas(covariance: Array) -> tuple[float, float]:
-    """Standard deviations (position in m along its widest axis, yaw in rad) of a (3, 3)."""
+    """Standard deviations from a (3, 3): position along its widest axis, m, and yaw, rad."""
     a, b, c = float(covariance[0, 0]), float(covariance[0, 1]), float(covariance[1, 1])
     widest = 0.5 * (a + c) + math.sqrt(0.25 * (a - c) ** 2 + b * b)
     return math.sqrt(max(widest, 0.0)), math.sqrt(max(float(covariance[2, 2]), 0.0))
 
 
 def is_localized(localization: Localization, quality: float = QUALITY) -> bool:
-    """Whether the estimate is narrow and the newest scan agrees with it by `quality` or more."""
+    """Whether the covariance is small and the newest scan fits the map by `quality` or more."""
     position, yaw = sigmas(localization.covariance)
     return position < POSITION_SIGMA and yaw < YAW_SIGMA and localization.quality > quality
 
 
 def estimate(localization: Localization) -> BaseAt:
-    """The claim that the base is where it is believed to be, as well as driving needs to know."""
+    """Claim that the base is at its estimate, with the accuracy that driving needs."""
     return BaseAt(localization.map_from_base, POSITION_SIGMA, YAW_SIGMA)

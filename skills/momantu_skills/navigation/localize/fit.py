@@ -1,4 +1,4 @@
-"""How well one scan fits the map, apart from furniture that the map does not know."""
+"""How well one scan fits the map, ignoring furniture that is not in the map."""
 
 from __future__ import annotations
 
@@ -15,18 +15,20 @@ from momantu_skills.navigation.map.maps import GridMap
 from momantu_skills.navigation.map.sensing import Rays
 
 HIT = 0.15
-"""A beam that ends this near to a mapped surface is explained, m: three times its usual spread."""
+"""A beam that ends within this distance of a mapped surface is explained, m: three times its usual
+spread."""
 SHORT_COUNTS = 0.4
-"""A beam that ends early in free space is weak evidence against a pose: people move furniture."""
+"""Weight of a beam that ends early in free space: weak evidence against a pose, as people move
+furniture."""
 BEAMS = 120
-"""Beams that are looked at: one in five or six of a usual scan."""
+"""Number of beams that are used: one in five or six of a usual scan."""
 
 
 def scan_fit(grid: GridMap, field: Field, pose: Pose2D, rays: Rays) -> float:
-    """0..1: explained beams over explained, contradicting and (less) early ones.
+    """0..1: explained beams divided by explained, contradicting and (with less weight) early ones.
 
-    A beam contradicts the pose when it passed through something that the map knows. Without a
-    single hit the scan says nothing: 0.
+    A beam contradicts the pose if it passed through an occupied cell of the map. A scan without any
+    hit gives 0, as it says nothing about the pose.
     """
     step = max(1, rays.ranges.size // BEAMS)
     chosen = np.zeros(rays.ranges.size, dtype=np.bool_)

@@ -1,4 +1,4 @@
-"""Adaptive Monte Carlo localization on a likelihood field, apart from robots and clocks."""
+"""Adaptive Monte Carlo localization on a likelihood field, independent of robots and clocks."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from momantu_skills.navigation.map.maps import GridMap
 from momantu_skills.navigation.map.sensing import Rays
 
 COARSE = 3.0
-"""After a global spread the first scans are weighed with hits this many times wider: the poses
-that are tried lie far apart."""
+"""After a global reset, `hit_sigma` is multiplied by this for the first scans, because the sampled
+poses lie far apart."""
 
 
 class Localizer:
-    """Particles in the map: moved by odometry, weighed by scans.
+    """Particles in the map, moved by odometry and weighted by scans.
 
-    estimate: mean of the main cluster. covariance: (3, 3) of the whole cloud, m2, m rad, rad2.
+    estimate: mean of the main cluster. covariance: (3, 3) of all particles, m2, m rad, rad2.
     quality: 0..1, fit of the newest scan at the estimate.
     """
 
@@ -47,7 +47,7 @@ class Localizer:
         self.reset(Pose2D(0.0, 0.0, 0.0), 0.0, 0.0)
 
     def reset(self, pose: Pose2D, sigma_position: float, sigma_yaw: float) -> None:
-        """Start over around a pose; standard deviations in m (each axis) and rad."""
+        """Restart around a pose; standard deviations in m (each axis) and rad."""
         spread = np.array([sigma_position, sigma_position, sigma_yaw])
         count = max(2_000, self._config.particles[0])
         noise = self._random.standard_normal((count, 3)) * spread
@@ -56,7 +56,7 @@ class Localizer:
         self._widening = 1.0
 
     def spread(self) -> None:
-        """Start over anywhere on the free floor; the next scan is compared with every pose."""
+        """Restart everywhere on the free floor; the next scan is compared with every pose."""
         self._start(self._anywhere(self._config.particles[1]), self.estimate)
         self._search = True
         self._widening = COARSE
@@ -78,9 +78,9 @@ class Localizer:
         return np.concatenate([cells + offsets, yaw], axis=1)
 
     def move(self, delta: Pose2D) -> None:
-        """Odometry says that the base moved by `delta`, in its own frame before the motion.
+        """Move the particles by odometry's `delta`, in the base's frame before the motion.
 
-        Noise grows with the way and the turn (the sampled odometry model, in one step).
+        The noise grows with the distance and the turn (the sampled odometry model, in one step).
         """
         config, count = self._config, len(self._poses)
         way, turn = math.hypot(delta.x, delta.y), abs(delta.yaw)
@@ -95,11 +95,11 @@ class Localizer:
         self.estimate = self.estimate @ delta
 
     def jitter(self, sigma: float) -> None:
-        """Move every particle a little, sigma in m and rad, so that rest does not impoverish."""
+        """Move every particle slightly, sigma in m and rad, so that they stay diverse at rest."""
         self._poses += self._random.standard_normal(self._poses.shape) * (sigma, sigma, 0.7 * sigma)
 
     def observe(self, rays: Rays) -> None:
-        """Weigh the particles by a scan, estimate, and draw the next ones."""
+        """Weight the particles by a scan, estimate the pose, and resample."""
         points = rays.thinned(self._config.beams)
         if not len(points):
             self.quality = 0.0
@@ -131,7 +131,7 @@ class Localizer:
         return result
 
     def _every_pose(self) -> Array:
-        """Free cells on a lattice, each with evenly spaced headings: (n, 3)."""
+        """Poses (n, 3): free cells on a lattice, each with evenly spaced headings."""
         skip = max(1, round(self._config.global_spacing / self._grid.resolution))
         lattice = np.zeros(self._grid.cells.shape, dtype=np.bool_)
         lattice[::skip, ::skip] = self._grid.cells[::skip, ::skip] == FREE
@@ -143,7 +143,7 @@ class Localizer:
         return np.concatenate([repeated, np.tile(yaws, len(spots))[:, None]], axis=1)
 
     def _injected(self, logs: Array, beams: int) -> float:
-        """Share of random particles, from how the best fits of late compare with those of old."""
+        """Share of random particles, from the ratio of the recent to the long-term average fit."""
         config = self._config
         typical = float(np.exp(logs.max() / beams))
         if self._slow == 0.0:

@@ -12,7 +12,7 @@ from momantu_bt.geometry import Array
 from momantu_skills.navigation.map.fields import Field, sample
 
 _SLOTS = 1 << 16
-"""Slots of the table of occupied bins: three times the most particles, a power of two."""
+"""Slots of the hash table of occupied bins: three times the most particles, a power of two."""
 
 
 def likelihood_field(distance: Field, sigma: float, random_share: float) -> Field:
@@ -31,10 +31,10 @@ def log_likelihoods(
     resolution: float,
     outside: float,
 ) -> Array:
-    """Sum over beams of the log of their likelihood, for each pose.
+    """For each pose, the sum over beams of the log of their likelihood.
 
-    poses: (n, 3) x, y, yaw in the map. points: (k, 2) beam ends in the base frame, m.
-    field: likelihood of a beam's end; `outside` holds off the grid.
+    poses: (n, 3) x, y, yaw in the map. points: (k, 2) beam ends in the base frame, m. field:
+    likelihood of a beam's end; `outside` is the value off the grid.
     """
     n = poses.shape[0]
     k = points.shape[0]
@@ -68,10 +68,11 @@ def kld_resample(
     error: float,
     quantile: float,
 ) -> NDArray[np.int64]:
-    """Indices of particles drawn by weight, until their number bounds the KL divergence.
+    """Resample: indices of particles drawn by weight, as many as the KL divergence bound needs.
 
-    poses: (n, 3). weights: (n,) summing to 1. uniforms: (m,) in [0, 1); m is the most that is
-    drawn. Stops at `fewest` or the bound of KLD sampling for the bins occupied so far.
+    poses: (n, 3). weights: (n,) summing to 1. uniforms: (m,) in [0, 1); at most m indices are
+    drawn. Stops at `fewest` or at the bound of KLD sampling for the bins occupied so far, whichever
+    is more.
     """
     cumulative = np.cumsum(weights)
     table = np.full(_SLOTS, -1, dtype=np.int64)

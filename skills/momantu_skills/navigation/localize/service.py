@@ -1,4 +1,4 @@
-"""The localization service: publishes at each scan where odometry's frame is in the map."""
+"""The localization service: publishes the odom frame's pose in the map after each scan."""
 
 from __future__ import annotations
 
@@ -21,15 +21,16 @@ with lazily():
 
 
 MOVING = 1e-4
-"""Odometry per update below which the base rests, m and rad."""
+"""Motion per update below which the base counts as at rest, m and rad."""
 
 
 class LocalizationService(Service):
     """Adaptive Monte Carlo localization; see `LocalizationConfig` for the site's parameters.
 
-    Reads the laser when odometry has moved, and for a while at rest after a reset or a stop. The
-    laser is taken to be fixed to the base. While the laser is dead it follows odometry alone:
-    who drives meets the dead laser himself. The first scan that comes again is weighed.
+    It uses the laser when odometry has moved, and for a while at rest after a reset or a stop. The
+    laser is assumed to be fixed to the base. If the laser fails, the service follows odometry
+    alone, and skills that drive report the failure themselves. When scans return, the first one is
+    used.
     """
 
     rate: ClassVar[float] = 10.0
@@ -42,7 +43,7 @@ class LocalizationService(Service):
     senses = ("laser",)
 
     def start(self, context: ServiceContext) -> None:
-        """Read the map and begin around the site's start pose."""
+        """Read the map and start around the site's start pose."""
         if context.site.map_file is None:
             raise ValueError(f"site {context.site.name!r} has no map_file to be localized in")
         self._config = configured(LocalizationConfig, context.parameters, "localization")
@@ -60,7 +61,7 @@ class LocalizationService(Service):
         self.reset(context.site.start, *context.site.start_sigma)
 
     def update(self, robot: Robot, now: float) -> None:
-        """Follow odometry; weigh a scan when it is due."""
+        """Follow odometry; use a scan when it is due."""
         odom_from_base = Pose2D.from_transform(robot.state().odom_from_base)
         before = self._odom_from_base or odom_from_base
         self._odom_from_base = odom_from_base
@@ -105,12 +106,12 @@ class LocalizationService(Service):
 
     @property
     def map_from_base(self) -> Pose2D:
-        """The best estimate of now."""
+        """The current best estimate."""
         return self._localizer.estimate
 
     @property
     def covariance(self) -> Array:
-        """(3, 3) of x, y, yaw in m2, m rad, rad2: other hypotheses count."""
+        """(3, 3) of x, y, yaw in m2, m rad, rad2; other hypotheses enlarge it."""
         return self._localizer.covariance
 
     @property
@@ -119,12 +120,12 @@ class LocalizationService(Service):
         return self._localizer.quality
 
     def reset(self, map_from_base: Pose2D, sigma_position: float, sigma_yaw: float) -> None:
-        """Start over around a pose; standard deviations in m and rad."""
+        """Restart around a pose; standard deviations in m and rad."""
         self._localizer.reset(map_from_base, sigma_position, sigma_yaw)
         self._rest_scans = self._config.rest_scans
 
     def spread(self) -> None:
-        """Start over everywhere on the map's free floor."""
+        """Restart everywhere on the map's free floor."""
         self._localizer.spread()
         self._rest_scans = self._config.rest_scans
 

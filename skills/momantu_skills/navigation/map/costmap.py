@@ -16,20 +16,21 @@ from momantu_skills.navigation.map.maps import GridMap
 from momantu_skills.navigation.map.sensing import Rays
 
 FAR = 1.0
-"""m beyond which more room makes no difference; also how far a window looks beyond its edge."""
+"""Clearance above which the value is capped, m; also the margin around a window that is
+recomputed."""
 SURE = 4
-"""A hit counts this much; each beam that passes through a cell later takes one away."""
+"""Count that a hit sets in its cell; each beam that later passes through the cell subtracts one."""
 RANGE_DOUBT = 0.02
-"""rad: hits this much off the map's walls are the estimate's heading error."""
+"""Heading error of the estimate, rad: hits this far off the map's walls are attributed to it."""
 DEPTH_HITS = 3
-"""Depth pixels that must fall into a cell: lone ones fly between near and far edges."""
+"""Depth pixels that a cell needs to be occupied: single ones lie between near and far edges."""
 
 
 class Costmap:
-    """Layers over the map's grid: map, overhang, laser, depth. Everything in map coordinates.
+    """Layers over the map's grid: map, overhang, laser, depth. All coordinates are in the map.
 
-    field: (rows, columns) distance to the nearest blocked cell, at most `FAR`, m.
-    frame: (x, y, resolution) of the grid, as kernels take it.
+    field: (rows, columns) distance to the nearest blocked cell, at most `FAR`, m. frame: (x, y,
+    resolution) of the grid, as the compiled kernels take it.
     """
 
     def __init__(self, grid: GridMap, overhang: GridMap | None, config: NavigationConfig) -> None:
@@ -45,7 +46,7 @@ class Costmap:
         self.field = self.known_field.copy()
 
     def clear_ahead(self, map_from_base: Pose2D) -> None:
-        """Forget what was seen before the base, which can be seen again; keep what lies behind."""
+        """Clear what was seen ahead of the base, which can be seen again; keep what lies behind."""
         rows, columns = np.mgrid[0 : self.grid.cells.shape[0], 0 : self.grid.cells.shape[1]]
         x = self.frame[0] + (columns + 0.5) * self.frame[2] - map_from_base.x
         y = self.frame[1] + (rows + 0.5) * self.frame[2] - map_from_base.y
@@ -55,7 +56,7 @@ class Costmap:
         self.refresh()
 
     def see_laser(self, map_from_base: Pose2D, rays: Rays) -> None:
-        """Mark what a scan hit and clear what it passed through."""
+        """Mark the hits of a scan and clear the cells that its beams passed through."""
         _trace(
             self._laser,
             self._from_known,
@@ -70,7 +71,7 @@ class Costmap:
         )
 
     def see_depth(self, obstacles: Array, floor: Array) -> None:
-        """Mark cells that hold obstacle points (n, 2); clear those where floor (m, 2) was seen."""
+        """Mark cells with obstacle points (n, 2); clear those with floor points (m, 2)."""
         bare = self._counts(floor) >= DEPTH_HITS
         taken = self._counts(obstacles) >= DEPTH_HITS
         self._depth[bare & ~taken] = 0
@@ -84,7 +85,7 @@ class Costmap:
         return np.bincount(flat, minlength=rows * columns).reshape(rows, columns)
 
     def refresh(self, center: Pose2D | None = None, radius: float = 2.5) -> None:
-        """Compute the clearance again: everywhere, or within a square around `center`."""
+        """Recompute the clearance: everywhere, or within a square around `center`."""
         rows, columns = self.grid.cells.shape
         window = pad = (slice(0, rows), slice(0, columns))
         if center is not None:
@@ -101,9 +102,9 @@ class Costmap:
         self.field[window] = fresh[r : r + height, c : c + width]
 
     def room(self, pose: Pose2D, discs: Array, *, known: bool = False) -> float:
-        """Room in m between a footprint (discs (m, 3)) at a pose and anything; < 0 in a collision.
+        """Clearance in m of a footprint (discs (m, 3)) at a pose; negative in a collision.
 
-        known: by the map's layers alone.
+        known: use the map's layers only.
         """
         field = self.known_field if known else self.field
         x, y, yaw = float(pose.x), float(pose.y), float(pose.yaw)
@@ -119,7 +120,7 @@ def _square(row: int, column: int, reach: int, rows: int, columns: int) -> tuple
 
 
 def _resampled(layer: GridMap, grid: GridMap) -> NDArray[np.bool_]:
-    """Where `layer` is occupied, on the cells of `grid`."""
+    """The occupied cells of `layer`, resampled to the cells of `grid`."""
     blocked = np.zeros(grid.cells.shape, dtype=np.bool_)
     points = layer.centers(layer.cells == OCCUPIED)
     cells = np.floor((points - np.array(grid.origin)) / grid.resolution).astype(np.int64)
@@ -131,7 +132,7 @@ def _resampled(layer: GridMap, grid: GridMap) -> NDArray[np.bool_]:
 
 @numba.njit(cache=True)
 def room(field: Field, frame: Array, discs: Array, x: float, y: float, yaw: float) -> float:
-    """Least distance in m between any of the discs and a blocked cell; 0 off the grid."""
+    """Clearance in m: the least distance from any disc to a blocked cell; 0 off the grid."""
     c = math.cos(yaw)
     s = math.sin(yaw)
     least = 1e9

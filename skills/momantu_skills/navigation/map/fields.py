@@ -14,9 +14,9 @@ Field = NDArray[np.float32]
 def clearance(blocked: NDArray[np.bool_], resolution: float) -> Field:
     """Distance in m from each cell's centre to the nearest blocked cell's face, 0 inside.
 
-    blocked: (rows, columns). Exact Euclidean distance between centres, less half a cell; beyond
-    the grid's diagonal where nothing is blocked. The same to the last bit on every machine, which
-    a library's vectorised square roots are not.
+    blocked: (rows, columns). The value is the exact Euclidean distance between centres, less half a
+    cell; if nothing is blocked it is greater than the grid's diagonal. It is bit-identical on every
+    machine, unlike the vectorised square roots of a library.
     """
     cells = np.sqrt(_squared_cells(np.ascontiguousarray(blocked)).astype(np.float64))
     return np.asarray(np.maximum((cells - 0.5) * resolution, 0.0), dtype=np.float32)
@@ -73,8 +73,8 @@ def _at(g: NDArray[np.int64], i: int, c: int) -> int:
 def surface_distance(occupied: NDArray[np.bool_], resolution: float, cap: float) -> Field:
     """Distance in m, at most `cap`, from each cell's centre to the nearest occupied surface.
 
-    Positive outside and inside alike: a laser sees surfaces, and a thick wall has two of them.
-    Where a wall meets a free cell the surface lies half a cell from both centres.
+    The distance is positive on both sides: a laser measures surfaces, and a thick wall has two.
+    Between an occupied and a free cell the surface lies half a cell from both centres.
     """
     outside = clearance(occupied, resolution)
     inside = clearance(~occupied, resolution)
@@ -83,7 +83,7 @@ def surface_distance(occupied: NDArray[np.bool_], resolution: float, cap: float)
 
 @numba.njit(cache=True, inline="always")
 def sample(field: Field, column: float, row: float, outside: float) -> float:
-    """Bilinear value at fractional cell coordinates (0 is the first cell's centre)."""
+    """Bilinear interpolation at fractional cell coordinates (0 is the first cell's centre)."""
     rows, columns = field.shape
     c = math.floor(column)
     r = math.floor(row)

@@ -54,7 +54,7 @@ class GridMap:
 
 
 def read_grid(path: Path) -> GridMap:
-    """The map that a map_server YAML file describes.
+    """Read the map that a map_server YAML file describes.
 
     Raises:
         MapError: a file is missing or broken; the message says which, where and what is valid.

@@ -1,4 +1,4 @@
-"""What laser and depth camera see of the floor, from the base: rays, obstacles, bare floor."""
+"""What laser and depth camera measure of the floor, in the base frame: rays, obstacles, floor."""
 
 from __future__ import annotations
 
@@ -15,23 +15,25 @@ from momantu_bt.service import PlanningScene
 from momantu_skills.navigation.config import NavigationConfig
 
 SPREAD = 0.12
-"""m between hits that count as independent: beyond the noise of one, below any wall's length."""
+"""Distance between hits that count as independent, m: more than the noise of one, less than any
+wall."""
 
 
 STRIDE = 6
-"""Every sixth pixel in each direction: 2 cm apart at 2 m for a usual camera."""
+"""Every sixth pixel in each direction is used: 2 cm apart at 2 m for a usual camera."""
 TILT_DOUBT = 0.02
-"""m per m of distance by which floor may seem raised: camera mounting and depth noise."""
+"""Apparent height of the floor per m of distance that is not an obstacle: camera mounting and depth
+noise."""
 LONGEST_ROBOT = 1.5
-"""m from the base's axis within which a point may belong to the robot itself."""
+"""Distance from the base's axis, m, within which a point may belong to the robot itself."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Rays:
     """One scan in the base frame, projected onto the floor.
 
-    origin: (2,) where the beams start, m. directions: (n, 2) unit vectors. ranges: (n,) m.
-    hit: (n,) bool, which beams met something within the sensor's range.
+    origin: (2,) where the beams start, m. directions: (n, 2) unit vectors. ranges: (n,) m. hit:
+    (n,) bool, beams that hit something within the sensor's range.
     """
 
     origin: Array
@@ -41,7 +43,7 @@ class Rays:
 
     @classmethod
     def from_scan(cls, scan: LaserScan, base_from_laser: Transform) -> Rays:
-        """The scan of a laser whose beams lie in a horizontal plane, upside down or not."""
+        """Convert the scan of a horizontal laser; it may be mounted upside down."""
         angles = scan.angle_min + scan.angle_increment * np.arange(scan.ranges.size)
         flat = np.stack([np.cos(angles), np.sin(angles), np.zeros_like(angles)], axis=1)
         directions = (flat @ base_from_laser.rotation.T)[:, :2]
@@ -55,14 +57,14 @@ class Rays:
         )
 
     def points(self) -> Array:
-        """Where the hits are: (k, 2) in the base frame, m."""
+        """Positions of the hits: (k, 2) in the base frame, m."""
         return np.asarray(self.origin + self.directions[self.hit] * self.ranges[self.hit, None])
 
     def thinned(self, count: int) -> Array:
-        """About `count` hits, evenly spread over what was hit: (k, 2) in the base frame, m.
+        """About `count` hits, spread evenly over the surfaces: (k, 2) in the base frame, m.
 
-        One hit per cell of `SPREAD` comes first: a table right before the robot fills half of the
-        view, and is not worth more than the wall behind it.
+        One hit per cell of `SPREAD` is taken first. Otherwise a table close to the robot, which
+        fills half of the view, would count for more than the wall behind it.
         """
         points = self.points()
         cells = np.floor(points / SPREAD).astype(np.int64)
@@ -80,9 +82,9 @@ def obstacles_and_floor(
     scene: PlanningScene,
     config: NavigationConfig,
 ) -> tuple[Array, Array]:
-    """Points (n, 2) in the base's way and points (m, 2) of bare floor, base frame, m.
+    """Obstacle points (n, 2) and points (m, 2) of free floor, base frame, m.
 
-    The base frame's origin lies on the floor. The robot itself and what it holds are left out.
+    The base frame's origin lies on the floor. Points on the robot and its held object are removed.
     """
     points = _points(image)
     points = frames.lookup(description.base_frame, image.frame, image.stamp).apply(points)

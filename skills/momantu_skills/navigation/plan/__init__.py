@@ -1,1 +1,1 @@
-"""Where to stand, and the path there."""
+"""Choosing goal poses, and planning the path to them."""

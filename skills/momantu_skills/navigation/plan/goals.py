@@ -1,4 +1,4 @@
-"""Stands: before a surface, within reach of a pose, or at a given pose."""
+"""Stands, the candidates for a goal pose: before a surface, within reach of a pose, or given."""
 
 from __future__ import annotations
 
@@ -11,30 +11,32 @@ from momantu_bt.robot import Working
 from momantu_bt.world import Surface
 
 LATERAL = (0.0, 0.4, -0.4)
-"""m along the edge: the middle first, then from either side of it."""
+"""Offsets along the edge, m: the middle first, then to either side."""
 BACK = (0.0, 0.08, 0.16, 0.25)
-"""m farther off, tried in turn where something stands in the nearest place."""
+"""Extra distances from the surface, m, tried in turn if an obstacle occupies the nearest place."""
 ON_SURFACE = 0.20
-"""m by which a pose may lie beyond a surface's nominal edge and still be on it: tables move."""
+"""How far a pose may lie beyond a surface's nominal edge and still be on it, m, as tables move."""
 SHIFTS = (0.0, 0.1, -0.1, 0.2, -0.2, 0.3, -0.3)
-"""m along the edge by which one may stand beside the point that is to be reached."""
+"""Offsets along the edge, m, between the goal pose and the point to reach."""
 STRAIGHT = 0.25
-"""m: as far beside it as one may stand where that is straight ahead."""
+"""Largest such offset for a goal pose straight ahead of the base, m."""
 MANOEUVRE = 0.25
-"""Cost of not being straight ahead, m: a turn, a drive and a turn take as long as a metre's way."""
+"""Cost of a goal pose that is not straight ahead, m: turning, driving and turning again takes as
+long as driving one metre."""
 SQUARE = 0.3
-"""rad off a side's axis up to which the base stands squarely before it."""
+"""Largest angle to a side's axis at which the base faces the side squarely, rad."""
 NEARER = 0.05
-"""m nearer than the place to look from at which the base is too near: its tolerance."""
+"""The base is too near if it is this much nearer than the working distance, m: its tolerance."""
 AS_NEAR = 0.1
-"""m farther off than the nearest place to stand that is as good, where none is near enough."""
+"""If no stand is near enough, stands up to this much farther than the nearest one count as equal,
+m."""
 RING = 16
-"""Directions from which a pose in the open is approached."""
+"""Number of directions from which a pose away from surfaces is approached."""
 
 
 @dataclass(frozen=True, slots=True)
 class Stand:
-    """One place to stand. variant: stands of one variant differ in stand-off alone. cost: m."""
+    """One candidate goal pose. Stands of one variant differ only in their distance. cost: m."""
 
     pose: Pose2D
     variant: int
@@ -42,10 +44,10 @@ class Stand:
 
 
 def before_surface(surface: Surface, working: Working, base: Pose2D | None = None) -> list[Stand]:
-    """Stands from which a surface can be looked over, best first, facing its middle (map).
+    """Stands from which a surface can be viewed, best first, facing its middle (map).
 
-    A `base` that stands squarely before a side, too near to look, had best back straight off: an
-    arm that still reaches over the surface then sweeps over nothing.
+    If `base` faces a side squarely but is too near to see the surface, backing straight up is best:
+    an arm that still extends over the surface then does not sweep over other things.
     """
     stands = [] if base is None else _straight_back(surface, base, working)
     variant = len(stands)
@@ -85,9 +87,9 @@ def within_reach(
 ) -> list[Stand]:
     """Stands from which a point (x, y) can be reached, best first; all in the map.
 
-    Square before the surface that it lies on; around it where it lies on none. `base` is where
-    the robot stands: the shorter way is better. What lies too far from all of a surface's edges is
-    approached as near as the surface lets: its near side, at least, is within reach.
+    If the point lies on a surface, the stands face that surface squarely; otherwise they lie around
+    the point. `base` is where the robot stands: a shorter drive is better. If the point is too far
+    from all edges of its surface, the stands are as near as the surface allows.
     """
     stands: list[Stand] = []
     surface = surface_at(target, surfaces)
@@ -110,7 +112,7 @@ def within_reach(
 
 
 def surface_at(target: tuple[float, float], surfaces: Iterable[Surface]) -> Surface | None:
-    """The first surface that a point (x, y) of the map lies on, or nearly so."""
+    """The first surface that a point (x, y) of the map lies on, within tolerance."""
     for surface in surfaces:
         here = surface.map_from_surface.inverse() @ Pose2D(*target)
         beyond = max(abs(here.x) - surface.size[0] / 2, abs(here.y) - surface.size[1] / 2)
@@ -122,7 +124,7 @@ def surface_at(target: tuple[float, float], surfaces: Iterable[Surface]) -> Surf
 def _square_stands(
     surface: Surface, target: Pose2D, base: Pose2D, working: Working
 ) -> Iterable[tuple[float, Stand]]:
-    """Every stand square before one of the sides, with its distance from the target, m."""
+    """All stands that face one of the sides squarely, with their distance from the target, m."""
     nearest, best, _ = working.reach
     for number, angle in enumerate(surface.sides):
         edge, _ = _edge(surface, angle)
@@ -148,7 +150,7 @@ def _square_stands(
 
 
 def _straight_ahead(base: Pose2D, stand: Pose2D) -> bool:
-    """Whether the base only has to drive on to get there."""
+    """Whether the base only has to drive straight ahead to the stand."""
     seen = stand.inverse() @ base
     return seen.x < 0.02 and abs(seen.y) < 0.03 and abs(seen.yaw) < 0.3
 
@@ -161,6 +163,6 @@ def _edge(surface: Surface, angle: float) -> tuple[float, float]:
 
 
 def _facing(angle: float, off: float, lateral: float) -> Pose2D:
-    """In the surface's frame: `off` m out from its centre towards `angle`, facing it squarely."""
+    """Pose in the surface's frame: `off` m from its centre towards `angle`, facing back."""
     c, s = math.cos(angle), math.sin(angle)
     return Pose2D(c * off - s * lateral, s * off + c * lateral, wrap_angle(angle + math.pi))

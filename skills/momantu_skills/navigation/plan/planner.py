@@ -1,4 +1,4 @@
-"""The global planner: time to the goal from every cell, by fast marching (Sethian 1996)."""
+"""The global planner: cost to the goal from every cell, by fast marching (Sethian 1996)."""
 
 from __future__ import annotations
 
@@ -16,15 +16,16 @@ from momantu_skills.navigation.map.fields import Field, sample
 
 UNREACHED = np.float32(1e6)
 STEP = 0.5
-"""Cells per step of the descent to the goal."""
+"""Step of the gradient descent to the goal, cells."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Plan:
     """Paths to one goal from everywhere.
 
-    cost: (rows, columns) metres to the goal, weighted by nearness; `UNREACHED` where it is not
-    known. path: (n, 2) map coordinates from the start to the goal. goal: where it leads.
+    cost: (rows, columns) distance to the goal in metres, weighted by nearness to obstacles;
+    `UNREACHED` where it was not computed. path: (n, 2) map coordinates from the start to the goal.
+    goal: the goal pose.
     """
 
     cost: Field
@@ -33,7 +34,7 @@ class Plan:
 
     @property
     def length(self) -> float:
-        """Of the path, m."""
+        """Length of the path, m."""
         return float(np.hypot(*np.diff(self.path, axis=0).T).sum())
 
 
@@ -47,9 +48,9 @@ def plan(
     *,
     known: bool = False,
 ) -> Plan | None:
-    """The cheapest way for a disc of `radius` m, or None if there is no way.
+    """The cheapest path for a disc of `radius` m, or None if there is none.
 
-    known: by the map's layers alone, to tell a blocked way from one that never was.
+    known: use the map's layers only, to distinguish a blocked path from one that never existed.
     """
     field = costmap.known_field if known else costmap.field
     slowness = _slowness(field, radius, comfort, costs)
@@ -179,7 +180,7 @@ def _pop(keys: Field, cells: NDArray[np.int64], size: int) -> int:
 
 @numba.njit(cache=True)
 def _descend(cost: Field, frame: Array, x: float, y: float, gx: float, gy: float) -> Array:
-    """From (x, y) down the cost to the goal: the best of 16 directions at each half cell."""
+    """Descend the cost from (x, y) to the goal: the best of 16 directions at each half cell."""
     most = 20_000
     path = np.empty((most, 2))
     count = 0

@@ -1,1 +1,1 @@
-"""The camera: from depth to points, which joints aim it, one picture with its pose."""
+"""The camera: points from depth pictures, joints that aim it, one picture with its pose."""

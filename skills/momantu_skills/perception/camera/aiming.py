@@ -1,4 +1,4 @@
-"""Which joint positions point a camera at a point."""
+"""Compute the joint positions that point a camera at a point."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from momantu_bt.geometry import Array
 from momantu_bt.robot import JointLimit
 
 ITERATIONS = 25
-"""Newton steps of one start; two joints converge in five."""
+"""Newton steps from one start; two joints converge in five."""
 DAMPING = 1e-3
-"""rad; keeps steps finite where a joint does not move the view."""
+"""Damping, rad; limits steps where a joint does not move the view."""
 STEP = 0.6
-"""rad; the longest step of one joint, well below what linearisation bears."""
+"""Largest step of one joint, rad: well inside the range of the linearisation."""
 DIFFERENCE = 1e-4
-"""rad; step of the finite differences, far above rounding."""
+"""Step of the finite differences, rad: far above rounding errors."""
 CONVERGED = 1e-4
-"""rad off the axis that is as good as on it: a sixteenth of a pixel."""
+"""Angle off the axis at which the iteration has converged, rad: a sixteenth of a pixel."""
 
 
 @dataclass(frozen=True, slots=True)
 class Aim:
-    """positions: of the carrier's joints, in their order. off_axis: angle left over, rad."""
+    """positions: of the carrier's joints, in their order. off_axis: remaining angle, rad."""
 
     positions: tuple[float, ...]
     off_axis: float
@@ -42,9 +42,9 @@ def aim(
 ) -> Aim:
     """Positions of `joints` that put `point_base` (3,) on the optical axis, within the limits.
 
-    Damped least squares on the view's angular error, from where the joints are, then from the
-    middle of their travel; the other joints stay at `positions`. When the limits forbid it, the
-    nearest that was found is returned with its `off_axis`.
+    Damped least squares on the view's angular error, started at the current positions, then at the
+    middle of the joint ranges; the other joints stay at `positions`. If the limits forbid a
+    solution, the best result is returned with its `off_axis`.
     """
     low, high = _bounds(joints, limits)
     best: Aim | None = None
@@ -95,7 +95,7 @@ def _descend(
 
 
 def view_error(point_optical: Array) -> Array:
-    """Angular error (2,) in rad of a point (3,) in an optical frame: right and down of the axis."""
+    """Angular error (2,) in rad of a point (3,) in an optical frame: to the right and down."""
     x, y, z = (float(v) for v in point_optical)
     across = math.hypot(x, y)
     if across < 1e-12:

@@ -1,4 +1,4 @@
-"""From depth pictures to points."""
+"""Convert depth pictures to point clouds."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from numpy.typing import NDArray
 from momantu_bt.geometry import Array
 
 RAMP = 0.03
-"""m; a pixel that differs by more from both of its neighbours, in opposite directions, lies
-between a near and a far surface and on neither. No surface is seen so flatly within 2 m."""
+"""A pixel that differs by more than this, m, from both neighbours, in opposite directions, lies
+between a near and a far surface and on neither. No real surface within 2 m is that steep."""
 
 
 def points_from_depth(depth: NDArray[np.float32], intrinsics: Array, stride: int = 1) -> Array:
-    """Points (n, 3) in the optical frame, m, of every `stride`-th pixel that measured something.
+    """Points (n, 3) in the optical frame, m, of every `stride`-th pixel with a measurement.
 
-    Pinhole model: x = (u - cx) z / fx. Pixels on the ramp between two surfaces are left out.
+    Pinhole model: x = (u - cx) z / fx. Pixels between two surfaces are removed; see RAMP.
     """
     z = np.asarray(depth[::stride, ::stride], dtype=np.float64)
     rows, columns = np.nonzero((z > 0.0) & ~on_ramp(z))
@@ -26,7 +26,7 @@ def points_from_depth(depth: NDArray[np.float32], intrinsics: Array, stride: int
 
 
 def on_ramp(z: Array) -> NDArray[np.bool_]:
-    """(h, w) bool: which pixels lie between a near and a far surface; see RAMP."""
+    """Which pixels lie between a near and a far surface, (h, w) bool; see RAMP."""
     ramp = np.zeros(z.shape, dtype=bool)
     for axis in (0, 1):
         step = np.diff(z, axis=axis)

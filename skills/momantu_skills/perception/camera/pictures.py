@@ -1,4 +1,4 @@
-"""The points of a picture in a region, without those of the robot itself."""
+"""The points of a picture within a region, without those on the robot itself."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from momantu_skills.perception.camera.cloud import points_from_depth
 from momantu_skills.perception.geometry.regions import Region
 
 STRIDE = 2
-"""Pixels between two samples: a can 1 m away still has 700 points."""
+"""Pixels between two samples: a can 1 m away still gives 700 points."""
 
 
 def see(snapshot: Snapshot, region: Region, scene: PlanningScene, stride: int = STRIDE) -> View:
-    """The snapshot's points inside `region` that lie neither on the robot nor on what it holds."""
+    """The snapshot's points in `region` that are neither on the robot nor on its held object."""
     image = snapshot.image
     optical = points_from_depth(image.depth, image.intrinsics, stride)
     rotation, position = snapshot.odom_from_camera.rotation, snapshot.odom_from_camera.position

@@ -55,7 +55,7 @@ def components(mask: Mask) -> tuple[int, NDArray[np.int32]]:
 
 
 def largest_component(mask: Mask) -> Mask:
-    """The 8-connected component with the most cells; nothing where there is none."""
+    """The 8-connected component with the most cells; empty if there is none."""
     count, labels = components(mask)
     if count == 0:
         return np.zeros(mask.shape, dtype=bool)
@@ -72,7 +72,7 @@ def closed(mask: Mask, cells: int) -> Mask:
 
 
 def clearance(blocked: Mask, cell: float) -> Array:
-    """(nx, ny) distance in m from each cell's middle to the nearest blocked cell's middle."""
+    """Distance (nx, ny) in m from each cell's centre to the nearest blocked cell's centre."""
     if not blocked.any():
         return np.full(blocked.shape, np.inf)
     free = (~blocked).astype(np.uint8)

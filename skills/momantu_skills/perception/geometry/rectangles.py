@@ -1,4 +1,4 @@
-"""The smallest rectangle around points of the floor plan."""
+"""The smallest rectangle around points projected onto the floor."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from momantu_bt.geometry import Array
 from momantu_skills.perception.geometry.regions import convex_hull
 
 NEAR = 0.008
-"""m; points of a face lie within this of the side that they are to decide."""
+"""Distance from a side within which points of a face are used to fit that side, m."""
 CORNER = 0.005
-"""m from the corners within which a point may belong to either face."""
+"""Distance from the corners within which a point may belong to either face, m."""
 LEAST_FACE = 20
-"""Points that decide where a side lies."""
+"""Fewest points for fitting a side."""
 TRIM = 1.0
-"""Per cent of the points cut off at each side: noise makes the outermost ones lie outside."""
+"""Per cent of the points removed at each side: because of noise the outermost ones lie outside."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -42,9 +42,9 @@ class Rectangle:
 
 
 def smallest_rectangle(points: Array) -> Rectangle:
-    """The rectangle of least area around points (n, 2), then trimmed by TRIM.
+    """The rectangle of least area around points (n, 2), then reduced by TRIM.
 
-    (Freeman and Shapira 1975: the smallest rectangle shares an edge's direction with the hull.)
+    (Freeman and Shapira 1975: the smallest rectangle has one side parallel to an edge of the hull.)
     """
     hull = convex_hull(points)
     if len(hull) < 3:
@@ -58,10 +58,11 @@ def smallest_rectangle(points: Array) -> Rectangle:
 
 
 def fitted_to(rectangle: Rectangle, points: Array, faces: Array) -> Rectangle:
-    """The rectangle turned and its sides moved to where points (n, 2) on faces (m, 2) lie.
+    """Rotate the rectangle and move its sides to fit points (n, 2) on faces (m, 2).
 
-    The outermost points are outermost by noise; the middle of a face is not. The side with the
-    most points turns it; sides without points stay where all points end.
+    The outermost points are outermost because of noise, while the mean of a face is accurate. The
+    side with the most points determines the rotation; sides without points stay at the extreme of
+    all points.
     """
     turn = _turn_of_fullest_side(rectangle, faces)
     yaw = rectangle.yaw + turn
@@ -95,7 +96,7 @@ def _turn_of_fullest_side(rectangle: Rectangle, faces: Array) -> float:
 
 
 def _rectangle(yaw: float, low: Array, high: Array) -> Rectangle:
-    """From limits (2,) along its own axes, its yaw brought into [-pi/4, pi/4)."""
+    """Rectangle from limits (2,) along its own axes, with its yaw moved into [-pi/4, pi/4)."""
     size, centre = high - low, _axes(yaw) @ ((low + high) / 2)
     if yaw < -math.pi / 4:
         yaw, size = yaw + math.pi / 2, size[::-1]

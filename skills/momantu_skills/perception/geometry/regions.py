@@ -1,4 +1,4 @@
-"""Convex regions of the floor plan with a range of heights, and plane geometry around them."""
+"""Convex regions of the floor with a range of heights, and plane geometry around them."""
 
 from __future__ import annotations
 
@@ -15,18 +15,19 @@ from momantu_bt.world import Surface
 cv2.setNumThreads(1)
 
 BESIDE = 0.20
-"""m by which a surface may lie beside where it is believed: 0.10 m of its own and localization."""
+"""Largest horizontal error of a surface's believed position, m: 0.10 m of its own, plus
+localization."""
 HEIGHT_ERROR = 0.12
-"""m by which it may be higher or lower: 0.03 m of its own, the camera's mounting, and a person who
-measured it badly. The largest level surface in between is it."""
+"""Largest error of its height, m: 0.03 m of its own, the camera's mounting, and inaccurate
+measurement by a person. The largest level surface in that range is taken."""
 HEADROOM = 0.55
-"""m above a surface within which things stand on it."""
+"""Height above a surface within which objects stand on it, m."""
 WIDE = 0.30
-"""m to each side of a place that the looks at it are spread over."""
+"""Distance to each side of a place over which its views are spread, m."""
 PATCH = 0.60
-"""m around a place within which a surface and what stands there matter to a hand."""
+"""Radius around a place within which its surface and objects matter to the hand, m."""
 PLACE_ERROR = 0.03
-"""m by which a place that was measured may be higher or lower than its surface."""
+"""Largest height difference between a measured place and its surface, m."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -46,10 +47,10 @@ class Region:
 
 
 def depth_inside(points: Array, outline: Array) -> Array:
-    """(n,) distance in m of points (n, 2) to the nearest edge line of a convex outline (k, 2).
+    """Distance (n,) in m of points (n, 2) to the nearest edge line of a convex outline (k, 2).
 
-    Positive inside, negative outside. Outside beyond a corner it is the distance to the edges'
-    lines, a lower bound of the distance to the outline.
+    Positive inside, negative outside. Beyond a corner it is the distance to the lines through the
+    edges, a lower bound of the distance to the outline.
     """
     depth = np.full(len(points), np.inf)
     for start, end in zip(outline, np.roll(outline, -1, axis=0), strict=True):
@@ -80,7 +81,7 @@ def convex_hull(points: Array) -> Array:
 
 
 def surface_corners(surface: Surface, frames: FrameBuffer) -> Array:
-    """Corners (4, 3) in odom, m, of a site's surface where localization believes it to be."""
+    """Corners (4, 3) in odom, m, of a site's surface, by the current localization."""
     half_x, half_y = surface.size[0] / 2, surface.size[1] / 2
     flat = np.array(
         [[-half_x, -half_y, 0], [half_x, -half_y, 0], [half_x, half_y, 0], [-half_x, half_y, 0]]
@@ -97,7 +98,7 @@ def disc(centre: Array, radius: float, corners: int = 16) -> Array:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SurfaceRegion(Region):
-    """The region in which a surface and its objects are searched.
+    """The region that is searched for a surface and its objects.
 
     support_heights: (lowest, highest) z of the surface itself in odom, m.
     """
@@ -106,14 +107,14 @@ class SurfaceRegion(Region):
 
 
 def surface_region(corners: Array) -> SurfaceRegion:
-    """Around a surface whose corners (4, 3) in odom are roughly known."""
+    """The region around a surface whose corners (4, 3) in odom are roughly known."""
     height = float(corners[:, 2].mean())
     low, high = height - HEIGHT_ERROR, height + HEIGHT_ERROR
     return SurfaceRegion(grown(corners[:, :2], BESIDE), low, high + HEADROOM, (low, high))
 
 
 def place_region(near: Array) -> tuple[Array, SurfaceRegion]:
-    """What to look over (4, 3) and where points count, around a measured place (3,) in odom."""
+    """Corners to view (4, 3), and the region for points, around a place (3,) in odom."""
     square = WIDE * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
     corners = np.column_stack([near[:2] + square, np.full(4, near[2])])
     low, high = float(near[2]) - PLACE_ERROR, float(near[2]) + PLACE_ERROR

@@ -1,4 +1,4 @@
-"""Upright bodies of revolution through points of a part of their side."""
+"""Fit upright bodies of revolution to points on a part of their side."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ from numpy.typing import NDArray
 from momantu_bt.geometry import Array
 
 SLICE = 0.01
-"""m; height of the slices that share one radius."""
+"""Height of the slices that each have one radius, m."""
 ROUNDS = 12
-"""Gauss-Newton steps; five suffice from the algebraic start."""
+"""Gauss-Newton steps; five suffice from the algebraic solution."""
 OUTLIER = 0.005
-"""m; residual at which a point has lost three quarters of its weight (Geman-McClure)."""
+"""Residual at which the weight of a point is down to a quarter, m (Geman-McClure)."""
 DAMPING = 1e-6
-"""m2 per point added to the normal matrix, so that a flat patch cannot blow up the step."""
+"""Added to the normal matrix, m2 per point, so that a flat patch does not cause a huge step."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Revolution:
-    """centre: (2,) of the axis, m. radii: (k,) of the slices, m, NaN where a slice is empty.
+    """centre: (2,) of the axis, m. radii: (k,) of the slices, m, NaN for an empty slice.
 
     heights: (k,) middles of the slices above the support, m. residuals: (n,) of the points, m.
-    radius: median over all points, m. radius_sigma: how well the points determine it, m.
+    radius: median over all points, m. radius_sigma: its uncertainty, m.
     """
 
     centre: Array
@@ -41,11 +41,11 @@ class Revolution:
 
 
 def fit_revolution(points: Array, radius: float | None = None) -> Revolution | None:
-    """Vertical axis and radii of the body that points (n, 3) lie on; heights above the support.
+    """Fit a vertical axis and radii to points (n, 3); heights are above the support.
 
-    One centre, one radius per slice of SLICE: an algebraic fit (x2 + y2 = 2ax + 2by + c per
-    slice), then robust Gauss-Newton on the distances. With `radius` all slices have that one.
-    None when the points do not curve enough to have a centre within 1 m.
+    One centre, one radius per slice of SLICE: an algebraic fit (x2 + y2 = 2ax + 2by + c per slice),
+    then robust Gauss-Newton on the distances. If `radius` is given, all slices have that one. None
+    if the points are too flat to have a centre within 1 m.
     """
     if len(points) < 12:
         return None

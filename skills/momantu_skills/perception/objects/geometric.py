@@ -1,4 +1,4 @@
-"""The geometric detector: from views of a surface to the objects on it, best match first."""
+"""The geometric detector: finds objects on a surface from several views, best match first."""
 
 from __future__ import annotations
 
@@ -20,25 +20,25 @@ from momantu_skills.perception.surface.planes import PlaneConfig, Support, measu
 from momantu_skills.perception.surface.segment import SegmentConfig, Thing, things_on
 
 SIMPLE_MISFIT = 0.003
-"""m; median distance up to which one form explains a thing: twice the noise at 1.2 m."""
+"""Median distance up to which one shape explains an object, m: twice the noise at 1.2 m."""
 SIMPLE_BEYOND = 0.15
-"""Share of points outside the form up to which it is one thing: a mug's handle has a tenth."""
+"""Share of points outside the shape up to which it is one object: a mug's handle has a tenth."""
 
 
 @dataclass(frozen=True)
 class GeometricDetector:
-    """Measures the plane, groups what stands on it, and fits cylinders and boxes."""
+    """Measures the plane, groups the points above it, and fits cylinders and boxes to them."""
 
     planes: PlaneConfig = field(default_factory=PlaneConfig)
     segments: SegmentConfig = field(default_factory=SegmentConfig)
     matches: MatchConfig = field(default_factory=MatchConfig)
 
     budget: ClassVar[float] = 0.1
-    """s granted to making sense of one look together with those before it."""
+    """Time allowed for processing one view together with the earlier ones, s."""
 
     @property
     def accepted(self) -> float:
-        """The score from which on an object counts as the requested one."""
+        """The least score of an object that counts as the requested one."""
         return self.matches.accepted
 
     def detect(
@@ -83,7 +83,7 @@ class GeometricDetector:
 def _whole(things: list[Thing], eyes: Array) -> list[Thing]:
     """Objects, with pieces merged that lie inside the round shape of a larger one.
 
-    A look over the near rim of a bowl shows its far wall apart from it.
+    A view over the near rim of a bowl shows its far wall as a separate piece.
     """
     whole: list[Thing] = []
     forms: list[Shape] = []

@@ -10,7 +10,7 @@ from momantu_bt.messages import ObjectClass
 from momantu_skills.perception.objects.shapes import Shape
 
 KNOWN = ("can", "bottle", "mug", "bowl", "box")
-"""Categories that a form can be told to be."""
+"""Categories that can be recognised by shape."""
 
 
 @dataclass(frozen=True)
@@ -18,21 +18,21 @@ class MatchConfig:
     """Tolerances: given sizes are right to a few mm; similar objects differ by 20 % in one."""
 
     relative: float = 0.10
-    """Largest relative difference of a size: half of what tells similar things apart."""
+    """Largest relative difference of a size: half the difference between similar objects."""
     absolute: float = 0.006
-    """m; difference that measuring alone may cause."""
+    """Difference that measurement errors alone may cause, m."""
     accepted: float = 0.5
-    """The score from which on an object counts as the requested one."""
+    """The least score of an object that counts as the requested one."""
     category_weight: float = 0.6
-    """Factor on the score of a thing of another form; with it nothing reaches `accepted`
-    unless all its sizes are nearly exact."""
+    """Factor on the score of an object of another shape; with it the score reaches `accepted` only
+    if all sizes are nearly exact."""
 
 
 def score(shape: Shape, asked: ObjectClass, config: MatchConfig | None = None) -> float:
-    """0..1; 0 when a size is out of tolerance.
+    """Score from 0 to 1; 0 if a size is out of tolerance.
 
-    1 minus half the root mean square of the sizes' differences in units of their tolerance, times
-    `category_weight` when the form is another. An unknown asked category is fine.
+    One minus half the root mean square of the sizes' differences in units of their tolerance, times
+    `category_weight` if the shape is another. A requested category that is unknown fits any shape.
     """
     config = config or MatchConfig()
     squares: list[float] = []

@@ -13,35 +13,36 @@ from momantu_skills.perception.geometry.revolution import Revolution, fit_revolu
 from momantu_skills.perception.surface.segment import Thing
 
 ROUND_MISFIT = 0.004
-"""m; median distance to the fitted surface from which on a thing is not round."""
+"""Median distance to the fitted surface above which an object is not round, m."""
 LARGEST_RADIUS = 0.20
-"""m; a larger fitted radius means that the points are flat."""
+"""A larger fitted radius means that the points are flat, m."""
 LEAST_SIDE = 25
-"""Points on a side that make a fit of it worth trying."""
+"""Fewest points on a side for fitting it."""
 NECK = 0.72
 """A bottle's neck is narrower than this share of its body."""
 FLARE = 0.80
 """A bowl's foot is narrower than this share of its rim."""
 INSIDE = 0.75
-"""Share of the radius within which points tell a closed top from an opening."""
+"""Share of the radius within which points distinguish a closed top from an opening."""
 RIM = 0.015
-"""m below the highest point within which a point inside belongs to a closed top."""
+"""Distance below the highest point within which an inner point belongs to a closed top, m."""
 STEEP = math.radians(15.0)
-"""Elevation from which on a camera sees enough of a top to miss it when it is not there."""
+"""Least elevation at which a camera can tell that an object has no closed top, rad."""
 HANDLE = 0.012
-"""m that a handle stands out at least."""
+"""Least distance that a handle extends from the body, m."""
 BEYOND = 0.008
-"""m outside the fitted form from which on a point belongs to something else, or to a handle."""
+"""Distance outside the fitted shape above which a point belongs to another object, or a handle,
+m."""
 
 
 @dataclass(frozen=True, slots=True)
 class Shape:
     """One object as measured.
 
-    kind: "cylinder" or "box". category: can, bottle, mug, bowl or box, by its form. centre: x, y
+    kind: "cylinder" or "box". category: can, bottle, mug, bowl or box, by its shape. centre: x, y
     in odom, m. yaw: of a box, rad. size: along its own x, y and up, m. misfit: median distance of
-    its side to the form, m. radius_sigma: uncertainty of a round thing's radius, m. beyond: share
-    of its points that lie outside the form.
+    its side to the fitted shape, m. radius_sigma: uncertainty of a round object's radius, m.
+    beyond: share of its points that lie outside the fitted shape.
     """
 
     kind: str
@@ -55,11 +56,11 @@ class Shape:
 
 
 def describe(thing: Thing, eyes: Array, expected_radius: float | None = None) -> Shape:
-    """Fit both forms and keep the better one.
+    """Fit a cylinder and a box and keep the better one.
 
-    eyes: (k, 3) where the cameras were, odom x, y and height above the surface, m.
-    expected_radius: of what is looked for, m. It serves where the view leaves the radius open
-    within what was measured: the centre of a half-hidden can is then still found.
+    eyes: (k, 3) positions of the cameras, odom x, y and height above the surface, m.
+    expected_radius: of the requested object, m. It is used if the view does not determine the
+    radius: the centre of a half-hidden can is still found with it.
     """
     side = thing.points[thing.side]
     rectangle = smallest_rectangle(thing.points[:, :2])
@@ -81,7 +82,7 @@ def _is_round(body: Revolution, rectangle: Rectangle, side: Array) -> bool:
 
 
 def _with_expected(side: Array, body: Revolution, radius: float) -> Revolution:
-    """The fit with the expected radius, if the free fit is not clearly better."""
+    """The fit with the expected radius, unless the free fit is clearly better."""
     difference = abs(body.radius - radius)
     if difference > max(0.15 * radius, 3.0 * body.radius_sigma):
         return body
@@ -122,7 +123,7 @@ def _round_category(thing: Thing, body: Revolution, height: float, eyes: Array) 
 
 
 def _is_open(thing: Thing, body: Revolution, height: float, eyes: Array) -> bool:
-    """Whether a camera that looks down on the top sees none."""
+    """Whether a camera that looks down on the top sees no closed top."""
     away = np.hypot(eyes[:, 0] - body.centre[0], eyes[:, 1] - body.centre[1])
     if float(np.arctan2(eyes[:, 2] - height, away).max()) < STEEP:
         return False
@@ -131,13 +132,13 @@ def _is_open(thing: Thing, body: Revolution, height: float, eyes: Array) -> bool
 
 
 def _distances(thing: Thing, body: Revolution) -> Array:
-    """(n,) distance of the thing's points to the axis, m."""
+    """Distance (n,) of the object's points to the axis, m."""
     offsets = thing.points[:, :2] - body.centre
     return np.asarray(np.hypot(offsets[:, 0], offsets[:, 1]))
 
 
 def _has_handle(thing: Thing, body: Revolution) -> bool:
-    """Whether a narrow part stands out to one side."""
+    """Whether a narrow part extends to one side."""
     offsets = thing.points[:, :2] - body.centre
     out = _distances(thing, body) > body.radius + HANDLE
     if int(out.sum()) < LEAST_SIDE // 2:

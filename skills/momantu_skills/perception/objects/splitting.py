@@ -1,4 +1,4 @@
-"""Separating objects that touch: upright round bodies first, then the rest."""
+"""Separate objects that touch: first upright round bodies, then the remaining points."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ from momantu_skills.perception.geometry.revolution import fit_revolution
 from momantu_skills.perception.surface.segment import SegmentConfig, Thing, taken_out
 
 SAMPLES = 300
-"""Triples tried; three things that touch need 27 for one clean triple, and triples are small."""
+"""Triples of points that are tried; with three objects in contact one in 27 is from one object."""
 RADII = (0.015, 0.12)
-"""m; of the bodies that are looked for."""
+"""Range of radii of the bodies that are searched, m."""
 CLOSE = 0.003
-"""m; distance to a circle at which a point supports it."""
+"""Distance to a circle within which a point supports it, m."""
 LEAST_SUPPORT = 60
-"""Points on a circle that make a body of it."""
+"""Fewest points on a circle that make it a body."""
 MARGIN = 0.006
-"""m around a body within which points belong to it."""
+"""Margin around a body within which points belong to it, m."""
 MOST_PARTS = 4
-"""More things than this do not touch each other in one clump."""
+"""Most objects that one group is split into."""
 
 
 def split(thing: Thing, config: SegmentConfig) -> list[Thing]:
-    """The parts of an object that looks like several; the object itself if it does not."""
+    """The parts of a group that looks like several objects; the group itself otherwise."""
     rest: list[Thing] = [thing]
     parts: list[Thing] = []
     while rest and len(parts) < MOST_PARTS:
@@ -40,7 +40,7 @@ def split(thing: Thing, config: SegmentConfig) -> list[Thing]:
 
 
 def _round_part(clump: Thing) -> Mask | None:
-    """(n,) bool: points of the best upright round body, or None when there is none, or only it."""
+    """Points of the best upright round body, (n,) bool; None if there is none, or nothing else."""
     side = clump.points[clump.side]
     if len(side) < LEAST_SUPPORT:
         return None
@@ -58,7 +58,7 @@ def _round_part(clump: Thing) -> Mask | None:
 
 
 def _best_circle(flat: Array) -> tuple[Array, float] | None:
-    """Centre and radius of the circle on which most of the points (n, 2) lie."""
+    """Centre and radius of the circle with the most of the points (n, 2)."""
     random = seeded("circles", len(flat))
     triples = random.integers(0, len(flat), size=(SAMPLES, 3))
     a, b, c = (flat[triples[:, k]] for k in range(3))
@@ -78,7 +78,7 @@ def _best_circle(flat: Array) -> tuple[Array, float] | None:
 
 
 def _circumcircles(a: Array, b: Array, c: Array) -> tuple[Array, Array]:
-    """Centres (k, 2) and radii (k,) through three points each; infinite where they are in line."""
+    """Centres (k, 2) and radii (k,) through three points each; infinite if they are collinear."""
     ab, ac = b - a, c - a
     double = 2.0 * (ab[:, 0] * ac[:, 1] - ab[:, 1] * ac[:, 0])
     flat = np.abs(double) < 1e-9

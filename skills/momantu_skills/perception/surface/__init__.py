@@ -1,1 +1,1 @@
-"""The surface that objects stand on: its plane, the objects above it, free spots."""
+"""The surface that objects stand on: its plane, the objects on it, free spots."""

@@ -1,8 +1,8 @@
-"""Measuring the level surface that objects stand on, in one view.
+"""Measure the level surface that objects stand on, in one view.
 
-Gravity leaves one unknown, the height, so every height is tried instead of sampling triples of
-points; the height whose level slice covers most of the surface wins, and least squares does the
-rest.
+The surface is level, so its height is the only unknown. Every height is tried, instead of random
+triples of points. The height whose level slice covers the most area is taken, and least squares
+refines it.
 """
 
 from __future__ import annotations
@@ -24,27 +24,29 @@ class PlaneConfig:
     """How a support surface is found. Lengths in m."""
 
     slice: float = 0.005
-    """Thickness of the slices that are compared; three neighbours count together."""
+    """Thickness of the slices that are compared; each counts together with its two neighbours."""
     inlier: float = 0.012
     """Largest distance from the plane: three sigma of the depth noise at 1.6 m."""
     cell: float = 0.02
-    """Grid over which covered area is counted, so that near points do not outvote far ones."""
+    """Cell size of the grid for the covered area; near points are denser and would otherwise count
+    for more."""
     samples: int = 5000
-    """Points that the fit is made of; more do not make it better."""
+    """Number of points for the fit; more do not improve it."""
     tilt: float = math.radians(2.0)
-    """The most by which a level surface seems tilted: errors of mounting and joints."""
+    """Largest apparent tilt of a level surface: errors of mounting and joints."""
     least_area: float = 0.03
-    """m2 that must be seen to call it a surface."""
+    """Least visible area of a surface, m2."""
     least_spread: float = 0.08
-    """Standard deviation of the points along both axes from which on a tilt is trusted."""
+    """Least standard deviation of the points along both axes at which a measured tilt is
+    reliable."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Plane:
     """z = height + slope . (xy - centre). slope (2,), centre (2,) and height in odom, m.
 
-    inliers: (n,) bool over the points it was fitted to, restricted to one connected patch.
-    area: of that patch as seen, m2. tilt_known: whether the patch is wide enough to say `slope`.
+    inliers: (n,) bool over the points it was fitted to, restricted to one connected patch. area:
+    visible area of that patch, m2. tilt_known: whether the patch is wide enough for `slope`.
     """
 
     centre: Array
@@ -61,11 +63,11 @@ class Plane:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Support:
-    """A surface as several views agree on it.
+    """A surface combined from several views.
 
-    height: m in odom. outline: (k, 2) convex hull of what was seen of it, odom. points: (n, 3) of
-    all views in odom, turned and shifted so that the surface is level and at `height`. on_plane:
-    (n,) bool. stamp: of the newest view, s. cameras: (views, 3) where they were taken from.
+    height: m in odom. outline: (k, 2) convex hull of its visible part, odom. points: (n, 3) of all
+    views in odom, rotated and shifted so that the surface is level and at `height`. on_plane: (n,)
+    bool. stamp: of the newest view, s. cameras: (views, 3) positions of the camera.
     """
 
     height: float
@@ -79,10 +81,10 @@ class Support:
 def measure_support(
     views: Sequence[View], low: float, high: float, config: PlaneConfig | None = None
 ) -> Support | None:
-    """The surface between the heights `low` and `high` (m, odom), or None when no view shows one.
+    """The surface between the heights `low` and `high` (m, odom), or None if no view shows one.
 
-    Each view is turned about its camera until the surface is level, which takes out what mounting
-    and joint errors do to height and distance, and shifted up or down to the views' mean height.
+    Each view is rotated about its camera until the surface is level, which corrects mounting and
+    joint errors in height and distance. Then it is shifted up or down to the views' mean height.
     """
     config = config or PlaneConfig()
     found = [(view, find_plane(view.points, low, high, config)) for view in views]
@@ -137,7 +139,7 @@ def _fullest_slice(points: Array, low: float, config: PlaneConfig) -> float:
 
 
 def _least_squares(points: Array, centre: Array, config: PlaneConfig) -> tuple[float, Array, bool]:
-    """Height at `centre`, slope (2,), and whether the points are wide enough to trust the slope."""
+    """Height at `centre`, slope (2,), and whether the points are wide enough for the slope."""
     flat = points[:, :2] - centre
     mean, height = flat.mean(axis=0), float(points[:, 2].mean())
     spread = np.cov((flat - mean).T)
@@ -165,7 +167,7 @@ def _one_patch(points: Array, inliers: Mask, config: PlaneConfig) -> tuple[Mask,
 
 
 def _levelled(view: View, plane: Plane) -> tuple[Array, float]:
-    """The view's points turned about its camera so that the plane is level, and its height."""
+    """The view's points rotated about its camera so that the plane is level, and its height."""
     middle = np.array([*plane.centre, plane.height])
     if not plane.tilt_known:
         return view.points, plane.height

@@ -19,31 +19,33 @@ class SegmentConfig:
     """How points above a surface are grouped into objects. Lengths in m."""
 
     floor: float = 0.012
-    """Points lower above the surface belong to it: three sigma of the depth noise at 1.6 m."""
+    """Lower points belong to the surface: three sigma of the depth noise at 1.6 m."""
     edge: float = 0.015
-    """How far a thing may stand out over the measured outline; a wall behind it is farther."""
+    """How far an object may extend beyond the measured outline; a wall behind it is farther
+    away."""
     ceiling: float = 0.50
-    """What is higher above the surface does not stand on it."""
+    """Higher points do not belong to objects on the surface."""
     cell: float = 0.010
-    """Things whose points leave a whole empty cell between them are two."""
+    """Points with a whole empty cell between them belong to two objects."""
     least_points: int = 40
-    """Fewer do not make a thing."""
+    """Fewest points of an object."""
     least_height: float = 0.025
-    """Lower things are the surface's own unevenness, or paper."""
+    """Least height of an object; lower ones are unevenness of the surface, or paper."""
     side_range: float = 0.012
     """A cell whose points span more height than this shows a side, not a top."""
     overhead: float = 0.2
-    """Level surfaces this high above may hang over what stands here: boards of a shelf."""
+    """Height above which another level surface may hang over the objects: the boards of a shelf."""
     overhead_area: float = 0.10
-    """m2 that such a surface shows at least; tops of things on a table are a tenth of it."""
+    """Least visible area of such a surface, m2; the tops of objects on a table have a tenth of
+    it."""
     overhead_cell: float = 0.02
-    """Grid over which that area is counted."""
+    """Cell size of the grid for that area."""
     overhead_slice: float = 0.02
-    """Thickness of the slices in which it is looked for."""
+    """Thickness of the slices in which such a surface is searched."""
     overhead_gap: float = 0.06
     """How far below its top such a surface begins: a board's thickness, and noise."""
     rim: float = 0.008
-    """The uppermost part of a side's cell, which may already be the top."""
+    """Height of the uppermost part of a side's cell, which may already be the top."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,7 +57,7 @@ class Thing:
 
     @property
     def height(self) -> float:
-        """How high it stands, m: the level of its top face, or where its sides end."""
+        """Height of the object, m: the level of its top face, or of the upper end of its sides."""
         heights = self.points[:, 2]
         highest = float(np.percentile(heights, 99.0))
         top = heights[(heights > highest - 0.012) & ~self.side]
@@ -81,7 +83,7 @@ def things_on(support: Support, config: SegmentConfig | None = None) -> list[Thi
 
 
 def headroom(support: Support, config: SegmentConfig) -> float:
-    """How high above the surface things may stand, m: the ceiling, or what hangs over it."""
+    """Largest height of objects on the surface, m: the ceiling, or a surface that hangs over it."""
     points = support.points - [0.0, 0.0, support.height]
     above = points[(points[:, 2] > config.overhead) & (points[:, 2] < config.ceiling)]
     above = above[depth_inside(above[:, :2], support.outline) > 0.0]
@@ -123,7 +125,7 @@ def _is_thing(thing: Thing, config: SegmentConfig) -> bool:
 
 
 def _sides(heights: Array, cells: NDArray[np.int64], config: SegmentConfig) -> Mask:
-    """(n,) bool: points of cells that span much height, but for the uppermost ones."""
+    """Points of cells that span much height, except the uppermost ones: (n,) bool."""
     _, index = np.unique(cells, return_inverse=True)
     size = int(index.max()) + 1
     high, low = np.full(size, -np.inf), np.full(size, np.inf)

@@ -18,34 +18,34 @@ class SpotConfig:
     """What makes a spot free, and a free spot good. Lengths in m."""
 
     cell: float = 0.01
-    """Grid over the surface; finer than any margin below."""
+    """Cell size of the grid over the surface; finer than any margin below."""
     reach: float = 0.35
-    """Farthest from the place asked: the job allows 0.40, the rest is error."""
+    """Largest distance from the requested place: the task allows 0.40, the rest is for errors."""
     edge: float = 0.03
-    """Least distance of the base to the edge of the surface."""
+    """Least distance of the object's base to the edge of the surface."""
     fingers: float = 0.06
-    """Least distance of the base to anything else: open fingers go down beside it."""
+    """Least distance of the base to anything else: the open fingers need it."""
     unseen: float = 0.01
-    """Least distance of the base to parts of the surface that no view showed."""
+    """Least distance of the base to unseen parts of the surface."""
     on_top: float = 0.10
-    """Nearer to the place asked than this the thing would stand on the tag itself."""
+    """Distance from the requested place below which the object would stand on the tag itself."""
     apart: float = 0.08
     """Least distance between two of the spots."""
     most: int = 8
-    """Spots given back."""
+    """Most spots that are returned."""
     comfortable: float = 0.12
-    """Clearance beyond which more is no better."""
+    """Clearance above which more gives no advantage."""
     on_top_cost: float = 0.5
-    """What standing on the tag costs, in m of distance to the robot."""
+    """Cost of standing on the tag, as distance to the robot in m."""
     clearance_worth: float = 2.0
-    """m of distance to the robot that a metre of clearance is worth."""
+    """Distance to the robot, m, that a metre of clearance is worth."""
     near_worth: float = 0.3
-    """m of distance to the robot that a metre nearer to the place asked is worth."""
+    """Distance to the robot, m, that being a metre nearer to the requested place is worth."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Ground:
-    """A surface as a grid. obstacle, seen: (nx, ny) bool: something stands there; it was seen."""
+    """A surface as a grid. obstacle, seen: (nx, ny) bool: cells with objects; seen cells."""
 
     grid: Grid
     obstacle: Mask
@@ -71,9 +71,9 @@ def free_spots(
     radius: float,
     config: SpotConfig,
 ) -> Sequence[tuple[float, float]]:
-    """Spots (x, y) in odom, best first, where a base of `radius` m has room. Empty: there is none.
+    """Spots (x, y) in odom, best first, with room for a base of `radius` m; may be empty.
 
-    outline: (k, 2) of the surface. near: (2,) place asked. robot: (2,) where the robot stands.
+    outline: (k, 2) of the surface. near: (2,) requested place. robot: (2,) the robot's position.
     """
     centres = ground.grid.centres()
     flat = centres.reshape(-1, 2)
@@ -92,7 +92,7 @@ def free_spots(
 
 
 def _distinct(spots: Array, cost: Array, config: SpotConfig) -> Sequence[tuple[float, float]]:
-    """The cheapest ones that lie apart from each other."""
+    """The cheapest spots that are far enough from each other."""
     chosen: list[Array] = []
     for spot in spots[np.argsort(cost, kind="stable")]:
         if all(float(np.hypot(*(spot - other))) >= config.apart for other in chosen):

@@ -1,4 +1,4 @@
-"""A measured surface: its plane, what stands on it, and its free spots."""
+"""A measured surface: its plane, the objects on it, and its free spots."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from momantu_skills.perception.surface.spots import SpotConfig, free_spots, surv
 
 @dataclass(frozen=True, slots=True)
 class Surroundings:
-    """plane: the surface and its obstacles. spots: free ones, best first, in odom."""
+    """plane: the surface and its obstacles. spots: free spots, best first, in odom."""
 
     plane: SupportPlane
     spots: tuple[Pose, ...]
@@ -35,7 +35,7 @@ def surroundings(
 ) -> Surroundings | None:
     """The surface around `near` (3,) in odom, and spots on it for a base of `radius` m.
 
-    None when no view shows a level surface at that height.
+    None if no view shows a level surface at that height.
     """
     config, segments = config or SpotConfig(), SegmentConfig()
     support = measure_support(views, *region.support_heights)
