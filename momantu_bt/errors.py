@@ -20,7 +20,7 @@ class ExitCode(IntEnum):
     WRONG_INPUT = 2
     """A file or an argument is wrong; nothing was started."""
     NO_WORLD = 3
-    """The world could not start."""
+    """The world could not start: `momantu_bt.world.WorldError`."""
     INTERNAL = 4
     """A mistake in the program."""
     INTERRUPTED = 130

@@ -16,7 +16,7 @@ from momantu_bt.formats.problems import errors
 from momantu_bt.record.codec import from_json
 from momantu_bt.record.recording import Recording
 from momantu_bt.robot import RobotDescription
-from momantu_bt.tree.check.named_world import NO_WORLD
+from momantu_bt.tree.check.named_world import WITHOUT_WORLD
 from momantu_bt.tree.load import load
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.problems import TreeError
@@ -64,7 +64,7 @@ def _rebuild(recording: Recording, registry: Registry) -> Rebuilt:
     about = recording.about
     having = replace(registry, worlds=_worlds(recording), robots=_Robots())
     values = {key: from_json(value) for key, value in about["values"].items()}
-    world = about["world"] or NO_WORLD
+    world = about["world"] or WITHOUT_WORLD
     with _written(recording) as paths:
         tree = paths.get(about["tree"])
         if tree is None:

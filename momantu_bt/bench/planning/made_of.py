@@ -27,7 +27,7 @@ from momantu_bt.robots.meshes import MESHES
 from momantu_bt.robots.plugins import ROBOTS
 from momantu_bt.tree.catalogue import NODES
 from momantu_bt.tree.catalogue.nodes import BEHAVIOURS, PLUGINS
-from momantu_bt.tree.check.named_world import NO_WORLD, world_of
+from momantu_bt.tree.check.named_world import WITHOUT_WORLD, world_of
 from momantu_bt.tree.files.settings import Given
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.plugins import SERVICES, SKILLS
@@ -61,8 +61,8 @@ def made_of(
     Files count by their names relative to the main one and by their texts, so that another
     machine finds the same.
     """
-    world = world_of(document, world) or NO_WORLD
-    if robot is None and world != NO_WORLD:
+    world = world_of(document, world) or WITHOUT_WORLD
+    if robot is None and world != WITHOUT_WORLD:
         robot = registry.worlds[world].default_robot
     found = _of_machine(_packages(document, world, robot))
     given = values.source if isinstance(values, Given) else {}

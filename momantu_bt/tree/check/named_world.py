@@ -7,7 +7,7 @@ from pathlib import Path
 from momantu_bt.tree.model import Document
 from momantu_bt.world_plugins import WORLDS
 
-NO_WORLD = "none"
+WITHOUT_WORLD = "none"
 """As a world's name: run without one."""
 
 
@@ -18,8 +18,8 @@ def world_of(document: Document, asked: str | None) -> str | None:
     tree has itself is seen from the tree's file.
     """
     if asked is not None:
-        return None if asked == NO_WORLD else asked
+        return None if asked == WITHOUT_WORLD else asked
     own = document.world
-    if own is None or own == NO_WORLD:
+    if own is None or own == WITHOUT_WORLD:
         return None
     return str(Path(document.file).parent / own) if WORLDS.is_path(own) else own

@@ -12,7 +12,7 @@ from momantu_worlds.scenes.file.world import WorldFile
 
 FLOOR = "floor"
 """The name of the floor's body."""
-NO_WORLD = "none"
+WITHOUT_WORLD = "none"
 """What trees and the command line call running without a world."""
 
 
@@ -21,8 +21,8 @@ def dangling(world: WorldFile, also: Collection[str] = ()) -> Iterator[KeyMessag
 
     also: names of parts that are wrong in themselves and were left out.
     """
-    if world.name == NO_WORLD:
-        yield ("name",), f"{NO_WORLD!r} means no world at all; choose another name"
+    if world.name == WITHOUT_WORLD:
+        yield ("name",), f"{WITHOUT_WORLD!r} means no world at all; choose another name"
     yield from _twice(world)
     yield from _Names(world, also).findings()
     yield from _files(world)
