@@ -49,7 +49,7 @@ class Cell:
 
 
 class ReadOnlyCell(Cell):
-    """A key that the engine publishes, such as `@battery`: its value is computed when read.
+    """A key that the engine publishes, such as `@robot`: its value is computed when read.
 
     It counts as written whenever it is found to be another object than the last time.
     """

@@ -1,4 +1,4 @@
-"""Floor plans in map_server's format: a YAML file beside a picture, mode trinary.
+"""Floor plans in map_server's format: a YAML file beside a PGM or PNG picture, mode trinary.
 
 Pillow reads the picture: PGM (P2 and P5, any number of grey levels, comments), PNG and BMP, as
 map_server does; https://docs.ros.org/en/jazzy/p/nav2_map_server says what the keys mean.

@@ -1,4 +1,4 @@
-"""URDF files as links and joints with checked numbers; https://wiki.ros.org/urdf/XML."""
+"""URDF files as links and joints, their numbers and limits checked; https://wiki.ros.org/urdf/XML."""
 
 from __future__ import annotations
 

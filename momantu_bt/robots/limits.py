@@ -1,4 +1,4 @@
-"""Add joint limits from the robot file that a URDF leaves out."""
+"""Write into a URDF the joint limits that it leaves out and the robot file gives."""
 
 from __future__ import annotations
 

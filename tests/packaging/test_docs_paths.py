@@ -97,7 +97,7 @@ def test_modules_exist(page: Path) -> None:
 
 
 @cache
-def tests() -> str:
+def all_tests() -> str:
     """The text of all tests, for names of functions."""
     return "\n".join(path.read_text(encoding="utf-8") for path in (ROOT / "tests").rglob("*.py"))
 
@@ -107,7 +107,7 @@ def test_tests_exist(page: Path) -> None:
     absent = []
     for name, cut in re.findall(r"(?<!\w)((?:\w+/)*test_\w+)(…|\*)?", prose(page)):
         is_file = is_there(f"{name}.py")
-        if not is_file and not re.search(rf"def {name}{'' if cut else '[(]'}", tests()):
+        if not is_file and not re.search(rf"def {name}{'' if cut else '[(]'}", all_tests()):
             absent.append(name)
     assert (
         set(absent) - {path.removesuffix(".py") for path in OF_THE_READER} - {"test_node"} == set()

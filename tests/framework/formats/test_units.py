@@ -1,6 +1,8 @@
 """Quantities: every unit, several parts, and what is refused."""
 
 import math
+import re
+from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -86,6 +88,16 @@ def test_decimals_are_converted_exactly(unit: str, power: int) -> None:
 @given(st.floats(-1e4, 1e4))
 def test_degrees_are_converted_as_the_math_module_does(number: float) -> None:
     assert in_unit(f"{number!r} deg", "rad") == math.radians(number)
+
+
+def test_the_tree_language_lists_every_unit() -> None:
+    page = Path(__file__).parents[3] / "docs" / "tree_language.md"
+    after = page.read_text(encoding="utf-8").partition("may have a unit:")[2]
+    with pytest.raises(UnitError) as known:
+        quantity("5 xyz")
+    listed = after.partition(". Parts")[0]
+    every = str(known.value).partition("Units: ")[2]
+    assert sorted(re.findall(r"[^\s,]+", listed)) == sorted(every.split(", "))
 
 
 def test_one_of_several_kinds() -> None:

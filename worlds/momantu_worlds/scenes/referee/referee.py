@@ -1,4 +1,4 @@
-"""The referee: judges an episode from ground truth, and changes nothing.
+"""The referee: whether the goal is met, by ground truth; it changes nothing.
 
 It looks after every tick. What must hold at the end (upright, on the top, beside the marker,
 still, touched by nothing else, gripper away) is judged of the last tick; what must never happen
