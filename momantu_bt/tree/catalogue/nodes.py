@@ -37,6 +37,8 @@ PLUGINS: Group[type[NodeClass]] = Group("momantu_bt.nodes", "node", _objection)
 
 
 def _behaviour_objection(name: str, plugin: object) -> str | None:
+    if name in PLUGINS:
+        return f"{name!r} is the node of another package; give the entry point another name"
     found: str | None = _bridge().behaviour_objection(name, plugin, _spellings())
     return found
 

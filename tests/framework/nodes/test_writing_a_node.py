@@ -286,3 +286,19 @@ def test_a_control_node_that_is_not_installed_is_told_so(tmp_path, capsys):
     assert main(["check", str(tree)]) == 2
     said = "".join(capsys.readouterr())
     assert "a control node of another package has to be installed" in said
+
+
+def test_a_broken_node_does_not_hide_the_skill_of_its_name(tmp_path, monkeypatch, capsys):
+    install(monkeypatch, EntryPoint("look", "no_such_module:Look", GROUP))
+    tree = tmp_path / "tree.yaml"
+    tree.write_text("momantu_bt: 1\ntrees: {Main: [look: {ahead: 1 m}]}\n", encoding="utf-8")
+    main(["check", str(tree)])
+    assert "the node 'look'" not in "".join(capsys.readouterr())
+
+
+def test_a_behaviour_does_not_hide_the_node_of_another_package(package, monkeypatch, capsys):
+    behaviour = EntryPoint("race", "py_trees.behaviours:Success", "momantu_bt.behaviours")
+    install(monkeypatch, behaviour)
+    assert SPELLED["race"].type == "Race"
+    main(["doctor"])
+    assert "'race' is the node of another package" in "".join(capsys.readouterr())

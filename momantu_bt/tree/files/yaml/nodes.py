@@ -109,7 +109,7 @@ class NodeReader:
         """A skill, or a tree of this document."""
         name = key.text
         target = name if name in self.reading.trees else None
-        broken = None if target else why_broken(name)
+        broken = why_broken(name) if target is None and _has_below(value) else None
         if broken is not None:
             return self.reading.broken("broken-plugin", key.place, broken, DOCTOR)
         node = Node(SUBTREE if target else name, key.place, target=target)
@@ -132,6 +132,11 @@ class NodeReader:
 
 def _has_child(value: Raw) -> bool:
     return isinstance(value, Entries) and any(key.text == "child" for key, _ in value.entries)
+
+
+def _has_below(value: Raw) -> bool:
+    """Whether nodes stand below it, which skills and trees do not have."""
+    return isinstance(value, Items) or _has_child(value)
 
 
 def _has_children(value: Entries) -> bool:
