@@ -1,4 +1,4 @@
-"""Folding an arm that was stretched out to look, before the base drives."""
+"""Fold an extended arm before the base drives."""
 
 from __future__ import annotations
 
@@ -12,16 +12,18 @@ from momantu_skills.manipulation.scene.arm_scene import ArmScene
 from momantu_skills.manipulation.scene.surroundings import within
 
 STICKS_OUT = 0.10
-"""m beyond the base's outline that arm and load may reach on the way."""
+"""How far arm and held object may extend beyond the base's outline while driving, m."""
 THERE = 0.02
-"""rad or m from its pose at which the arm is in."""
+"""Distance from its pose at which the arm counts as folded, rad or m."""
 THINKING = 0.2
-"""s that planning is given: several times its median."""
+"""Time allowed for planning, s: several times its median."""
 NO_WAY = ("NO_PLAN", "START_IN_COLLISION")
 
 
 def take_in(skill: Skill, robot: Robot, service: ArmScene) -> Run:
-    """Fold an arm that reaches beyond the base, into `home`, or `carry` with what it holds.
+    """Fold an arm that extends beyond the base into `home`, or `carry` if it holds an object.
+
+    If no path is found, the base drives with the arm as it is; that may give the arm room.
 
     Where it finds no way, the base drives with the arm as it is: that may be what gives it room.
 

@@ -1,7 +1,8 @@
 """Episodes in SAPIEN: physics, drives, sensors and ground truth.
 
-Importing anything in here first looks for a Vulkan driver, which SAPIEN wants before its own
-import; a machine without one raises WorldError, so that nothing ever runs half blind.
+Importing any module of this package first looks for a Vulkan driver, which SAPIEN needs before it
+is imported itself. Without one the import raises WorldError, so that no run starts without
+rendering.
 """
 
 import warnings

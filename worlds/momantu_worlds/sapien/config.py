@@ -1,4 +1,4 @@
-"""Constants and tunables of the simulation, each with its unit and reason."""
+"""Constants and tunables of the simulation, each with its unit and the reason for its value."""
 
 from __future__ import annotations
 
@@ -7,33 +7,40 @@ from dataclasses import dataclass, field
 from momantu_bt.world import TICK
 
 SUB_STEPS = 12
-"""Physics steps in a tick: 1/240 s each holds a friction grasp and runs 30 times real time."""
+"""Physics steps per tick: 1/240 s each keeps a friction grasp stable and runs 30 times real
+time."""
 STEP = TICK / SUB_STEPS
-"""Seconds of one physics step."""
+"""Duration of one physics step, s."""
 
 
 @dataclass(frozen=True)
 class Physics:
-    """PhysX settings. Iterations and contact offset are the least that hold a can without creep."""
+    """PhysX settings. Iterations and contact offset: the least that hold a can without creep."""
 
     position_iterations: int = 15
     velocity_iterations: int = 1
     contact_offset: float = 0.005
-    """m; half the default of 0.02 and less, or resting things report contacts at a distance."""
+    """Distance at which contacts are generated, m; it must be at most half of the default of 0.02,
+    or resting bodies report contacts at a distance."""
     persistent_contacts: bool = False
-    """Whether contact points are kept from step to step. Kept ones give energy to what rocks on its
-    edge: a bottle that is let go leaning by two degrees then rocks until it falls."""
+    """Whether contact points are kept from step to step. If they are kept, a body that rocks on its
+    edge gains energy: a bottle that is released at a tilt of two degrees then rocks until it
+    falls."""
     arm_stiffness: float = 1e4
     arm_damping: float = 1e3
-    """Nm/rad and Nm s/rad (N/m, N s/m for the torso): below 1 mrad of lag, well damped."""
+    """Stiffness and damping, Nm/rad and Nm s/rad (N/m, N s/m for the torso): less than 1 mrad of
+    lag, well damped."""
     base_damping: float = 1e5
-    """N s/m; stiff enough that the force limit, not the gain, decides what a bump feels like."""
+    """Damping of the base's drive, N s/m: high, so that the force limit, not the gain, determines
+    the force of a bump."""
     finger_stiffness: float = 1e4
     finger_damping: float = 2e2
-    """N/m, N s/m; the force limit is reached with 6 mm of the target still to go at 60 N."""
+    """Stiffness and damping of the fingers, N/m, N s/m; at 60 N the force limit is reached 6 mm
+    before the target."""
     tendon_stiffness: float = 1e5
     tendon_damping: float = 1e3
-    """N/m, N s/m of the coupling that keeps both fingers equally far open."""
+    """Stiffness and damping of the coupling that keeps both fingers equally far open, N/m, N
+    s/m."""
 
 
 @dataclass(frozen=True)
@@ -41,39 +48,39 @@ class JointErrors:
     """Errors of joint measurement; 1-sigma."""
 
     offset: float = 1e-3
-    """rad; constant for an episode, what is left after calibrating a real arm."""
+    """Constant offset in an episode, rad: what is left after calibrating a real arm."""
     offset_prismatic: float = 5e-4
-    """m; the same for the torso."""
+    """The same for the torso, m."""
     noise: float = 1e-4
-    """rad or m; encoder noise of one reading."""
+    """Encoder noise of one reading, rad or m."""
     velocity_noise: float = 2e-3
-    """rad/s or m/s."""
+    """Noise of velocities, rad/s or m/s."""
     effort_noise: float = 0.3
-    """Nm or N."""
+    """Noise of efforts, Nm or N."""
     width_bias: float = 5e-4
-    """m; of the gripper width, constant for an episode."""
+    """Bias of the gripper width, m, constant in an episode."""
     width_noise: float = 3e-4
-    """m; of one reading; with the bias nearly always within 1 mm."""
+    """Noise of one width reading, m; with the bias nearly always within 1 mm."""
     grip_noise: float = 1.0
-    """N; of the gripper's effort."""
+    """Noise of the gripper's effort, N."""
 
 
 @dataclass(frozen=True)
 class OdometryErrors:
-    """Wheel odometry: scale errors constant for an episode, and a random walk; 1-sigma."""
+    """Wheel odometry: scale errors that are constant in an episode, and a random walk; 1-sigma."""
 
     linear_scale: float = 0.008
-    """relative; tyre radius."""
+    """Relative scale error of distances: tyre radius."""
     angular_scale: float = 0.015
-    """relative; wheel base."""
+    """Relative scale error of turns: wheel base."""
     yaw_per_metre: float = 0.006
-    """rad per sqrt(m) driven."""
+    """Heading error, rad per sqrt(m) driven."""
     yaw_per_turn: float = 0.012
-    """rad per sqrt(rad) turned."""
+    """Heading error, rad per sqrt(rad) turned."""
     slip: float = 0.005
-    """m per sqrt(m) driven."""
+    """Position error, m per sqrt(m) driven."""
     speed_noise: float = 0.005
-    """m/s and rad/s of the reported speeds."""
+    """Noise of the reported speeds, m/s and rad/s."""
 
 
 @dataclass(frozen=True)
@@ -81,21 +88,22 @@ class CameraErrors:
     """Errors of the RGB-D camera; 1-sigma."""
 
     mounting_position: float = 0.0017
-    """m per axis: 3 mm in all."""
+    """Position error of the mounting, m per axis: 3 mm in all."""
     mounting_angle: float = 0.003
-    """rad per axis: 0.3 degrees in all."""
+    """Angle error of the mounting, rad per axis: 0.3 degrees in all."""
     depth_noise: float = 0.0015
-    """1/m; sigma of depth z is this times z squared, as of structured light."""
+    """The sigma of depth z is this times z squared, 1/m, as for structured light."""
     depth_quantum: float = 0.001
-    """m; depth comes in whole millimetres."""
+    """Step of depth values, m: whole millimetres."""
     edge_jump: float = 0.04
-    """m per m of depth; where neighbours differ by more the projected pattern is torn: a hole."""
+    """Depth difference of neighbouring pixels, m per m of depth, above which the projected pattern
+    is broken and pixels are lost."""
     edge_hole: float = 0.7
-    """share of the pixels at such an edge that are lost."""
+    """Share of the pixels at such an edge that are lost."""
     drop_out: float = 0.002
-    """share of all other pixels that are lost."""
+    """Share of all other pixels that are lost."""
     color_noise: float = 2.0
-    """grey levels of 255."""
+    """Noise of colours, grey levels of 255."""
 
 
 @dataclass(frozen=True)
@@ -103,9 +111,9 @@ class LaserErrors:
     """Errors of the laser; 1-sigma."""
 
     range_noise: float = 0.012
-    """m."""
+    """Noise of ranges, m."""
     drop_out: float = 0.002
-    """share of beams that return nothing."""
+    """Share of beams without a return."""
 
 
 @dataclass(frozen=True)
@@ -113,9 +121,9 @@ class LidarErrors:
     """Errors of a lidar; 1-sigma."""
 
     range_noise: float = 0.01
-    """m; makers' "3 cm" is three of them."""
+    """Noise of ranges, m; manufacturers' "3 cm" is three sigma."""
     drop_out: float = 0.005
-    """share of rays that return nothing: dark and shiny things."""
+    """Share of rays without a return: dark and shiny surfaces."""
 
 
 @dataclass(frozen=True)
@@ -123,18 +131,18 @@ class WrenchErrors:
     """Errors of the wrist's force and torque; 1-sigma."""
 
     force_bias: float = 0.6
-    """N per axis, constant for an episode."""
+    """Bias of the force, N per axis, constant in an episode."""
     force_noise: float = 0.25
-    """N."""
+    """Noise of the force, N."""
     torque_bias: float = 0.06
-    """Nm per axis, constant for an episode."""
+    """Bias of the torque, Nm per axis, constant in an episode."""
     torque_noise: float = 0.02
-    """Nm."""
+    """Noise of the torque, Nm."""
 
 
 @dataclass(frozen=True)
 class SimulatorConfig:
-    """Everything that can be tuned about a simulation."""
+    """All tunables of a simulation."""
 
     physics: Physics = field(default_factory=Physics)
     joints: JointErrors = field(default_factory=JointErrors)

@@ -1,4 +1,4 @@
-"""The simulated robot's driver, which offers what a real robot's driver would."""
+"""The simulated robot's driver, with the same interface as a real robot's driver."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ from momantu_worlds.sapien.drives.proprioception import Encoders, Odometry, pris
 
 
 class Sensor(Protocol):
-    """Something that gives a reading of now."""
+    """A sensor that can be read at the current time."""
 
     def read(self, stamp: float) -> SensorReading:
-        """The reading of `stamp`, which is now."""
+        """Read the sensor at `stamp`, the current time."""
         ...
 
 
@@ -95,14 +95,14 @@ class SimulatedRobot:
         return self._description
 
     def state(self) -> RobotState:
-        """Joints and odometry of now, as measured."""
+        """Current joints and odometry, as measured."""
         stamp = self._now()
         if self._state is None or self._state.stamp != stamp:
             self._state = self._measure(stamp)
         return self._state
 
     def read(self, sensor: str) -> SensorReading:
-        """The reading of now; KeyError lists the sensors if there is none."""
+        """Read a sensor now; KeyError lists the sensors if there is none of that name."""
         reading = self.peek(sensor)
         if self._asked.get(sensor) != reading.stamp:
             self._asked[sensor] = reading.stamp
@@ -111,7 +111,7 @@ class SimulatedRobot:
         return reading
 
     def peek(self, sensor: str) -> SensorReading:
-        """As `read`, for films: it does not count as the robot's own look."""
+        """Like `read`, for videos: it does not count as a reading by the robot."""
         if sensor not in self.sensors:
             names = ", ".join(self.sensors)
             raise KeyError(f"the robot has no sensor {sensor!r}; it has: {names}")
@@ -140,7 +140,7 @@ class SimulatedRobot:
             self.joint_drives[actuator].stop()
 
     def carry(self, map_from_base: Pose2D) -> None:
-        """Set the base down elsewhere, at rest; joints keep their angles, odometry is unaware."""
+        """Set the base down elsewhere, at rest; joints keep their angles, odometry its pose."""
         positions, speeds = self._model.positions(), self._model.velocities()
         positions[self._base_columns] = (map_from_base.x, map_from_base.y, map_from_base.yaw)
         speeds[self._base_columns] = 0.0
@@ -166,7 +166,7 @@ class SimulatedRobot:
         self.gripper.apply(positions)
 
     def end_tick(self) -> None:
-        """Let odometry take in the tick's motion; the clock stands at its end already."""
+        """Update odometry with the tick's motion; the clock shows the end of the tick already."""
         self._odometry.update(self._true_base(self._model.positions()), self._now())
 
     def _actuator(self, name: str) -> Actuator:
@@ -201,7 +201,7 @@ class SimulatedRobot:
         )
 
     def _drive_efforts(self, true: Array, speeds: Array) -> Array:
-        """What the drives push with, Nm or N: their control law, within the effort limits."""
+        """Force of the drives, Nm or N: their control law, within the effort limits."""
         drives = self.joint_drives.values()
         target = np.concatenate([d.position for d in drives])
         speed = np.concatenate([d.velocity for d in drives])
@@ -232,7 +232,7 @@ class SimulatedRobot:
         return GripperDrive(model.fingers, tips, effector, speeds)
 
     def _place(self, start: Pose2D, pose: Mapping[str, float]) -> None:
-        """Stand at `start` with the joints at `pose` and the gripper open; nothing moves."""
+        """Stand at `start` with the joints at `pose` and the gripper open, at rest."""
         positions = self._model.positions()
         positions[self._base_columns] = (start.x, start.y, start.yaw)
         for name, value in pose.items():

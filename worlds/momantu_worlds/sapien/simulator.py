@@ -31,8 +31,8 @@ SHADERS = Path(__file__).parent / "shaders" / "lambert"
 class Simulator:
     """Physics, robot and ground truth of one episode.
 
-    robot: the driver, which is all that skills may see. truth: for the referee and tests.
-    model: the robot in SAPIEN, for views.
+    robot: the driver, the only part that skills may see. truth: for the referee and tests. model:
+    the robot in SAPIEN, for views.
     """
 
     def __init__(
@@ -111,10 +111,10 @@ class Simulator:
         return tuple(addition.body for addition in self._added.values())
 
     def add(self, body: Body) -> None:
-        """Add a body to the running world: it collides, stops lasers and is visible.
+        """Add a body to the running world: it collides, blocks lasers and is visible.
 
         Raises:
-            ValueError: there is a body of that name.
+            ValueError: a body of that name exists.
         """
         if body.name in self.truth.bodies:
             raise ValueError(f"there is a body {body.name!r} already")
@@ -124,7 +124,7 @@ class Simulator:
             self._moving.append(addition.moving)
 
     def remove(self, name: str) -> None:
-        """Take an added body away again; KeyError when nothing of that name was added."""
+        """Remove an added body; KeyError if no body of that name was added."""
         addition = self._added.pop(name)
         if addition.moving is not None:
             self._moving.remove(addition.moving)
@@ -132,7 +132,7 @@ class Simulator:
         self.scene.remove_entity(addition.entity)
 
     def put(self, name: str, map_from_body: Transform) -> None:
-        """Set a loose body somewhere else, at rest."""
+        """Move a loose body elsewhere, at rest."""
         entity = self.truth.entity(name)
         entity.set_pose(pose_of(map_from_body))
         part = entity.find_component_by_type(sapien.physx.PhysxRigidDynamicComponent)
@@ -161,7 +161,7 @@ def _simulation_of(description: RobotDescription) -> SimulationModel:
 
 
 def _new_scene(physics: Physics, render: bool) -> Any:
-    """A scene with our settings, which SAPIEN keeps globally: they are set before each build."""
+    """Create a scene with this project's settings; SAPIEN keeps them globally."""
     sapien.physx.set_scene_config(enable_pcm=physics.persistent_contacts)
     body = sapien.physx.PhysxBodyConfig()
     body.solver_position_iterations = physics.position_iterations
@@ -179,10 +179,10 @@ def _new_scene(physics: Physics, render: bool) -> Any:
 
 
 def tidy() -> None:
-    """Collect cycles, in which a closed scene hangs, and return free pages to the system.
+    """Collect reference cycles, which keep closed scenes alive, and return free memory.
 
-    Without it a process that runs many episodes grows: scenes hold buffers that Python does not
-    count, so that it collects them late, between allocations that then stay.
+    Otherwise a process that runs many episodes grows. Scenes hold buffers that Python does not
+    count. It therefore collects them late, between allocations that stay.
     """
     gc.collect()
     trim = getattr(ctypes.CDLL(None), "malloc_trim", None)  # glibc alone has it
@@ -191,7 +191,7 @@ def tidy() -> None:
 
 
 def render_system() -> Any:
-    """A render system with our shaders: one pass, Lambert, no shadows.
+    """A render system with this project's shaders: one pass, Lambert, no shadows.
 
     Raises:
         WorldError: SAPIEN finds no rendering device.

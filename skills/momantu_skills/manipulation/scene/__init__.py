@@ -1,1 +1,1 @@
-"""The planning scene: what stands around the robot, what the site knows, what is held."""
+"""The planning scene: obstacles around the robot, the site's furniture, the held object."""

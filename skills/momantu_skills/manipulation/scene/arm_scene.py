@@ -1,4 +1,4 @@
-"""The planning scene as skills that move the arm need it: more than the contract."""
+"""The planning scene with what skills that move the arm need in addition to the contract."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ with lazily():
 
 
 class ArmScene(PlanningScene, Protocol):
-    """A planning scene that arms are planned in; `PlanningSceneService` is one."""
+    """A planning scene for arm motions; `PlanningSceneService` implements it."""
 
     @property
     def scene(self) -> scene.Scene:
@@ -26,13 +26,13 @@ class ArmScene(PlanningScene, Protocol):
         ...
 
     def touched(self) -> None:
-        """Say that the hand has just touched or let go of something."""
+        """Report that the hand has just touched or released something."""
         ...
 
     def released(self) -> None:
-        """Say that the hand has just let go of what it held."""
+        """Report that the hand has just released the held object."""
         ...
 
     def support(self, plane: SupportPlane) -> None:
-        """Take over a measured surface."""
+        """Add a measured surface."""
         ...

@@ -37,17 +37,18 @@ from momantu_skills.manipulation.scene.surroundings import (
 from momantu_skills.perception.camera.cloud import points_from_depth
 
 FORGET = 2.0
-"""m from the base beyond which cells and supports are forgotten: odometry has drifted since."""
+"""Distance from the base above which cells and supports are deleted, m, because odometry has
+drifted since."""
 SAME_HEIGHT = 0.06
-"""m of height within which a new support replaces an older one that it overlaps."""
+"""Height difference within which a new support replaces an older one that it overlaps, m."""
 DISC = 0.25
-"""m; radius of the support assumed below an object when too little of it is seen."""
+"""Radius of the assumed support below an object of which too little is visible, m."""
 FLOOR_BAND = 0.06
-"""m above the floor below which points are the floor."""
+"""Height above the floor below which points belong to the floor, m."""
 Cut: TypeAlias = tuple[Transform, tuple[float, float, float]]
 """A box: `odom_from_box`, and half its edges in m."""
 SEEN_THROUGH = 0.03
-"""m; an old cell is gone when the picture shows something that much behind it."""
+"""An old cell is deleted if the picture shows something this much behind it, m."""
 
 
 class Scene:
@@ -94,7 +95,7 @@ class Scene:
         return odom_from_base.apply(base_points[~own])
 
     def _still_believed(self, cells: Array, snapshot: Snapshot) -> NDArray[np.bool_]:
-        """(n,) which older cells are near and not seen through in the new picture."""
+        """Which older cells are near and were not seen through in the new picture: (n,)."""
         image, base = snapshot.image, snapshot.odom_from_base.position
         near = np.linalg.norm(cells[:, :2] - base[:2], axis=1) < FORGET
         optical = snapshot.odom_from_camera.inverse().apply(cells)
@@ -108,11 +109,11 @@ class Scene:
         return np.asarray(near & ~gone)
 
     def add_support(self, plane: SupportPlane) -> None:
-        """Take over a measured surface."""
+        """Add a measured surface."""
         self._remember(support_of_plane(plane))
 
     def support_below(self, thing: DetectedObject) -> Support:
-        """The surface that an object stands on, as far as the newest picture shows it."""
+        """The surface that an object stands on, according to the newest picture."""
         centre = thing.pose.position[:2]
         found = support_around(self.points, centre, thing.support_height, self.config.surface_band)
         if found is None:
@@ -169,13 +170,13 @@ class Scene:
         return own
 
     def hides(self, points: Array, joints: Array) -> bool:
-        """Whether a link covers one of points (n, 3), base frame, with the arm at joints (n,)."""
+        """Whether a link hides one of points (n, 3), base frame, with the arm at joints (n,)."""
         posed = dict(zip(self.model.group.names, joints, strict=True))
         poses = self.model.link_poses(self.model.posture(posed, 0.0))
         return bool(self._mask.covers(points, poses).any())
 
     def held_corners(self, held: HeldObject, padding: float = 0.0) -> Array:
-        """Corners (n, 3) of what is held, in the tip's frame, m."""
+        """Corners (n, 3) of the held object, in the tip's frame, m."""
         tip_from_object = self.model.tip_from_grasp @ held.grasp_from_object
         return tip_from_object.apply(object_corners(held.object, padding))
 
@@ -192,11 +193,11 @@ class Scene:
         cut: Cut | None = None,
         extra: tuple[Obstacle, ...] = (),
     ) -> CollisionWorld:
-        """A collision world of now. Everything is placed by the state's odometry.
+        """A collision world for the current state. Everything is placed by the state's odometry.
 
-        width: the gripper's opening to check with, m; the measured one if None.
-        held_on_support: what is held may touch supports. cut: a box in which cells are ignored.
-        extra: more solids.
+        width: the gripper's opening for the check, m; the measured one if None. held_on_support:
+        the held object may touch supports. cut: a box in which cells are ignored. extra: additional
+        solids.
         """
         base_from_odom = state.odom_from_base.inverse()
         around = self.surroundings if cut is None else self.surroundings.without(*cut)
@@ -223,7 +224,7 @@ class Scene:
         )
 
     def _unseen(self, odom_from_base: Transform) -> list[Support]:
-        """Surfaces near the base that the site names and that no picture has shown yet."""
+        """Surfaces near the base that are in the site and that no picture has shown yet."""
         seen = self.surroundings.supports
         return [
             known
@@ -233,9 +234,9 @@ class Scene:
         ]
 
     def _covered(self, cells: Array, support: Support) -> NDArray[np.bool_]:
-        """(n,) which cells are the support's own: inside its outline, not above its top.
+        """Which cells belong to the support, (n,): inside its outline, not above its top.
 
-        Those below it belong to it too, unless it is a board, below which other things stand.
+        Cells below it belong to it too, unless it is a board that hangs over other objects.
         """
         low = cells[:, 2] < support.height + self.config.surface_band + self.config.voxel / 2
         if support.board:

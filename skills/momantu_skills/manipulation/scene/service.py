@@ -1,4 +1,4 @@
-"""The planning-scene service: the robot, its surroundings and what it holds, as believed."""
+"""The planning-scene service: the robot, its surroundings and its held object, as believed."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ with lazily():
 
 
 class PlanningSceneService(Service):
-    """Keeps the scene. It reads no sensor but the state by itself; `observe` takes a picture.
+    """Keeps the scene. By itself it reads only the robot's state; `observe` adds a depth picture.
 
-    `$@planning_scene.holding` is the category of what is held, or "".
+    `$@planning_scene.holding` is the category of the held object, or "".
     """
 
     rate = 20.0
@@ -44,7 +44,7 @@ class PlanningSceneService(Service):
         return site_obstacles.FloorPlan(self.site, self.frames)
 
     def update(self, robot: Robot, now: float) -> None:
-        """Judge again what is held."""
+        """Check again whether the object is still held."""
         self._state = robot.state()
         self.holding.judge(self._state)
 
@@ -55,42 +55,42 @@ class PlanningSceneService(Service):
 
     @property
     def held(self) -> HeldObject | None:
-        """The held object, judged again at each update from gripper width and effort."""
+        """The held object, checked again at each update from gripper width and effort."""
         return self.holding.held
 
     @property
     def last_contact(self) -> float:
-        """When the hand last touched or released something, s; -inf when it never has."""
+        """Time when the hand last touched or released something, s; -inf if it never did."""
         return self.holding.last_contact
 
     def grasped(self, thing: DetectedObject, grasp_from_object: Transform) -> None:
-        """Say what the gripper has just closed on; held while width and effort agree."""
+        """Report the object just grasped; it counts as held while width and effort agree."""
         held = HeldObject(thing, grasp_from_object)
         self.holding.claim(held, self._state.gripper_width, self._state.stamp)
 
     def touched(self) -> None:
-        """Say that the hand has just touched or let go of something."""
+        """Report that the hand has just touched or released something."""
         self.holding.touched(self._state.stamp)
 
     def released(self) -> None:
-        """Say that the hand has just let go of what it held."""
+        """Report that the hand has just released the held object."""
         self.holding.release(self._state.stamp)
 
     def observe(self, snapshot: Snapshot) -> None:
-        """See the surroundings in a depth picture.
+        """Add a depth picture of the surroundings.
 
-        What the newest picture shows replaces what older ones showed of the same region.
+        The newest picture replaces what older ones showed of the same region.
         """
         self._take_over_site()
         self.scene.observe(snapshot, self.held)
 
     def support(self, plane: SupportPlane) -> None:
-        """Take over a measured surface."""
+        """Add a measured surface."""
         self._take_over_site()
         self.scene.add_support(plane)
 
     def _take_over_site(self) -> None:
-        """The site's surfaces, and what hangs over them; none while the robot is not localized."""
+        """Add the site's surfaces and what hangs over them; none while not localized."""
         self.scene.known = self.scene.overhead = ()
         try:
             odom_from_map = self.frames.lookup(ODOM, MAP)
@@ -107,7 +107,7 @@ class PlanningSceneService(Service):
     def footprint(self, state: RobotState, below: float = math.inf) -> Array:
         """Convex outline (k, 2) of base, arm and held object on the floor, base frame, m.
 
-        below: parts of arm and load that keep above this height, m, are left out.
+        below: parts of arm and held object that are entirely above this height, m, are left out.
         """
         return self.scene.footprint(state, self.held, below)
 
@@ -121,10 +121,10 @@ def _scene(context: ServiceContext, config: SceneConfig) -> scene.Scene:
 
 
 class Holding:
-    """Believes in a grasp while opening and effort agree with it.
+    """Assumes that an object is held while opening and effort agree with it.
 
-    A grasp is claimed with `claim`; after `doubt` updates in a row that speak against it, it is
-    given up for good, and the instant counts as a contact: what was held has touched something.
+    A grasp starts with `claim`. After `doubt` successive updates that contradict it, the object
+    counts as lost, and the time counts as a contact, because the object has touched something.
     """
 
     def __init__(self, config: SceneConfig) -> None:
@@ -135,20 +135,20 @@ class Holding:
         self.last_contact = -math.inf
 
     def claim(self, held: HeldObject, width: float, now: float) -> None:
-        """Something has been closed on, at an opening of `width` m."""
+        """Report a grasp at an opening of `width` m."""
         self.held, self._width, self._doubts = held, width, 0
         self.last_contact = now
 
     def touched(self, now: float) -> None:
-        """The hand has touched or let go of something."""
+        """Report that the hand has touched or released something."""
         self.last_contact = now
 
     def release(self, now: float) -> None:
-        """Forget the held object, which has been let go."""
+        """Forget the held object, which was released."""
         self.held, self.last_contact = None, now
 
     def judge(self, state: RobotState) -> None:
-        """Compare the newest state with what a held object would show."""
+        """Compare the newest state with what a held object would cause."""
         if self.held is None:
             return
         config = self._config

@@ -1,4 +1,4 @@
-"""Obstacles that the site knows: distances to walls and furniture, and what hangs over surfaces."""
+"""Obstacles from the site's data: distances to walls and furniture, boxes over surfaces."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from momantu_skills.navigation.map.fields import clearance
 from momantu_skills.navigation.map.maps import read_grid
 
 BESIDE = 0.04
-"""m by which it may stand beside where the site has it, and localization be wrong, all sides."""
+"""Margin to all sides, m, for errors of the site's data and of localization."""
 HIGHER = 0.02
-"""m by which it may hang lower or higher."""
+"""Margin up and down, m."""
 
 
 FAR = 10.0
-"""m; what is far from everything, or on no map."""
+"""Distance that is returned far from all obstacles, or without a map, m."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,20 +35,21 @@ class Overhead:
     half: Array
 
     def obstacle(self, base_from_odom: Transform, name: str) -> Obstacle:
-        """The solid, in base, larger by what the site may be wrong."""
+        """The solid, in base, enlarged by the margins."""
         half = self.half + np.array((BESIDE, BESIDE, HIGHER))
         corners = np.array(list(product((-1.0, 1.0), repeat=3))) * half
         return Obstacle(name, (base_from_odom @ self.odom_from_box).apply(corners))
 
     def distance(self, point: Array) -> float:
-        """How far it is along the floor from a point (3,) in odom, m; 0 below it."""
+        """Distance along the floor from a point (3,) in odom, m; 0 below the box."""
         aside = np.abs(self.odom_from_box.inverse().apply(point)[:2]) - self.half[:2]
         return float(np.linalg.norm(np.maximum(aside, 0.0)))
 
     def between(self, start: Array, end: Array) -> bool:
         """Whether the straight line between two points (3,) in odom passes through the box.
 
-        The line's shares within each pair of faces must have one in common (Kay and Kajiya 1986).
+        Slab method: the line's intervals between each pair of faces must overlap (Kay and Kajiya
+        1986).
         """
         first, last = self.odom_from_box.inverse().apply(np.vstack([start, end]))
         way = last - first
@@ -58,7 +59,7 @@ class Overhead:
 
 
 def overhead_of(surface: Surface, odom_from_map: Transform) -> tuple[Overhead, ...]:
-    """What hangs over a surface, according to the site."""
+    """The boxes over a surface, according to the site."""
     found = []
     for one in surface.over:
         middle = one.map_from_overhang.transform((one.bottom + one.top) / 2)
@@ -68,7 +69,7 @@ def overhead_of(surface: Surface, odom_from_map: Transform) -> tuple[Overhead, .
 
 
 def hanging(solids: Iterable[Overhead], base_from_odom: Transform, near: float) -> list[Obstacle]:
-    """Those at most `near` m from the base, as solids for the arm."""
+    """The boxes at most `near` m from the base, as solids for the arm."""
     base = base_from_odom.inverse().position
     return [
         solid.obstacle(base_from_odom, f"over {i}")
@@ -78,7 +79,7 @@ def hanging(solids: Iterable[Overhead], base_from_odom: Transform, near: float) 
 
 
 class FloorPlan:
-    """Distances to what a site's maps know: walls, furniture and what hangs over the floor."""
+    """Distances to the obstacles on a site's maps: walls, furniture and overhanging parts."""
 
     def __init__(self, site: Site, frames: FrameBuffer) -> None:
         self._frames = frames
@@ -87,7 +88,7 @@ class FloorPlan:
         self._layers = [(g, clearance(g.cells == OCCUPIED, g.resolution)) for g in grids]
 
     def distance(self, points: Array) -> Array:
-        """(n,) m along the floor from points (n, 3) in odom; FAR without localization."""
+        """Distances (n,) along the floor from points (n, 3) in odom, m; FAR if not localized."""
         least = np.full(len(points), FAR)
         try:
             map_from_odom = self._frames.lookup(MAP, ODOM)

@@ -1,4 +1,4 @@
-"""The robot's surroundings as the depth camera saw them: cells, support tops, seen space."""
+"""The robot's surroundings from depth pictures: cells, support tops, seen space."""
 
 from __future__ import annotations
 
@@ -17,35 +17,37 @@ from momantu_skills.manipulation.config import SceneConfig
 from momantu_skills.manipulation.model.collision import Obstacle
 
 GRID = 0.05
-"""m; raster in which the points of one surface are taken to hang together."""
+"""Grid for connecting the points of one surface, m."""
 EDGE = 0.03
-"""m by which a top may reach beyond what was seen of it: pictures have holes at edges, and what
-lies beyond their border is taken from the site, beside which furniture stands a little."""
+"""How far a top may extend beyond its visible part, m: pictures have holes at edges. Beyond a
+picture's border the site's data is used, and furniture may stand slightly beside it."""
 KNOWN_HEIGHT = 0.03
-"""m by which it may be higher."""
+"""How much higher the top may be, m."""
 TOLD_WRONG = 0.12
-"""m by which a top may lie beside the height that is told of it and still be the same one."""
+"""Largest difference between a top's actual height and the height in the site, m."""
 BESIDE = 0.37
-"""m outside a known surface at which the middle of a seen patch still belongs to it."""
+"""Largest distance of a visible patch's centre outside the outline of the known surface that it
+belongs to, m."""
 SUPPORT_DEPTH = 0.5
-"""m below a support's top that no arm goes: nothing reaches under a table."""
+"""Depth below a support's top that is an obstacle, m: the arm never reaches under a table."""
 BOARD_DEPTH = 0.06
-"""m below the top of a board that hangs over another surface: its thickness, and noise."""
+"""The same for a board that hangs over another surface, m: its thickness, plus noise."""
 BOARDS_APART = 0.2
-"""m of height from which on two surfaces one above the other are two boards, not one badly seen."""
+"""Height difference above which two surfaces above each other are two boards, not one with errors,
+m."""
 LEAST_CELLS = 6
-"""Raster cells below which a patch of points is not a surface."""
+"""Fewest grid cells of a patch that counts as a surface."""
 
 
 KEPT = 12
-"""Pictures whose views are remembered: those of a search and of two looks at a grasp."""
+"""Number of pictures whose views are kept: those of a search and of two views of a grasp."""
 
 
 @dataclass(frozen=True, eq=False)
 class Support:
-    """A horizontal top that things stand on. outline: (k, 2) convex, odom, m; height: odom z, m.
+    """A horizontal top that objects stand on. outline: (k, 2) convex, odom, m; height: odom z, m.
 
-    board: it hangs over another surface, and an arm may reach in between.
+    board: it hangs over another surface, and the arm may reach in between.
     """
 
     outline: Array
@@ -54,11 +56,11 @@ class Support:
 
     @property
     def depth(self) -> float:
-        """How far below the top no arm goes, m."""
+        """Depth below the top that is an obstacle, m."""
         return BOARD_DEPTH if self.board else SUPPORT_DEPTH
 
     def obstacle(self, base_from_odom: Transform, name: str) -> Obstacle:
-        """The solid below the top, in base, wider than the outline by `EDGE`."""
+        """The obstacle below the top, in base, wider than the outline by `EDGE`."""
         wide = _wider(self.outline, EDGE)
         low = np.column_stack([wide, np.full(len(wide), self.height)])
         corners = np.vstack([low, low - (0.0, 0.0, self.depth)])
@@ -74,7 +76,7 @@ class Surroundings:
     stamp: float = -np.inf
 
     def without(self, pose: Transform, half_size: tuple[float, float, float]) -> Surroundings:
-        """The same without the cells in a box (`odom_from_box`, half its edges in m)."""
+        """A copy without the cells in a box (`odom_from_box`, half its edges in m)."""
         local = np.abs(pose.inverse().apply(self.cells))
         return Surroundings(
             self.cells[~(local <= np.array(half_size)).all(axis=1)], self.supports, self.stamp
@@ -84,8 +86,8 @@ class Surroundings:
 def cells_of(points: Array, viewpoint: Array, floor: float, config: SceneConfig) -> Array:
     """Centres (n, 3) of the cells that points (m, 3) occupy, everything in odom.
 
-    Behind each face a thickness is filled, away from `viewpoint` (3,) along the floor, for a
-    camera sees fronts only. Points below `floor` are left out.
+    As a camera sees only front faces, a thickness behind each face is filled, away from `viewpoint`
+    (3,) along the floor. Points below `floor` are left out.
     """
     points = points[points[:, 2] > floor]
     if not len(points):
@@ -108,7 +110,8 @@ def _keys(points: Array, config: SceneConfig) -> NDArray[np.int64]:
 def support_around(points: Array, centre: Array, height: float, band: float) -> Support | None:
     """The surface at `height` below `centre` (2,), from points (n, 3), all in odom; or None.
 
-    Points within `band` of the height that hang together with the one nearest to the centre.
+    It consists of the points within `band` of the height that are connected to the one nearest to
+    the centre.
     """
     flat = points[np.abs(points[:, 2] - height) <= band][:, :2]
     if len(flat) < 3:
@@ -142,7 +145,7 @@ def _connected(flat: Array, centre: Array) -> Array | None:
 
 
 def _wider(outline: Array, by: float) -> Array:
-    """A convex outline (k, 2) grown by `by` m to all sides: its Minkowski sum with an octagon."""
+    """A convex outline (k, 2) grown by `by` m to all sides: Minkowski sum with an octagon."""
     angles = np.arange(8) * (np.pi / 4)
     octagon = by * np.stack([np.cos(angles), np.sin(angles)], axis=1)
     corners = (outline[:, None] + octagon).reshape(-1, 2)
@@ -160,19 +163,19 @@ def known_support(surface: Surface, odom_from_map: Transform) -> Support:
 
 
 def same_surface(seen: Support, known: Support) -> bool:
-    """Whether a patch that was seen is part of a surface that the site names."""
+    """Whether a visible patch is part of a surface of the site."""
     near = within(seen.outline.mean(axis=0)[None], known.outline, BESIDE)
     return abs(seen.height + KNOWN_HEIGHT - known.height) < TOLD_WRONG and bool(near[0])
 
 
 def merged(seen: Support, known: Support) -> Support:
-    """What was seen, and what must be there beyond the picture's border, at the height seen."""
+    """The visible part plus the known part beyond the picture's border, at the visible height."""
     corners = np.vstack([seen.outline, known.outline])
     return Support(corners[ConvexHull(corners).vertices], seen.height)
 
 
 def within(points: Array, outline: Array, margin: float = 0.0) -> NDArray[np.bool_]:
-    """(n,) which points (n, 2) lie in a convex counter-clockwise outline, or `margin` around it."""
+    """Which points (n, 2) lie in a convex counter-clockwise outline grown by `margin`: (n,)."""
     inside = np.ones(len(points), dtype=bool)
     for a, b in zip(outline, np.roll(outline, -1, axis=0), strict=True):
         edge = (b - a) / max(float(np.linalg.norm(b - a)), 1e-9)
@@ -181,7 +184,7 @@ def within(points: Array, outline: Array, margin: float = 0.0) -> NDArray[np.boo
 
 
 def shelved(supports: Sequence[Support]) -> tuple[Support, ...]:
-    """The same, those that hang over another of them as boards."""
+    """The same supports; those that hang over another one are marked as boards."""
     return tuple(
         replace(upper, board=any(_hangs_over(upper, lower) for lower in supports))
         for upper in supports
@@ -220,19 +223,19 @@ class _View:
 
 
 class SeenSpace:
-    """Where the camera has looked, in odom."""
+    """The space that the camera has seen, in odom."""
 
     def __init__(self) -> None:
         self._views: deque[_View] = deque(maxlen=KEPT)
 
     def add(self, image: CameraImage, odom_from_camera: Transform, nearest: float) -> None:
-        """Remember a picture's view. nearest: depth from which on the camera measures, m."""
+        """Add a picture's view. nearest: least depth that the camera measures, m."""
         height, width = image.depth.shape
         view = _View(odom_from_camera, image.intrinsics, (height, width), nearest)
         self._views.append(view)
 
     def show(self, points: Array) -> NDArray[np.bool_]:
-        """(n,) which points (n, 3) in odom lay in the view of one of the pictures."""
+        """Which points (n, 3) in odom were in the view of one of the pictures: (n,)."""
         shown = np.zeros(len(points), dtype=np.bool_)
         for view in self._views:
             shown |= view.shows(points)

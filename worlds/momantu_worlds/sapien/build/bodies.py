@@ -23,16 +23,15 @@ FLOOR = "floor"
 """Category of bodies that the robot's base rolls on, and the name of the plane at z = 0."""
 FLOOR_FRICTION = 0.8
 Z_FROM_X = Transform((0, 0, 0), quaternion_from_axis_angle((0, 1, 0), -math.pi / 2))
-"""SAPIEN's cylinders lie along x and its planes face x; ours stand along z."""
+"""SAPIEN's cylinders lie along x and its planes face x; those of this project are along z."""
 
 
 def add_bodies(
     scene: Any, bodies: Iterable[Body], truth: Truth, *, visuals: bool
 ) -> tuple[Array, list[MovingBody]]:
-    """Build every body and the floor, and tell `truth` of them.
+    """Build every body and the floor, and register them with `truth`.
 
-    Returns:
-        Triangles (k, 3, 3) in the map of all that stands still, and the loose bodies.
+    Returns: triangles (k, 3, 3) in the map of all static bodies, and the loose bodies.
     """
     _add_floor(scene)
     still, moving = [], []
@@ -49,7 +48,7 @@ def add_bodies(
 
 @dataclass(frozen=True, slots=True)
 class Addition:
-    """A body that may come and go. moving: as the laser meets it; None when it passes through."""
+    """A body that may be added and removed. moving: as seen by the laser; None if invisible."""
 
     body: Body
     entity: Any
@@ -57,7 +56,7 @@ class Addition:
 
 
 def add_body(scene: Any, body: Body, truth: Truth, *, visuals: bool) -> Addition:
-    """Build one body and tell `truth` of it."""
+    """Build one body and register it with `truth`."""
     entity = _place(scene, body, truth, visuals)
     mesh = body_mesh(body)
     return Addition(body, entity, None if mesh is None else MovingBody(entity, mesh))
@@ -76,7 +75,7 @@ def _place(scene: Any, body: Body, truth: Truth, visuals: bool) -> Any:
 
 
 def add_lights(scene: Any, episode: Episode) -> None:
-    """Ambient light, suns and lamps; none casts a shadow."""
+    """Ambient light, suns and lamps, without shadows."""
     scene.set_ambient_light(list(episode.ambient))
     for sun in episode.suns:
         scene.add_directional_light(list(sun.direction), list(sun.color), shadow=False)
@@ -150,7 +149,7 @@ def _collision_shape(part: Part, material: Any) -> Any:
 
 
 def _sapien_pose(part: Part) -> Transform:
-    """Where SAPIEN's own shape must lie so that the part lies where it is described."""
+    """Pose of SAPIEN's own shape at which the part has its described pose."""
     if isinstance(part.geometry, Cylinder):
         return part.body_from_part @ Z_FROM_X
     return part.body_from_part

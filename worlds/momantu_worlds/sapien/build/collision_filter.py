@@ -1,4 +1,4 @@
-"""Pairs of links that ignore each other, as bits that SAPIEN compares."""
+"""Pairs of links that ignore each other in collisions, as bits that SAPIEN compares."""
 
 from __future__ import annotations
 
@@ -7,16 +7,17 @@ from collections.abc import Iterable, Mapping
 from momantu_bt.world import WorldError
 
 FLOOR_BIT = 1 << 30
-"""Collision bit of what a base may roll on: shapes that share it ignore each other."""
+"""Collision bit of the floor and of parts that may roll on it: shapes that share it ignore each
+other."""
 MOST_BITS = 30
-"""Bits of a group of shapes that are free beside FLOOR_BIT."""
+"""Number of bits in a collision group besides FLOOR_BIT."""
 
 
 def ignore_bits(pairs: Iterable[tuple[str, str]]) -> Mapping[str, int]:
-    """Bits by link, so that two links share one exactly when their pair is among `pairs`.
+    """Bits by link, so that two links share one exactly if their pair is among `pairs`.
 
-    Links of which every two ignore each other share one bit, or a robot with many pairs would
-    need more than there are.
+    If all pairs of a group of links ignore each other, the group shares one bit; otherwise a robot
+    with many pairs would need more bits than there are.
 
     Raises:
         WorldError: more groups than bits.
@@ -46,7 +47,7 @@ def ignore_bits(pairs: Iterable[tuple[str, str]]) -> Mapping[str, int]:
 def _grown(
     pair: tuple[str, str], wanted: list[tuple[str, str]], known: set[tuple[str, str]]
 ) -> list[str]:
-    """A group of links that holds a pair, and in which every two are a pair."""
+    """A group of links that contains a pair, and in which every two links are a pair."""
     group = list(pair)
     for link in dict.fromkeys(link for each in wanted for link in each):
         if link not in group and all((min(link, o), max(link, o)) in known for o in group):

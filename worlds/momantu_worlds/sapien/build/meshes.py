@@ -12,16 +12,16 @@ from momantu_bt.geometry import Array
 from momantu_worlds.scenes.geometry.bodies import Body, Box, Cylinder, Geometry, Hull, Part, Sphere
 
 CYLINDER_SIDES = 24
-"""Sides of the prism that stands for a cylinder: 0.9 % of the radius off at most."""
+"""Sides of the prism that replaces a cylinder: the error is at most 0.9 % of the radius."""
 SPHERE_LEVEL = 2
-"""Times that an icosahedron is refined to stand for a ball: 2 % of the radius off at most."""
+"""Refinements of the icosahedron that replaces a sphere: the error is at most 2 % of the radius."""
 
 
 def collision_mesh(geometry: Geometry) -> Any:
     """The geometry around its own origin, a trimesh.Trimesh.
 
     Raises:
-        TypeError: something that is only there to be looked at.
+        TypeError: a visual-only geometry.
     """
     if isinstance(geometry, Box):
         return trimesh.creation.box(extents=geometry.size)
@@ -54,7 +54,7 @@ def body_mesh(body: Body) -> Any:
 
 
 def map_triangles(bodies: list[Body]) -> Array:
-    """Triangles (k, 3, 3) of the colliding parts of bodies that stand still, in the map."""
+    """Triangles (k, 3, 3) of the colliding parts of static bodies, in the map."""
     triangles = []
     for body in bodies:
         mesh = body_mesh(body)

@@ -1,4 +1,4 @@
-"""Bodies that can move, as the laser sees them."""
+"""Moving bodies, as the laser sees them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from momantu_worlds.sapien.poses import transform_of
 
 
 class MovingBody:
-    """A loose body and the outline that a horizontal plane cuts out of it."""
+    """A loose body and its outline in a horizontal plane."""
 
     def __init__(self, entity: Any, mesh: Any) -> None:
         self._entity, self._mesh = entity, mesh
@@ -23,13 +23,14 @@ class MovingBody:
         return np.asarray(self._entity.pose.p, dtype=np.float64), self._radius
 
     def triangles(self) -> Array:
-        """Its triangles (k, 3, 3) in the map, where it is now."""
+        """Its triangles (k, 3, 3) in the map, at its current pose."""
         return transform_of(self._entity.pose).apply(self._mesh.triangles)
 
     def cut(self, origin: Array, reach: float) -> Array:
         """Segments (k, 2, 2) in the map where the plane z = origin[2] cuts the body.
 
-        No segment where it lies wholly above or below, or farther than `reach` m from `origin`.
+        There are none if the body is entirely above or below the plane, or farther than `reach` m
+        from `origin`.
         """
         pose = self._entity.pose
         position = np.asarray(pose.p, dtype=np.float64)

@@ -14,9 +14,10 @@ from momantu_worlds.sapien.poses import transform_of
 from momantu_worlds.scenes.geometry.bodies import Box, Cylinder, Hull, Mesh, Part, Picture, Sphere
 
 SLACK = 0.01
-"""Of a picture: coordinates that lie farther outside it mean it again and again, as tiles do."""
+"""How far outside a picture texture coordinates may lie, in pictures, before the texture is
+repeated as tiles."""
 GAMMA = 2.2
-"""Colours are given as a screen shows them; the shader computes with light."""
+"""Gamma of given colours, which are screen colours; the shader computes with linear light."""
 
 
 def render_shape(part: Part) -> Any:
@@ -40,9 +41,9 @@ def render_shape(part: Part) -> Any:
 
 
 def drawn_vertices(shape: Any) -> list[Array]:
-    """Vertices (n, 3) of each part of a render shape, in the frame it is attached to, m.
+    """Vertices (n, 3) of each part of a render shape, in the frame that it is attached to, m.
 
-    SAPIEN keeps boxes, cylinders and spheres as unit shapes.
+    SAPIEN stores boxes, cylinders and spheres as unit shapes.
     """
     from_shape = transform_of(shape.local_pose)
     scale = _scale(shape)
@@ -68,7 +69,7 @@ def _plain(part: Part) -> Any:
 def _textured(pixels: NDArray[np.uint8], beyond: str = "edge") -> Any:
     """A material with a texture (h, w, 3) of screen colours.
 
-    beyond: what lies outside the picture, "edge" (its last row or column) or "repeat".
+    beyond: colour outside the picture, "edge" (its last row or column) or "repeat".
     """
     alpha = np.full((*pixels.shape[:2], 1), 255, dtype=np.uint8)
     texture = sapien.render.RenderTexture2D(
@@ -97,7 +98,7 @@ def _picture(picture: Picture) -> Any:
 
 
 def _mesh(mesh: Mesh, part: Part) -> Any:
-    """A mesh in its texture or the part's colour; shared vertices are shaded smoothly."""
+    """A mesh with its texture or the part's colour; shared vertices are shaded smoothly."""
     vertices = np.asarray(mesh.vertices, dtype=np.float64)
     uv, material = np.zeros((len(vertices), 2)), _plain(part)
     if mesh.uv is not None and mesh.texture is not None:

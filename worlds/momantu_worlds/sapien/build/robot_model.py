@@ -22,19 +22,19 @@ from momantu_worlds.sapien.drives.fingers import Finger, couple, fingers_of
 from momantu_worlds.sapien.drives.gains import Gains, arm_gains
 
 MANY_TURNS = 1e3
-"""rad; the limit given to joints that turn for ever, so that positions never wrap."""
+"""Limit of joints that turn without end, rad, so that positions never wrap."""
 FLOOR_REACH = 1e3
-"""m; how far the slides of the base go."""
+"""Range of the base's virtual sliding joints, m."""
 CRUMB = 1e-5
-"""m3; hulls below it are slivers along a cut."""
+"""Least volume of a hull, m3; smaller ones are slivers along a cut."""
 
 
 @dataclass
 class RobotModel:
     """A robot in the physics scene.
 
-    joints: active joints by name. index: their place in qpos. links: by name.
-    gains: of each arm and head joint, and of finger tips. fingers: the gripper's, by joint.
+    joints: active joints by name. index: their index in qpos. links: by name. gains: of each arm
+    and head joint, and of finger tips. fingers: the gripper's, by joint.
     """
 
     articulation: Any
@@ -45,11 +45,11 @@ class RobotModel:
     fingers: Mapping[str, Finger]
 
     def positions(self) -> Array:
-        """All joint positions now (dof,), true."""
+        """All true joint positions now (dof,)."""
         return np.asarray(self.articulation.get_qpos(), dtype=np.float64)
 
     def velocities(self) -> Array:
-        """All joint velocities now (dof,), true."""
+        """All true joint velocities now (dof,)."""
         return np.asarray(self.articulation.get_qvel(), dtype=np.float64)
 
 
@@ -63,7 +63,7 @@ def build_robot(
 ) -> RobotModel:
     """Load the robot with its base at the origin.
 
-    visuals: whether to load what cameras see; impossible in a scene without a renderer.
+    visuals: whether to load visual shapes; impossible in a scene without a renderer.
     """
     builder = _parse(scene, description, simulation, visuals)
     cells = {
@@ -124,7 +124,7 @@ def _parse(
 
 
 def _take_cells(builder: Any, name: str, cuts: Cuts) -> list[Any]:
-    """Replace a link's collision mesh by hulls of its cells, to be attached once it is built."""
+    """Replace a link's collision mesh by hulls of its cells, to be attached after it is built."""
     link = next(link for link in builder.link_builders if link.name == name)
     shapes = []
     for record in link.collision_records:
@@ -149,9 +149,9 @@ def _unwrap(joint: Any, simulation: SimulationModel) -> None:
 
 
 def _ignore_pairs(links: dict[str, Any], pairs: tuple[tuple[str, str], ...]) -> None:
-    """Let these pairs pass through each other, and those that sit on one joint or share one.
+    """Ignore collisions of these pairs, and of links that share a joint or have one between them.
 
-    SAPIEN itself leaves out a link and the one above it.
+    SAPIEN itself ignores a link and its parent.
     """
     apart = [*pairs, *_neighbours(links)]
     unknown = [
@@ -164,7 +164,7 @@ def _ignore_pairs(links: dict[str, Any], pairs: tuple[tuple[str, str], ...]) -> 
 
 
 def _neighbours(links: dict[str, Any]) -> list[tuple[str, str]]:
-    """Pairs of colliding links that no joint moves against each other, or just one does."""
+    """Pairs of colliding links with no joint, or only one, between them."""
     bodies: dict[Any, list[str]] = {}
     for name, link in links.items():
         if link.collision_records:
@@ -212,7 +212,7 @@ def convex_cells(path: str, cuts: Cuts) -> list[NDArray[np.float32]]:
 
 
 def _halves(vertices: Any, faces: Any, axis: int, place: float) -> list[tuple[Any, Any]]:
-    """The triangles on either side of a plane across an axis, those it crosses cut."""
+    """The triangles on either side of a plane across an axis, with crossing ones cut."""
     origin, normal = np.zeros(3), np.zeros(3)
     origin[axis], normal[axis] = place, 1.0
     cut: Any = intersections.slice_faces_plane

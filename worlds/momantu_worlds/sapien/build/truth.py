@@ -1,4 +1,4 @@
-"""Ground truth, for the referee and for tests alone."""
+"""Ground truth, for the referee and for tests only."""
 
 from __future__ import annotations
 
@@ -17,16 +17,15 @@ from momantu_worlds.scenes.geometry.solids import FLOOR
 
 DOWN = np.array([0.0, 0.0, -1.0], dtype=np.float32)
 THROUGH = 0.001
-"""m; step by which a ray goes on through what does not count: by as much heights are off."""
+"""Step, m, by which a ray continues behind an ignored body; heights have this error."""
 
 
 @dataclass(frozen=True, slots=True)
 class Contact:
-    """Two things that touched during the last tick.
+    """Two bodies or links in contact during the last tick.
 
-    first, second: names of bodies, or of the robot's links (which come first).
-    force: length of the contact force, averaged over the tick (between two bodies: over its last
-    physics step), N.
+    first, second: names of bodies, or of the robot's links (which come first). force: length of the
+    contact force, averaged over the tick (between two bodies: over its last physics step), N.
     """
 
     first: str
@@ -36,14 +35,14 @@ class Contact:
 
 @dataclass(frozen=True, slots=True)
 class JointSpeed:
-    """How fast a joint moves: m/s when `linear`, else rad/s; never negative."""
+    """Speed of a joint: m/s if `linear`, else rad/s; never negative."""
 
     speed: float
     linear: bool
 
 
 class Truth:
-    """Where everything really is, and what touches what."""
+    """True poses of everything, and all contacts."""
 
     def __init__(self, system: Any, model: RobotModel, base_link: str) -> None:
         self._system, self._model, self._base_link = system, model, base_link
@@ -54,11 +53,11 @@ class Truth:
         self._links = frozenset(model.links.values())
 
     def add(self, name: str, entity: Any) -> None:
-        """Make a body known by name."""
+        """Register a body by name."""
         self._entities[name] = entity
 
     def forget(self, name: str) -> None:
-        """A body is gone."""
+        """Forget a removed body."""
         del self._entities[name]
 
     def entity(self, name: str) -> Any:
@@ -77,7 +76,7 @@ class Truth:
         return transform_of(self.entity(body).pose)
 
     def speed(self, body: str) -> tuple[float, float]:
-        """Speed of a moving body, m/s and rad/s; (0, 0) for what never moves."""
+        """Speed of a moving body, m/s and rad/s; (0, 0) for a static one."""
         part = self.entity(body).find_component_by_type(sapien.physx.PhysxRigidDynamicComponent)
         if part is None:
             return 0.0, 0.0
@@ -93,9 +92,9 @@ class Truth:
         return float(self._model.positions()[self._model.index[name]])
 
     def height_below(self, body: str, points: Array) -> tuple[float, str]:
-        """Height of the lowest of points (n, 3) of the map above what lies under them, m, of what.
+        """Height of the lowest of points (n, 3) of the map above what is under it, m, its name.
 
-        The body itself and the robot do not count; the floor is under everything.
+        The body itself and the robot are ignored; the floor is under everything.
         """
         best = (float(points[:, 2].min()), FLOOR)
         for point in points:
@@ -113,13 +112,13 @@ class Truth:
         return best
 
     def base_speed(self) -> tuple[float, float]:
-        """Of the base along the floor and about the vertical, m/s and rad/s."""
+        """Speed of the base along the floor and about the vertical, m/s and rad/s."""
         link = self._model.links[self._base_link]
         linear, angular = link.get_linear_velocity(), link.get_angular_velocity()
         return float(np.hypot(linear[0], linear[1])), abs(float(angular[2]))
 
     def joint_speeds(self) -> dict[str, JointSpeed]:
-        """Of every active joint of the robot, by name."""
+        """Speeds of all active joints of the robot, by name."""
         speeds = np.abs(self._model.velocities()).tolist()
         return {
             name: JointSpeed(speeds[self._model.index[name]], joint.type == "prismatic")
@@ -131,14 +130,14 @@ class Truth:
         return Pose2D.from_transform(self.link(self._base_link))
 
     def watch_contacts(self) -> None:
-        """Collect contact forces from the next tick on; costs time, changes nothing."""
+        """Collect contact forces from the next tick on; takes time, does not affect the physics."""
         self.watching = True
 
     def contacts(self) -> tuple[Contact, ...]:
-        """What touched during the last tick; `watch_contacts` must have been called.
+        """Contacts during the last tick; `watch_contacts` must have been called.
 
         Raises:
-            RuntimeError: nobody asked to watch contacts.
+            RuntimeError: `watch_contacts` was not called.
         """
         if not self.watching:
             raise RuntimeError("contacts are not collected; call watch_contacts() before stepping")
@@ -148,14 +147,14 @@ class Truth:
         )
 
     def begin_tick(self) -> None:
-        """Forget the contacts of the tick before."""
+        """Forget the contacts of the previous tick."""
         self._impulses.clear()
 
     def collect(self, *, last: bool) -> None:
-        """Add the contact impulses of the physics step just made.
+        """Add the contact impulses of the last physics step.
 
-        The robot's contacts are added up over all steps of a tick, for they may be blows; those
-        between bodies are taken from its last step, which is enough for what rests on what.
+        Contacts of the robot are summed over all steps of a tick, as they may be impacts. Contacts
+        between bodies are taken from the last step, which is enough to know what rests on what.
         """
         for contact in self._system.get_contacts():
             a, b = contact.bodies

@@ -1,4 +1,4 @@
-"""The driver of a differential base: velocity within acceleration limits, never sideways."""
+"""The driver of a differential base: velocity within acceleration limits, no sideways motion."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from momantu_bt.robot import WATCHDOG, BaseLimits
 from momantu_worlds.sapien.config import STEP
 
 TOLERANCE = 1e-6
-"""m/s, rad/s by which a commanded speed may pass its limit: rounding."""
+"""How far a commanded speed may exceed its limit, m/s and rad/s: rounding."""
 
 
 class BaseDrive:
-    """Turns speed commands into targets of the virtual joints x, y and yaw."""
+    """Converts speed commands to targets of the virtual joints x, y and yaw."""
 
     def __init__(self, x_joint: Any, y_joint: Any, yaw_joint: Any, limits: BaseLimits) -> None:
         self._x, self._y, self._yaw = x_joint, y_joint, yaw_joint
@@ -25,10 +25,10 @@ class BaseDrive:
         self.angular = 0.0
 
     def command(self, goal: object, now: float) -> None:
-        """Take a new speed.
+        """Set a new speed.
 
         Raises:
-            ValueError: no BaseVelocity, not finite, or faster than the base can go.
+            ValueError: not a BaseVelocity, not finite, or faster than the base can drive.
         """
         if not isinstance(goal, BaseVelocity):
             raise ValueError(f"a base takes BaseVelocity, not {type(goal).__name__}")
@@ -45,16 +45,16 @@ class BaseDrive:
         self._goal = (0.0, 0.0)
 
     def place(self) -> None:
-        """Stand still at once; what was commanded last goes on from rest."""
+        """Stop at once; the last command then continues from rest."""
         self.linear = self.angular = 0.0
 
     def begin_tick(self, now: float) -> None:
-        """Stop when nobody has commanded for too long."""
+        """Stop if no command has come for too long."""
         if now - self._last_command > WATCHDOG:
             self.stop()
 
     def apply(self, yaw: float) -> None:
-        """Set the targets for one physics step; `yaw` is the base's heading now, rad."""
+        """Set the targets for one physics step; `yaw` is the base's current heading, rad."""
         self.linear = _ramp(self.linear, self._goal[0], self._limits.linear_acceleration * STEP)
         self.angular = _ramp(self.angular, self._goal[1], self._limits.angular_acceleration * STEP)
         self._x.set_drive_velocity_target(self.linear * math.cos(yaw))

@@ -1,4 +1,4 @@
-"""A gripper's fingers in physics: their levers, what couples them, and tips without motors."""
+"""A gripper's fingers in physics: their levers, their coupling, and tips without motors."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from momantu_worlds.sapien.config import Physics
 from momantu_worlds.sapien.drives.gains import Gains, with_own
 
 EXACT = 9
-"""Decimals to which a lever is rounded: what a product of rotations loses."""
+"""Decimals to which a lever is rounded, to remove the rounding error of a product of rotations."""
 LEAST_LEVER = 1e-3
-"""m, or share of a slide's way: fingers that close the gripper less do not close it."""
+"""Least lever, m, or share of a slide's travel: a joint with less does not close the gripper."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +26,7 @@ class Finger:
     """A finger joint.
 
     lever: force at the pads along the closing direction is torque / lever; m, or 1 if it slides.
-    closing: sign of its motion when the gripper closes. span: how far it goes from wide to closed.
+    closing: sign of its motion when the gripper closes. span: its travel from open to closed.
     """
 
     joint: Any
@@ -44,7 +44,7 @@ def fingers_of(
 ) -> dict[str, Finger]:
     """The gripper's finger joints by name; joints: SAPIEN's.
 
-    A stiffness at the pads becomes one of the joint by the lever's square.
+    A stiffness at the pads is converted to one of the joint by the square of the lever.
 
     Raises:
         WorldError: there are none, or one does not move along the closing direction.
@@ -72,7 +72,7 @@ def fingers_of(
 
 
 def _lever(description: RobotDescription, joint: str) -> float:
-    """How the grasp frame's origin moves along the closing direction, per motion of a joint."""
+    """Motion of the grasp frame's origin along the closing direction, per motion of a joint."""
     effector = description.end_effector
     tree = description.kinematics()
     one = next(each for each in tree.joints() if each.name == joint)
@@ -88,9 +88,9 @@ def _lever(description: RobotDescription, joint: str) -> float:
 
 
 def couple(articulation: Any, fingers: Mapping[str, Finger], physics: Physics) -> None:
-    """Make all fingers on one hand move alike, each by its share of its way.
+    """Make all fingers of one hand move together, each by the same share of its travel.
 
-    Stands for motors that follow one command and that what is held cannot turn back.
+    This stands for motors that follow one command and that a held object cannot push back.
     """
     first, *others = fingers.values()
     for other in others:
@@ -110,18 +110,18 @@ def couple(articulation: Any, fingers: Mapping[str, Finger], physics: Physics) -
 
 
 def torques(fingers: Mapping[str, Finger], force: float) -> dict[str, float]:
-    """What each finger joint must give so that either side presses with `force`, N; Nm or N."""
+    """Torque of each finger joint at which each side presses with `force`, N; Nm or N."""
     return {name: force * finger.lever / sides(fingers) for name, finger in fingers.items()}
 
 
 def sides(fingers: Mapping[str, Finger]) -> float:
-    """Fingers on either side; a single one presses against something that does not move."""
+    """Fingers on each side; a single finger presses against a fixed part."""
     return max(1.0, len(fingers) / 2)
 
 
 @dataclass(frozen=True, slots=True)
 class _Tip:
-    """low, high: its limits, rad or m. place: of its motor's joint in qpos."""
+    """low, high: its limits, rad or m. place: index of its motor's joint in qpos."""
 
     linkage: Linkage
     joint: Any
@@ -133,7 +133,7 @@ class _Tip:
 
 
 class Tips:
-    """Finger joints that another finger joint's motor moves too; see `Linkage`."""
+    """Finger joints that are also moved by the motor of another finger joint; see `Linkage`."""
 
     def __init__(
         self,
@@ -151,7 +151,7 @@ class Tips:
             self._tips.append(tip)
 
     def follow(self, targets: Mapping[str, float], positions: Array) -> None:
-        """Turn by what the motors were sent (rad or m) and their own joints have not gone."""
+        """Turn by the part of motor commands (rad or m) that their own joints have not moved."""
         for tip in self._tips:
             motor = targets[tip.linkage.motor]
             left = tip.closing * (motor - float(positions[tip.place])) - tip.linkage.preload
@@ -159,6 +159,6 @@ class Tips:
             tip.joint.set_drive_target(min(wanted, tip.high))
 
     def press(self, torques: Mapping[str, float]) -> None:
-        """Limit each to its share of the torque that its finger has now."""
+        """Limit each tip to its share of its finger's current torque."""
         for tip in self._tips:
             tip.gains.give(tip.joint, tip.linkage.share * torques[tip.linkage.motor])

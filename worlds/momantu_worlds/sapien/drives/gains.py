@@ -1,4 +1,4 @@
-"""Gains and limits of a robot's joints: its description's, or what is usual here."""
+"""Gains and limits of a robot's joints: from its description, or defaults."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from momantu_worlds.sapien.config import Physics
 
 @dataclass(frozen=True, slots=True)
 class Gains:
-    """A position drive: stiffness (Nm/rad or N/m), damping, most force (Nm or N), armature."""
+    """A position drive: stiffness (Nm/rad or N/m), damping, largest force (Nm or N), armature."""
 
     stiffness: float
     damping: float
@@ -22,7 +22,7 @@ class Gains:
     armature: float
 
     def give(self, joint: Any, force: float | None = None) -> None:
-        """Set a joint of SAPIEN's; `force` in place of the usual limit."""
+        """Set a joint of SAPIEN's; `force` replaces the usual limit."""
         joint.set_drive_property(
             self.stiffness, self.damping, self.force if force is None else force
         )
@@ -46,7 +46,7 @@ def arm_gains(
 
 
 def with_own(own: JointGains | None, usual: Gains) -> Gains:
-    """The usual gains with a joint's own in their place."""
+    """The usual gains, with a joint's own values replacing them."""
     if own is None:
         return usual
     return Gains(
@@ -58,6 +58,6 @@ def with_own(own: JointGains | None, usual: Gains) -> Gains:
 
 
 def _efforts(description: RobotDescription) -> dict[str, float]:
-    """The URDF's effort limits, by joint; one of 0 is one that nobody gave."""
+    """The URDF's effort limits, by joint; a limit of 0 counts as not given."""
     joints = read_urdf(description.urdf).joints
     return {joint.name: joint.effort for joint in joints if joint.effort}

@@ -1,4 +1,4 @@
-"""The driver of a gripper: an opening to go to, with a limited force."""
+"""The driver of a gripper: a target opening and a limited force."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from momantu_worlds.sapien.drives.fingers import Finger, Tips, sides, torques
 
 
 class GripperDrive:
-    """Coupled fingers that close with at most the force that was asked for.
+    """Coupled fingers that close with at most the commanded force.
 
-    The force is what each side presses with: of the fingers' torques half goes to either.
-    speeds: greatest of each finger joint, rad/s or m/s.
+    The force is that of each side: half of the sum of the fingers' forces. speeds: largest speed of
+    each finger joint, rad/s or m/s.
     """
 
     def __init__(
@@ -40,10 +40,10 @@ class GripperDrive:
         self._send()
 
     def command(self, goal: object) -> None:
-        """Take an opening and a force.
+        """Set a target opening and a force.
 
         Raises:
-            ValueError: no GripperCommand, or outside what the gripper can do.
+            ValueError: not a GripperCommand, or outside what the gripper can do.
         """
         if not isinstance(goal, GripperCommand):
             raise ValueError(f"a gripper takes GripperCommand, not {type(goal).__name__}")
@@ -57,7 +57,7 @@ class GripperDrive:
             self._set_force(goal.max_force)
 
     def apply(self, positions: Array) -> None:
-        """Move the target on by one physics step; positions: of all joints now (dof,)."""
+        """Move the target by one physics step; positions: of all joints now (dof,)."""
         if self._target != self._goal:
             step = self._speed * STEP
             self._target += min(max(self._goal - self._target, -step), step)
@@ -65,7 +65,7 @@ class GripperDrive:
         self._tips.follow(self._targets, positions)
 
     def effort(self, positions: Mapping[str, float]) -> float:
-        """Closing force of each side at these finger positions, N: positive pressing inwards."""
+        """Closing force of each side at these finger positions, N: positive presses inwards."""
         push = 0.0
         for name, finger in self._fingers.items():
             way = finger.closing * (self._targets[name] - positions[name])
@@ -86,7 +86,7 @@ class GripperDrive:
 
 
 def _closing_speed(effector: EndEffector, speeds: Mapping[str, float]) -> float:
-    """The fastest change of the opening that no finger joint is too slow for, m/s."""
+    """The fastest change of the opening at which no finger joint exceeds its speed, m/s."""
     return min(
         speeds[joint] * (wider - width) / abs(further - position)
         for joint, rows in effector.opening.items()

@@ -15,27 +15,32 @@ from momantu_worlds.sapien.config import STEP, SUB_STEPS
 from momantu_worlds.sapien.drives.path import Path
 
 START_TOLERANCE = 0.05
-"""rad or m by which a trajectory may start beside the joints; more is a plan from elsewhere."""
+"""Largest distance between a trajectory's start and the joints, rad or m; more means a plan from
+another position."""
 LIMIT_TOLERANCE = 0.01
-"""rad or m by which a goal may pass a position limit: measured joints are off by a few mrad."""
+"""How far a goal may exceed a position limit, rad or m: measured joints have errors of a few
+mrad."""
 SPEED_TOLERANCE = 1.05
-"""Factor by which a trajectory may pass a speed limit between its points."""
+"""Factor by which a trajectory may exceed a speed limit between its points."""
 GIVE_WAY = 0.01
-"""rad or m between command and joint at which a drive gives up its goal. Free motion stays below
-0.003 even when the base jerks; what is more is an obstacle, pushed with 100 Nm or N already."""
+"""Distance between command and joint at which a drive drops its goal, rad or m. In free motion it
+is below 0.003 even if the base jerks; more means an obstacle, which is pushed with 100 Nm or N
+already."""
 HARD_PUSH = 100.0
-"""Nm or N; a soft drive gives way where it pushes as hard, or with all it has, not before."""
+"""A drive with low stiffness drops its goal only when it pushes with this, Nm or N, or with its
+full force."""
 LEAST_STIFFNESS = 1e-9
-"""Nm/rad or N/m; a drive without stiffness follows nothing and never gives way."""
+"""Least stiffness, Nm/rad or N/m; a drive without stiffness follows no goal and never drops one."""
 WEAK = 5.0
-"""Nm or N; joints with less effort than this (a head's) hurt nobody and never give way."""
+"""Joints with less effort than this, Nm or N (a head's), cannot cause harm and never drop a
+goal."""
 
 
 class JointDrive:
     """Moves a group of joints. Goals are in measured angles: `offset` = measured - true.
 
-    Blocked joints give way: the goal is dropped and the joints are held where they are, as real
-    arm controllers do when a path's tolerance is violated. A new goal is then taken as usual.
+    If a joint is blocked, the goal is dropped and the joints hold their positions, as in real arm
+    controllers when a path's tolerance is exceeded. New goals are accepted as usual.
     """
 
     def __init__(
@@ -67,17 +72,17 @@ class JointDrive:
         self._targets: tuple[Array, Array] | None = None
 
     def place(self, true_positions: Array) -> None:
-        """Start holding where the joints are, true angles (n,)."""
+        """Start by holding the current joint positions, true angles (n,)."""
         self.position = np.array(true_positions, dtype=np.float64)
         self.velocity = np.zeros(len(self.names))
         self._set(self.position, self.velocity)
 
     def command(self, goal: object, now: float) -> None:
-        """Take a trajectory, or positions to go to.
+        """Set a trajectory, or positions to move to.
 
         Raises:
             ValueError: another kind of goal, other joints, outside the limits, or a trajectory
-                that does not start where the joints are.
+                that does not start at the current joint positions.
         """
         if goal is self._given_up:
             return
@@ -95,14 +100,14 @@ class JointDrive:
         self._command, self._last_command = goal, now
 
     def stop(self) -> None:
-        """Brake within the acceleration limits, on the path where there is one."""
+        """Brake within the acceleration limits, on the path if there is one."""
         if self._path is not None:
             self._path.pace_goal = 0.0
         if self._goal is not None:
             self._braking = True
 
     def begin_tick(self, now: float, true_positions: Array) -> None:
-        """Compute the targets of the coming tick's physics steps; `true_positions` (n,) now."""
+        """Compute the targets for the physics steps of the next tick; `true_positions` (n,) now."""
         if bool(np.any(np.abs(self.position - true_positions) > self._tolerance)):
             self._give_way(true_positions)
         if now - self._last_command > WATCHDOG:
@@ -205,7 +210,7 @@ class JointDrive:
         self._path, self._goal, self._braking = None, wanted, False
 
     def _toward(self, goal: Array) -> tuple[Array, Array] | None:
-        """Targets on the way to `goal` with trapezoidal speed, from any speed; None at rest."""
+        """Targets towards `goal` with trapezoidal speed, from any speed; None at rest."""
         target = goal - self._offset
         if not self.velocity.any() and (self._braking or bool(np.all(self.position == target))):
             return None

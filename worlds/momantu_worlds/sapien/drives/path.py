@@ -1,4 +1,4 @@
-"""Following a joint trajectory at any pace: cubic Hermite interpolation and braking on the path."""
+"""Following a joint trajectory at variable pace: cubic Hermite interpolation and braking."""
 
 from __future__ import annotations
 
@@ -8,20 +8,21 @@ from momantu_bt.geometry import Array
 from momantu_bt.messages import JointTrajectory
 
 BLEND = 0.3
-"""Seconds over which a start that lies beside the commanded joints is faded in."""
+"""Time over which a difference between the start and the commanded joints is faded out, s."""
 LEAST_SHARE = 0.25
-"""Share of the acceleration limit that braking may always use, however curved the path is."""
+"""Share of the acceleration limit that braking may always use, even on curved parts of the path."""
 FASTEST_BRAKE = 20.0
-"""1/s; pace lost per second where the path hardly moves and the limits allow anything."""
+"""Largest decrease of the pace per second, 1/s, where the joints hardly move and the limits allow
+any."""
 
 
 class Path:
-    """A trajectory with its own time, which a pace of 0..1 lets pass more slowly.
+    """A trajectory with its own time, which advances at a pace of 0..1.
 
-    columns: where the drive's joints stand in the trajectory. start: the joints' positions and
-    velocities (n,) as commanded now; where the trajectory starts beside them, the difference fades
-    out over BLEND. offset (n,): measured minus true angles; trajectories are measured, what comes
-    out is true.
+    columns: indices of the drive's joints in the trajectory. start: the joints' commanded positions
+    and velocities (n,) now; if the trajectory starts elsewhere, the difference is faded out over
+    BLEND. offset (n,): measured minus true angles; trajectories are in measured angles, the targets
+    are true ones.
     """
 
     def __init__(
@@ -50,7 +51,7 @@ class Path:
 
     @property
     def resting(self) -> bool:
-        """Whether nothing moves: at the end, or braked to a stop."""
+        """Whether nothing moves: at the end, or after braking to a stop."""
         return self.finished or (self.pace == 0.0 and self.pace_goal == 0.0)
 
     def advance(self, step: float, count: int) -> tuple[Array, Array]:
@@ -87,7 +88,7 @@ class Path:
         return position, velocity, acceleration
 
     def _fade(self, u: Array) -> tuple[Array, Array]:
-        """The start's difference at shares `u` (k, 1) of BLEND, and its rate: both reach 0 at 1."""
+        """The start's difference at shares `u` (k, 1) of BLEND, and its rate: both are 0 at 1."""
         u = np.minimum(u, 1.0)
         e, v = self._position_error, self._velocity_error * BLEND
         fade = (1.0 - u) ** 2 * ((1.0 + 2.0 * u) * e + u * v)
@@ -95,7 +96,7 @@ class Path:
         return fade, slope
 
     def _brake(self) -> float:
-        """Pace per second that no joint's acceleration limit forbids, 1/s."""
+        """Decrease of the pace per second within all joints' acceleration limits, 1/s."""
         _, velocity, acceleration = self.sample(np.array([self.time]))
         used = np.abs(acceleration[0]) * self.pace**2
         free = np.maximum(self._acceleration - used, LEAST_SHARE * self._acceleration)

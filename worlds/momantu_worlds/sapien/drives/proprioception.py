@@ -1,4 +1,4 @@
-"""Joint encoders, motor currents, the gripper's gauge and wheel odometry, with their errors."""
+"""Joint encoders, motor currents, the gripper's width sensor, wheel odometry: with errors."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Encoders:
 
 
 def prismatic_joints(description: RobotDescription, names: tuple[str, ...]) -> Array:
-    """(n,) bool: which of the named joints slide."""
+    """Which of the named joints slide, (n,) bool."""
     kinds = {joint.name: joint.kind for joint in read_urdf(description.urdf).joints}
     return np.array([kinds.get(name) == "prismatic" for name in names])
 
@@ -66,7 +66,7 @@ class Odometry:
         self.odom_from_base = Pose2D(0.0, 0.0, 0.0)
 
     def update(self, map_from_base: Pose2D, stamp: float) -> None:
-        """Take the base's true pose of a new instant."""
+        """Add the motion to the base's new true pose."""
         moved = self._true.inverse() @ map_from_base
         self._true = map_from_base
         distance, turn = math.hypot(moved.x, moved.y), abs(moved.yaw)
@@ -82,7 +82,7 @@ class Odometry:
         self.odom_from_base = self.odom_from_base @ Pose2D(along, across, yaw)
 
     def carried(self, map_from_base: Pose2D) -> None:
-        """The base was lifted to another true pose: its wheels did not turn."""
+        """Accept a new true pose after the base was lifted: the wheels did not turn."""
         self._true = map_from_base
 
     def speeds(self, linear: float, angular: float, stamp: float) -> tuple[float, float]:

@@ -1,4 +1,5 @@
-"""Faults of the surroundings: what only the world can make, from ground truth.
+"""Faults of the surroundings, which only the world can cause, from ground truth.
 
-Each module is one idea. `rows` lists the faults by name; `stage` is what all of them work on.
+Each module is one kind of fault or a helper. `rows` lists the faults by name; `stage` holds what
+all of them work on.
 """

@@ -21,21 +21,21 @@ from momantu_worlds.scenes.arrange.spots import (
 from momantu_worlds.scenes.geometry.plane import Rectangle, gap
 
 SIZE, HEIGHT = 0.09, 0.06
-"""m; edge and height of a box: too low to hide a marker behind it from a standing robot."""
+"""Edge and height of a box, m: too low to hide a marker behind it from a standing robot."""
 FINGERS = 0.06
-"""m; a spot with less room than this around the thing is not free: fingers open beside it."""
+"""A spot needs this much room around the object to be free, m: the fingers open beside it."""
 CELL = 0.025
-"""m; grid of spots and of places for boxes."""
+"""Grid of spots and of places for boxes, m."""
 BETWEEN = 0.005
-"""m; least gap between boxes, and to the marker."""
+"""Least gap between boxes, and to the marker, m."""
 MOST = 40
 
 
 class BoxRow:
-    """Chooses places greedily: each box where it takes most of the spots that are still free.
+    """Chooses places greedily: each box where it covers most of the spots that are still free.
 
-    wanted: what is set down. things: what stands on the table already. marker: its picture; both
-    in the table's frame.
+    wanted: the object to place. things: objects on the table. marker: its picture; both in the
+    table's frame.
     """
 
     def __init__(
@@ -49,7 +49,7 @@ class BoxRow:
         self._cells = np.stack(np.meshgrid(xs, ys), axis=-1).reshape(-1, 2)
 
     def keep(self, spots: Sequence[tuple[float, float]]) -> None:
-        """These spots stay free, and a hand gets to them."""
+        """Keep these spots free and reachable by the hand."""
         self._kept = [Disc(x, y, self.wanted.radius, self.wanted.height) for x, y in spots]
 
     def room(self, spot: tuple[float, float]) -> float:
@@ -58,7 +58,7 @@ class BoxRow:
         return min([float(self.marker.distance(np.array(spot))), *gaps])
 
     def boxes(self, fits: Callable[[float, float], bool]) -> Iterator[tuple[float, float]]:
-        """Middles (x, y) of boxes; `fits` says whether the world has room for one there."""
+        """Centres (x, y) of boxes; `fits` tells whether the world has room for one there."""
         spots = self.beside()
         places = self._cells
         covers = _square_distance(places[:, None], spots[None]) < self.wanted.radius + FINGERS
@@ -94,7 +94,7 @@ class BoxRow:
         return np.asarray(cells[free])
 
     def _harmless(self, x: float, y: float, placed: list[Disc]) -> bool:
-        """Whether the marker is seen as well as before, and the kept spots stay what they are."""
+        """Whether the marker stays visible as before, and the kept spots free and reachable."""
         box = Rectangle(Pose2D(x, y), (SIZE + 2 * BETWEEN, SIZE + 2 * BETWEEN))
         if gap(box, self.marker) == 0.0:
             return False
@@ -119,6 +119,6 @@ def _disc(x: float, y: float) -> Disc:
 
 
 def _square_distance(middles: Array, points: Array) -> Array:
-    """Distance (...) of points (..., 2) from boxes around middles (..., 2), 0 inside, m."""
+    """Distance (...) of points (..., 2) from square boxes around `middles`, 0 inside, m."""
     out = np.maximum(np.abs(points - middles) - SIZE / 2, 0.0)
     return np.asarray(np.hypot(out[..., 0], out[..., 1]))

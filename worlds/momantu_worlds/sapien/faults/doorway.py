@@ -1,4 +1,4 @@
-"""doorway.blocked: a crate stands in the doorway that comes next on the robot's way."""
+"""doorway.blocked: a crate stands in the next doorway on the robot's path."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ from momantu_worlds.scenes.geometry.bodies import Body, Gap
 from momantu_worlds.scenes.geometry.prisms import Prism, body_prism
 
 DEPTH, HEIGHT = 0.45, 0.6
-"""m; across the doorway's threshold, and up."""
+"""Depth along the passage and height of the crate, m."""
 SLIT = 0.1
-"""m; what is left of the doorway beside the crate, both sides together."""
+"""Width of the doorway that stays open, m, both sides together."""
 ASIDE = 0.3
-"""m; least gap to the robot: nearer doorways are not blocked any more."""
+"""Least gap to the robot, m: a doorway that is nearer is not blocked."""
 ANGLES = 90
 STEP, LONGEST = 0.02, 2.0
-"""m; along rays from the middle of a doorway to its jambs."""
+"""Step and largest distance of the search from the centre of a doorway to its jambs, m."""
 
 
 class DoorwayBlocked:
-    """A static crate that lasers and cameras see, away again at the end."""
+    """A static crate that lasers and cameras see; it is removed at the end."""
 
     def __init__(self, stage: Stage, fault: Fault) -> None:
         """No parameters."""
@@ -38,7 +38,7 @@ class DoorwayBlocked:
         self._added: str | None = None
 
     def begin(self) -> None:
-        """Set it down; FaultError while the robot stands in every doorway that could be."""
+        """Add the crate; FaultError if the robot stands in every doorway in question."""
         for gap in self._in_order():
             body = self._crate(gap)
             if self._clear(body):
@@ -47,15 +47,16 @@ class DoorwayBlocked:
         raise FaultError(f"{self._fault.name}: the robot is too near to every doorway")
 
     def end(self) -> None:
-        """Take it away."""
+        """Remove the crate."""
         if self._added is not None:
             self._stage.remove(self._added)
             self._added = None
 
     def _in_order(self) -> list[Gap]:
-        """Doorways in the order in which the robot comes through them; then others, near first.
+        """Doorways in the order in which the robot passes them; then the others, near ones first.
 
-        It goes to the item, unless it holds it, and on to the table where the item is to go.
+        The robot drives to the item, unless it holds it, and then to the table where the item is to
+        be placed.
         """
         stage, floor = self._stage, free_floor(self._stage)
         pose = stage.simulator.truth.pose
@@ -103,7 +104,7 @@ class DoorwayBlocked:
 
 
 def _free_length(walls: list[Prism], at: tuple[float, float], angle: float, steps: Array) -> float:
-    """How far it is from a point to a wall, m; the last of `steps` (n,) when none is met."""
+    """Distance from a point to a wall, m; the last of `steps` (n,) if there is none."""
     points = np.column_stack([at[0] + steps * math.cos(angle), at[1] + steps * math.sin(angle)])
     met = np.zeros(len(steps), dtype=np.bool_)
     for wall in walls:

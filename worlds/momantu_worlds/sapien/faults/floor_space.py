@@ -1,4 +1,4 @@
-"""The floor as a robot could stand on it now: free cells, and ways over them."""
+"""The floor where the robot could stand now: free cells, and paths over them."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from momantu_worlds.scenes.geometry.prisms import Prism
 WALL = "wall"
 """Category of what bounds the rooms."""
 AIR = 0.05
-"""m; what the base keeps from everything."""
+"""Clearance of the base from everything, m."""
 BORDER = 1.0
-"""m; floor around the outermost bodies that counts, where there are no walls."""
+"""Margin of floor around the outermost bodies, m, if there are no walls."""
 BARE = 20.0
-"""m; edge of the floor around the robot that counts where nothing at all stands on it."""
+"""Edge of the floor around the robot, m, if there are no bodies at all."""
 
 
 def free_floor(stage: Stage) -> Passages:
-    """Where the base has room among all that stands still, indoors when there are walls."""
+    """Where the base has room among all static bodies; indoors if there are walls."""
     radius = max(math.hypot(x, y) for x, y in stage.description.footprint) + AIR
     height = max(prism.top for prism in stage.robot_prisms())
     loose = {body.name for body in stage.bodies if not body.static}

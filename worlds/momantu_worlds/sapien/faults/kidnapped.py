@@ -1,4 +1,4 @@
-"""robot.kidnapped: the robot is lifted and set down elsewhere, with what it holds."""
+"""robot.kidnapped: the robot, with its held object, is lifted and set down elsewhere."""
 
 from __future__ import annotations
 
@@ -11,27 +11,27 @@ from momantu_worlds.sapien.faults.parameters import number, only
 from momantu_worlds.sapien.faults.stage import Stage
 
 FARTHEST = 20.0
-"""m."""
+"""Largest distance, m."""
 FARTHER = 0.25
-"""m; where nothing is free at the distance asked, it is set down this much farther, and so on."""
+"""If nothing is free at the requested distance, it is increased by this step, m."""
 RINGS = 13
 DIRECTIONS = 24
 ASIDE = 0.1
-"""m; least gap of the robot and what it holds to everything."""
+"""Least gap of the robot and its held object to everything, m."""
 
 
 class Kidnapped:
-    """Neither odometry nor the wheels notice."""
+    """Odometry and wheels do not register the move."""
 
     def __init__(self, stage: Stage, fault: Fault) -> None:
-        """Parameters: distance, how far at least, m; turn, by how much it is turned, rad."""
+        """Parameters: distance, the least distance, m; turn, the angle of rotation, rad."""
         only(fault, "distance", "turn")
         self._distance = number(fault, "distance", 0.0, FARTHEST, "m")
         self._turn = number(fault, "turn", -math.pi, math.pi, "rad")
         self._stage, self._fault = stage, fault
 
     def begin(self) -> None:
-        """Set it down in a seeded direction on free floor; FaultError when none is near."""
+        """Set the robot down in a seeded direction on free floor; FaultError if none is near."""
         stage, before = self._stage, self._stage.base()
         held = stage.held()
         after = self._place(before, held)
@@ -41,7 +41,7 @@ class Kidnapped:
             stage.move_item(move @ stage.item_pose())
 
     def end(self) -> None:
-        """It is not carried back."""
+        """Nothing is undone: the robot stays there."""
 
     def _place(self, before: Pose2D, held: bool) -> Pose2D:
         draw, floor = self._stage.random(self._fault), free_floor(self._stage)

@@ -13,12 +13,12 @@ from momantu_worlds.sapien.faults.tops import TableTop, clear_on, item_top
 from momantu_worlds.scenes.geometry.support import UprightCylinder
 
 ASIDE = 0.01
-"""m; least gap to everything where it lies."""
+"""Least gap to everything at the new pose, m."""
 DIRECTIONS = 24
 
 
 class KnockedOver:
-    """Stays as it lies."""
+    """The item stays as it lies."""
 
     def __init__(self, stage: Stage, fault: Fault) -> None:
         """No parameters."""
@@ -26,10 +26,10 @@ class KnockedOver:
         self._stage, self._fault, self._item = stage, fault, UprightCylinder(stage.item)
 
     def begin(self) -> None:
-        """Tip it over its rim in a seeded direction in which it meets nothing.
+        """Tip the item over its rim in a seeded free direction.
 
         Raises:
-            FaultError: it stands on no table now, or there is something on all sides.
+            FaultError: it stands on no table now, or all directions are blocked.
         """
         top = item_top(self._stage)
         start = float(self._stage.random(self._fault).uniform(0.0, 2 * math.pi))
@@ -43,7 +43,7 @@ class KnockedOver:
         )
 
     def end(self) -> None:
-        """It is not set up again."""
+        """Nothing is undone: the item stays there."""
 
     def _tipped(self, top: TableTop, direction: float) -> Transform:
         x, y, _ = (float(v) for v in self._stage.item_pose().position)

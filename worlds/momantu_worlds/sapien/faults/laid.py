@@ -1,4 +1,4 @@
-"""Laying the item on its side."""
+"""Pose of the item lying on its side."""
 
 from __future__ import annotations
 

@@ -13,14 +13,14 @@ from momantu_worlds.sapien.faults.stage import Stage
 from momantu_worlds.scenes.geometry.support import UprightCylinder
 
 DISTANCES = (0.7, 0.9, 1.1, 1.4, 1.8)
-"""m from the robot, the first that is free is taken."""
+"""Distances from the robot, m; the first one that is free is used."""
 DIRECTIONS = 24
 ASIDE = 0.05
-"""m; least gap to everything where it lies."""
+"""Least gap to everything at the new pose, m."""
 
 
 class Lost:
-    """Stays where it lies."""
+    """The item stays on the floor."""
 
     def __init__(self, stage: Stage, fault: Fault) -> None:
         """No parameters."""
@@ -46,7 +46,7 @@ class Lost:
         raise FaultError(f"{self._fault.name}: the floor around the robot is full")
 
     def end(self) -> None:
-        """It is not given back."""
+        """Nothing is undone: the item stays there."""
 
     def _laid(self, distance: float, direction: float) -> Transform:
         base = self._stage.base()

@@ -16,7 +16,7 @@ class MissesObject:
     """Hides the item from the robot's cameras; it stays in the world."""
 
     def __init__(self, stage: Stage, fault: Fault) -> None:
-        """Parameters: frames, how many pictures of the place do not show it."""
+        """Parameters: frames, the number of pictures of the place that do not show it."""
         self._stage = stage
         self._cameras, self._frames = cameras(stage, fault), frames(fault)
         self._middle = np.array([0.0, 0.0, UprightCylinder(stage.item).height / 2])
@@ -31,7 +31,7 @@ class MissesObject:
         self._count = PictureCount(self._stage, self._frames, self._point, self.end)
 
     def end(self) -> None:
-        """Show it again; it does so by itself after its pictures."""
+        """Show it again; this happens by itself after the given number of pictures."""
         if self._count is not None:
             self._count.stop()
             self._count = None

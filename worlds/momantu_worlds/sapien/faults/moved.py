@@ -13,24 +13,24 @@ from momantu_worlds.scenes.arrange.spots import Disc, lane
 from momantu_worlds.scenes.geometry.support import UprightCylinder
 
 FARTHEST = 2.0
-"""m."""
+"""Largest distance, m."""
 ASIDE = 0.02
-"""m; least gap to everything at the new place."""
+"""Least gap to everything at the new place, m."""
 DIRECTIONS = 24
 
 
 class Moved:
-    """Stays where it is put."""
+    """The item stays at its new place."""
 
     def __init__(self, stage: Stage, fault: Fault) -> None:
-        """Parameters: distance, how far, m."""
+        """Parameters: distance of the shift, m."""
         only(fault, "distance")
         self._distance = number(fault, "distance", 0.01, FARTHEST, "m")
         self._stage, self._fault = stage, fault
         self._item = UprightCylinder(stage.item)
 
     def begin(self) -> None:
-        """Shift it in a seeded direction, to where a hand still gets to it when there is one.
+        """Shift it in a seeded direction, if possible to where a hand can still reach it.
 
         Raises:
             FaultError: it stands on no table now, or nothing is free at that distance.
@@ -48,7 +48,7 @@ class Moved:
         self._stage.move_item(next(reached, free[0]))
 
     def end(self) -> None:
-        """It is not put back."""
+        """Nothing is undone: the item stays there."""
 
     def _shifted(self, angle: float) -> Transform:
         pose = self._stage.item_pose()

@@ -20,19 +20,19 @@ from momantu_worlds.scenes.geometry.support import UprightCylinder
 
 MOST_FREE = 4
 APART = 0.25
-"""m; between two spots that stay free."""
+"""Least distance between two spots that stay free, m."""
 FROM_ROBOT = 0.02
-"""m; least gap of a box to the robot and to everything else."""
+"""Least gap of a box to the robot and to everything else, m."""
 MASS = 0.2
-"""kg."""
+"""Mass of a box, kg."""
 COLOR = (0.74, 0.60, 0.42)
 
 
 class Occupied:
-    """Loose boxes that the referee does not want pushed either, away again at the end."""
+    """Loose boxes, which the robot must not push either; they are removed at the end."""
 
     def __init__(self, stage: Stage, fault: Fault) -> None:
-        """Parameters: free, how many spots elsewhere on the top stay free."""
+        """Parameters: free, the number of spots elsewhere on the top that stay free."""
         only(fault, "free")
         self._picture = marker_picture(stage)
         self._free = whole(fault, "free", 0, MOST_FREE)
@@ -41,7 +41,7 @@ class Occupied:
         self._boxes: list[str] = []
 
     def begin(self) -> None:
-        """Set the boxes down.
+        """Add the boxes.
 
         Raises:
             FaultError: fewer spots are free already than should stay free.
@@ -61,13 +61,13 @@ class Occupied:
             self._boxes.append(stage.add(self._box(top, x, y)))
 
     def end(self) -> None:
-        """Take the boxes away."""
+        """Remove the boxes."""
         for name in self._boxes:
             self._stage.remove(name)
         self._boxes.clear()
 
     def _kept(self, row: BoxRow, top: TableTop) -> list[tuple[float, float]]:
-        """Spots that stay free: those with the most room about them, apart from each other."""
+        """Spots that stay free: those with the most room around them, apart from each other."""
         spots = free_spots(row.wanted, top.placed, row.things, row.marker.pose)
         spots.sort(key=row.room, reverse=True)
         kept: list[tuple[float, float]] = []

@@ -7,14 +7,14 @@ import math
 from momantu_bt.fault import Fault, FaultError
 
 LASTING = "for"
-"""How long a fault lasts, s: whoever ends it sees to that, so every row may carry it."""
+"""Duration of a fault, s. The caller ends the fault, so every row may have this parameter."""
 
 
 def only(fault: Fault, *names: str) -> None:
-    """Refuse parameters of other names, and missing ones.
+    """Reject parameters with other names, and missing ones.
 
     Raises:
-        FaultError: with the names that there are.
+        FaultError: lists the valid names.
     """
     known = ", ".join(names) or "none"
     for name in fault.parameters:
@@ -26,7 +26,7 @@ def only(fault: Fault, *names: str) -> None:
 
 
 def number(fault: Fault, name: str, least: float, most: float, unit: str) -> float:
-    """A finite parameter between two bounds, both valid; FaultError when it is not."""
+    """Read a finite number between two bounds, both valid; FaultError if it is not."""
     value = _as_number(fault, name)
     if value is None or not least <= value <= most:
         raise FaultError(
@@ -37,7 +37,7 @@ def number(fault: Fault, name: str, least: float, most: float, unit: str) -> flo
 
 
 def whole(fault: Fault, name: str, least: int, most: int) -> int:
-    """A whole number between two bounds, both valid; FaultError when it is not."""
+    """Read a whole number between two bounds, both valid; FaultError if it is not."""
     value = _as_number(fault, name)
     if value is None or not value.is_integer() or not least <= value <= most:
         raise FaultError(

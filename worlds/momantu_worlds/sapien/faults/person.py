@@ -14,19 +14,19 @@ from momantu_worlds.scenes.geometry.bodies import Body
 from momantu_worlds.scenes.geometry.prisms import body_prism
 
 DISTANCE = 1.0
-"""m from the middle of the base to the person's chest."""
+"""Distance from the centre of the base to the person's chest, m."""
 TURNS = tuple(math.radians(turn) for turn in (0, 15, -15, 30, -30, 45, -45))
-"""rad; where straight ahead is something else the person stands a little aside."""
+"""Directions that are tried, rad: straight ahead first, then to the sides."""
 FARTHER = (0.0, 0.25, 0.5, 0.75, 1.0)
-"""m; or farther off."""
+"""Additional distances that are tried, m."""
 ASIDE = 0.3
-"""m; least gap to the robot and what it holds."""
+"""Least gap to the robot and its held object, m."""
 FROM_THINGS = 0.03
-"""m; least gap to everything else."""
+"""Least gap to everything else, m."""
 
 
 class PersonInWay:
-    """A standing figure that lasers and cameras see, away again at the end."""
+    """A standing figure that lasers and cameras see; it is removed at the end."""
 
     def __init__(self, stage: Stage, fault: Fault) -> None:
         """No parameters."""
@@ -35,7 +35,7 @@ class PersonInWay:
         self._added: str | None = None
 
     def begin(self) -> None:
-        """Step in where the robot drives to; FaultError while there is no room before it."""
+        """Add the figure where the robot drives to; FaultError while there is no room."""
         for farther in FARTHER:
             for turn in TURNS:
                 body = self._figure(turn, DISTANCE + farther)
@@ -45,13 +45,13 @@ class PersonInWay:
         raise FaultError(f"{self._fault.name}: there is no room for a person before the robot")
 
     def end(self) -> None:
-        """Step away."""
+        """Remove the figure."""
         if self._added is not None:
             self._stage.remove(self._added)
             self._added = None
 
     def _figure(self, turn: float, distance: float) -> Body:
-        """A figure that looks at the robot; behind it while it backs off."""
+        """A figure that faces the robot; behind the robot while that backs up."""
         backwards = self._stage.simulator.robot.base.linear < 0.0
         heading = Pose2D(0.0, 0.0, turn + (math.pi if backwards else 0.0))
         away = Pose2D(distance + usual_size("figure")[0] / 2, 0.0, math.pi)

@@ -1,4 +1,4 @@
-"""camera.phantom: the look-alike of the item is seen on the same top, and nothing is there."""
+"""camera.phantom: cameras show a copy of the item on the same top, where there is nothing."""
 
 from __future__ import annotations
 
@@ -18,25 +18,25 @@ from momantu_worlds.scenes.geometry.bodies import Body
 from momantu_worlds.scenes.geometry.support import UprightCylinder
 
 APART = 0.15
-"""m; least distance to the item."""
+"""Least distance to the item, m."""
 ASIDE = 0.03
-"""m; least gap to everything, so that what is seen there is one thing."""
+"""Least gap to everything, m, so that the copy is seen as one object."""
 TRIES = 400
-"""Draws of a place before there is none."""
+"""Draws of a place before the fault fails."""
 
 
 class Phantom:
-    """Shows what has a look and no body; films show it too."""
+    """Shows a visual shape without a collision shape; videos show it too."""
 
     def __init__(self, stage: Stage, fault: Fault) -> None:
-        """Parameters: frames, how many pictures of the place show it."""
+        """Parameters: frames, the number of pictures of the place that show it."""
         cameras(stage, fault)
         self._stage, self._fault, self._frames = stage, fault, frames(fault)
         self._item = stage.item
         self._count: PictureCount | None = None
 
     def begin(self) -> None:
-        """Show it; FaultError while the item stands on no top, or on one without room."""
+        """Show the copy; FaultError if the item stands on no top, or on one without room."""
         top = item_top(self._stage)
         pose = self._place(top)
         parts = tuple(dataclasses.replace(p, collision=False) for p in self._item.parts)
@@ -45,14 +45,14 @@ class Phantom:
         self._count = PictureCount(self._stage, self._frames, lambda: middle, self.end)
 
     def end(self) -> None:
-        """Show it no longer; it goes by itself after its pictures."""
+        """Hide the copy; this happens by itself after the given number of pictures."""
         if self._count is not None:
             self._count.stop()
             self._count = None
             self._stage.remove(self._shown)
 
     def _place(self, top: TableTop) -> Transform:
-        """A seeded free place on the top that is seen from before it, and that a hand gets to."""
+        """A seeded free place on the top, visible from before it and in reach of the hand."""
         item, draw = UprightCylinder(self._item), self._stage.random(self._fault)
         here = top.map_from_top.inverse().apply(self._stage.item_pose().position)
         things = things_on(self._stage, top)

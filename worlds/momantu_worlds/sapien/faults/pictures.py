@@ -1,4 +1,4 @@
-"""Counting the robot's own pictures of a place, for faults that last so many pictures."""
+"""Counting the robot's own pictures of a place, for faults that last a number of pictures."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ MOST_FRAMES = 1000
 
 
 def cameras(stage: Stage, fault: Fault) -> list[Camera]:
-    """The robot's cameras; FaultError when it has none."""
+    """The robot's cameras; FaultError if it has none."""
     found = [s for s in stage.simulator.robot.sensors.values() if isinstance(s, Camera)]
     if not found:
         raise FaultError(f"{fault.name}: the robot has no camera that could see wrongly")
@@ -26,7 +26,7 @@ def cameras(stage: Stage, fault: Fault) -> list[Camera]:
 
 
 def frames(fault: Fault) -> int:
-    """The parameter `frames`, the only one; FaultError when it is wrong."""
+    """The parameter `frames`, the only one; FaultError if it is wrong."""
     only(fault, "frames")
     return whole(fault, "frames", 1, MOST_FRAMES)
 
@@ -41,7 +41,7 @@ class PictureCount:
         stage.simulator.robot.listeners.append(self._take)
 
     def stop(self) -> None:
-        """Count no more."""
+        """Stop counting."""
         self._stage.simulator.robot.listeners.remove(self._take)
 
     def _take(self, reading: SensorReading) -> None:

@@ -10,11 +10,11 @@ from momantu_worlds.sapien.faults.parameters import only
 from momantu_worlds.sapien.faults.stage import Stage
 
 AWAY = 5.0
-"""m; how far beyond everything else it then stands."""
+"""Distance of its new place beyond everything else, m."""
 
 
 class Removed:
-    """It does not come back."""
+    """The item does not come back."""
 
     def __init__(self, stage: Stage, fault: Fault) -> None:
         """No parameters."""
@@ -22,10 +22,10 @@ class Removed:
         self._stage, self._item = stage, stage.goal.item
 
     def begin(self) -> None:
-        """Take it away, out of the hand too."""
+        """Take the item away, even out of the hand."""
         prisms = self._stage.prisms(self._item)
         far = np.concatenate([prism.base.corners() for prism in prisms]).max(axis=0) + AWAY
         self._stage.move_item(Transform((float(far[0]), float(far[1]), 0.0)))
 
     def end(self) -> None:
-        """It is not brought back."""
+        """Nothing is undone: the item stays away."""

@@ -1,4 +1,4 @@
-"""The room that a robot takes up as it stands: one upright prism around each of its links."""
+"""The space that the robot occupies: one upright prism around each of its links."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from momantu_worlds.scenes.geometry.solids import CORNERS
 
 
 class RobotRoom:
-    """Points of each link's collision shapes, taken once."""
+    """Points of each link's collision shapes, computed once."""
 
     def __init__(self, model: RobotModel) -> None:
         self._links = [
@@ -25,7 +25,7 @@ class RobotRoom:
         ]
 
     def prisms(self, base: Pose2D, elsewhere: Pose2D | None = None) -> list[Prism]:
-        """Prisms of now, or as they would be with the base, now at `base`, moved `elsewhere`."""
+        """The prisms now, or with the base, now at `base`, moved to `elsewhere`."""
         target = base if elsewhere is None else elsewhere
         move = target.transform() @ base.transform().inverse()
         return [
@@ -35,7 +35,7 @@ class RobotRoom:
 
 
 def _points(shape: Any) -> Array:
-    """Points (n, 3) in the link's frame whose convex hull holds a collision shape."""
+    """Points (n, 3) in the link's frame with a convex hull around a collision shape."""
     physx = sapien.physx
     if isinstance(shape, physx.PhysxCollisionShapeConvexMesh):
         own = np.asarray(shape.vertices, dtype=np.float64) * np.asarray(shape.scale)

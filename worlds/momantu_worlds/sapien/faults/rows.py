@@ -24,7 +24,7 @@ from momantu_worlds.sapien.faults.tag import covered, wrong_id
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One fault. needs: what of the stage it cannot do without."""
+    """One fault. needs: what it requires of the stage."""
 
     make: Callable[[Stage, Fault], Effect]
     needs: tuple[Callable[[Stage], object], ...] = ()
@@ -65,10 +65,10 @@ def _has(stage: Stage, row: Row) -> bool:
 
 
 def prepare(stage: Stage, fault: Fault) -> Effect:
-    """An effect that is ready to begin.
+    """Prepare an effect that is ready to begin.
 
     Raises:
-        FaultError: no such fault, or not in this episode, or not with these parameters.
+        FaultError: no such fault, not possible in this episode, or wrong parameters.
     """
     if fault.name not in ROWS:
         raise FaultError(f"no world fault {fault.name!r}; there are: {', '.join(ROWS)}")

@@ -22,16 +22,17 @@ if TYPE_CHECKING:
     from momantu_worlds.scenes.referee.referee import Referee
 
 IN_HAND = 0.03
-"""m; nearer to the item than this the point between the pads has the item between the fingers."""
+"""Distance from the centre between the pads to the item, m, below which the item is between the
+fingers."""
 
 LIFTED = 0.01
-"""m; what is held is at least this far above what lies below."""
+"""Least height of a held object above what is below it, m."""
 
 
 class Stage:
-    """Ground truth, and hands to change it.
+    """Ground truth, and the means to change it.
 
-    simulator, episode, description, referee (None where nobody judges): of this run.
+    simulator, episode, description, referee (None in a run without one): of this run.
     """
 
     def __init__(
@@ -48,24 +49,24 @@ class Stage:
         self._room = RobotRoom(simulator.model)
 
     def random(self, fault: Fault) -> np.random.Generator:
-        """Draws for one fault of one run; the same whatever else happened."""
+        """Random numbers for one fault of one run; independent of everything else in the run."""
         return seeded(self._seed, "fault", fault.name)
 
     @property
     def goal(self) -> Goal:
-        """What is to be brought where; FaultError in an episode without a goal."""
+        """The goal: what to bring where; FaultError in an episode without a goal."""
         if self.episode.goal is None:
             raise FaultError(f"the world {self.episode.name!r} has no goal, so no object to break")
         return self.episode.goal
 
     @property
     def item(self) -> Body:
-        """What is brought, as the episode began with it."""
+        """The item, as at the start of the episode."""
         return self.episode.body(self.goal.item)
 
     @property
     def marker(self) -> Body:
-        """The tag beside which it goes; FaultError when the goal has no picture as its marker."""
+        """The tag beside which the item is to be placed; FaultError if the goal has no such tag."""
         if self.goal.marker is None:
             raise FaultError(f"the goal of {self.episode.name!r} names no marker")
         body = self.episode.body(self.goal.marker)
@@ -75,37 +76,37 @@ class Stage:
 
     @property
     def doorways(self) -> tuple[Gap, ...]:
-        """Middles of the doorways; FaultError in a world without any."""
+        """Centres of the doorways; FaultError in a world without any."""
         if not self.episode.doorways:
             raise FaultError(f"the world {self.episode.name!r} has no doorways")
         return tuple(self.episode.doorways.values())
 
     @property
     def bodies(self) -> tuple[Body, ...]:
-        """All bodies that are there now."""
+        """All current bodies."""
         return (*self.episode.bodies, *self.simulator.added)
 
     def base(self) -> Pose2D:
-        """Where the robot stands."""
+        """Pose of the robot."""
         return self.simulator.truth.base()
 
     def item_pose(self) -> Transform:
-        """Where the item is: `map_from_item`."""
+        """Pose of the item: `map_from_item`."""
         return self.simulator.truth.pose(self.goal.item)
 
     def item_prism(self, map_from_item: Transform | None = None) -> Prism:
-        """The room that the item takes up, as it is or elsewhere."""
+        """The space that the item occupies, at its pose or at another one."""
         prism = body_prism(self.item, map_from_item or self.item_pose())
         assert prism is not None  # what is brought can be touched
         return prism
 
     def in_hand(self) -> bool:
-        """Whether the item is between the fingers, gripped or about to be."""
+        """Whether the item is between the fingers, gripped or not yet."""
         hand = self.simulator.truth.link(self.description.end_effector.frame)
         return UprightCylinder(self.item).distance(self.item_pose(), hand) < IN_HAND
 
     def held(self) -> bool:
-        """Whether the item is in the hand, off every surface."""
+        """Whether the item is in the hand, lifted off every surface."""
         if self.episode.goal is None:
             return False
         foot = self.item_prism().foot()
@@ -113,11 +114,11 @@ class Stage:
         return self.in_hand() and height > LIFTED
 
     def robot_prisms(self, map_from_base: Pose2D | None = None) -> list[Prism]:
-        """The room that the robot takes up, as it is or with its base elsewhere."""
+        """The space that the robot occupies, at its pose or with its base at another one."""
         return self._room.prisms(self.base(), map_from_base)
 
     def prisms(self, *without: str, categories: tuple[str, ...] = ()) -> list[Prism]:
-        """The room that bodies take up, those named left out; of some categories, or of all."""
+        """The space that bodies occupy, without those named; of some categories, or of all."""
         pose = self.simulator.truth.pose
         found = (
             body_prism(body, pose(body.name))
@@ -127,16 +128,15 @@ class Stage:
         return [prism for prism in found if prism is not None]
 
     def move_item(self, map_from_item: Transform) -> None:
-        """Take the item elsewhere, at rest; it is not the robot that let go of it."""
+        """Move the item elsewhere, at rest; this does not count as dropped by the robot."""
         self.simulator.put(self.goal.item, map_from_item)
         if self.referee is not None:
             self.referee.relocated(self.goal.item)
 
     def add(self, body: Body) -> str:
-        """Put one more body into the world; the referee watches it when it is loose.
+        """Add a body to the world; the referee watches it if it is loose.
 
-        Returns:
-            Its name, to which a number was added when another body has it.
+        Returns: its name, with a number added if another body has that name.
         """
         names = {other.name for other in self.bodies}
         taken = (f"{body.name}_{number}" for number in count(2))
@@ -148,7 +148,7 @@ class Stage:
         return name
 
     def remove(self, name: str) -> None:
-        """Take an added body away again."""
+        """Remove an added body."""
         self.simulator.remove(name)
         if self.referee is not None:
             self.referee.removed(name)

@@ -17,14 +17,14 @@ from momantu_worlds.scenes.geometry.parts import block
 from momantu_worlds.scenes.geometry.prisms import body_prism
 
 PAPER = 0.0005
-"""m; thickness of the sheet that another tag is printed on."""
+"""Thickness of the sheet with another tag, m."""
 BOOK, BOOK_MASS = 0.02, 0.4
-"""m, kg; thickness and mass of a book that is as large as the marker's picture."""
+"""Thickness and mass of a book as large as the marker's picture, m and kg."""
 BOOK_COLOR = (0.28, 0.18, 0.16)
 
 
 class Overlaid:
-    """Something flat lies on the marker, away again at the end."""
+    """A flat body on the marker, removed at the end."""
 
     def __init__(self, stage: Stage, fault: Fault, cover: Callable[[Transform], Body]) -> None:
         """cover: the body that lies on the marker, from `map_from_marker`."""
@@ -32,7 +32,7 @@ class Overlaid:
         self._added: str | None = None
 
     def begin(self) -> None:
-        """Lay it down; FaultError while something is in the way."""
+        """Add the body; FaultError while something is in the way."""
         stage = self._stage
         body = self._cover(stage.simulator.truth.pose(stage.marker.name))
         prism, top = body_prism(body, body.map_from_body), table_top(stage, stage.goal.support)
@@ -41,7 +41,7 @@ class Overlaid:
         self._added = stage.add(body)
 
     def end(self) -> None:
-        """Take it away."""
+        """Remove the body."""
         if self._added is not None:
             self._stage.remove(self._added)
             self._added = None
@@ -58,7 +58,7 @@ def covered(stage: Stage, fault: Fault) -> Overlaid:
 
 
 def wrong_id(stage: Stage, fault: Fault) -> Overlaid:
-    """Another tag of the family, printed as large on thin paper. Parameters: id, its number."""
+    """Another tag of the family, of the same size, on thin paper. Parameters: id, its number."""
     only(fault, "id")
     number = whole(fault, "id", 0, len(CODES) - 1)
     own, pixels = marker_picture(stage), tag_picture(number)
@@ -69,5 +69,5 @@ def wrong_id(stage: Stage, fault: Fault) -> Overlaid:
 
 
 def marker_picture(stage: Stage) -> Picture:
-    """The picture of the goal's marker; FaultError when it has none."""
+    """The picture of the goal's marker; FaultError if it has none."""
     return next(p.geometry for p in stage.marker.parts if isinstance(p.geometry, Picture))

@@ -1,4 +1,4 @@
-"""Table tops as they are now: what stands on them, and where there is room."""
+"""Table tops in their current state: the objects on them, and free space."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from momantu_worlds.scenes.geometry.prisms import Prism, body_points, prism_arou
 from momantu_worlds.scenes.geometry.support import SupportTop
 
 TABLES = ("table", "desk")
-"""Categories of bodies with a top, surfaces of the site or not."""
+"""Categories of bodies with a top, whether or not they are surfaces of the site."""
 STANDING = 0.03
-"""m; what is no farther than this above or below a top stands on it."""
+"""Largest height difference to a top at which an object stands on it, m."""
 RIM = 0.02
-"""m; what is put on a top keeps this from its edge."""
+"""Least distance of an added body to the edge of a top, m."""
 UPRIGHT = math.cos(0.1)
 
 
@@ -39,19 +39,19 @@ class TableTop:
 
     @property
     def placed(self) -> PlacedTable:
-        """The same as layouts have it."""
+        """The same as a layout's type."""
         height = float(self.map_from_top.position[2])
         return PlacedTable(Pose2D.from_transform(self.map_from_top), height, self.size)
 
     def holds(self, prism: Prism) -> bool:
-        """Whether all of a prism is above the top, RIM inside its edges."""
+        """Whether a whole prism is above the top, RIM inside its edges."""
         corners = np.column_stack([prism.base.corners(), np.zeros(4)])
         own = np.abs(self.map_from_top.inverse().apply(corners)[:, :2])
         return bool(np.all(own <= np.array(self.size) / 2 - RIM))
 
 
 def table_top(stage: Stage, name: str) -> TableTop:
-    """The top of a body, where it truly is."""
+    """The top of a body, at its true pose."""
     top = SupportTop(stage.episode.body(name))
     surface = stage.episode.site.surfaces.get(name)
     side = surface.sides[0] if surface is not None and surface.sides else 0.0
@@ -79,7 +79,7 @@ def item_top(stage: Stage) -> TableTop:
 
 
 def things_on(stage: Stage, top: TableTop, *without: str) -> list[Disc]:
-    """Upright cylinders around the loose things on a top, in its frame; some bodies left out."""
+    """Upright cylinders around the loose objects on a top, in its frame; some bodies left out."""
     discs = []
     for body in stage.bodies:
         points = body_points(body)
@@ -103,7 +103,7 @@ def clear_on(stage: Stage, prism: Prism, top: TableTop, least: float, *without: 
 
 
 def _reach(body: Body, top_from_body: Transform, most: float) -> float:
-    """Radius of the disc around a body: of its cylinder when it is one that stands, else `most`."""
+    """Radius of the disc around a body: of its cylinder if it stands upright, else `most`."""
     colliding = [part.geometry for part in body.parts if part.collision]
     upright = float(top_from_body.rotation[2, 2]) > UPRIGHT
     if upright and len(colliding) == 1 and isinstance(colliding[0], Cylinder):

@@ -34,8 +34,8 @@ from momantu_worlds.sapien.sensors.wrench import Wrench
 class SensorBuilder:
     """Makes the sensors of one robot in one scene.
 
-    still: triangles (k, 3, 3) of all that never moves, in the map. moving: the loose bodies, a list
-    that grows and shrinks. peek: the newest reading of another sensor.
+    still: triangles (k, 3, 3) of all static bodies, in the map. moving: the current list of loose
+    bodies, which may change. peek: the newest reading of another sensor.
     """
 
     scene: Any
@@ -48,7 +48,7 @@ class SensorBuilder:
     peek: Callable[[str], SensorReading]
 
     def build(self, *, render: bool) -> dict[str, Readable]:
-        """All of them by name; without `render` there are no cameras."""
+        """All sensors by name; without `render` there are no cameras."""
         return {
             name: self._sensor(name, spec)
             for name, spec in self.description.sensors.items()

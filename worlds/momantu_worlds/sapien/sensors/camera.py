@@ -18,7 +18,7 @@ from momantu_worlds.sapien.poses import pose_of, transform_of
 from momantu_worlds.sapien.sensors.culling import Culling
 
 NEAR, FAR = 0.05, 30.0
-"""m; what the renderer draws. Colour reaches farther than depth."""
+"""Range of the renderer, m. Colour is rendered farther than depth is measured."""
 OPTICAL_FROM_SAPIEN = Transform.from_rotation(
     np.array([[0.0, -1.0, 0.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]])
 )
@@ -26,7 +26,7 @@ OPTICAL_FROM_SAPIEN = Transform.from_rotation(
 
 
 class Camera:
-    """Takes a picture from where the link really is, plus a constant mounting error.
+    """Takes pictures from the link's true pose, plus a constant mounting error.
 
     hidden: render components that it does not see.
     """
@@ -51,7 +51,7 @@ class Camera:
         scene.add_entity(self._entity)
 
     def read(self, stamp: float) -> CameraImage:
-        """A picture of now; runs the renderer."""
+        """Take a picture now; runs the renderer."""
         truth = transform_of(self._link.entity_pose) @ self.link_from_camera
         self._entity.set_pose(pose_of(truth @ OPTICAL_FROM_SAPIEN))
         unseen = [*self.culling.outside(truth), *self.hidden]
@@ -73,14 +73,14 @@ class Camera:
         )
 
     def exact_depth(self) -> NDArray[np.float32]:
-        """Depth (h, w) of the last picture without errors, m; 0 where there is nothing."""
+        """Depth (h, w) of the last picture without errors, m; 0 where there is no surface."""
         return np.asarray(-self._camera.get_picture("Position")[..., 2], dtype=np.float32)
 
 
 def noisy_color(
     color: NDArray[Any], random: np.random.Generator, errors: CameraErrors
 ) -> NDArray[np.uint8]:
-    """Colour (h, w, 3) uint8 with even noise of the configured sigma added, grey levels."""
+    """Colour (h, w, 3) uint8 with uniform noise of the configured sigma, grey levels."""
     span = round(errors.color_noise * math.sqrt(3.0))
     levels = (np.arange(256) % (2 * span + 1) - span).astype(np.int16)
     noise = levels[np.frombuffer(random.bytes(color.size), dtype=np.uint8)]
@@ -91,10 +91,10 @@ def noisy_color(
 def noisy_depth(
     depth: NDArray[Any], random: np.random.Generator, sensor: CameraSensor, errors: CameraErrors
 ) -> NDArray[np.float32]:
-    """Depth (h, w) float32 as a structured-light camera gives it.
+    """Depth (h, w) float32 with the errors of a structured-light camera.
 
-    Noise grows with the square of the distance; pixels at depth edges, out of range and a few at
-    random are 0.
+    Noise grows with the square of the distance. Pixels at depth edges, out of range, and some
+    random ones are 0.
     """
     z = np.asarray(depth, dtype=np.float32)
     noise = random.standard_normal(z.shape, dtype=np.float32)

@@ -1,4 +1,4 @@
-"""A free camera for films: it belongs to no robot and makes no errors."""
+"""A free camera for videos: it is not part of a robot and has no errors."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from momantu_worlds.sapien.sensors.camera import FAR, NEAR
 
 
 class ViewCamera:
-    """Takes pictures of a scene from anywhere."""
+    """Takes pictures of a scene from any pose."""
 
     def __init__(
         self, scene: Any, width: int, height: int, horizontal_fov: float, *, far: float = FAR
     ) -> None:
-        """width, height in px; horizontal_fov in rad; far: m, beyond which nothing is seen."""
+        """width, height in px; horizontal_fov in rad; far: largest rendered distance, m."""
         self._scene = scene
         self._camera = sapien.render.RenderCameraComponent(width, height)
         self._camera.set_fovx(horizontal_fov, True)
@@ -36,5 +36,5 @@ class ViewCamera:
         return np.asarray(self._camera.get_picture("Color")[..., :3])
 
     def met(self) -> NDArray[np.bool_]:
-        """Where (h, w) the picture taken last shows something, and not what lies beyond all."""
+        """Pixels (h, w) of the last picture that show a body, not the background."""
         return np.asarray(self._camera.get_picture("Position")[..., 2] < 0.0)

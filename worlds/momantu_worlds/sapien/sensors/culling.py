@@ -1,4 +1,4 @@
-"""Leaving out of a picture what is outside its view; the picture stays the same."""
+"""Skipping shapes outside a camera's view, without a change of the picture."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from momantu_worlds.sapien.poses import transform_of
 
 
 class Culling:
-    """Bounding spheres of a robot's links against the four sides of a camera's view.
+    """Bounding spheres of a robot's links, tested against the four sides of a camera's view.
 
-    A robot's meshes are most of a scene's triangles, and its own head camera sees few of them.
+    Most triangles of a scene are the robot's, and its own head camera sees few of them.
     """
 
     def __init__(self, links: list[Any], sensor: CameraSensor) -> None:
@@ -34,7 +34,7 @@ class Culling:
         self._lower = np.array([-math.cos(tall), math.sin(tall)])
 
     def outside(self, map_from_optical: Transform) -> list[Any]:
-        """Render components that the camera cannot see from there."""
+        """Render components that the camera cannot see from this pose."""
         if not self._bodies:
             return []
         centers = np.array(
@@ -52,7 +52,7 @@ class Culling:
 
 
 def _sphere(body: Any) -> tuple[Array, float]:
-    """Center (3,) in the entity's frame and radius of a sphere around everything drawn, m."""
+    """Centre (3,) in the entity's frame and radius of a sphere around all visual shapes, m."""
     points = np.concatenate(
         [vertices for shape in body.render_shapes for vertices in drawn_vertices(shape)]
     )

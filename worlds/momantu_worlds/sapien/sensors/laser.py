@@ -1,6 +1,6 @@
 """Planar laser scans: from rays, or from the points of a lidar.
 
-Rays meet the still world, and a cut through whatever moves at their height.
+Rays are cast at the static bodies, and at a horizontal cut through each moving body.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from momantu_worlds.sapien.sensors.rays import Triangles
 
 
 class Laser:
-    """A planar scanner that looks through its own robot's cover.
+    """A planar scanner; its rays pass through the robot's own body.
 
-    still: all that never moves, in the map.
+    still: all static bodies, in the map.
     """
 
     def __init__(
@@ -43,7 +43,7 @@ class Laser:
         self._beams = np.stack([np.cos(angles), np.sin(angles), np.zeros_like(angles)], axis=1)
 
     def read(self, stamp: float) -> LaserScan:
-        """A scan of now."""
+        """Take a scan now."""
         sensor, errors = self._sensor, self._errors
         ranges = self.exact()
         random = seeded(self._seed, self._name, stamp)
@@ -97,10 +97,10 @@ def _to_segments(origin: Array, directions: Array, segments: Array) -> Array:
 
 
 class BandLaser:
-    """Takes the points within a band of heights above the floor.
+    """Uses the points within a band of heights above the floor.
 
-    cloud: gives the lidar's points of now. base_from_lidar, base_from_laser: as described, for
-    this is what a robot's driver computes, not what is true.
+    cloud: returns the lidar's current points. base_from_lidar, base_from_laser: from the
+    description, not the true ones, as in a robot's driver.
     """
 
     def __init__(
@@ -116,11 +116,11 @@ class BandLaser:
         self._laser_from_base = base_from_laser.inverse()
 
     def read(self, stamp: float) -> LaserScan:
-        """A scan of now."""
+        """Take a scan now."""
         return scan_of(self._sensor, stamp, self._nearest(self._cloud().points))
 
     def _nearest(self, points: NDArray[np.float32]) -> Array:
-        """Distance (beams,) to the nearest point of each sector, m; range_max where none is."""
+        """Distance (beams,) to the nearest point of each sector, m; range_max if there is none."""
         sensor = self._sensor
         in_base = self._base_from_lidar.apply(points)
         low, high = self._band

@@ -1,4 +1,4 @@
-"""A lidar of several rings: rays against the still world, what moves, and the robot itself."""
+"""A lidar of several rings: rays at static bodies, moving bodies, and the robot itself."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from momantu_worlds.sapien.sensors.own_body import OwnBody
 from momantu_worlds.sapien.sensors.rays import Triangles
 
 MOVED = 1e-4
-"""m or quaternion units; links that moved less still hide the same rays."""
+"""Motion of a link, m or quaternion units, below which it hides the same rays as before."""
 
 
 class Lidar:
-    """A scanner whose whole turn is taken at once.
+    """A scanner that takes a full turn at one instant.
 
-    still: triangles (k, 3, 3) of all that never moves, in the map. Rays that the robot's own body
-    stops give nothing, as if a driver had filtered them out.
+    still: triangles (k, 3, 3) of all static bodies, in the map. Rays that hit the robot's own body
+    return nothing, as if a driver had filtered them.
     """
 
     def __init__(
@@ -47,7 +47,7 @@ class Lidar:
         self._hidden = np.full(len(self._beams), np.inf)
 
     def read(self, stamp: float) -> PointCloud:
-        """The points of now."""
+        """Take the points now."""
         sensor, errors = self._sensor, self._errors
         random = seeded(self._seed, self._name, stamp)
         ranges = self.exact()
@@ -58,7 +58,7 @@ class Lidar:
         return PointCloud(stamp, sensor.frame, frozen(points))
 
     def exact(self) -> Array:
-        """Distances (columns x rings,) without errors, m; infinite where nothing comes back."""
+        """Distances (columns x rings,) without errors, m; infinite without a return."""
         pose = self._map_from_lidar()
         directions = self._beams @ pose.rotation.T
         ranges = self._still.distances(pose.position, directions)
@@ -71,7 +71,7 @@ class Lidar:
         return ranges
 
     def _in_the_way(self, origin: Array, directions: Array) -> tuple[Array, Array]:
-        """Triangles (k, 3, 3) of bodies that move and rays can meet, and which rays (n,) bool."""
+        """Triangles (k, 3, 3) of moving bodies that rays can hit, and which rays (n,) bool."""
         steepest = math.sin(max(abs(each) for each in self._sensor.elevations))
         triangles, towards = [], np.zeros(len(directions), dtype=bool)
         for body in self._moving:
@@ -91,7 +91,7 @@ class Lidar:
         return (np.concatenate(triangles) if triangles else np.zeros((0, 3, 3))), towards
 
     def _own_ranges(self, pose: Transform) -> Array:
-        """How far each beam gets before it meets the robot, m; measured anew when joints move."""
+        """Distance of each beam to the robot's own body, m; computed again when joints move."""
         posture = self._own.poses(pose)
         if self._posture is None or bool(np.any(np.abs(posture - self._posture) > MOVED)):
             self._posture = posture
@@ -102,7 +102,7 @@ class Lidar:
 
 
 def _to_floor(origin: Array, directions: Array) -> Array:
-    """Distance (n,) to the plane z = 0, m; infinite for rays that do not go down."""
+    """Distance (n,) to the plane z = 0, m; infinite for rays that do not point down."""
     down = -directions[:, 2]
     with np.errstate(divide="ignore"):
         return np.where(down > 0.0, origin[2] / np.maximum(down, 0.0), np.inf)

@@ -1,4 +1,4 @@
-"""A robot's own links as its sensors meet them."""
+"""The robot's own links, as its sensors see them."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ ALONG_X = Transform((0, 0, 0), quaternion_from_axis_angle((0, 1, 0), np.pi / 2))
 
 
 class OwnBody:
-    """What collides of a robot, as triangles in the frame of one of its links."""
+    """The collision shapes of a robot, as triangles in the frame of one of its links."""
 
     def __init__(self, links: Iterable[Any]) -> None:
         meshes = [(link, _mesh(link)) for link in links]
         self._links = [(link, mesh.triangles) for link, mesh in meshes if mesh is not None]
 
     def poses(self, map_from_frame: Transform) -> Array:
-        """Where every link is, seen from a frame: (n, 7) positions and quaternions."""
+        """Poses of all links relative to a frame: (n, 7) positions and quaternions."""
         frame_from_map = map_from_frame.inverse()
         seen = [frame_from_map @ transform_of(link.entity_pose) for link, _ in self._links]
         return np.array([[*pose.position, *pose.quaternion] for pose in seen]).reshape(-1, 7)
 
     def triangles(self, poses: Array) -> Array:
-        """All triangles (k, 3, 3) with the links at such poses, in the frame they are seen from."""
+        """All triangles (k, 3, 3) with the links at these poses, in the same frame."""
         placed = [
             Transform(pose[:3], pose[3:]).apply(triangles)
             for pose, (_, triangles) in zip(poses, self._links, strict=True)
@@ -47,7 +47,7 @@ def housing(link: Any) -> Any:
 
 
 def _mesh(link: Any) -> Any:
-    """All that collides of a link in the link's frame, a trimesh.Trimesh; None without any."""
+    """All collision shapes of a link in the link's frame, a trimesh.Trimesh; None without any."""
     parts = []
     for shape in link.collision_shapes:
         mesh = _shape_mesh(shape)

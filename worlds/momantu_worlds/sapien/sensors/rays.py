@@ -9,18 +9,18 @@ from embreex.mesh_construction import TriangleMesh
 from momantu_bt.geometry import Array
 
 NOTHING = 1e6
-"""m; beyond it a ray has met nothing."""
+"""Distance above which a ray has hit nothing, m."""
 
 
 class Triangles:
-    """Something that rays meet. triangles: (k, 3, 3) in one frame, m."""
+    """Targets of rays. triangles: (k, 3, 3) in one frame, m."""
 
     def __init__(self, triangles: Array) -> None:
         self._scene = rtcore_scene.EmbreeScene()
         self._mesh = TriangleMesh(self._scene, triangles.astype(np.float32))
 
     def distances(self, origin: Array, directions: Array) -> Array:
-        """Along unit rays (n, 3) from one point, m; infinite where nothing is met."""
+        """Distances along unit rays (n, 3) from one point, m; infinite if nothing is hit."""
         origins = np.repeat(origin[None], len(directions), axis=0)
         hit = self._scene.run(
             origins.astype(np.float32), directions.astype(np.float32), query="DISTANCE"

@@ -1,4 +1,4 @@
-"""Force and torque at the wrist, as a sensor between arm and hand feels them."""
+"""Force and torque at the wrist, as a sensor between arm and hand measures them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from momantu_worlds.sapien.config import WrenchErrors
 
 
 class Wrench:
-    """What the load of the hand puts on the wrist; the hand's own weight is compensated."""
+    """The load of the hand on the wrist; the hand's own weight is compensated."""
 
     def __init__(
         self,
@@ -35,7 +35,7 @@ class Wrench:
         self._torque_bias = errors.torque_bias * random.standard_normal(3)
 
     def read(self, stamp: float) -> WrenchReading:
-        """The wrench of now, in the sensor's frame."""
+        """Read the wrench now, in the sensor's frame."""
         force, torque = self.exact()
         random, errors = seeded(self._seed, self._name, stamp), self._errors
         force = force + self._force_bias + errors.force_noise * random.standard_normal(3)
@@ -50,15 +50,15 @@ class Wrench:
         self._count = 0
 
     def collect(self) -> None:
-        """Take in the physics step just made."""
+        """Add the last physics step."""
         self._sum += self._articulation.get_link_incoming_joint_forces()[self._index]
         self._count += 1
 
     def exact(self) -> tuple[Array, Array]:
         """Force (3,) N and torque (3,) Nm without errors, averaged over the last tick.
 
-        The average matters: a grasp's contact solver alternates by a newton from step to step.
-        The joint carries the hand, so what the load puts on it is the reaction's opposite.
+        The average is necessary: the contact solver of a grasp alternates by 1 N from step to step.
+        The joint carries the hand, so the load on it is the negative of the reaction.
         """
         mean = -self._sum / max(self._count, 1)
         return self._link_from_joint @ mean[:3], self._link_from_joint @ mean[3:]

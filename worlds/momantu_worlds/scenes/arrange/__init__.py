@@ -1,1 +1,1 @@
-"""One episode from a world file and a seed: positions first, then bodies."""
+"""Draw one episode from a world file and a seed: poses first, then bodies."""

@@ -1,4 +1,4 @@
-"""Bodies of an episode, made from its layout."""
+"""Build the bodies of an episode from its layout."""
 
 from __future__ import annotations
 
@@ -34,11 +34,11 @@ from momantu_worlds.scenes.geometry.bodies import (
 from momantu_worlds.scenes.geometry.parts import Size3, block
 
 TAG_LIFT = 0.0005
-"""m; thickness of the paper, so that it is drawn above its carrier."""
+"""Thickness of the paper, m, so that it is rendered above its support."""
 SLAB = 0.1
 """m; thickness of the floor."""
 X_TO_Z = Transform.from_rpy((0.0, 0.0, 0.0), (math.pi / 2, 0.0, math.pi / 2))
-"""Rotation of a hung tag: its normal (z) points along x."""
+"""Rotation of a tag on a wall: its normal (z) points along x."""
 
 
 def build(world: WorldFile, layout: Layout, site: Site) -> Episode:
@@ -64,7 +64,7 @@ def build(world: WorldFile, layout: Layout, site: Site) -> Episode:
 
 
 def bodies(world: WorldFile, layout: Layout) -> Iterator[Body]:
-    """Every body: floor, walls, tables, furniture, given bodies, objects, tags, loose things."""
+    """Every body: floor, walls, tables, furniture, given bodies, objects, tags, distractors."""
     yield floor_body(world)
     yield from wall_bodies(world)
     yield from table_bodies(world, layout)
@@ -84,7 +84,7 @@ def bodies(world: WorldFile, layout: Layout) -> Iterator[Body]:
 
 
 def floor_body(world: WorldFile) -> Body:
-    """The visible slab whose top is z = 0; contacts are with the simulator's own plane."""
+    """The visible floor with its top at z = 0; contacts are with the simulator's own plane."""
     center, size = floor_extent(world)
     slab = Box((*size, SLAB))
     part = Part(slab, Transform((0, 0, -SLAB / 2)), world.floor.color, collision=False)
@@ -104,7 +104,7 @@ def wall_bodies(world: WorldFile) -> Iterator[Body]:
 
 
 def table_bodies(world: WorldFile, layout: Layout) -> Iterator[Body]:
-    """Tables at the heights they have in this episode, and boards that are surfaces."""
+    """Tables with their heights in this episode, and boards that are surfaces."""
     for name, table in world.tables.items():
         placed = layout.tables[name]
         if table.board_of is not None and table.board is not None:
@@ -128,7 +128,7 @@ def table_parts(world: WorldFile, table: Table, size: Size3) -> tuple[Part, ...]
 
 
 def piece_parts(world: WorldFile, piece: Piece, without: Collection[int] = ()) -> tuple[Part, ...]:
-    """The parts of a piece of furniture, in its own frame. without: boards, counted from 1."""
+    """The parts of a piece of furniture, in its frame. without: boards to omit, from 1."""
     if piece.mesh is not None:
         file = world.beside(piece.mesh.file)
         return mesh_parts(piece.mesh, file, standing=True, color=piece.color)
@@ -155,7 +155,7 @@ def tag_pose(tag: PlacedTag, layout: Layout) -> Transform:
 
 
 def goal_of(goal: GoalDemand) -> Goal:
-    """The referee's demands."""
+    """The referee's criteria."""
     return Goal(
         item=goal.item,
         support=goal.on,

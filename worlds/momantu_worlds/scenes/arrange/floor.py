@@ -1,8 +1,8 @@
 """Arranging the floor of an episode: tables, furniture, the robot's start.
 
-Every choice is drawn from the seed and kept only when the robot can still do its work: doorways
-and the tables' preferred sides stay free, and a disc of the world's `passage` radius still gets
-from the start to both tables and through every doorway.
+Every pose is drawn from the seed and kept only if the robot can still do its task: doorways and the
+tables' preferred sides stay free, and a disc of the world's `passage` radius can still move from
+the start to both tables and through every doorway.
 """
 
 from __future__ import annotations
@@ -24,19 +24,20 @@ from momantu_worlds.scenes.file.world import WorldFile
 from momantu_worlds.scenes.geometry.plane import Rectangle, clear_of, passages
 
 TRIES = 60
-"""Draws for one piece before it is left out (an extra) or stays where the map shows it."""
+"""Draws for one piece before it is left out (an extra) or stays at its place on the map."""
 MOVED_GAP = 0.03
-"""m; least distance of a moved piece from everything else."""
+"""Least distance of a moved piece from everything else, m."""
 EXTRA_GAP = 0.15
-"""m; least distance of an extra piece from everything else."""
+"""Least distance of an extra piece from everything else, m."""
 STAND_OFF = 0.55
-"""m; from a table's edge to where a robot stands that reaches onto it."""
+"""Distance from a table's edge to the base of a robot that reaches onto it, m."""
 WIDE = 0.4
-"""m; for discs from this radius on, which need wide doors, a coarse grid is enough."""
+"""Disc radius above which a coarse grid is enough, m, as such discs need wide doors."""
 COARSE, FINE = 0.1, 0.05
-"""m; cell sizes of the grid of passages. A narrow door leaves a few cm for a disc's centre."""
+"""Cell sizes of the grid of passages, m. In a narrow door a disc's centre has a range of a few
+cm."""
 SIDEWAYS = 0.3
-"""m; how much wider than the table's side the zone before it is kept free, on either hand."""
+"""Extra width of the zone before a table that is kept free, m, on either side."""
 UNVARIED = Unknown()
 """Default without a section `unknown`: nothing is moved or added."""
 
@@ -75,7 +76,7 @@ def _shifted(draw: np.random.Generator, pose: Pose2D, shift: float, turn: float)
 
 
 def place_start(world: WorldFile, seed: int) -> tuple[Pose2D, Pose2D]:
-    """Draw the true start pose, and the one that the robot is told."""
+    """Draw the true start pose, and the start pose that the robot is given."""
     draw = seeded(seed, "start")
     nominal = Pose2D(*world.start.at)
     fixed = [*fixed_rectangles(world)]
@@ -110,10 +111,10 @@ def place_furniture(
     shelves: Mapping[str, PlacedPiece],
     start: Pose2D,
 ) -> tuple[PlacedPiece, ...]:
-    """Known furniture, some of it moved, and extra pieces. shelves: those that stand already.
+    """Known furniture, some of it moved, and extra pieces. shelves: those that are placed already.
 
     Raises:
-        WorldError: even with nothing moved and nothing extra the robot could not do its work.
+        WorldError: the robot could not do its task even if nothing was moved or added.
     """
     known = {name: PlacedPiece(name, p, p.pose, True) for name, p in world.furniture.items()}
     known |= shelves
@@ -136,7 +137,7 @@ def place_furniture(
 
 
 def _own_shifts(world: WorldFile, seed: int) -> Iterator[Iterator[PlacedPiece]]:
-    """Pieces that every episode shifts."""
+    """Random shifts of the pieces that shift in every episode."""
     shelves = carriers(world)
     for name, piece in world.furniture.items():
         if (piece.shift or piece.turn) and name not in shelves:
@@ -157,7 +158,7 @@ def _moves(world: WorldFile, seed: int) -> Iterator[Iterator[PlacedPiece]]:
 def _elsewhere(
     name: str, piece: Piece, draw: np.random.Generator, shift: float, turn: float
 ) -> Iterator[PlacedPiece]:
-    """Draws of where a piece may stand."""
+    """Draw poses where a piece may stand."""
     for _ in range(TRIES):
         yield PlacedPiece(name, piece, _shifted(draw, piece.pose, shift, turn), True)
 
@@ -181,7 +182,7 @@ def _anywhere(unknown: Unknown, seed: int, number: int) -> Iterator[PlacedPiece]
 
 
 class _Room:
-    """The floor that pieces must leave free: doorways, the start, before tables, passages."""
+    """The floor that furniture must leave free: doorways, the start, before tables, passages."""
 
     def __init__(
         self,
@@ -202,7 +203,7 @@ class _Room:
         self._stops += [(at.x, at.y) for at in map(stand_pose, tables.values())]
 
     def footprint(self, placed: PlacedPiece) -> Rectangle:
-        """The floor that a piece takes up."""
+        """The floor area under a piece."""
         return footprint(self._world, placed.piece, placed.pose)
 
     def fits(self, placed: PlacedPiece, others: list[Rectangle]) -> bool:
@@ -218,7 +219,7 @@ class _Room:
         )
 
     def passable(self, pieces: Iterable[PlacedPiece]) -> bool:
-        """Whether a disc still gets from the start everywhere."""
+        """Whether a disc can still move from the start to all targets."""
         obstacles = [*self._standing, *map(self.footprint, pieces), *self._tops]
         cell = COARSE if self.unknown.passage >= WIDE else FINE
         center, size = self._floor
@@ -226,7 +227,7 @@ class _Room:
 
 
 def around(pose: Pose2D, radius: float) -> Rectangle:
-    """A square around a pose, of half edge `radius` m."""
+    """A square around a pose, with half edge `radius` m."""
     return Rectangle(pose, (2 * radius, 2 * radius))
 
 
@@ -241,7 +242,7 @@ def side_pose(placed: PlacedTable, side: int, away: float) -> Pose2D:
 
 
 def stand_pose(placed: PlacedTable) -> Pose2D:
-    """Where a robot stands before the middle of the preferred side."""
+    """Pose of a robot before the middle of the preferred side."""
     return side_pose(placed, 0, STAND_OFF)
 
 

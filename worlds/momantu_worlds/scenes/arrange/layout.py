@@ -1,4 +1,4 @@
-"""The layout of one episode: where everything stands, before bodies are made of it."""
+"""The layout of one episode: all poses, before bodies are made of it."""
 
 from __future__ import annotations
 
@@ -13,12 +13,13 @@ from momantu_worlds.scenes.file.objects import TagNote
 from momantu_worlds.scenes.geometry.bodies import Color, PointLight, SunLight
 
 FRICTION = 0.6
-"""Friction of painted wood and of most things on it; tables of physics give 0.4 to 0.8."""
+"""Friction coefficient of painted wood and of most objects on it; tables of values give 0.4 to
+0.8."""
 
 
 @dataclass(frozen=True, slots=True)
 class PlacedTable:
-    """A surface as it truly is: on the floor plan, with the height and extent of its top, m.
+    """A surface at its true pose on the floor plan, with the height and extent of its top, m.
 
     sides: directions in its own frame to stand at, preferred first. above: free height over it, m.
     """
@@ -37,7 +38,7 @@ class PlacedTable:
 
 @dataclass(frozen=True, slots=True)
 class PlacedThing:
-    """A loose thing upright on a table; `at` is in the table's own frame."""
+    """A distractor upright on a table; `at` is in the table's frame."""
 
     name: str
     thing: Thing
@@ -48,7 +49,7 @@ class PlacedThing:
 
 @dataclass(frozen=True, slots=True)
 class PlacedTag:
-    """A tag: lying at `at` in the frame of a table, or hung in the map."""
+    """A tag: flat at `at` in the frame of a table, or upright in the map."""
 
     name: str
     note: TagNote
@@ -58,7 +59,7 @@ class PlacedTag:
 
 @dataclass(frozen=True, slots=True)
 class PlacedPiece:
-    """A piece of furniture as it truly stands; known: it is somewhere on the map."""
+    """A piece of furniture at its true pose; known: it is on the map, maybe at another pose."""
 
     name: str
     piece: Piece
@@ -79,8 +80,8 @@ class Lighting:
 class Layout:
     """One episode's arrangement.
 
-    tables: every surface by name. objects: what the file names; things: what else is loose.
-    start: where the base truly stands. believed_start: what the robot is told.
+    tables: every surface by name. objects: those named in the file; things: all other loose
+    objects. start: the base's true pose. believed_start: the start pose that the robot is given.
     """
 
     seed: int

@@ -22,20 +22,20 @@ with lazily():
 MOST_BYTES = 100_000_000
 MOST_TRIANGLES = 1_000_000
 MOST_PIECES = 200
-"""Parts of one file that are convex pieces of their own; more are one piece."""
+"""Most convex pieces from one file; with more parts the whole file becomes one piece."""
 HULL_POINTS = 60
-"""Of a convex piece; few, so that contacts are found quickly."""
+"""Most points of a convex piece; few, so that collision detection is fast."""
 CACHED = 256
-"""Meshes in memory: a world asks for each several times in one episode."""
+"""Number of meshes in the memory cache: a world uses each several times in one episode."""
 FLAT = 1e-4
-"""m; a piece thinner than this is thickened to it, for a convex body has a volume."""
+"""Least thickness of a piece, m; a thinner one is thickened, as a convex body needs a volume."""
 Z_FROM_Y = np.array([(1.0, 0.0, 0.0), (0.0, 0.0, -1.0), (0.0, 1.0, 0.0)])
 """Rotation from a mesh with y up to z up."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MeshPiece:
-    """One part of a mesh file in its own colours; texture: (h, w, 3) uint8 with uv (n, 2)."""
+    """One part of a mesh file with its own colour; texture: (h, w, 3) uint8 with uv (n, 2)."""
 
     vertices: Array
     triangles: NDArray[np.int32]
@@ -47,7 +47,10 @@ class MeshPiece:
 def mesh_parts(
     use: MeshUse, file: Path, *, standing: bool, color: Color | None
 ) -> tuple[Part, ...]:
-    """The parts that a mesh stands for.
+    """The parts that a mesh is made of.
+
+    standing: move it so that it stands on z = 0 with its centre above the origin, like furniture.
+    color: replaces its own colour.
 
     standing: it is moved so that it stands on z = 0 with its middle above the origin, as furniture
     does. color: instead of its own.
@@ -59,13 +62,13 @@ def mesh_parts(
 
 
 def mesh_size(use: MeshUse, file: Path) -> tuple[float, float, float]:
-    """Its extents as it is used, m; raises as `mesh_parts`."""
+    """Extents of the mesh as used, m; raises as `mesh_parts`."""
     return use.size if use.size is not None else _size(use, _state(file))
 
 
 @dataclass(frozen=True, slots=True)
 class _State:
-    """The key of a mesh file in the cache: an edited file is another key."""
+    """Cache key of a mesh file; it changes when the file is edited."""
 
     file: Path
     changed: int
@@ -102,7 +105,7 @@ def _touched(how: str, points: list[Array]) -> list[Part]:
 
 
 def hull_points(points: Array) -> Array:
-    """At most HULL_POINTS (n, 3) whose convex hull is nearly that of the points; never flat."""
+    """At most HULL_POINTS (n, 3) with nearly the same convex hull as the points; never flat."""
     low, high = points.min(axis=0), points.max(axis=0)
     thin = high - low < FLAT
     if thin.any():
@@ -126,7 +129,7 @@ def _spread(count: int) -> Array:
 
 
 def _placed(use: MeshUse, state: _State, standing: bool) -> list[tuple[MeshPiece, Array]]:
-    """Each piece, and its vertices as the world has them, m."""
+    """Each piece, and its vertices in the world, m."""
     pieces = _read(state)
     turn = Z_FROM_Y if use.up == "y" else np.eye(3)
     turned = [use.scale * (piece.vertices @ turn.T) for piece in pieces]
@@ -188,7 +191,7 @@ def _pieces(scene: Any) -> list[MeshPiece]:
 
 
 def _look(mesh: Any) -> tuple[Color, Array | None, NDArray[np.uint8] | None]:
-    """Colour, and texture coordinates with their picture where there is one."""
+    """Colour, and texture coordinates with their image if there is one."""
     visual = mesh.visual
     uv = getattr(visual, "uv", None)
     material = getattr(visual, "material", None)

@@ -21,15 +21,15 @@ from momantu_worlds.scenes.geometry.prisms import tightest_prism
 from momantu_worlds.scenes.geometry.solids import outline
 
 DOORSTEP = 0.03
-"""m; a robot drives over what is lower."""
+"""Height below which a robot drives over a part, m."""
 HEADROOM = 1.8
-"""m; a robot drives under what is higher."""
+"""Height above which a robot drives under a part, m."""
 SLAB_MARGIN = 2.0
-"""m; of floor around everything, where the file does not say how large it is."""
+"""Margin of floor around everything, m, if the file does not give the floor's size."""
 
 
 def footprint(world: WorldFile, piece: Piece, pose: Pose2D) -> Rectangle:
-    """The floor that a piece takes up."""
+    """The floor area under a piece."""
     return Rectangle(pose, piece_size(world, piece)[:2])
 
 
@@ -46,14 +46,14 @@ def fixed_rectangles(world: WorldFile) -> list[Rectangle]:
 
 
 def wall_rectangles(world: WorldFile) -> list[Rectangle]:
-    """The floor that walls and closed doors take up."""
+    """The floor area under walls and closed doors."""
     return [run.base for run in world.wall_runs if run.bottom <= 0.0] + [
         Rectangle(pose, (door.width, LEAF)) for _, door, pose in world.door_leaves
     ]
 
 
 def body_columns(world: WorldFile) -> Iterator[tuple[Rectangle, float, float]]:
-    """The floor below each part of the bodies that stand still, and its heights, m.
+    """The floor area under each part of the static bodies, and its heights, m.
 
     Parts that a robot can drive over or under are left out.
     """
@@ -67,7 +67,7 @@ def body_columns(world: WorldFile) -> Iterator[tuple[Rectangle, float, float]]:
 
 
 def floor_extent(world: WorldFile) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Centre and size of the floor, m: as given, or around everything that stands on it.
+    """Centre and size of the floor, m: as given, or around all bodies.
 
     Raises:
         WorldError: it would be wider than MOST_FLOOR.

@@ -1,4 +1,4 @@
-"""Upright cylinders on a top: paths for a hand, lines of sight, free spots."""
+"""Upright cylinders on a top: free paths for the hand, lines of sight, free spots."""
 
 from __future__ import annotations
 
@@ -14,26 +14,27 @@ from momantu_worlds.scenes.arrange.floor import STAND_OFF
 from momantu_worlds.scenes.arrange.layout import PlacedTable
 
 LANE = 0.07
-"""m; half the width of a hand's lane to the item: half of Fetch's open gripper and a margin."""
+"""Half the width of the hand's free path to the item, m: half of Fetch's open gripper and a
+margin."""
 LANE_LENGTH = 0.35
-"""m; length of that lane; farther away the hand is above other objects."""
+"""Length of that path, m; farther away the hand is above other objects."""
 LANE_SPREAD = math.radians(60)
-"""rad; largest angle of a lane from straight ahead."""
+"""Largest angle of that path to straight ahead, rad."""
 EYE = 1.1
-"""m; height of a camera above the floor."""
+"""Height of the assumed camera above the floor, m."""
 EYE_OFFSETS = (0.0, -0.3, 0.3)
-"""m; along the table's edge: places from which the robot would look."""
+"""Offsets of the assumed viewpoints along the table's edge, m."""
 SPOT_GAP = 0.08
-"""m; around a free spot for the item, so that fingers can open."""
+"""Free distance around a spot for the item, m, so that the fingers can open."""
 SPOT_REACH = 0.5
-"""m; farthest distance of a free spot from the preferred edge."""
+"""Largest distance of a free spot from the preferred edge, m."""
 SPOT_MARGIN = 0.08
-"""m; by which a free spot is nearer to the tag than the goal demands."""
+"""A free spot is nearer to the tag than the goal demands by this much, m."""
 
 
 @dataclass(frozen=True, slots=True)
 class Disc:
-    """An upright cylinder on a table: where, radius and height, m."""
+    """An upright cylinder on a table: its position, radius and height, m."""
 
     x: float
     y: float
@@ -42,12 +43,12 @@ class Disc:
 
 
 def gap(a: Disc, b: Disc) -> float:
-    """Distance between two cylinders along the top, m; below 0 where they overlap."""
+    """Distance between two cylinders along the top, m; negative if they overlap."""
     return math.hypot(a.x - b.x, a.y - b.y) - a.radius - b.radius
 
 
 def lane(target: Disc, discs: Iterable[Disc], side: float) -> bool:
-    """Whether a straight lane for a hand leads from the preferred side to a target."""
+    """Whether a straight free path for the hand leads from the preferred side to a target."""
     blocking = [d for d in discs if d != target]
     for turn in np.linspace(-LANE_SPREAD, LANE_SPREAD, 9):
         cos, sin = math.cos(side + turn), math.sin(side + turn)
@@ -64,7 +65,7 @@ def lane(target: Disc, discs: Iterable[Disc], side: float) -> bool:
 def seen_share(
     points: Array, discs: Sequence[Disc], table: PlacedTable, side: float, target: Disc
 ) -> float:
-    """Largest share of points (n, 3), in the top's frame, that is visible from one of the views."""
+    """Largest share of points (n, 3), in the top's frame, that is visible from one viewpoint."""
     cos, sin = math.cos(side), math.sin(side)
     half = table.size[0] / 2 if abs(cos) > abs(sin) else table.size[1] / 2
     lateral = target.y * cos - target.x * sin
@@ -94,7 +95,7 @@ def _behind(points: Array, eye: Array, disc: Disc) -> NDArray[np.bool_]:
 
 
 def outline_points(disc: Disc) -> Array:
-    """Points on the outline of a cylinder: its rims and its middle, eight around."""
+    """Points on the outline of a cylinder: bottom, middle and top rims, eight around each."""
     turns = np.arange(8) * (math.pi / 4)
     ring = np.stack([disc.x + disc.radius * np.cos(turns), disc.y + disc.radius * np.sin(turns)], 1)
     heights = (0.15, 0.5, 1.0)
@@ -111,7 +112,7 @@ def tag_points(at: Pose2D, corner: float) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class SetDown:
-    """An object to set down: its radius and height, within `distance` of the tag, m.
+    """An object to place: its radius and height; at most `distance` from the tag, m.
 
     side: the table's preferred side, in its own frame, rad.
     """
@@ -125,7 +126,7 @@ class SetDown:
 def free_spots(
     wanted: SetDown, table: PlacedTable, discs: Sequence[Disc], tag_at: Pose2D
 ) -> list[tuple[float, float]]:
-    """Places (x, y) in the table's frame where the item could be set down beside the tag."""
+    """Positions (x, y) in the table's frame where the item can be placed beside the tag."""
     side, near = wanted.side, wanted.distance - SPOT_MARGIN
     cos, sin = math.cos(side), math.sin(side)
     half = np.array(table.size) / 2 - wanted.radius - 0.03

@@ -13,7 +13,7 @@ from momantu_worlds.scenes.geometry.bodies import Box, Part
 
 
 def nominal_surfaces(world: WorldFile) -> dict[str, PlacedTable]:
-    """Every surface where the file has it: tables and boards first, then tops of bodies."""
+    """Every surface at its pose in the file: tables and boards first, then tops of bodies."""
     found = {name: _nominal(world, table) for name, table in world.tables.items()}
     for name, body in world.bodies.items():
         if body.surface is not None:

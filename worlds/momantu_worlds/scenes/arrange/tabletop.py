@@ -1,9 +1,9 @@
 """Arranging the tables of an episode: the item, the tag and distractors.
 
-The job stays possible by rule. Around the item nothing is nearer than `gap_to_item`, a lane as
-wide as a hand leads to it from somewhere before the table's preferred side, and from where the
-robot would stand at least half of it is seen. The tag is seen whole from there. Beside the tag
-remains a spot for the item with the same lane.
+Rules ensure that the task stays possible. Nothing is nearer to the item than `gap_to_item`. A path
+as wide as the hand leads to it from a place before the table's preferred side, and from a robot's
+viewpoint there at least half of the item is visible. The whole tag is visible from there. Beside
+the tag there is a free spot for the item with a path of the same width.
 """
 
 from __future__ import annotations
@@ -35,15 +35,15 @@ from momantu_worlds.scenes.file.objects import ObjectNote, TagNote
 from momantu_worlds.scenes.file.world import WorldFile
 
 TRIES = 80
-"""Draws for one thing before it is left out."""
+"""Draws for one object before it is left out."""
 RIM = 0.02
-"""m; least distance from the table's edge."""
+"""Least distance from the table's edge, m."""
 APART = 0.01
-"""m; least gap between two named objects."""
+"""Least gap between two named objects, m."""
 AIR = 0.03
-"""m; least gap between a thing and the board above it."""
+"""Least gap between an object and the board above it, m."""
 ITEM_SEEN = 0.5
-"""Share of the item that must be visible from one view."""
+"""Share of the item that must be visible from one viewpoint."""
 
 
 def place_objects(
@@ -52,7 +52,7 @@ def place_objects(
     tables: Mapping[str, PlacedTable],
     tags: Sequence[PlacedTag],
 ) -> tuple[PlacedThing, ...]:
-    """Place the item and all named objects, each wholly on its top, in the order of the file."""
+    """Place the item and all named objects, each entirely on its top, in the order of the file."""
     placed: list[PlacedThing] = []
     item = {} if world.item is None else {world.item.name: world.item}
     for name, note in {**item, **world.objects}.items():
@@ -83,7 +83,7 @@ def _placed_object(
 
 
 def _thing_of(note: ObjectNote, seed: int, name: str) -> Thing:
-    """An object with the values of the file; the rest is drawn for its kind."""
+    """An object with the values of the file; missing values are drawn for its kind."""
     draw = seeded(seed, "object", name)
     paint = seeded(seed, "paint", name) if note.color is None else None
     thing = draw_thing(note.kind, draw, paint, size=note.extent, color=note.color)
@@ -93,7 +93,7 @@ def _thing_of(note: ObjectNote, seed: int, name: str) -> Thing:
 def place_tags(
     world: WorldFile, seed: int, tables: Mapping[str, PlacedTable]
 ) -> tuple[PlacedTag, ...]:
-    """Place every tag: on its table, its white margin wholly on the top, or where it is hung."""
+    """Place every tag: entirely on its table, white margin included, or at its place on a wall."""
     placed = []
     for name, note in world.all_tags.items():
         if note.on is None or note.at is None:
@@ -106,9 +106,9 @@ def place_tags(
 
 @dataclass(frozen=True, slots=True)
 class Spot:
-    """Where something may be placed on a top: around a point, or anywhere (`at` None).
+    """Range of poses on a top: around a point, or anywhere (`at` None).
 
-    margin: least distance of its middle from the edges, m. yaw, turn: its yaw and range, rad.
+    margin: least distance of its centre from the edges, m. yaw, turn: its yaw and range, rad.
     """
 
     name: str
@@ -121,7 +121,7 @@ class Spot:
 
 
 def _on_top(tables: Mapping[str, PlacedTable], seed: int, spot: Spot) -> Iterator[Pose2D]:
-    """Endless draws of a pose in the table's own frame."""
+    """Draw poses in the table's frame, without end."""
     draw = seeded(seed, "on top", spot.name)
     half = np.maximum(np.array(tables[spot.table].size) / 2 - spot.margin, 0.0)
     while True:
@@ -140,7 +140,7 @@ def place_things(
     objects: Sequence[PlacedThing],
     tags: Sequence[PlacedTag],
 ) -> tuple[PlacedThing, ...]:
-    """Place 0 to `most` loose things on each table so that the goal stays possible."""
+    """Place 0 to `most` distractors on each table so that the goal stays possible."""
     rule = world.distractors
     if rule is None:
         return ()
@@ -174,7 +174,7 @@ def draw_distractor(
     paint: np.random.Generator | None,
     sought: Thing | None,
 ) -> Thing:
-    """A random thing that differs from the item."""
+    """Draw an object that differs from the item."""
     if sought is None or sought.kind != kind:
         return draw_thing(kind, draw, paint)
     color = COLORS[int(draw.integers(len(COLORS)))]
@@ -186,7 +186,8 @@ def draw_distractor(
 
 
 OTHER_SIZE = 0.22
-"""Relative; a distractor of the item's kind differs in width or height by more than 20 %."""
+"""Relative difference: a distractor of the item's kind differs in width or height by more than 20
+%."""
 
 
 def _other_size(sought: Thing, draw: np.random.Generator) -> tuple[float, float, float]:
@@ -199,7 +200,7 @@ def _other_size(sought: Thing, draw: np.random.Generator) -> tuple[float, float,
 
 
 class _Crowd:
-    """What already stands on one table, and what distractors must leave possible."""
+    """The objects on one table so far, and what distractors must keep possible."""
 
     def __init__(
         self,
@@ -218,11 +219,11 @@ class _Crowd:
 
     @property
     def sought(self) -> Thing | None:
-        """What is to be brought."""
+        """The object to bring."""
         return None if self._item is None else self._item.thing
 
     def takes(self, things: Sequence[PlacedThing]) -> bool:
-        """Whether the last of these things may stand at its place."""
+        """Whether the last of these objects may stand at its place."""
         discs = [disc_of(thing) for thing in things]
         last, others = discs[-1], discs[:-1]
         if last.height > self._table.above - AIR:
@@ -272,10 +273,10 @@ def disc_of(placed: PlacedThing) -> Disc:
 
 
 def tag_corner(note: TagNote) -> float:
-    """From the middle of a tag's picture to its corner, m."""
+    """Distance from the centre of a tag's picture to its corner, m."""
     return picture_edge(note.edge) / math.sqrt(2.0)
 
 
 def tag_disc(tag: PlacedTag) -> Disc:
-    """The disc around the picture of a tag that lies."""
+    """The disc around the picture of a flat tag."""
     return Disc(tag.at.x, tag.at.y, tag_corner(tag.note), 0.0)

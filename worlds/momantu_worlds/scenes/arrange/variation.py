@@ -1,4 +1,4 @@
-"""One episode's arrangement, drawn from its seed."""
+"""Draw one episode's arrangement from its seed."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from momantu_worlds.scenes.file.world import WorldFile
 from momantu_worlds.scenes.geometry.bodies import PointLight, SunLight
 
 LAMP_HEIGHT = 2.4
-"""m; where lamps hang, just below the walls' tops."""
+"""Height of lamps, m, just below the walls' tops."""
 USUAL_SUN = (0.5, 0.9)
-"""Default range of a sun's strength."""
+"""Default range of a sun's brightness."""
 SUN_TILT = (math.radians(20), math.radians(50))
-"""rad from straight down; range."""
+"""Range of the sun's angle from straight down, rad."""
 
 
 def vary(world: WorldFile, seed: int) -> Layout:

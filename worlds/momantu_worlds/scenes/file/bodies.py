@@ -32,7 +32,7 @@ class CylinderNote(Part):
 
 
 class BodyPart(Part):
-    """One shape of a body, `at` its place in the body. A mesh's colours are its own."""
+    """One shape of a body; `at` is its pose in the body. A mesh keeps its own colours."""
 
     box: Size3D | None = None
     cylinder: CylinderNote | None = None
@@ -63,7 +63,7 @@ class BodySurface(Part):
 
 
 class BodyNote(Part):
-    """A rigid body. mass: kg, of one that is not static. surface: things may stand on its top."""
+    """A rigid body. mass: kg, if it is not static. surface: objects may stand on its top."""
 
     category: Name = "body"
     static: bool = True

@@ -12,17 +12,17 @@ from momantu_bt.geometry import Pose2D
 from momantu_worlds.scenes.file.values import Friction, Name, Part, Point, Rgb
 
 DOOR_HEIGHT = 2.0
-"""m; default height of doors, which many building codes require."""
+"""Default height of doors, m, as many building codes require."""
 DOOR_CLEAR = 0.9
-"""m; around a doorway's middle, kept free of furniture that the map does not know."""
+"""Radius around a doorway's centre, m, without furniture that is not on the map."""
 MOST_ROOMS, MOST_DOORS, MOST_WALLS = 100, 200, 1000
 MOST_CORNERS = 60
 MOST_FLOOR = 500.0
-"""m; paths over a larger floor would take too long to find."""
+"""Largest edge of the floor, m; path search on a larger floor would take too long."""
 
 
 class Floor(Part):
-    """The slab that everything stands on. Without center and size: under all walls and bodies."""
+    """The floor. Without center and size: under all walls and bodies."""
 
     center: Point | None = None
     size: tuple[Size, Size] | None = None
@@ -39,7 +39,7 @@ class Floor(Part):
 
 
 class WallPiece(Part):
-    """One straight wall by the middle of its axis; yaw of its length."""
+    """One straight wall by the centre of its axis; yaw of its length."""
 
     name: Name
     length: Size
@@ -48,7 +48,7 @@ class WallPiece(Part):
 
 
 class Walls(Part):
-    """What all walls share, and walls piece by piece in a frame whose origin lies at `origin`."""
+    """Values for all walls, and single walls in a frame with its origin at `origin`."""
 
     origin: Point = (0.0, 0.0)
     thickness: Size = 0.12
@@ -57,14 +57,15 @@ class Walls(Part):
     pieces: Annotated[tuple[WallPiece, ...], Field(max_length=MOST_WALLS)] = ()
 
     def map_from_piece(self, piece: WallPiece) -> Pose2D:
-        """Where a piece's middle lies in the map, x along its length."""
+        """Pose of a wall's centre in the map, x along its length."""
         return Pose2D(piece.center[0] + self.origin[0], piece.center[1] + self.origin[1], piece.yaw)
 
 
 class Room(Part):
-    """A room by its outline, which runs along the middles of its walls.
+    """A room by its outline along the centre lines of its walls.
 
-    Either `corner` (the one with the least x and y) and `size`, or `outline`: its corners in turn.
+    Either `corner` (the one with the smallest x and y) and `size`, or `outline`: its corners in
+    order.
     """
 
     corner: Point | None = None
@@ -85,7 +86,7 @@ class Room(Part):
 
     @property
     def corners(self) -> tuple[Point, ...]:
-        """Its outline's corners in turn, m."""
+        """The corners of its outline in order, m."""
         if self.outline is not None:
             return self.outline
         assert self.corner is not None
@@ -95,7 +96,7 @@ class Room(Part):
 
 
 class Door(Part):
-    """A gap in a wall of a room, at a point of that wall. closed: a leaf fills it."""
+    """A gap in a wall of a room, at a point of that wall. closed: a door leaf fills it."""
 
     at: Point
     width: Size = 0.9
@@ -106,7 +107,7 @@ class Door(Part):
 
 
 class Doorway(Part):
-    """A gap to drive through: its middle, and the radius around it that is kept free."""
+    """A gap to drive through: its centre, and the radius around it that is kept free."""
 
     at: Point
     clear: Size

@@ -44,11 +44,11 @@ MOST_BOARDS = 20
 
 
 class MeshUse(Part):
-    """A mesh file, beside the world file or by its own path.
+    """A mesh file, relative to the world file or with an absolute path.
 
-    size: the extents (depth, width, height) that it is stretched to, m; `scale`: a factor instead.
-    up: which of its own axes points up. collision: what touches: the convex hull of all, the box
-    around all, the convex hull of each of its parts, or nothing.
+    size: the extents (depth, width, height) that it is scaled to, m; `scale`: a factor instead. up:
+    which of its own axes points up. collision: the collision shape: the convex hull of all, the box
+    around all, the convex hull of each of its parts, or none.
     """
 
     file: Annotated[str, Field(min_length=1, max_length=500)]
@@ -76,8 +76,8 @@ class MeshUse(Part):
 class Piece(Part):
     """One piece of furniture: of a kind of the catalogue, or a mesh.
 
-    boards: heights of the boards of a shelf or rack, m. moves: an episode may move it, as
-    `unknown` says; shift, turn: every episode does, by up to so much.
+    boards: heights of the boards of a shelf or rack, m. moves: an episode may move it, as `unknown`
+    says; shift, turn: every episode moves it, by up to this much.
     """
 
     kind: FurnitureKind | None = None
@@ -106,7 +106,7 @@ class Piece(Part):
 
     @property
     def pose(self) -> Pose2D:
-        """Where it stands by the file."""
+        """Its pose in the file."""
         return pose2d(self.at)
 
     @property
@@ -118,10 +118,10 @@ class Piece(Part):
 
 
 class Table(Part):
-    """Something whose top is a surface of the site: a table, a mesh, or a board of a shelf.
+    """A body with a top that is a surface of the site: a table, a mesh, or a board of a shelf.
 
-    board_of, board: a piece of `furniture`, and which of its boards, counted from 1 at the lowest.
-    sides: the directions, in its own frame, to stand at; the first is preferred.
+    board_of, board: a piece of `furniture`, and the number of its board, counted from 1 at the
+    lowest. sides: the directions, in its own frame, to stand at; the first is preferred.
     """
 
     kind: TableKind = "table"

@@ -23,15 +23,15 @@ from momantu_worlds.scenes.file.values import (
 )
 
 GRIP = 0.6
-"""Default friction of an object: painted metal or plastic on wood."""
+"""Default friction coefficient of an object: painted metal or plastic on wood."""
 
 
 class ObjectNote(Part):
-    """A loose object on a table or board. What is omitted is drawn from the seed.
+    """A loose object on a table or board. Omitted values are drawn from the seed.
 
-    on: one surface, or several of which an episode takes one. at: where on it, in its own frame;
-    anywhere on it if omitted. size: of a box; radius and height: of everything round.
-    color: it has the usual paint of its kind in this colour, not one of many patterns.
+    on: one surface, or several of which an episode takes one. at: position on it, in its own frame;
+    anywhere on it if omitted. size: of a box; radius and height: of all round kinds. color: the
+    object has the usual paint of its kind in this colour, not one of many patterns.
     """
 
     kind: ObjectKind
@@ -65,7 +65,7 @@ class ObjectNote(Part):
 
     @property
     def extent(self) -> tuple[float, float, float] | None:
-        """Its edges, or twice the radius, and the height, m; None when an episode draws them."""
+        """Its edges, or twice the radius, and the height, m; None if an episode draws them."""
         if self.size is not None:
             return self.size
         if self.radius is None or self.height is None:
@@ -82,8 +82,8 @@ class Item(ObjectNote):
 class TagNote(Part):
     """An AprilTag of the family 36h11; edge: of its black square, m.
 
-    Flat on a surface (`on`, `at`), or upright (`hung`: x, y, z of its middle in the map, and the
-    direction in which its face looks).
+    Flat on a surface (`on`, `at`), or upright (`hung`: x, y, z of its centre in the map, and the
+    direction that its front faces).
     """
 
     id: Annotated[int, Field(ge=0, lt=len(CODES))]
@@ -107,16 +107,16 @@ class TagNote(Part):
 
 
 class Tag(TagNote):
-    """The tag beside which the item goes."""
+    """The tag next to which the item is to be placed."""
 
     name: Name
 
 
 class Distractors(Part):
-    """Loose things on the tables, 0 to `most` on each. Gaps are between surfaces.
+    """Random objects on the tables, 0 to `most` on each. Gaps are measured between surfaces.
 
-    on: the tables that they may stand on; all if omitted. patterns: they are painted in many
-    ways, not each kind in one.
+    on: the tables that they may stand on; all if omitted. patterns: paint each kind in many
+    patterns, not in one.
     """
 
     most: Annotated[int, Field(ge=0, le=8)]

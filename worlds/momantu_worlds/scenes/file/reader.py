@@ -1,4 +1,4 @@
-"""Reading a world file: YAML 1.2 to checked values, with every error at its place."""
+"""Reading a world file: YAML 1.2 to checked values; every error is reported at its place."""
 
 from __future__ import annotations
 
@@ -25,22 +25,22 @@ class WorldFileError(DescriptionError):
 
 
 def read_world(path: Path) -> WorldFile:
-    """The world that a file describes.
+    """Read the world that a file describes.
 
     Raises:
-        WorldFileError: the file cannot be read, is not YAML, or describes no possible world; all
-            problems are listed with line and column.
+        WorldFileError: the file cannot be read, is not YAML, or describes no possible world;
+            all problems are listed with line and column.
     """
     return parse_world(world_text(path), path)
 
 
 def world_text(path: Path) -> str:
-    """The text of a world file; WorldFileError when it cannot be read or is too long."""
+    """Read the text of a world file; WorldFileError if it cannot be read or is too long."""
     return read_text(path, WorldFileError)
 
 
 def parse_world(text: str, path: Path) -> WorldFile:
-    """As `read_world`, from text; `path` is for the messages, and where named files lie."""
+    """Like `read_world`, from text; `path` is for the messages and for the files that it names."""
     reading = Reading(path, text, WorldFileError)
     tunables = list(tunable_problems(reading, ("site", "services")))
     try:
@@ -55,7 +55,7 @@ def parse_world(text: str, path: Path) -> WorldFile:
 
 
 def _beside(reading: Reading, error: WorldFileError) -> Iterator[KeyProblem]:
-    """Wrong references in a file whose values are wrong as well.
+    """Find wrong references in a file that has wrong values as well.
 
     Parts with wrong values are left out; if that would be whole sections, nothing is reported.
     """

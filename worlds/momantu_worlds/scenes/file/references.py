@@ -13,13 +13,13 @@ from momantu_worlds.scenes.file.world import WorldFile
 FLOOR = "floor"
 """The name of the floor's body."""
 WITHOUT_WORLD = "none"
-"""What trees and the command line call running without a world."""
+"""The name for running without a world, in trees and on the command line."""
 
 
 def dangling(world: WorldFile, also: Collection[str] = ()) -> Iterator[KeyMessage]:
-    """Everything that one part of a file says of another and that is not so.
+    """Find all references in a file to something that does not exist.
 
-    also: names of parts that are wrong in themselves and were left out.
+    also: names of parts that were left out because of other errors.
     """
     if world.name == WITHOUT_WORLD:
         yield ("name",), f"{WITHOUT_WORLD!r} means no world at all; choose another name"
@@ -31,7 +31,7 @@ def dangling(world: WorldFile, also: Collection[str] = ()) -> Iterator[KeyMessag
 
 
 def _twice(world: WorldFile) -> Iterator[KeyMessage]:
-    """Bodies of one name: all that a file names, and the walls that follow from it."""
+    """Find bodies with the same name: those named in the file, and the walls built from it."""
     seen: dict[str, str] = {FLOOR: "the floor"} | {run.name: "a wall" for run in world.wall_runs}
     named = {("item", "name"): world.item, ("tag", "name"): world.tag}
     found: list[tuple[KeyPath, str, str]] = [
@@ -82,7 +82,7 @@ class _Names:
             yield place, f"there is no {what} {name!r}; {valid_names(name, names, f'{what}s')}"
 
     def _boards(self) -> Iterator[KeyMessage]:
-        """Boards that are surfaces: their shelf, their number, and duplicates."""
+        """Check boards that are surfaces: their shelf, their number, and duplicates."""
         world = self._world
         taken: dict[tuple[str, int], str] = {}
         shelves = [name for name, piece in world.furniture.items() if piece.boards]

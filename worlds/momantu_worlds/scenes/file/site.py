@@ -27,7 +27,7 @@ class GoalDemand(Part):
 
 
 class ObjectSizes(Part):
-    """What the robot is told of a class of objects."""
+    """What the robot is told about a class of objects."""
 
     category: Name
     diameter: Size | None = None
@@ -37,9 +37,9 @@ class ObjectSizes(Part):
 
 
 class SiteNotes(Part):
-    """The site's own information, beside what follows from the other sections.
+    """The site's own data, in addition to what follows from the other sections.
 
-    map: map_server's YAML of a floor plan of one's own; drawn from this file if omitted.
+    map: map_server YAML of your own floor plan; if omitted, the map is drawn from this file.
     services: tunables of services and skills, by name; see `momantu_bt.descriptions.tunables`.
     """
 

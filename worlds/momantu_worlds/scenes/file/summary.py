@@ -9,19 +9,15 @@ from typing import Any
 from momantu_bt.descriptions.reading import DescriptionError, Reading, read_text
 
 VARIES = ("shift", "turn", "lift", "belief_shift", "belief_turn")
-"""Keys of variations, in any section."""
+"""Keys of random variations, in any section."""
 SECTIONS = ("unknown", "light", "distractors")
-"""Sections that describe variations only."""
+"""Sections that contain variations only."""
 MOST = 60
-"""Limit of lines in a section."""
+"""Largest number of lines in a section."""
 
 
 def world_summary(path: Path) -> dict[str, dict[str, str]]:
-    """Tags, loose things, what an episode varies, the goal; sections without a line are left out.
-
-    Raises:
-        WorldError: the file cannot be read.
-    """
+    """Tags, loose objects, what varies between episodes, the goal; empty sections are left out."""
     world = Reading(path, read_text(path, DescriptionError), DescriptionError).plain
     sections = {
         "Tags": dict(_named(world, "tag", "tags")),

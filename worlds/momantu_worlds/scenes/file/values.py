@@ -25,16 +25,16 @@ def _ordered(value: tuple[float, float]) -> tuple[float, float]:
 
 
 Range: TypeAlias = Annotated[tuple[_Strength, _Strength], AfterValidator(_ordered)]
-"""Least and most of a brightness."""
+"""Smallest and largest value of a brightness."""
 Name: TypeAlias = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$", max_length=60)]
 Friction: TypeAlias = Annotated[float, Field(gt=0, le=1)]
 Count: TypeAlias = Annotated[int, Field(ge=0, le=50)]
 Sides: TypeAlias = Annotated[tuple[Angle, ...], Field(min_length=1, max_length=8)]
 """Directions of approach in a top's own frame; the first is preferred."""
 NotNegative: TypeAlias = Annotated[Length, Field(ge=0)]
-"""m."""
+"""A length of 0 or more, m."""
 Turn: TypeAlias = Annotated[Angle, Field(ge=0)]
-"""rad."""
+"""An angle of 0 or more, rad."""
 
 _POSE = "expected [x, y, z], [x, y, z, yaw] or [x, y, z, roll, pitch, yaw]"
 
@@ -65,10 +65,10 @@ class Part(BaseModel):
 
 
 def pose2d(pose: tuple[float, float, float]) -> Pose2D:
-    """A pose of the file as the value that everything else uses."""
+    """Convert a pose of the file to the type used by all other modules."""
     return Pose2D(*pose)
 
 
 def transform(pose: tuple[float, float, float, float, float, float]) -> Transform:
-    """A pose of the file in space as the value that everything else uses."""
+    """Convert a 3D pose of the file to the type used by all other modules."""
     return Transform.from_rpy(pose[:3], pose[3:])

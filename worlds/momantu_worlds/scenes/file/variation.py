@@ -1,4 +1,4 @@
-"""What episodes vary beside tables and objects: start, light, unknown furniture."""
+"""What varies between episodes besides tables and objects: start, light, unknown furniture."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from momantu_worlds.scenes.file.values import (
 MOST_LAMPS = 60
 _Channel: TypeAlias = Annotated[float, Field(ge=0, le=1000)]
 Strength: TypeAlias = tuple[_Channel, _Channel, _Channel]
-"""Of red, green and blue light."""
+"""Strengths of red, green and blue light."""
 _Finite: TypeAlias = Annotated[float, Field(allow_inf_nan=False)]
 
 
@@ -36,10 +36,10 @@ Direction: TypeAlias = Annotated[tuple[_Finite, _Finite, _Finite], AfterValidato
 
 
 class Start(Part):
-    """Where the robot stands at first, how far an episode shifts that, what it is told.
+    """The robot's start pose, how far an episode shifts it, what the robot is told.
 
-    turn: how far from the yaw of `at` it may look; in any direction if omitted.
-    clear: half the edge of the square around it that is free, m.
+    turn: largest deviation from the yaw of `at`; any yaw if omitted. clear: half the edge of the
+    free square around it, m.
     """
 
     at: PlanarPose
@@ -69,7 +69,7 @@ NONE = Between(most=0)
 class Unknown(Part):
     """Differences from the map: moved pieces, and extra pieces in some areas.
 
-    passage: radius of a disc that still gets from the start to every table and through every
+    passage: radius of a disc that can still move from the start to every table and through every
     doorway. stand: depth of the floor before tables that is kept free, m.
     """
 
@@ -84,21 +84,21 @@ class Unknown(Part):
 
 
 class SunNote(Part):
-    """Parallel light that stays as it is. direction: where it shines to."""
+    """Parallel light that is the same in all episodes. direction: where it shines to."""
 
     direction: Direction
     color: Strength = (1.0, 1.0, 1.0)
 
 
 class Bulb(Part):
-    """A lamp that stays as it is; color: its strength at 1 m."""
+    """A lamp that is the same in all episodes; color: its strength at 1 m."""
 
     at: Point3
     color: Strength
 
 
 class Light(Part):
-    """Ranges of brightness, where lamps hang, and lights that every episode has alike.
+    """Ranges of brightness, positions of lamps, and lights that are the same in all episodes.
 
     Without `sun` there is one of the usual strength, unless `suns` are given.
     """

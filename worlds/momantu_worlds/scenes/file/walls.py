@@ -1,4 +1,4 @@
-"""Walls from rooms: each is built once, however many rooms share it, and cut by doors."""
+"""Walls from rooms: a wall shared by several rooms is built once, and doors are cut into it."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from momantu_worlds.scenes.file.building import Door, Doorway, Room, Walls
 from momantu_worlds.scenes.geometry.plane import Rectangle
 
 SAME_LINE, SAME_TURN = 0.005, 1e-3
-"""m, rad; tolerance within which edges of two rooms are one wall."""
+"""Tolerances within which edges of two rooms are one wall, m and rad."""
 BUCKET, BUCKET_TURN = 0.5, 0.01
-"""m, rad; steps in which lines are sorted. Far from the origin a turn moves an offset: with what
-counts as the same line it is less than a step up to 500 m away."""
+"""Steps in which lines are sorted, m and rad. Far from the origin a small turn changes a line's
+offset: together with `SAME_LINE` by less than one step up to 500 m away."""
 ON_WALL = 0.05
-"""m; largest distance of a door's point from the faces of its wall."""
+"""Largest distance of a door's point from the faces of its wall, m."""
 LEAF = 0.04
 """m; thickness of a closed door."""
 LINTEL = 0.02
-"""m; a lower wall above a door is left out."""
+"""A wall above a door that is lower than this is left out, m."""
 
 
 @dataclass(frozen=True, slots=True)
 class WallRun:
-    """A straight piece of wall. name: of its body. pose: of its middle, x along it. m."""
+    """A straight piece of wall. name: of its body. pose: of its centre, x along it. m."""
 
     name: str
     pose: Pose2D
@@ -37,12 +37,12 @@ class WallRun:
 
     @property
     def base(self) -> Rectangle:
-        """The floor below it."""
+        """The floor area under it."""
         return Rectangle(self.pose, (self.length, self.thickness))
 
 
 def given_runs(walls: Walls) -> Iterator[WallRun]:
-    """The walls that the file has piece by piece."""
+    """The walls that the file gives one by one."""
     for piece in walls.pieces:
         pose = walls.map_from_piece(piece)
         name = f"wall_{piece.name}"
@@ -51,7 +51,7 @@ def given_runs(walls: Walls) -> Iterator[WallRun]:
 
 @dataclass(slots=True)
 class _Line:
-    """Edges on one straight line: its direction (0 to pi), its offset, and stretches of it."""
+    """Edges on one straight line: its direction (0 to pi), its offset, and its segments."""
 
     angle: float
     offset: float
@@ -70,7 +70,7 @@ class _Line:
 
 @dataclass(slots=True)
 class _Wall:
-    """One stretch of a line, from `start` to `end` along it, and the doors in it."""
+    """One segment of a line, from `start` to `end` along it, and the doors in it."""
 
     name: str
     line: _Line
@@ -108,7 +108,7 @@ class RoomWalls:
                 yield WallRun(name, pose, b - a, self._shared.thickness, bottom, top)
 
     def leaves(self) -> Iterator[tuple[str, Door, Pose2D]]:
-        """Closed doors: name, door, and where its leaf's middle is, x along it."""
+        """Closed doors: name, door, and the pose of its leaf's centre, x along it."""
         for name, door, pose in self._hung():
             if door.closed:
                 yield name, door, pose
@@ -133,7 +133,7 @@ class RoomWalls:
                 yield name, door, wall.line.pose(wall.line.along(door.at))
 
     def _hang(self, name: str, door: Door) -> str | None:
-        """Put a door into its wall; returns why if that is not possible."""
+        """Put a door into its wall; returns the reason if that is not possible."""
         near = [(abs(w.line.across(door.at)), w) for w in self._walls if _beside(w, door)]
         if not near:
             return "no wall of a room is there; `at` is a point on the line between two corners"
@@ -173,14 +173,14 @@ def _walls(rooms: Mapping[str, Room]) -> Iterator[_Wall]:
 
 
 class _Lines:
-    """The lines of all edges, each once, in the order in which they were met."""
+    """The lines of all edges, each once, in the order of their first use."""
 
     def __init__(self) -> None:
         self.found: list[_Line] = []
         self._alike: dict[tuple[int, int], list[_Line]] = {}
 
     def through(self, a: tuple[float, float], b: tuple[float, float]) -> _Line:
-        """The line through two points: one of those there are, or a new one."""
+        """The line through two points: an existing one, or a new one."""
         angle = math.atan2(b[1] - a[1], b[0] - a[0]) % math.pi
         if angle > math.pi - SAME_TURN:
             angle = 0.0
@@ -198,7 +198,7 @@ class _Lines:
 
 
 def _joined(stretches: list[tuple[float, float, str]]) -> Iterator[tuple[float, float, str]]:
-    """Stretches that touch or overlap as one, named after the room that comes first in the file."""
+    """Merge segments that touch or overlap, named after the room that comes first in the file."""
     order = {name: i for i, (_, _, name) in enumerate(stretches)}
     start, end, first = math.inf, -math.inf, ""
     for a, b, name in sorted(stretches):

@@ -30,7 +30,7 @@ MOST_PIECES, MOST_TABLES, MOST_OBJECTS, MOST_TAGS, MOST_BODIES = 1000, 100, 200,
 
 
 class WorldFile(Part):
-    """A whole world file. Everything but its version, its name and the start may be missing."""
+    """A whole world file. All sections but its version, its name and the start are optional."""
 
     momantu_world: Literal[1]
     name: Name
@@ -57,17 +57,17 @@ class WorldFile(Part):
     _file: Path = PrivateAttr(default=Path())
 
     def located(self, file: Path) -> WorldFile:
-        """The same world, with the file that it was read from."""
+        """The same world, with the path of the file that it was read from."""
         self._file = file
         return self
 
     @property
     def file(self) -> Path:
-        """Where it was read from."""
+        """The file that it was read from."""
         return self._file
 
     def beside(self, name: str) -> Path:
-        """A file that the world file names: relative to where it lies."""
+        """Path of a file that the world file names: relative to the world file."""
         return self._file.parent / name
 
     def mesh_files(self) -> tuple[Path, ...]:
@@ -78,13 +78,13 @@ class WorldFile(Part):
         return tuple(dict.fromkeys(self.beside(use.file) for use in uses if use is not None))
 
     def files(self) -> tuple[Path, ...]:
-        """The world file itself and all that it names: meshes, a map of its own."""
+        """The world file itself and all files that it names: meshes, its own map."""
         maps = () if self.site.map is None else (self.beside(self.site.map),)
         return (self._file, *self.mesh_files(), *maps)
 
     @property
     def sought(self) -> str | None:
-        """The object that is to be brought: the goal's, or the item."""
+        """The object to bring: the goal's, or the item."""
         if self.goal is not None:
             return self.goal.item
         return None if self.item is None else self.item.name

@@ -13,21 +13,21 @@ from momantu_worlds.scenes.referee.ground_truth import GroundTruth, TouchingForc
 from momantu_worlds.scenes.referee.hand import Hand
 
 ABOVE = 0.03
-"""m; a thing that is released at most this far above its support is set down, not dropped."""
+"""Largest height above its support at which a released object counts as placed, not dropped, m."""
 GONE = 1.5 * TICK
-"""s without finger contact after which a thing has left the hand: one tick may be noise."""
+"""Time without finger contact after which an object has left the hand, s: one tick may be noise."""
 
 
 @dataclass(slots=True)
 class _Grip:
-    """touched: when a finger last touched it, s. pose: where it was then."""
+    """touched: time of the last finger contact, s. pose: the object's pose at that time."""
 
     touched: float
     pose: Transform
 
 
 class Drops:
-    """Watches every loose thing once two fingers hold it and nothing else touches it."""
+    """Watches every loose object from when two fingers hold it and nothing else touches it."""
 
     def __init__(self, episode: Episode, truth: GroundTruth, hand: Hand) -> None:
         self._truth, self._fingers = truth, hand.fingers
@@ -66,7 +66,7 @@ class Drops:
         self.relocated(name)
 
     def relocated(self, name: str) -> None:
-        """A thing was moved by a fault: the robot did not drop it."""
+        """A fault moved an object: the robot did not drop it."""
         self._grips.pop(name, None)
 
     def _left(self, name: str, grip: _Grip) -> None:

@@ -1,4 +1,4 @@
-"""Ground truth: what a simulator tells a referee."""
+"""Ground truth: what a referee reads from a simulator."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from momantu_bt.geometry import Array, Transform
 
 
 class TouchingForce(Protocol):
-    """Two things that touched; the robot's links come first. force: N, averaged over the tick."""
+    """Bodies or links in contact; the robot's links come first. force: N, mean over the tick."""
 
     @property
     def first(self) -> str:
@@ -28,7 +28,7 @@ class TouchingForce(Protocol):
 
 
 class JointSpeed(Protocol):
-    """How fast a joint moves. linear: whether it slides, so that the speed is in m/s, not rad/s."""
+    """Speed of a joint. linear: the joint slides, so the speed is in m/s, not rad/s."""
 
     @property
     def speed(self) -> float:
@@ -42,7 +42,7 @@ class JointSpeed(Protocol):
 
 
 class GroundTruth(Protocol):
-    """Where everything really is, what touches what, and how fast the robot moves."""
+    """True poses, contacts, and the robot's speeds."""
 
     @property
     def robot_links(self) -> frozenset[str]:
@@ -58,21 +58,21 @@ class GroundTruth(Protocol):
         ...
 
     def watch_contacts(self) -> None:
-        """Collect contacts from the next tick on."""
+        """Start collecting contacts at the next tick."""
         ...
 
     def contacts(self) -> Iterable[TouchingForce]:
-        """What touched during the last tick."""
+        """Contacts during the last tick."""
         ...
 
     def height_below(self, body: str, points: Array, /) -> tuple[float, str]:
-        """Height of the lowest of points (n, 3) above what lies under them, m, and its name."""
+        """Height of the lowest of points (n, 3) above what is under them, m, and its name."""
         ...
 
     def base_speed(self) -> tuple[float, float]:
-        """Of the base now, m/s and rad/s."""
+        """Current speed of the base, m/s and rad/s."""
         ...
 
     def joint_speeds(self) -> Mapping[str, JointSpeed]:
-        """Of the joints of arm, head and gripper now, by name."""
+        """Current speeds of the joints of arm, head and gripper, by name."""
         ...

@@ -1,4 +1,4 @@
-"""The parts of a robot as the referee distinguishes them: fingers, links, base."""
+"""The parts of a robot that the referee distinguishes: fingers, links, base."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from momantu_bt.robot import ActuatorKind, RobotDescription
 class Hand:
     """The names of a robot's links and joints that the referee watches.
 
-    gripper: link whose origin lies between the pads. fingers: links that squeeze what is held.
-    joints: of the arm and of the gripper, which must rest when a run is over, as the base must.
+    gripper: link with its origin between the pads. fingers: links that press on a held object.
+    joints: of the arm and of the gripper; like the base, they must be at rest at the end of a run.
     """
 
     gripper: str

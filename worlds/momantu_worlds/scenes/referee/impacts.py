@@ -11,9 +11,11 @@ from momantu_worlds.scenes.referee.ground_truth import GroundTruth, TouchingForc
 from momantu_worlds.scenes.referee.hand import Hand
 
 MAX_FORCE = 150.0
-"""N; ISO/TS 15066 lets a robot press 140 N on a hand or a chest."""
+"""Limit of the contact force, N; ISO/TS 15066 allows a robot to press with 140 N on a hand or a
+chest."""
 REBOUND = 0.5
-"""s; force that comes back within this time belongs to the same impact: things rebound."""
+"""A contact within this time after another one belongs to the same impact, s, because bodies
+rebound."""
 
 
 @dataclass(slots=True)
@@ -24,9 +26,9 @@ class _Impact:
 
 
 class Impacts:
-    """One incident for each impact of a link on a thing: its start and its largest force.
+    """One incident for each impact of a link on an object: its start and its largest force.
 
-    A squeeze between two fingers is not an impact.
+    Squeezing an object between two fingers is not an impact.
     """
 
     def __init__(self, truth: GroundTruth, hand: Hand) -> None:

@@ -12,11 +12,11 @@ from momantu_worlds.scenes.referee.hand import Hand
 from momantu_worlds.scenes.referee.impacts import Impacts
 
 LINEAR, ANGULAR = 0.02, 0.05
-"""m/s and rad/s; slower counts as at rest."""
+"""Speeds below which the robot is at rest, m/s and rad/s."""
 
 
 class Incidents:
-    """Watches for impacts and drops tick by tick, and for motion when it is asked."""
+    """Checks for impacts and drops at every tick, and for motion on request."""
 
     def __init__(self, episode: Episode, truth: GroundTruth, hand: Hand) -> None:
         self._truth, self._hand = truth, hand
@@ -29,7 +29,7 @@ class Incidents:
         self._drops.observe(now, contacts)
 
     def relocated(self, name: str) -> None:
-        """A body was moved by a fault: the robot did not drop it."""
+        """A fault moved a body: the robot did not drop it."""
         self._drops.relocated(name)
 
     def added(self, body: Body) -> None:
@@ -41,7 +41,7 @@ class Incidents:
         self._drops.removed(name)
 
     def until(self, now: float) -> tuple[Incident, ...]:
-        """All incidents in order of time, with what still moves at `now`, s, the end of the run."""
+        """All incidents in order of time, and what still moves at `now`, s, the end of the run."""
         found = [*self._impacts.incidents(), *self._drops.incidents]
         found += still_moving(self._truth, self._hand, now)
         return tuple(sorted(found, key=lambda incident: incident.time))

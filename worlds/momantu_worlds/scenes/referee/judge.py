@@ -1,4 +1,4 @@
-"""The judge: claims of skills against ground truth at the same moment."""
+"""The judge: compares claims of skills with ground truth at the same moment."""
 
 from __future__ import annotations
 
@@ -19,19 +19,21 @@ from momantu_worlds.scenes.geometry.solids import FLUSH, LevelTop, PlacedBody, S
 from momantu_worlds.scenes.referee.referee import tilt
 
 UPRIGHT = math.radians(10.0)
-"""rad from the vertical within which a thing stands."""
+"""Largest angle from the vertical at which an object stands upright, rad."""
 LIFTED = 0.003
-"""m above all that is below it at which a thing is off its surface: six times physics' jitter."""
+"""Height above everything below it at which an object is lifted, m: six times the jitter of the
+physics."""
 ALIKE = 0.12
-"""Relative; things whose sizes are this near to those asked for are meant; others are 0.22 off."""
+"""Largest relative difference of sizes at which an object is the requested one; others differ by
+0.22."""
 ROOM_ABOVE = 0.3
-"""m above a top within which things are in the way of what is set down."""
+"""Height above a top up to which objects obstruct placing, m."""
 GRID = 0.02
-"""m between the points that are tried when room is looked for."""
+"""Distance between the points that are tried in the search for room, m."""
 ON_TAG = (0.002, 0.01, 0.03)
-"""m above a tag at which what covers it is looked for."""
+"""Heights above a tag at which covering objects are searched, m."""
 PADS = (5, 9, 3)
-"""Points along, across and up, with which the space between the pads is probed."""
+"""Points along, across and up, at which the space between the pads is checked."""
 
 
 class GroundTruth(Protocol):
@@ -185,7 +187,7 @@ class ClaimJudge:
         return self._gripped(thing) and self._scene.below(thing)[1] > LIFTED
 
     def _gripped(self, thing: PlacedBody) -> bool:
-        """Whether any of it is between the pads."""
+        """Whether any part of an object is between the pads."""
         return bool(thing.inside(self._between_pads).any())
 
     @cached_property
@@ -203,7 +205,7 @@ class ClaimJudge:
         return hand.width({name: self._truth.joint(name) for name in hand.opening})
 
     def _off_axis(self, frame: str, point: Array) -> float:
-        """Angle between an optical frame's z axis and the way to a point, rad."""
+        """Angle between an optical frame's z axis and the direction to a point, rad."""
         x, y, z = self._truth.link(frame).inverse().apply(point)
         return math.atan2(math.hypot(x, y), z)
 
@@ -224,7 +226,7 @@ def _apart(a: Array, b: Array) -> float:
 
 
 def _meant(asked: ObjectClass, thing: PlacedBody) -> bool:
-    """Whether a thing is of the category, and of the sizes that are known."""
+    """Whether an object is of the category, and of the sizes that are known."""
     if thing.body.category != asked.category:
         return False
     x, y, z = (float(v) for v in thing.size)

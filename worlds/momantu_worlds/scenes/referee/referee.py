@@ -1,9 +1,9 @@
 """The referee: whether the goal is met, by ground truth; it changes nothing.
 
-It looks after every tick. What must hold at the end (upright, on the top, beside the marker,
-still, touched by nothing else, gripper away) is judged of the last tick; what must never happen
-(a hard bump, another thing pushed or toppled) of the worst tick so far. What was dangerous is
-told beside that, demanded or not: see `incidents`.
+It observes after every tick. Criteria for the end (upright, on the top, beside the marker, still,
+touched by nothing else, gripper away) are checked at the last tick. Criteria for the whole run (no
+hard bump, no other object pushed or toppled) use the worst tick so far. Dangerous events are
+reported in addition, whether or not the goal forbids them: see `incidents`.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ from momantu_worlds.scenes.referee.hand import Hand
 from momantu_worlds.scenes.referee.incidents import Incidents
 
 STILL_SHIFT = 0.002
-"""m; an object within this of its earlier position is at rest: four times the solver's jitter."""
+"""Largest displacement of an object at rest, m: four times the solver's jitter."""
 STILL_TURN = math.radians(0.5)
-"""rad; likewise."""
+"""Largest rotation of an object at rest, rad."""
 ON_TOP = 0.005
-"""m; tolerance of the height at which an object stands on a top."""
+"""Tolerance of the height at which an object stands on a top, m."""
 
 
 @dataclass(slots=True)
 class Peak:
-    """The largest value so far, and the name of what had it."""
+    """The largest value so far, and the name of what caused it."""
 
     value: float = 0.0
     what: str = ""
@@ -45,7 +45,7 @@ class Peak:
 
 
 class Referee:
-    """Judges one episode; the module's docstring lists the demands."""
+    """Judges one episode; the module's docstring lists the criteria."""
 
     def __init__(self, episode: Episode, truth: GroundTruth, hand: Hand) -> None:
         """Watch from the next tick on."""
@@ -68,7 +68,7 @@ class Referee:
         truth.watch_contacts()
 
     def observe(self, now: float) -> None:
-        """Observe the moment `now`, s; call it once after every tick."""
+        """Observe the state at `now`, s; call it once after every tick."""
         self._now = now
         contacts = tuple(self._truth.contacts())
         self._look_at_contacts(contacts)
@@ -82,11 +82,11 @@ class Referee:
             self._tilt.record(tilt(pose), name)
 
     def relocated(self, name: str) -> None:
-        """A body was moved by a fault, not by the robot."""
+        """A fault moved a body, not the robot."""
         self._incidents.relocated(name)
 
     def added(self, body: Body) -> None:
-        """A body came into the world; a loose one must not be pushed or toppled either."""
+        """A body was added; a loose one must not be pushed or toppled either."""
         if not body.static:
             self._others[body.name] = body.map_from_body
         self._incidents.added(body)
@@ -97,7 +97,7 @@ class Referee:
         self._incidents.removed(name)
 
     def verdict(self) -> Verdict:
-        """The verdict on the last observed moment, with every unmet demand and its numbers."""
+        """The verdict on the last observed moment, with every unmet criterion and its numbers."""
         measures = self._measures()
         unmet = tuple(sentence for bad, sentence in self._demands(measures) if bad)
         incidents = self._incidents.until(self._now)
@@ -137,7 +137,7 @@ class Referee:
         }
 
     def _demands(self, measures: dict[str, float]) -> list[tuple[bool, str]]:
-        """Each demand: whether it is unmet, and the sentence that says so."""
+        """Each criterion: whether it is unmet, and the sentence that says so."""
         goal, m = self._goal, measures
         item, support = goal.item, goal.support
         strangers = ", ".join(sorted(self._touching - {support}))
