@@ -1,6 +1,6 @@
-"""Kinds of faults of the surroundings; `momantu_worlds.sapien.faults` makes them happen.
+"""Kinds of faults of the surroundings; `momantu_worlds.sapien.faults` implements them.
 
-What is needed to list them stands here, so that listing loads no simulator.
+This module holds only what is needed to list them, so that listing loads no simulator.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ MISSED = (
     Symptom.NO_GRASP,
     Symptom.ARM_WAY_BLOCKED,
 )
-"""Of an object that is elsewhere, or lies otherwise, than it was seen."""
+"""Symptoms when an object is at another pose than the one at which it was seen."""
 
 _kind = partial(fault_kind, place=Where.WORLD)
 

@@ -1,4 +1,4 @@
-"""A world in SAPIEN: an episode, the robot in it, a referee who watches."""
+"""A world in SAPIEN: an episode, its robot, and a referee."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class SapienWorld:
         *,
         referee: bool = True,
     ) -> None:
-        """path: of the world file that the episode was drawn from."""
+        """path: the world file that the episode was drawn from."""
         self._path, self._episode = path, episode
         self.simulator = Simulator(description, episode, seed)
         wanted = referee and episode.goal is not None
@@ -71,7 +71,7 @@ class SapienWorld:
             self._referee.observe(self.simulator.now())
 
     def verdict(self) -> Verdict | None:
-        """The referee's verdict on this moment; None without a referee."""
+        """The referee's verdict on the current state; None without a referee."""
         return None if self._referee is None else self._referee.verdict()
 
     def judge(self, sentence: Sentence, odom_from_base: Transform) -> bool | None:
@@ -85,11 +85,11 @@ class SapienWorld:
         return possible(self._stage)
 
     def effect(self, fault: Fault) -> Effect:
-        """Prepare a fault; raises FaultError when this episode cannot have it so."""
+        """Prepare a fault; raises FaultError if it is not possible in this episode."""
         return prepare(self._stage, fault)
 
     def open_video(self, path: Path, title: str) -> Video:
-        """Start a film at `path`."""
+        """Start a video at `path`."""
         return video.open_video(self.simulator, self._episode, path, title)
 
     def open_view(self, port: int) -> View:

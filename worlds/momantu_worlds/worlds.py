@@ -38,7 +38,7 @@ class WorldOfFile:
 
     @property
     def default_robot(self) -> str:
-        """The robot that it is meant for: a name, or a path seen from here; raises as `site`."""
+        """The robot that it is meant for: a name, or a path from here; raises as `site`."""
         robot = loading.nominal(self.path).robot
         is_path = "/" in robot or robot.endswith((".yaml", ".yml"))
         return str(self.path.parent / robot) if is_path else robot
@@ -67,7 +67,7 @@ class WorldOfFile:
         return simulated_world.SapienWorld(self.path, description, episode, seed, referee=referee)
 
     def about(self) -> Mapping[str, Mapping[str, str]]:
-        """Tags, loose things, what varies and the goal, in words."""
+        """Tags, loose objects, what varies between episodes and the goal, in words."""
         return summary.world_summary(self.path)
 
     def draw(self, seed: int) -> Episode:
@@ -76,7 +76,7 @@ class WorldOfFile:
 
 
 def world_from_file(path: Path) -> WorldOfFile:
-    """The world that a file describes; nothing is read yet."""
+    """The world that a file describes; the file is read later."""
     return WorldOfFile(path)
 
 

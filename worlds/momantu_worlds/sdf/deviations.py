@@ -18,9 +18,9 @@ class Outcome(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Deviation:
-    """One element that was not imported as it is.
+    """One element that was not imported unchanged.
 
-    subject: model and link, `kitchen/table/top`. what: the thing, in SDF's words. instead: what
+    subject: model and link, `kitchen/table/top`. what: the element, in SDF's terms. instead: what
     was done.
     """
 
@@ -33,7 +33,7 @@ class Deviation:
 
 @dataclass(slots=True)
 class Deviations:
-    """The deviations of an import, in order of places, without duplicates."""
+    """The deviations of an import, in the order of their places, without duplicates."""
 
     _all: dict[Deviation, None] = field(default_factory=dict)
 

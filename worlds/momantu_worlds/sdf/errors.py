@@ -9,7 +9,7 @@ from momantu_bt.errors import MomantuError
 from momantu_bt.formats.places import Place, marked
 
 MOST_SHOWN_OF = 32_000_000
-"""Bytes of a file of which messages show lines."""
+"""Largest file of which messages show lines, bytes."""
 
 
 class SdfError(MomantuError):
@@ -22,7 +22,7 @@ class SdfError(MomantuError):
 
 
 def _line_at(place: Place) -> str:
-    """The line of the file, for people; empty when it cannot be shown."""
+    """The line of the file, for messages; empty if it cannot be shown."""
     file = Path(place.file)
     try:
         if file.stat().st_size > MOST_SHOWN_OF:

@@ -28,16 +28,16 @@ from momantu_worlds.sdf.write.proposal import propose
 from momantu_worlds.sdf.write.writing import Imported, world_text
 
 MOST_BODIES = 2000
-"""As many as a world file may have."""
+"""Most bodies in a world file."""
 TIGHT = 0.25
-"""m; half the edge of a square in which hardly a robot stands."""
+"""Half the edge of a square that is too small for most robots, m."""
 MOST_SAID = 10
-"""Things of which a refusal says that they are left out."""
+"""Most left-out elements that an error message lists."""
 
 
 @dataclass(frozen=True, slots=True)
 class Import:
-    """The result of an import. text: of the world file; assets: the files beside it."""
+    """The result of an import. text: of the world file; assets: the other files."""
 
     world: Imported
     text: str
@@ -102,7 +102,7 @@ def import_world(
 
 
 def _start_of(robot: PlacedModel | None, deviations: Deviations) -> Pose2D | None:
-    """Where a robot of the SDF world stood."""
+    """The start pose of a robot of the SDF world."""
     if robot is None:
         return None
     pose = _base(robot)

@@ -21,15 +21,15 @@ from momantu_worlds.sdf.deviations import Deviations
 MOST_PARTS = 500
 """Limit of parts of one body, as in world files."""
 FRICTION = (0.01, 1.0)
-"""Range that a world file accepts."""
+"""Range of friction that a world file accepts."""
 _LONGEST = 50
 
 
 @dataclass(frozen=True, slots=True)
 class ImportedBody:
-    """One body. title: models and links that it was made of. mass: kg, None when it is still.
+    """One body. title: the models and links that it was made of. mass: kg, None if it is static.
 
-    friction: None where the world says nothing.
+    friction: None if the SDF world gives none.
     """
 
     name: str
@@ -42,13 +42,13 @@ class ImportedBody:
     friction: float | None = None
 
     def hulls(self) -> Iterator[Array]:
-        """Points (n, 3) of everything that is touched, piece by piece, in the map."""
+        """Points (n, 3) of all collision shapes, piece by piece, in the map."""
         for part in self.parts:
             for hull in part.hulls:
                 yield self.at.apply(part.body_from_part.apply(hull))
 
     def lifted(self, height: float) -> ImportedBody:
-        """The same body, higher."""
+        """The same body, moved up."""
         return replace(self, at=Transform((0.0, 0.0, height)) @ self.at)
 
 
@@ -60,7 +60,7 @@ class BodyMaker:
         self._names: set[str] = set()
 
     def body(self, model: PlacedModel, group: Group) -> Iterator[ImportedBody]:
-        """The body of a group; several when it has too many parts; none when nothing is left."""
+        """The body of a group; several if it has too many parts; none if no part is left."""
         first = group.links[0]
         at = _frame_of(model, group) if group.still else first.world_from_link
         parts = list(joined(self._parts(model, group, at)))
@@ -116,12 +116,12 @@ class BodyMaker:
                 )
 
     def _had_shapes(self, placed: PlacedLink) -> bool:
-        """Whether a link has anything that is not the floor."""
+        """Whether a link has any shape besides the floor."""
         shapes = (*placed.link.visuals, *placed.link.collisions)
         return any(not self._ground.is_floor(placed, shape) for shape in shapes)
 
     def _friction(self, group: Group) -> float | None:
-        """The friction of a body is one for all its shapes: the least of them."""
+        """A body has one friction for all its shapes: the smallest of theirs."""
         given = [
             s.friction for p in group.links for s in p.link.collisions if s.friction is not None
         ]
@@ -140,7 +140,7 @@ class BodyMaker:
         return used
 
     def _name(self, model: PlacedModel, group: Group) -> str:
-        """The outermost model's name if that is one body, else the innermost's, and the link's."""
+        """The outermost model's name if it is one body, else the innermost's and the link's."""
         first = group.links[0]
         if len(group.links) == sum(len(one.links) for one in model.everything()):
             return self.unique(model.model.name)
@@ -150,7 +150,7 @@ class BodyMaker:
         return self.unique("_".join([first.path[-1], *link]))
 
     def unique(self, title: str) -> str:
-        """A name as world files have them, that nothing else has."""
+        """A unique name that is valid in world files."""
         stem = plain_name(title)
         name, count = stem, 2
         while name in self._names:

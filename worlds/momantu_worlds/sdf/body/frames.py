@@ -1,7 +1,7 @@
 """Resolving the frames of models and worlds.
 
-Each model is a scope with the frame `__model__`, the world one with the frame `world`. In a scope
-links, joints, frames and models are frames too, and `model::link` names one within a model.
+Each model is a scope with the frame `__model__`; the world is one with the frame `world`. In a
+scope links, joints, frames and models are frames too, and `model::link` names a frame of a model.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ WORLD = "world"
 MODEL = "__model__"
 _INNER = "::"
 MOST_NAMED = 8
-"""Frames that a message lists."""
+"""Most frames that a message lists."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Edge:
-    """A frame's pose in another of its scope, or in the usual one if there need not be that."""
+    """A frame's pose in another frame of its scope, or in the usual one if that may be missing."""
 
     parent: str
     pose: Transform
@@ -43,10 +43,10 @@ class Scope:
     _known: dict[str, Transform] = field(default_factory=dict)
 
     def pose(self, name: str, place: Place) -> Transform:
-        """Pose of a frame in the scope's own frame; place: where it is asked for.
+        """Pose of a frame in the scope's own frame; place: the reference, for messages.
 
         Raises:
-            SdfError: there is no such frame, or frames hang on each other in a circle.
+            SdfError: there is no such frame, or frames refer to each other in a circle.
         """
         chain: list[tuple[str, Transform]] = []
         seen: set[str] = set()
@@ -67,14 +67,14 @@ class Scope:
         return pose
 
     def placed(self, pose: Pose, usual: str) -> Transform:
-        """A pose as written, in the scope's own frame; usual: where it is when nothing is said."""
+        """A pose as written, in the scope's own frame; usual: the default reference frame."""
         here = pose.relative_to or usual
         if pose.old and not self._has(here):
             here = usual
         return self.pose(here, pose.place) @ pose.transform
 
     def add(self, name: str, pose: Pose, usual: str) -> None:
-        """Give the scope a frame; of two with one name the first counts."""
+        """Add a frame to the scope; if two have the same name, the first is used."""
         edge = _Edge(
             pose.relative_to or usual, pose.transform, pose.place, usual if pose.old else ""
         )
@@ -141,7 +141,7 @@ def _fill(scope: Scope, models: Iterable[Model], frames: Iterable[Frame]) -> Non
 
 @dataclass(frozen=True, slots=True)
 class PlacedLink:
-    """A link in the world. path: of the models that it is in, from the outermost."""
+    """A link in the world. path: names of the models that contain it, from the outermost."""
 
     path: tuple[str, ...]
     link: Link
@@ -156,7 +156,7 @@ class PlacedLink:
 
 @dataclass(frozen=True, slots=True)
 class PlacedModel:
-    """A model in the world with what is directly in it, and its scope for its own frames."""
+    """A model in the world with its direct contents, and its scope for its own frames."""
 
     path: tuple[str, ...]
     model: Model
@@ -166,7 +166,7 @@ class PlacedModel:
     models: tuple[PlacedModel, ...]
 
     def everything(self) -> Iterator[PlacedModel]:
-        """It and all models within."""
+        """The model and all models in it."""
         yield self
         for inner in self.models:
             yield from inner.everything()

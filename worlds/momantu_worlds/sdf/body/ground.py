@@ -1,4 +1,4 @@
-"""The floor of a world: the plane or the slab that everything stands on; it becomes z = 0."""
+"""The floor of a world: the plane or slab that everything stands on; it becomes z = 0."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ from momantu_worlds.sdf.mesh.assets import mean_color, open_picture
 from momantu_worlds.sdf.read.model import Box, Plane, Shape
 
 LEVEL = 0.9998
-"""Least cosine between a floor's upwards and the world's: one degree."""
+"""Least cosine between a floor's normal and the world's vertical: one degree."""
 SLAB_SHARE = 0.6
-"""Of the area that a world takes up, a slab that is its floor covers at least as much."""
+"""Least share of the world's area that a slab must cover to be the floor."""
 SLAB_LEAST = 4.0
-"""m2."""
+"""Least area of such a slab, m2."""
 STEP = 0.5
-"""m; a slab higher than this above the lowest floor is a ceiling or a stage."""
+"""A slab that is higher than this above the lowest floor is a ceiling or a stage, m."""
 CLOSE = 0.002
-"""m; floors that lie closer are one."""
+"""Floors within this height difference are one, m."""
 
 
 @dataclass(frozen=True, slots=True)
 class Ground:
-    """height: of the floor in the SDF world, m. shapes: which are the floor, by identity."""
+    """height: of the floor in the SDF world, m. shapes: the floor's shapes, by identity."""
 
     height: float = 0.0
     shapes: frozenset[tuple[int, int]] = frozenset()
@@ -37,13 +37,13 @@ class Ground:
     friction: float | None = None
 
     def is_floor(self, placed: PlacedLink, shape: Shape) -> bool:
-        """Whether a shape of a link is the floor itself."""
+        """Whether a shape of a link is part of the floor."""
         return (id(placed), id(shape)) in self.shapes
 
 
 @dataclass(frozen=True, slots=True)
 class _Level:
-    """A level upper side. area: m2, of a plane without end."""
+    """A level upper face. area: m2; infinite for a plane."""
 
     height: float
     area: float
@@ -84,7 +84,7 @@ def find_ground(models: Iterable[PlacedModel], deviations: Deviations) -> Ground
 
 
 def _levels(owners: Iterable[PlacedModel]) -> Iterator[_Level]:
-    """Upper sides of level planes and boxes of everything that is static."""
+    """Upper faces of level planes and boxes of all static models."""
     for owner in owners:
         for placed in owner.links if owner.model.static else ():
             shapes = [(shape, True) for shape in placed.link.collisions]
@@ -97,7 +97,7 @@ def _levels(owners: Iterable[PlacedModel]) -> Iterator[_Level]:
 
 
 def _upper_side(shape: Shape, at: Transform, placed: PlacedLink) -> tuple[float, float] | None:
-    """Height and area of a level upper side."""
+    """Height and area of a level upper face."""
     if isinstance(shape.geometry, Plane):
         normal = np.array(shape.geometry.normal) / np.linalg.norm(shape.geometry.normal)
         if float((at.rotation @ normal)[2]) < LEVEL:
@@ -114,7 +114,7 @@ def _upper_side(shape: Shape, at: Transform, placed: PlacedLink) -> tuple[float,
 
 
 def _area_of(owners: Iterable[PlacedModel]) -> float:
-    """m2 of the rectangle around all links and boxes."""
+    """Area of the rectangle around all links and boxes, m2."""
     points: list[Array] = []
     for owner in owners:
         for placed in owner.links:

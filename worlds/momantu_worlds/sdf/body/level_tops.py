@@ -1,4 +1,4 @@
-"""Level tops of still bodies that could be tables."""
+"""Level tops of static bodies that could be tables."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from momantu_bt.geometry import Array, Pose2D
 from momantu_worlds.sdf.body.bodies import ImportedBody
 
 LOWEST, HIGHEST = 0.3, 1.2
-"""m; tops between these heights are proposed."""
+"""Range of heights of proposed tops, m."""
 NARROWEST = 0.25
-"""m; the least edge of such a top."""
+"""Least edge of such a top, m."""
 SMALLEST = 0.2
-"""m2; the seat of a chair is smaller."""
+"""Least area of such a top, m2; the seat of a chair is smaller."""
 LEVEL = 0.005
-"""m; what lies within this of a piece's highest point is its top."""
+"""Depth below a piece's highest point within which faces belong to its top, m."""
 COVERED = 0.7
-"""Least part of the rectangle around a top that is top: a disc has 0.79 of it."""
+"""Least share of the rectangle around a top that the top covers: a disc has 0.79."""
 HEADROOM = 0.3
-"""m; free height that a hand needs above a top."""
+"""Free height above a top that the hand needs, m."""
 
 
 _Face: TypeAlias = tuple[float, Array]
@@ -32,7 +32,7 @@ _Face: TypeAlias = tuple[float, Array]
 
 @dataclass(frozen=True, slots=True)
 class Top:
-    """A level rectangle. pose: of its middle in the map. size: along its own x and y, m."""
+    """A level rectangle. pose: of its centre in the map. size: along its own x and y, m."""
 
     pose: Pose2D
     size: tuple[float, float]
@@ -45,7 +45,7 @@ class Top:
 
 
 def best_top(body: ImportedBody, others: Sequence[Array]) -> Top | None:
-    """The largest top of a body with room above it; others: hulls (n, 3) of everything still."""
+    """The largest top of a body with room above it; others: hulls (n, 3) of all static bodies."""
     faces = sorted(filter(None, map(_face_of, body.hulls())), key=lambda face: face[0])
     level: list[list[_Face]] = []
     for face in faces:
@@ -60,7 +60,7 @@ def best_top(body: ImportedBody, others: Sequence[Array]) -> Top | None:
 
 
 def _face_of(hull: Array) -> _Face | None:
-    """Height and points (n, 2) of the level upper side of a hull, m; None if it has none."""
+    """Height and points (n, 2) of the level upper face of a hull, m; None if it has none."""
     height = float(hull[:, 2].max())
     upper = hull[hull[:, 2] > height - LEVEL, :2]
     return (height, upper) if LOWEST <= height <= HIGHEST and len(upper) > 2 else None
@@ -86,7 +86,7 @@ def _top_of(faces: Sequence[_Face]) -> Top | None:
 
 
 def _has_room(top: Top, others: Iterable[Array]) -> bool:
-    """Whether nothing still reaches into the space above the middle of a top."""
+    """Whether no static body extends into the space above the centre of a top."""
     back = top.pose.inverse()
     c, s = math.cos(back.yaw), math.sin(back.yaw)
     half = np.array(top.size) / 4.0

@@ -13,17 +13,17 @@ from momantu_worlds.sdf.deviations import Deviations
 from momantu_worlds.sdf.read.model import Light, LightKind, Rgba
 
 LAMP = 5.0
-"""Strength at 1 m of a lamp that SDF gives as white: in the middle of what our worlds use."""
+"""Strength at 1 m of a lamp that is white in SDF: a medium value in the bundled worlds."""
 AMBIENT = (0.3, 0.45)
-"""Usual light from everywhere."""
+"""Default range of ambient light."""
 DARKEST = 0.15
-"""A camera sees little with less light from everywhere."""
+"""Least ambient light; a camera sees little with less."""
 MOST_SUNS, MOST_BULBS = 8, 60
 
 
 @dataclass(frozen=True, slots=True)
 class Lighting:
-    """suns: where they shine to, and their colours. bulbs: where they hang, and theirs at 1 m."""
+    """suns: directions and colours. bulbs: positions, and colours at 1 m."""
 
     ambient: tuple[float, float]
     suns: tuple[tuple[Rgb, Rgb], ...]
@@ -36,7 +36,7 @@ def lighting(
     height: float,
     deviations: Deviations,
 ) -> Lighting:
-    """The lights of a world; height: of the floor where they come from, m."""
+    """The lights of a world; height: of the floor in the SDF world, m."""
     suns: list[tuple[Rgb, Rgb]] = []
     bulbs: list[tuple[Rgb, Rgb]] = []
     for light, subject, pose in lights:

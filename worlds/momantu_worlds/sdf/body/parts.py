@@ -15,19 +15,19 @@ from momantu_worlds.sdf.read.model import Box, Cylinder, Plane, Sphere
 
 Rgb: TypeAlias = tuple[float, float, float]
 SIDES = 24
-"""Of the prism around a cylinder, and of rings around round things."""
+"""Sides of the prism around a cylinder, and of rings around round shapes."""
 THINNEST = 1e-5
-"""m; what is written with six decimals has to stay above zero."""
+"""Least size, m, as values are written with six decimals and must stay above zero."""
 SLAB = 0.01
-"""m; thickness of a plane that is not the floor."""
+"""Thickness of a plane that is not the floor, m."""
 _CORNERS = np.array([(x, y, z) for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
 SAME = 1e-6
-"""m, rad; shapes that lie closer are in one place."""
+"""Tolerance within which shapes are at the same pose, m and rad."""
 
 
 @dataclass(frozen=True, slots=True)
 class MeshPart:
-    """A mesh of the assets. pieces: what it is when touched, points (n, 3) each."""
+    """A mesh of the assets. pieces: its collision shapes, points (n, 3) each."""
 
     path: str
 
@@ -39,8 +39,7 @@ Solid: TypeAlias = Box | Cylinder | Sphere | MeshPart
 class Part:
     """One part of a body, in its own frame.
 
-    hulls: convex points (n, 3) of all that is touched. seen: corners (8, 3) around a mesh that is
-    looked at.
+    hulls: convex points (n, 3) of all collision shapes. seen: corners (8, 3) around a visual mesh.
     """
 
     solid: Solid
@@ -53,7 +52,7 @@ class Part:
 
 
 def simple(shape: Box | Cylinder | Sphere, scale: tuple[float, float, float]) -> Solid:
-    """A shape that the world file has too, scaled; what is round stays round."""
+    """A shape that world files have too, scaled; a round shape stays round."""
     x, y, z = scale
     if isinstance(shape, Box):
         a, b, c = shape.size
@@ -89,7 +88,7 @@ def _ring(radius: float, z: float) -> Array:
 
 
 def plane_slab(plane: Plane) -> tuple[Box, Transform]:
-    """A plane as a thin box whose upper side it is, and where that lies in the plane's frame."""
+    """A plane as a thin box below it, and the pose of the box in the plane's frame."""
     normal = np.array(plane.normal) / np.linalg.norm(plane.normal)
     axis = np.cross((0.0, 0.0, 1.0), normal)
     angle = math.atan2(float(np.linalg.norm(axis)), float(normal[2]))
@@ -99,7 +98,7 @@ def plane_slab(plane: Plane) -> tuple[Box, Transform]:
 
 
 def joined(parts: Iterable[Part]) -> Iterator[Part]:
-    """Parts, where one that is only seen and one that is only touched are one if they fit."""
+    """The parts, with a visual and a collision part merged if their shapes agree."""
     waiting = list(parts)
     touched = [part for part in waiting if part.collision and not part.visual]
     for part in waiting:

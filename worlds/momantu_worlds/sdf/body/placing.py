@@ -19,7 +19,7 @@ from momantu_worlds.sdf.read.values import Pose
 
 
 def placed_models(world: SdfWorld, deviations: Deviations) -> list[PlacedModel]:
-    """The world's models with all their links placed; raises SdfError for frames that are not.
+    """The world's models with the poses of all links; raises SdfError for frames that do not exist.
 
     A state is as Gazebo saves it: poses of models and links in the world's frame.
     """
@@ -94,9 +94,9 @@ def placed_lights(
 
 
 def placed_in_link(model: PlacedModel, placed: PlacedLink, pose: Pose) -> Transform:
-    """A pose that is written in a link, in the world's frame; usually it is the link's own.
+    """A pose written in a link, converted to the world's frame; the default reference is the link.
 
-    A frame is looked up where the model has it, and follows the link where a state moves that.
+    A frame is looked up in the model, and moves with the link if a state moves the link.
     """
     if not pose.relative_to:
         return placed.world_from_link @ pose.transform

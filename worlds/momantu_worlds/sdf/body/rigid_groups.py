@@ -1,4 +1,4 @@
-"""Groups of links that move as one: joints joined, robots distinguished from furniture."""
+"""Groups of links that move as one: fixed joints merged, robots distinguished from furniture."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from momantu_worlds.sdf.read.model import Joint
 
 _INNER = "::"
 JOINTS_OF_A_ROBOT = 2
-"""A model with as many joints that move, and with sensors or plugins, is a robot; a door is not,
-nor what is fixed to the world."""
+"""A model with at least this many moving joints, and with sensors or plugins, is a robot, unless it
+is fixed to the world. A door is not."""
 
 
 @dataclass(slots=True)
 class Group:
-    """Links that are one body. still: it does not move."""
+    """Links that form one body. still: it does not move."""
 
     links: list[PlacedLink] = field(default_factory=list)
     still: bool = False
 
 
 def is_robot(model: PlacedModel) -> bool:
-    """Whether a model looks like a robot rather than like furniture."""
+    """Whether a model looks like a robot, not like furniture."""
     if model.model.static:
         return False
     inner = list(model.everything())
@@ -39,7 +39,7 @@ def is_robot(model: PlacedModel) -> bool:
 def rigid_groups(model: PlacedModel, deviations: Deviations) -> list[Group]:
     """The bodies of an outermost model, in the order of their first links.
 
-    What a joint moves stays where it is: such links are one still body.
+    Links that a joint would move stay at their poses: they become one static body.
     """
     groups: dict[tuple[str, ...], Group] = {}
     for one, static in _with_static(model, static=False):
@@ -92,7 +92,7 @@ def _join_all(groups: dict[tuple[str, ...], Group], keys: list[tuple[str, ...]])
 
 
 def _end(model: PlacedModel, name: str) -> tuple[str, ...] | None:
-    """The link that a joint's end means: empty for the world, None when there is none."""
+    """The link at a joint's end: empty for the world, None if there is none."""
     if name == WORLD:
         return ()
     for _ in range(len(model.model.frames) + 1):
@@ -116,6 +116,6 @@ def _link_of(model: PlacedModel, name: str) -> tuple[str, ...] | None:
 
 
 def _first_link(model: PlacedModel) -> tuple[str, ...] | None:
-    """A model's canonical link, where none is named: its first."""
+    """A model's canonical link if none is named: its first."""
     found = (placed for one in model.everything() for placed in one.links)
     return next(((*placed.path, placed.link.name) for placed in found), None)

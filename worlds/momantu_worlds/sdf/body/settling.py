@@ -1,4 +1,4 @@
-"""Bodies on the floor: lowered to it; flat ones become visual only."""
+"""Bodies on the floor: moved down to it; flat ones become visual only."""
 
 from __future__ import annotations
 
@@ -13,20 +13,18 @@ from momantu_worlds.sdf.body.parts import Part
 from momantu_worlds.sdf.deviations import Deviations
 
 FLAT = 0.03
-"""m; a still part that ends below this height is driven over, as a carpet or a marking is."""
+"""Height below which the robot drives over a static part, m, such as a carpet or a marking."""
 FLUSH = 0.002
-"""m; what ends no lower than this below the floor is meant to be seen on it."""
+"""Depth below the floor, m, down to which a part is still meant to be visible on it."""
 WIDE, LIFTED = 10.0, (0.001, 0.003)
-"""m2, and m: how high things on the floor are at least, wide ones and those that lie on such.
-
-Two faces at one height flicker in pictures.
-"""
+"""Least area of a wide part, m2; least height above the floor of parts on it, m: of wide ones, and
+of parts on those. Two faces at the same height flicker in pictures."""
 
 
 def settled(
     bodies: Iterable[ImportedBody], height: float, deviations: Deviations
 ) -> Iterator[ImportedBody]:
-    """Bodies with the floor at z = 0; height: of the floor where they come from, m."""
+    """Bodies with the floor at z = 0; height: of the floor in the SDF world, m."""
     for body in bodies:
         lowered = body.lifted(-height) if height else body
         parts = tuple(_flattened(lowered, deviations)) if body.still else body.parts
@@ -53,7 +51,7 @@ def _flattened(body: ImportedBody, deviations: Deviations) -> Iterator[Part]:
 
 
 def _visible(body: ImportedBody, part: Part, around: Array) -> Part:
-    """A part that is flush with the floor, lifted out of it; around: points (n, 3) of it."""
+    """A part that is flush with the floor, raised above it; around: points (n, 3) of it."""
     points = body.at.apply(part.body_from_part.apply(around))
     top, wide = float(points[:, 2].max()), float(np.ptp(points[:, :2], axis=0).prod()) > WIDE
     least = LIFTED[0] if wide else LIFTED[1]
@@ -64,5 +62,5 @@ def _visible(body: ImportedBody, part: Part, around: Array) -> Part:
 
 
 def _height(body: ImportedBody, part: Part, points: Array) -> float:
-    """Of the highest of some points of a part, m."""
+    """Height of the highest of some points of a part, m."""
     return float(body.at.apply(part.body_from_part.apply(points))[:, 2].max())

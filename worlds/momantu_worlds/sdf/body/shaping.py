@@ -1,4 +1,4 @@
-"""From a shape to parts: simple ones as they are, the others through assets."""
+"""Convert shapes to parts: simple ones directly, the others through assets."""
 
 from __future__ import annotations
 
@@ -41,14 +41,14 @@ from momantu_worlds.sdf.read.model import (
 )
 
 ROUND_SIDES = 32
-"""Sides of round things that become meshes."""
+"""Sides of round shapes that become meshes."""
 HIDDEN = 1e-4
-"""m; what a picture lies above the side of its box."""
+"""Distance of a picture above the side of its box, m."""
 
 
 @dataclass(slots=True)
 class Shaping:
-    """Turns the shapes of one import into parts. heed_up: COLLADA's <up_axis> counts."""
+    """Converts the shapes of one import to parts. heed_up: use COLLADA's <up_axis>."""
 
     assets: Assets
     deviations: Deviations
@@ -95,7 +95,7 @@ class Shaping:
         *,
         still: bool,
     ) -> Iterator[Part]:
-        """The parts of a collision. still: it belongs to a body that never moves."""
+        """The parts of a collision. still: it belongs to a static body."""
         geometry = shape.geometry
         if isinstance(geometry, Plane):
             self.deviations.changed(
@@ -141,7 +141,7 @@ class Shaping:
     def _pieces(
         self, geometry: Geometry, scale: Vector, shape: Shape, subject: str
     ) -> tuple[Piece, ...]:
-        """Triangles of a shape that is not simple; none, and a deviation, if there are none."""
+        """Triangles of a shape that is not simple; a deviation if there are none."""
         if not isinstance(geometry, MeshFile):
             return (_rounded(geometry, scale),)
         mesh = replace(geometry, scale=_product(geometry.scale, scale))
@@ -218,7 +218,7 @@ def _stem(geometry: Geometry) -> str:
 
 
 def _rounded(geometry: Geometry, scale: Vector) -> Piece:
-    """Triangles of capsules, cones and ellipsoids, which a world file has not."""
+    """Triangles of capsules, cones and ellipsoids, which world files do not have."""
     make = trimesh.creation
     if isinstance(geometry, Capsule):
         mesh = make.capsule(geometry.length, geometry.radius, count=(ROUND_SIDES, ROUND_SIDES))

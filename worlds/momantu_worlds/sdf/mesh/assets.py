@@ -18,32 +18,32 @@ from momantu_bt.geometry import Array
 from momantu_worlds.sdf.mesh.files import Piece
 
 MOST_PIXELS = 1024
-"""Of a picture's longer edge: what a camera of 640 x 480 can see of it."""
+"""Longest edge of a picture, pixels: more is not visible to a camera of 640 x 480."""
 MOST_PIECES = 200
-"""Convex pieces of one file; the reader of world files takes more for a single one."""
+"""Most convex pieces of one file; the reader of world files merges more into one."""
 _STEM = 40
 
 
 _untyped: Any = trimesh
-"""trimesh without types, for what it does not declare."""
+"""trimesh without types, for attributes that it does not declare."""
 
 
 @dataclass(slots=True)
 class Assets:
-    """The files of one import, held until all of it is known to be right.
+    """The files of one import, kept in memory until the whole import has succeeded.
 
-    folder: their name of it in the world file, relative to that.
+    folder: its name in the world file, relative to that file.
     """
 
     folder: str
     _files: dict[str, bytes] = field(default_factory=dict)
 
     def look(self, name: str, pieces: Sequence[Piece], color: tuple[float, ...] | None) -> str:
-        """A file to look at; color: instead of the pieces' own. Returns its path."""
+        """Add a visual file; color: instead of the pieces' own. Returns its path."""
         return self._keep(name, [_seen(piece, color) for piece in pieces])
 
     def touch(self, name: str, hulls: Sequence[Array]) -> str:
-        """A file of at most MOST_PIECES convex pieces to touch, each given by points (n, 3)."""
+        """Add a collision file of at most MOST_PIECES convex pieces, each of points (n, 3)."""
         return self._keep(f"{name}_touch", [trimesh.convex.convex_hull(h) for h in hulls])
 
     def write(self, beside: Path) -> int:
@@ -81,14 +81,14 @@ def _seen(piece: Piece, color: tuple[float, ...] | None) -> Any:
 
 
 def small_picture(picture: Any) -> Any:
-    """A picture (PIL) in red, green and blue, no larger than can be seen."""
+    """A picture (PIL) in RGB, reduced to the largest useful size."""
     small = picture.convert("RGB")
     small.thumbnail((MOST_PIXELS, MOST_PIXELS))
     return small
 
 
 def open_picture(file: Path) -> Any:
-    """A picture of a file, None when it cannot be read as one."""
+    """Open a picture file; None if it cannot be read as a picture."""
     try:
         with Image.open(file) as picture:
             return small_picture(picture)

@@ -1,6 +1,7 @@
 """The metadata of a COLLADA file: its up axis, its unit, the names of its nodes.
 
-The library that reads the triangles trusts its input; so what would not end is refused here.
+The library that reads the triangles trusts its input, so files that would never end are rejected
+here.
 """
 
 from __future__ import annotations
@@ -19,10 +20,10 @@ Z_FROM: Mapping[str, Array] = {
     "Y_UP": np.array([(1.0, 0.0, 0.0), (0.0, 0.0, -1.0), (0.0, 1.0, 0.0)]),
     "Z_UP": np.eye(3),
 }
-"""Turns a file so that its up is z; right stays right (COLLADA 1.4.1, table of <up_axis>)."""
+"""Rotations to z up; x stays to the right (COLLADA 1.4.1, table of <up_axis>)."""
 MOST_DEPTH = 100
 MOST_INSTANCES = 20_000
-"""Geometries in the scene, counted as often as they appear."""
+"""Most geometries in the scene, counted as often as they are used."""
 
 
 class BadMesh(Exception):
@@ -31,7 +32,7 @@ class BadMesh(Exception):
 
 @dataclass(slots=True)
 class ColladaNotes:
-    """up: as the file has it; empty when it says nothing. meter: of one unit.
+    """up: as in the file; empty if not given. meter: length of one unit.
 
     names: ids of the geometries that a node, or a geometry, of a name shows.
     """
@@ -58,7 +59,7 @@ def collada_notes(file: Path) -> ColladaNotes:
 
 
 class _Reader:
-    """Follows expat through the file; keeps only what the notes need."""
+    """Follows expat through the file; keeps only the metadata."""
 
     def __init__(self) -> None:
         self.notes = ColladaNotes()
@@ -125,7 +126,7 @@ class _Reader:
         raise BadMesh("it declares entities of its own")
 
     def count_instances(self) -> None:
-        """Note the names of nodes; refuse scenes that use themselves or multiply without bounds."""
+        """Store the names of nodes; reject scenes that include themselves or are too large."""
         if self.notes.up and self.notes.up not in Z_FROM:
             raise BadMesh(f"its <up_axis> is {self.notes.up!r}; expected X_UP, Y_UP or Z_UP")
         for name, shown in self._shows.items():
@@ -137,7 +138,7 @@ class _Reader:
             raise BadMesh(f"its scene shows more than {MOST_INSTANCES} geometries")
 
     def _total(self, identity: str, totals: dict[str, int]) -> None:
-        """How many geometries a node shows with all that it uses; without recursion."""
+        """Number of geometries that a node shows, with all nodes it uses; without recursion."""
         waiting, open_nodes = [identity], set[str]()
         while waiting:
             here = waiting[-1]

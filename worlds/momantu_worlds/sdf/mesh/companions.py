@@ -14,15 +14,15 @@ from momantu_worlds.sdf.read.uris import is_there
 
 MOST_BYTES = 64_000_000
 TEXTURES = Path("materials", "textures")
-"""In a model's folder: where Gazebo looks for pictures that are not where the mesh says."""
+"""Folder in a model's folder where Gazebo searches pictures that are not where the mesh says."""
 
 _Resolver: Any = trimesh.resolvers.Resolver
 
 
 class Companions(_Resolver):  # type: ignore[misc]
-    """Reads files for trimesh, within the model's folder alone.
+    """Reads files for trimesh, from the model's folder only.
 
-    missing: names that nothing was found for.
+    missing: names of files that were not found.
     """
 
     def __init__(self, mesh: Path) -> None:

@@ -1,8 +1,8 @@
 """Convex pieces as the collision shape of a mesh.
 
-A mesh falls apart into what hangs together; each part is its convex hull. A hull that would fill
-space in which the robot stands or puts things (a room, the space below a table) is useless: of
-what stands still and is hollow, faces become thin plates instead.
+A mesh is split into its connected parts, and each part is replaced by its convex hull. Such a hull
+is useless if it fills space for the robot or for objects (a room, the space below a table). For
+hollow static parts, faces therefore become thin plates instead.
 """
 
 from __future__ import annotations
@@ -20,22 +20,23 @@ from momantu_worlds.sdf.mesh.hollow import Air
 from momantu_worlds.sdf.mesh.plates import plates_of
 
 SMALL = 0.3
-"""m; parts with no greater extent are their hulls: nothing stands in them."""
+"""Largest extent of parts that are always replaced by their hulls, m: nothing stands inside
+them."""
 MOST_PARTS = 400
-"""Of one mesh; with more, the hull of all stands for it."""
+"""Most parts of one mesh; with more, the hull of the whole mesh is used."""
 FLAT_HULL = 1e-9
-"""m3; a hull that is smaller has no inside."""
+"""Volume below which a hull is flat, m3."""
 THICKENED = 0.005
-"""m; what is flat is made thicker by this on every side."""
+"""Thickness that is added to flat parts on every side, m."""
 
 _untyped: Any = trimesh
 """trimesh without types, for what it does not declare."""
 
 
 def convex_pieces(pieces: Sequence[Piece], *, still: bool) -> tuple[list[Array], bool]:
-    """Points (n, 3) of convex pieces that cover a mesh, m; and whether all of it is a plain hull.
+    """Points (n, 3) of convex pieces that cover a mesh, m; and whether they are plain hulls only.
 
-    still: it never moves, so hollow parts may be plates.
+    still: the body is static, so hollow parts may become plates.
     """
     parts = list(_parts(pieces))
     if len(parts) > MOST_PARTS:
@@ -53,7 +54,7 @@ def convex_pieces(pieces: Sequence[Piece], *, still: bool) -> tuple[list[Array],
 
 
 def _parts(pieces: Sequence[Piece]) -> Iterator[tuple[Array, NDArray[np.int64]]]:
-    """Vertices and triangles of everything that hangs together, whatever it looks like."""
+    """Vertices and triangles of all connected parts, regardless of their materials."""
     offsets = np.cumsum([0, *(len(piece.vertices) for piece in pieces)])
     vertices = np.concatenate([piece.vertices for piece in pieces])
     triangles = np.concatenate([p.triangles + o for p, o in zip(pieces, offsets, strict=False)])
@@ -69,7 +70,7 @@ def _parts(pieces: Sequence[Piece]) -> Iterator[tuple[Array, NDArray[np.int64]]]
 
 
 def _hull(points: Array) -> Any:
-    """The convex hull, a trimesh.Trimesh; of what is flat, of a thickened one."""
+    """The convex hull, a trimesh.Trimesh; a flat part is thickened first."""
     try:
         hull = trimesh.convex.convex_hull(points)
         if hull.volume > FLAT_HULL:

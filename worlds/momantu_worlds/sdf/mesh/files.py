@@ -19,15 +19,15 @@ ENDINGS = (".dae", ".stl", ".obj", ".glb", ".gltf", ".ply")
 MOST_BYTES = 64_000_000
 MOST_TRIANGLES_READ = 5_000_000
 FARTHEST = 1e4
-"""m; a mesh that reaches farther is in a wrong unit."""
+"""Largest coordinate of a mesh, m; a larger one means a wrong unit."""
 MOST_NAMED = 12
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Piece:
-    """Triangles of one look. vertices (n, 3) m; triangles (m, 3); uv (n, 2) with its picture.
+    """Triangles with one material. vertices (n, 3) m; triangles (m, 3); uv (n, 2) with its picture.
 
-    color: red, green, blue in 0..1; None where the file says nothing.
+    color: red, green, blue in 0..1; None if the file gives none.
     """
 
     vertices: Array
@@ -39,10 +39,9 @@ class Piece:
 
 @dataclass(frozen=True, slots=True)
 class ReadMesh:
-    """A mesh as a shape has it.
+    """A mesh as a shape uses it.
 
-    up: which axis the file says points up, when that is another than z. missing: files that it
-    names and that are not there.
+    up: the up axis in the file, if it is not z. missing: files that it names and that do not exist.
     """
 
     pieces: tuple[Piece, ...]

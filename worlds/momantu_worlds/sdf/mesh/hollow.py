@@ -13,28 +13,29 @@ from momantu_bt.geometry import Array
 from momantu_bt.world import seeded
 
 SAMPLES = 300
-"""Points tried within a hull."""
+"""Number of sample points in a hull."""
 CORNERS = 8
-"""Each sample is a random mixture of so many corners of the hull."""
+"""Each sample is a random mixture of this many corners of the hull."""
 EVENNESS = 0.6
-"""Of the mixture (Dirichlet's alpha)."""
+"""Evenness of the mixture (Dirichlet's alpha)."""
 INWARD = 0.95
-"""Samples are scaled towards the middle by this factor: visibility on a face is ambiguous."""
+"""Factor by which samples are moved towards the centre: on a face visibility is ambiguous."""
 AIR = 0.15
 """Share of samples in the air above which a part is hollow."""
 ROOM = (2.0, 2.0, 1.5)
-"""m; what extends farther is a building, whichever way its faces look."""
+"""Extents above which a part is a building, m, whatever the orientation of its faces."""
 UP = (0.0, 0.0, 1.0)
 _FLAT = [(np.cos(a), np.sin(a), 0.0) for a in np.arange(8) * np.pi / 4 + 0.1]
 DIRECTIONS = np.array([UP, *_FLAT])
-"""(9, 3) where a point looks to: up and around. Things without a bottom are not hollow."""
+"""Directions (9, 3) of the view from a point: up and around. Parts without a bottom are not
+hollow."""
 
 
 class Air:
     """Tests whether points within a mesh are in free air.
 
-    A point is in the air when it sees the sky, or when most faces around look at it: within
-    matter, one sees the backs of faces.
+    A point is in the air if it has a free view to the sky, or if most faces around it face it:
+    inside matter only the backs of faces are visible.
     """
 
     def __init__(self, parts: Sequence[tuple[Array, NDArray[np.int64]]]) -> None:
@@ -46,7 +47,7 @@ class Air:
         )
 
     def fills(self, hull: Any) -> bool:
-        """Whether much of a hull (a trimesh.Trimesh) is air."""
+        """Whether a large share of a hull (a trimesh.Trimesh) is air."""
         vertices = np.asarray(hull.vertices)
         if (np.ptp(vertices, axis=0) > ROOM).all():
             return True

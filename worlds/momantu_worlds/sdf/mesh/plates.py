@@ -1,4 +1,4 @@
-"""Thin convex plates in place of a hollow mesh's faces, so that its inside stays free."""
+"""Thin convex plates that replace a hollow mesh's faces, so that its inside stays free."""
 
 from __future__ import annotations
 
@@ -13,19 +13,20 @@ from momantu_worlds.sdf.mesh.files import Piece
 from momantu_worlds.sdf.mesh.reducing import clustered
 
 PLATE = 0.01
-"""m; thickness of a plate, to its inner side."""
+"""Thickness of a plate towards its inner side, m."""
 FLAT = 0.02
-"""What the outline of joined triangles may lack of being convex, of its area."""
+"""Largest share of its area by which the outline of joined triangles may differ from a convex
+one."""
 ONE_PLANE = 0.002
-"""m; faces whose planes lie farther apart are different ones."""
+"""Distance above which parallel faces are different ones, m."""
 MOST_PLATES = 600
-"""Of one part; with more, its hull stands for it."""
+"""Most plates of one part; with more, its hull is used."""
 CELL = 0.02
-"""m; finer shapes than this do not matter for a plate."""
+"""Details smaller than this do not matter for a plate, m."""
 MOST_TRIANGLES = 4000
-"""Of a part whose faces become plates; with more it is clustered first."""
+"""Most triangles of a part that becomes plates; with more, its vertices are clustered first."""
 THIN = 1e-9
-"""m2; smaller triangles are left out."""
+"""Area below which triangles are left out, m2."""
 
 
 def plates_of(vertices: Array, triangles: NDArray[np.int64]) -> list[Array]:

@@ -16,14 +16,14 @@ from momantu_bt.formats.places import Place
 from momantu_worlds.sdf.errors import SdfError
 
 MOST_BYTES = 32_000_000
-"""Of one file: a large building saved by Gazebo has some megabytes."""
+"""Largest size of a file, bytes: a large building saved by Gazebo has some megabytes."""
 MOST_DEPTH = 100
 MOST_ELEMENTS = 400_000
 
 
 @dataclass(slots=True)
 class Element:
-    """One element. text: what stands in it beside its children, without blanks around."""
+    """One element. text: its text without the children, without blanks around."""
 
     tag: str
     attributes: dict[str, str]
@@ -52,10 +52,10 @@ class Element:
 
 
 def read_document(file: Path, asked_at: Place | None = None) -> Element:
-    """The root element of a file. asked_at: who wanted it, for messages.
+    """Read the root element of a file. asked_at: the reference to the file, for messages.
 
     Raises:
-        SdfError: it cannot be read, is too big or too deep, is not XML, or declares entities.
+        SdfError: it cannot be read, is too large or too deep, is not XML, or declares entities.
     """
     here = asked_at or Place(str(file))
     try:

@@ -13,7 +13,7 @@ from momantu_worlds.sdf.read.unread import list_leftovers
 from momantu_worlds.sdf.read.values import color_of, flag, name_of, number, pose_of, vector
 
 STRONGEST = 100.0
-"""A light with more intensity leaves nothing but white."""
+"""Largest intensity of a light; more makes everything white."""
 WHITE = (1.0, 1.0, 1.0, 1.0)
 _READ = ("pose", "diffuse", "direction", "intensity", "light_on", "visualize")
 

@@ -20,9 +20,9 @@ from momantu_worlds.sdf.read.values import flag, name_of, number, pose_of
 Named = TypeVar("Named", Link, Joint, Model)
 
 MASS = 1.0
-"""kg; of a link that gives none, as SDF has it."""
+"""Default mass of a link in SDF, kg."""
 MASSES = (1e-5, 1e5)
-"""kg; lighter or heavier things are mistakes."""
+"""Range of possible masses, kg; others are mistakes."""
 _OF_MODEL = ("pose", "static", "link", "joint", "frame", "model", "include")
 _OF_LINK = ("pose", "inertial", "visual", "collision", "light")
 _OF_INCLUDE = ("uri", "name", "pose", "static", "placement_frame")
@@ -201,7 +201,7 @@ def _joint(element: Element, around: str, reading: Reading) -> Joint:
 
 
 def _is_locked(element: Element) -> bool:
-    """Whether limits leave a joint no way: an old spelling of a fixed one."""
+    """Whether limits leave a joint no range: an old way to write a fixed one."""
     axis = element.child("axis")
     if axis is None or axis.find("limit/lower") is None or axis.find("limit/upper") is None:
         return False

@@ -1,4 +1,4 @@
-"""What all readers of one import share: folders, files read so far, deviations, limits."""
+"""What all readers of one import share: folders, open files, deviations, limits."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from momantu_worlds.sdf.read.material_scripts import MaterialScripts
 from momantu_worlds.sdf.read.uris import Library, MissingFile
 
 MOST_SHAPES = 50_000
-"""Visuals and collisions of a whole import; includes within includes multiply quickly."""
+"""Most visuals and collisions of an import; nested includes multiply quickly."""
 MOST_MODELS = 20_000
 MOST_MODELS_DEEP = 40
 MOST_INCLUDES_DEEP = 20
@@ -23,7 +23,7 @@ MOST_INCLUDES_DEEP = 20
 
 @dataclass(slots=True)
 class Reading:
-    """One import as it goes on."""
+    """The state of one import."""
 
     library: Library
     deviations: Deviations

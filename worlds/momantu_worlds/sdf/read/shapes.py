@@ -33,9 +33,9 @@ from momantu_worlds.sdf.read.values import (
 )
 
 INVISIBLE = 0.95
-"""Transparency from which on a visual is there to be felt, not seen."""
+"""Transparency above which a visual is left out as invisible."""
 PLANE_SIZE = (1.0, 1.0)
-"""m; of a plane that gives none, as SDF has it."""
+"""Default size of a plane in SDF, m."""
 _PBR_COLORS = ("pbr/metal/albedo_map", "pbr/specular/albedo_map")
 
 

@@ -33,16 +33,14 @@ NEUTRAL: Mapping[str, tuple[str, ...] | None] = {
     "transparency": ("0", "0.0"),
     "xyz_offset": None,
 }
-"""What changes nothing in our worlds, with the values of which that is true; None: of all.
-
-There are no shadows and no wind, how a solver works is its own affair, bodies do not touch
-themselves.
-"""
+"""Elements that have no effect here, with the values for which that is true; None: all values.
+There are no shadows and no wind, solver settings belong to Gazebo, and bodies do not collide with
+themselves."""
 
 NOTHING_AT_ZERO = ("emissive", "specular", "velocity_decay", "wind")
-"""What says nothing when its numbers are zero."""
+"""Elements that have no effect if all their numbers are zero."""
 COLORS = 3
-"""Of a colour's numbers, the fourth is not a colour."""
+"""Numbers of a colour that count; the fourth is alpha."""
 
 INSTEAD: Mapping[str, str] = {
     "actor": "left out; people who walk are the fault `person_walks`",
@@ -93,13 +91,13 @@ INSTEAD: Mapping[str, str] = {
     "visibility_flags": "every camera sees it",
     "wind": "there is no wind",
 }
-"""What becomes of an element that is not carried over."""
+"""What replaces an element that is not imported."""
 
 
 def list_leftovers(
     element: Element, subject: str, read: Collection[str], deviations: Deviations
 ) -> None:
-    """List the children of an element that nobody reads and that say something."""
+    """List the children of an element that no reader uses and that have an effect."""
     for child in element.children:
         if child.tag not in read and not _says_nothing(child):
             instead = INSTEAD.get(child.tag, "not known here; left out")

@@ -13,12 +13,12 @@ from momantu_worlds.sdf.errors import SdfError
 from momantu_worlds.sdf.read.document import Element, read_document
 
 SEARCH_PATHS = ("GAZEBO_MODEL_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH")
-"""Environment variables in which Gazebo's generations look for models."""
+"""Environment variables in which versions of Gazebo look for models."""
 NEWEST = (1, 11)
-"""Version of SDF up to which files are read."""
+"""Newest version of SDF that is read."""
 OLDEST = (1, 4)
 MOST_NAMED = 6
-"""Folders that a message lists."""
+"""Most folders that a message lists."""
 
 
 def search_folders(
@@ -37,7 +37,7 @@ def search_folders(
 
 
 class MissingFile(Exception):
-    """Nothing of a name is there; the message says where it was looked for."""
+    """There is no file of a name; the message says where it was searched."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +73,7 @@ class Library:
         raise MissingFile(f"{uri!r} is not in {looked}; name its folder by --models")
 
     def _relative(self, path: str, place: Place) -> Iterator[Path]:
-        """Beside the file that says so, then in every folder."""
+        """Search relative to the referring file, then in every folder."""
         for base in (_lexical(Path(place.file)).parent, *self.folders):
             candidate = _lexical(base / path)
             inside = any(candidate.is_relative_to(folder) for folder in self.folders)
@@ -97,7 +97,7 @@ class Library:
             yield folder / name / rest
 
     def _of_fuel(self, path: str, place: Place) -> Iterator[Path]:
-        """A model of Fuel's server, where it was downloaded to; nothing is fetched."""
+        """Find a model of the Fuel server in the download cache; nothing is downloaded."""
         words = path.split("/")
         if "models" in words[:-1]:
             name, *rest = words[words.index("models") + 1 :]
@@ -179,7 +179,7 @@ def _version_of(element: Element) -> tuple[int, int]:
 
 
 def is_there(path: Path) -> bool:
-    """Whether a path leads to anything; names that no disk takes do not."""
+    """Whether a path exists; False for names that the file system rejects."""
     try:
         return path.exists()
     except (OSError, ValueError):
@@ -187,5 +187,5 @@ def is_there(path: Path) -> bool:
 
 
 def _lexical(path: Path) -> Path:
-    """Absolute, without `..`; links stay, for models are often linked into a folder."""
+    """Absolute, without `..`; links are not resolved, as models are often linked into a folder."""
     return Path(os.path.normpath(path.absolute()))

@@ -11,16 +11,16 @@ from momantu_bt.geometry import Transform
 from momantu_worlds.sdf.read.document import Element
 
 FARTHEST = 1e5
-"""m; a length or a coordinate beyond is a mistake, and spoils every sum that it enters."""
+"""Largest length or coordinate, m; a larger one is a mistake."""
 COUNT_OF_POSE = 6
 _TRUE, _FALSE = ("true", "1"), ("false", "0", "")
 
 
 @dataclass(frozen=True, slots=True)
 class Pose:
-    """A pose as written: of something in the frame `relative_to`, or in its usual one if empty.
+    """A pose as written: relative to the frame `relative_to`, or to the usual one if that is empty.
 
-    old: the frame was named as before SDF 1.7, where Gazebo did not care if there was one.
+    old: the frame is given as before SDF 1.7, when Gazebo accepted missing frames.
     """
 
     place: Place

@@ -19,11 +19,11 @@ from momantu_worlds.sdf.read.uris import Library, version_of
 from momantu_worlds.sdf.read.values import color_of, name_of, numbers, pose_of, vector
 
 DOWN = 9.8
-"""m/s2; gravity that is meant to be the Earth's lies within 0.1 of it."""
+"""Gravity within 0.1 of this counts as the Earth's, m/s2."""
 _OF_WORLD = ("model", "include", "light", "frame", "state", "scene", "gravity", "physics")
 _GRAVITY_NEAR = 0.1
 SCALES = (0.001, 1000)
-"""Factors by which a state may scale a model."""
+"""Range of factors by which a state may scale a model."""
 
 
 def read_world(file: Path, folders: Iterable[Path], deviations: Deviations) -> SdfWorld:
@@ -85,7 +85,7 @@ def _list_settings(element: Element, deviations: Deviations) -> None:
 
 
 def _apart(models: Iterable[Model], deviations: Deviations) -> tuple[Model, ...]:
-    """Models with names of their own, as Gazebo numbers them: `can`, `can_0`, `can_1`."""
+    """Rename models with the same name as Gazebo does: `can`, `can_0`, `can_1`."""
     names: dict[str, Model] = {}
     for model in models:
         name, count = model.name, 0

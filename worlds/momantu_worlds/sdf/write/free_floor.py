@@ -14,20 +14,20 @@ from momantu_bt.geometry import Array
 CELL = 0.05
 """m."""
 MOST_CELLS = 1500
-"""Along one side; larger worlds have larger cells."""
+"""Most cells along one side; larger worlds have larger cells."""
 MARGIN = 2.0
-"""m of floor around everything."""
+"""Margin of floor around everything, m."""
 LOWEST, HIGHEST = 0.03, 1.5
-"""m; what is between these heights is in a robot's way."""
+"""Range of heights of obstacles for a robot, m."""
 HALF_WIDTH = 0.35
-"""m; of a robot that turns on the spot."""
+"""Half the width of a robot that turns on the spot, m."""
 
 
 @dataclass(frozen=True, slots=True)
 class FreeFloor:
-    """clearance: (rows, columns) distance to the nearest thing, m; row 0 lies at the least y.
+    """clearance: (rows, columns) distance to the nearest obstacle, m; row 0 is at the smallest y.
 
-    regions: (rows, columns) number of the region in which a robot gets about; 0: it fits nowhere.
+    regions: (rows, columns) number of the connected region; 0: the robot does not fit.
     """
 
     origin: tuple[float, float]

@@ -1,6 +1,6 @@
 """A proposed site of an imported world: surfaces, a start, places, objects to bring.
 
-All of it is a guess from shapes, to be corrected by a person.
+All of it is guessed from shapes and should be corrected by a person.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ from momantu_worlds.sdf.read.model import Box, Cylinder
 from momantu_worlds.sdf.write.free_floor import FreeFloor, free_floor
 
 STAND_OFF = 0.6
-"""m; from a top's edge to the middle of a robot that reaches onto it."""
+"""Distance from a top's edge to the centre of a robot that reaches onto it, m."""
 COMFORT = 0.8
-"""m; a start with as much room around is as good as one with more."""
+"""Clearance above which a start pose is not rated better, m."""
 GRASPED = 0.09
-"""m; the widest thing that is proposed to be brought: a hand opens about as far."""
+"""Largest width of a proposed object, m: about the opening of a gripper."""
 LIGHT = 2.0
-"""kg; the heaviest."""
+"""Largest mass of a proposed object, kg."""
 MOST_PLACES = 6
 APART = 2.5
-"""m; between places."""
+"""Least distance between places, m."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +100,7 @@ def _sides(top: Top, floor: FreeFloor) -> list[tuple[float, int]]:
 
 
 def _region(sides: Iterable[list[tuple[float, int]]], floor: FreeFloor) -> int:
-    """The region from which the most tops are reached; else the largest."""
+    """The region from which most tops can be reached; else the largest."""
     votes = Counter(region for ways in sides for region in sorted({r for _, r in ways}))
     if votes:
         return min(votes, key=lambda region: (-votes[region], -floor.area(region), region))
@@ -108,7 +108,7 @@ def _region(sides: Iterable[list[tuple[float, int]]], floor: FreeFloor) -> int:
 
 
 def _start(floor: FreeFloor, region: int, tops: Sequence[Top]) -> Pose2D:
-    """A roomy place near the tops, or near the middle of the region; it faces the nearest top."""
+    """A start with clearance near the tops, or the region's centre; faces the nearest top."""
     inside = floor.regions == region
     room = min(float(floor.clearance[inside].max(initial=0.0)), COMFORT)
     points = floor.points(inside & (floor.clearance >= room - floor.cell / 2))
@@ -123,14 +123,14 @@ def _start(floor: FreeFloor, region: int, tops: Sequence[Top]) -> Pose2D:
 
 
 def _clear(floor: FreeFloor, start: Pose2D) -> float:
-    """Half the edge of a square that surely is free around the start, m."""
+    """Half the edge of a square around the start that is certainly free, m."""
     index = floor.index(start.x, start.y)
     free = COMFORT if index is None else float(floor.clearance[index]) - floor.cell
     return max(min(free, COMFORT) / math.sqrt(2.0), 0.05)
 
 
 def _places(floor: FreeFloor, region: int, start: Pose2D) -> dict[str, Pose2D]:
-    """The start as home, and roomy points of its region far from each other."""
+    """The start as home, and points of its region with clearance, far from each other."""
     places = {"home": start}
     points = floor.points((floor.regions == region) & (floor.clearance > COMFORT))
     away = np.hypot(points[:, 0] - start.x, points[:, 1] - start.y)
@@ -142,7 +142,7 @@ def _places(floor: FreeFloor, region: int, start: Pose2D) -> dict[str, Pose2D]:
 
 
 def _sizes(body: ImportedBody) -> dict[str, str | float] | None:
-    """What the robot would be told of a loose thing that one hand can hold."""
+    """What the robot is told about a loose object that one hand can hold."""
     touched = [part.solid for part in body.parts if part.collision]
     if body.still or len(touched) != 1 or (body.mass or 0.0) > LIGHT:
         return None

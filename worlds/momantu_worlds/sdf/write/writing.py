@@ -16,9 +16,9 @@ from momantu_worlds.sdf.read.model import Box, Cylinder, Sphere
 from momantu_worlds.sdf.write.proposal import Proposal, Surface
 
 BARE = 20.0
-"""m; edge of a floor on which nothing stands."""
+"""Edge of a floor without any bodies, m."""
 DECIMALS = 6
-"""Of metres and radians: a micrometre."""
+"""Decimals of metres and radians: a micrometre."""
 
 
 @dataclass(frozen=True, slots=True)
