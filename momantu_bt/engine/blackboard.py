@@ -1,7 +1,7 @@
 """The blackboard of one run: cells that hold values, boards that name them.
 
-A board belongs to one use of a subtree. A key that a wire connects to a key outside is the same
-cell, so what a node reads costs one attribute at run time however deep it sits.
+Each use of a subtree has a board of its own. If a key of the subtree is connected to a key outside,
+both names lead to the same cell. So a node reads a value by one attribute access, at any depth.
 """
 
 from __future__ import annotations
@@ -14,19 +14,19 @@ from momantu_bt.skill import MISSING
 from momantu_bt.values.contents import freeze
 
 ROOT_MARK = "@"
-"""Before a key in a script: the key of the root's board."""
+"""Prefix of a key in a script: it means the key of the root's board."""
 PRIVATE_MARK = "_"
-"""A key that starts so is never connected by an automatic remapping (BehaviorTree.CPP's rule)."""
+"""Prefix of keys that automatic remapping never connects (BehaviorTree.CPP's rule)."""
 
 
 Journal: TypeAlias = "list[tuple[Cell, Any]]"
-"""Cells in the order they were written, each with the value it held before."""
+"""Cells in the order of their writes, each with its value before the write."""
 
 
 class Cell:
     """One value, or MISSING. Values are immutable; each write is noted in the run's journal.
 
-    writes: how often it was written; a node that remembers it sees whether something is new.
+    writes: how often it was written; by this count a node notices a new write.
     """
 
     __slots__ = ("_journal", "name", "value", "writes")
@@ -42,7 +42,7 @@ class Cell:
         self.store(freeze(value))
 
     def store(self, value: Any) -> None:
-        """The same with a value that is immutable already."""
+        """Replace the value by one that is already immutable."""
         self._journal.append((self, self.value))
         self.value = value
         self.writes += 1
@@ -51,7 +51,7 @@ class Cell:
 class ReadOnlyCell(Cell):
     """A key that the engine publishes, such as `@robot`: its value is computed when read.
 
-    It counts as written whenever it is found to be another object than the last time.
+    It counts as written whenever a read finds another object than the read before.
     """
 
     __slots__ = ("_ask", "_count", "_last")
@@ -84,15 +84,16 @@ class ReadOnlyCell(Cell):
         raise AttributeError("the engine counts the writes of a key that it publishes")
 
     def store(self, value: Any) -> None:
-        """Never possible: raises Failure SCRIPT_ERROR."""
+        """Raise Failure SCRIPT_ERROR: the key is read-only."""
         self.value = value
 
 
 class Board:
-    """The keys that one use of a tree sees. Implements what scripts need: get, set, has.
+    """The keys that one use of a tree sees. It has the methods that scripts need: get, set, has.
 
-    outer: the board of the tree that holds this subtree; None for the root's.
-    wires: keys of this board that are keys of the outer one. autoremap: so are all others.
+    outer: the board of the tree that contains this subtree; None for the root.
+    wires: keys of this board that are connected to cells of the outer one. autoremap: all other
+    keys are connected to the outer keys of the same name.
     """
 
     def __init__(
@@ -111,7 +112,7 @@ class Board:
         self._outer = outer if autoremap else None
 
     def cell(self, key: str) -> Cell:
-        """The cell of a key, made when there is none; `@key` is the root's."""
+        """The cell of a key; it is created if needed. `@key` is a key of the root's board."""
         if key.startswith(ROOT_MARK):
             return self.root.cell(key[1:])
         found = self.cells.get(key)
@@ -124,22 +125,22 @@ class Board:
         return found
 
     def publish(self, cell: ReadOnlyCell) -> None:
-        """Add a read-only key; before the nodes are built, which keep the cells they find."""
+        """Add a read-only key. Call it before nodes are built, as they keep the cells they find."""
         self.cells[cell.name] = cell
 
     def with_cells(self, cells: Mapping[str, Cell]) -> Board:
-        """The same keys, except that some names mean other cells (`failure` in a handler)."""
+        """A board with the same keys, but other cells for some names (`failure` in a handler)."""
         return _Overlay(self, cells)
 
     def get(self, key: str) -> Any:
-        """A key's value; KeyError when it has none."""
+        """A key's value; KeyError if it has none."""
         value = self.cell(key).value
         if value is MISSING:
             raise KeyError(key)
         return value
 
     def set(self, key: str, value: Any) -> None:
-        """Write a key, the value made immutable; Failure SCRIPT_ERROR for one that is read-only."""
+        """Make a value immutable and write it; Failure SCRIPT_ERROR if the key is read-only."""
         self.cell(key).write(value)
 
     def has(self, key: str) -> bool:
@@ -147,7 +148,7 @@ class Board:
         return self.cell(key).value is not MISSING
 
     def values(self) -> dict[str, Any]:
-        """Every key that has a value, in the order of the names; read-only ones left out."""
+        """All keys that have a value, sorted by name, without read-only ones."""
         found = {key: self.cells[key] for key in sorted(self.cells)}
         return {
             key: cell.value
@@ -168,7 +169,7 @@ class _Overlay(Board):
 
 
 def written(journal: Journal) -> list[tuple[Cell, Any]]:
-    """Each write with its value: what the next write to its cell found, or the current value."""
+    """Each write of a journal: its cell and the value that it wrote."""
     after: dict[Cell, Any] = {}
     found = []
     for cell, before in reversed(journal):
@@ -179,7 +180,7 @@ def written(journal: Journal) -> list[tuple[Cell, Any]]:
 
 
 def rollback(before: Iterable[tuple[Cell, Any]]) -> None:
-    """Give cells back the values they had; MISSING clears them."""
+    """Restore the values that cells had before; MISSING clears a cell."""
     for cell, value in before:
         if cell.value is not value:
             cell.store(value)

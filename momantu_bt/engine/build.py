@@ -1,4 +1,4 @@
-"""From the checked model of a tree file to nodes that can be ticked."""
+"""Builds nodes that can be ticked from the checked model of a tree file."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ from momantu_bt.tree.substitute.substitution import Substitution, reached
 from momantu_bt.values.words import ConversionError
 
 MAX_DEPTH = 250
-"""Nodes within nodes, subtrees counted; each costs two of Python's 1000 frames when ticked."""
+"""Deepest nesting, subtrees included. A level takes two of Python's 1000 stack frames in a tick."""
 
 SkillFinder: TypeAlias = Callable[[str], type[Skill]]
 
 
 @dataclass(frozen=True, slots=True)
 class Built:
-    """A tree ready to be ticked. nodes: in the order of the file. board: the root's."""
+    """A tree that is ready to be ticked. nodes: in file order. board: of the root."""
 
     root: TreeNode
     nodes: tuple[TreeNode, ...]
@@ -47,8 +47,8 @@ def build(
 ) -> Built:
     """Make the nodes of a document's main tree, subtrees included.
 
-    skill_of: a skill's class by name; PluginError passes through. board: the root's, an empty
-    one unless given. substitution: what nodes do instead of themselves.
+    skill_of: finds a skill's class by name; its PluginError is passed on. board: the root's board;
+    by default an empty one. substitution: the nodes to replace, and by what.
 
     Raises:
         BuildError: an unknown node, a literal that does not fit, nesting beyond MAX_DEPTH.
@@ -142,7 +142,7 @@ class _Builder:
         return SkillLeaf(replace(parts, ports=kind.ports), kind=kind, path=f"{path}:{model.type}")
 
     def _with_handlers(self, parts: Parts, path: str) -> Parts:
-        """The nodes that answer failures, which see the failure as a key."""
+        """Add the handlers' nodes; they see the failure as a key."""
         caught = Cell(f"{path}/failure", self.context.writes)
         inside = parts.board.with_cells({FAILURE_KEY: caught})
         kids = list(parts.kids)
@@ -172,7 +172,7 @@ class _Builder:
     def _given(
         self, tree: Tree, values: Mapping[str, PortValue], outer: Board, inner: Board
     ) -> dict[str, tuple[Cell, Reader]]:
-        """The values written to inner keys at each start: all but plain wires, and defaults."""
+        """Inner keys that are written at each start, with their values: all that are not wires."""
         given: dict[str, tuple[Cell, Reader]] = {}
         for name, value in values.items():
             if not _is_wire(value):
@@ -195,9 +195,9 @@ def _declared(tree: Tree, name: str) -> Port:
 
 
 def skills_in(document: Document, substitution: Substitution | None = None) -> tuple[str, ...]:
-    """Names of the skills that a run can reach, in the order of the file.
+    """Names of the skills that a run can reach, in file order.
 
-    substitution: what it replaces for good is not run.
+    substitution: skills that it replaces for the whole run are left out.
     """
     replacing = substitution or Substitution()
     found = {

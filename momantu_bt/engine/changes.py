@@ -1,4 +1,4 @@
-"""The journal of statuses: which nodes changed in a tick, and what others see of a node."""
+"""The status changes of a tick, and the part of a node that observers see."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ class SeenNode(Protocol):
 
     @property
     def role(self) -> Role:
-        """Its role for a reader."""
+        """Its role in displays."""
         ...
 
     @property
     def note(self) -> str:
-        """The text beside it while it runs."""
+        """Text to show beside it while it runs."""
         ...
 
     @property
@@ -35,7 +35,7 @@ class SeenNode(Protocol):
 
     @property
     def above(self) -> SeenNode | None:
-        """The node around it; None of the root."""
+        """Its parent; None for the root."""
         ...
 
     @property
@@ -45,9 +45,9 @@ class SeenNode(Protocol):
 
 
 class Change(NamedTuple):
-    """A node's status changed, or its note did while it was RUNNING.
+    """A change of a node's status, or of its note while it was RUNNING.
 
-    failure: why, with FAILURE; the node itself may have started again within the tick.
+    failure: with FAILURE, the reason. It is kept here as the node may restart in the same tick.
     """
 
     node: SeenNode

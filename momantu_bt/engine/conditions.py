@@ -1,7 +1,7 @@
-"""A node's conditions and scripts, run at the moments BehaviorTree.CPP runs them.
+"""A node's conditions and scripts, run at the same moments as in BehaviorTree.CPP.
 
-`fail_if`, `succeed_if` and `skip_if` are asked only of a node that is not running; `while` on
-each tick. `on_success`, `on_failure` and `after` follow an end, `on_halt` a halt.
+`fail_if`, `succeed_if` and `skip_if` are evaluated when the node starts, `while` on each tick.
+`on_success`, `on_failure` and `after` run at the node's end, `on_halt` when it is halted.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from momantu_bt.tree.script import Script, parse, truth
 _BEFORE: Mapping[str, Status] = {"fail_if": FAILURE, "succeed_if": SUCCESS, "skip_if": SKIPPED}
 WHILE = "while"
 ASKED = (*_BEFORE, WHILE)
-"""Conditions; the other scripts only do something."""
+"""The conditions; the other scripts do not decide anything."""
 
 
 class Conditions:
-    """The scripts of one node on the board it sees; ScriptError passes through every method.
+    """The scripts of one node and the board that it sees. Each method may raise ScriptError.
 
-    counts: of each condition, how often it was asked and how often it held.
+    counts: for each condition, how often it was evaluated and how often it was true.
     """
 
     def __init__(self, scripts: Mapping[str, str], board: Board) -> None:
@@ -31,11 +31,11 @@ class Conditions:
         self.counts = {name: [0, 0] for name in scripts if name in ASKED}
 
     def text(self, name: str) -> str:
-        """One of the scripts as written."""
+        """The text of a script."""
         return self._texts.get(name, "")
 
     def before(self, state: Status) -> Status | None:
-        """The status that a condition decides, or None: then the node is ticked."""
+        """The status that a condition decides; None: tick the node."""
         if state is IDLE:
             for name, decided in _BEFORE.items():
                 if name in self._parsed and self._holds(name):
@@ -47,7 +47,7 @@ class Conditions:
         return None
 
     def _holds(self, name: str) -> bool:
-        """Ask one, and count that."""
+        """Evaluate a condition and count it."""
         held = truth(self._parsed[name].run(self._board))
         counted = self.counts[name]
         counted[0] += 1

@@ -1,4 +1,4 @@
-"""What every node of a run shares: the clock's reading, the journals, the robot."""
+"""The context that all nodes of a run share: time, journals, robot, events."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ T = TypeVar("T")
 
 
 class Remarked(NamedTuple):
-    """Something that a person should read, and that never influences the run."""
+    """A message for a person; it never influences the run."""
 
     text: str
 
@@ -29,12 +29,12 @@ class Remarked(NamedTuple):
 class RunContext:
     """Shared by the nodes of one run.
 
-    now: seconds of the world's clock at this tick. tick: its number, from 1.
-    writes: cells written in this tick, with what they held before. changes: of statuses.
+    now: time of the world's clock at this tick, s. tick: its number, from 1.
+    writes: cells written in this tick, with their values before. changes: of statuses in this tick.
     person: answers questions.
-    waited: seconds of wall time that the run has spent waiting for a person.
-    outside: whatever comes from beyond the tree comes through it. watchdog: ends what hangs.
-    events: what happens, for those who watch.
+    waited: wall time that the run has spent waiting for a person, s.
+    outside: source of everything that the tree gets from outside. watchdog: ends steps that hang.
+    events: the stream of events, for observers.
     """
 
     clock: Clock
@@ -51,18 +51,18 @@ class RunContext:
     watchdog: Watchdog = field(default_factory=Watchdog)
 
     def begin_tick(self) -> None:
-        """Take the clock's reading and start empty journals."""
+        """Read the clock and empty the journals."""
         self.now = self.clock.now()
         self.tick += 1
         self.writes.clear()
         self.changes.clear()
 
     def remark(self, text: str) -> None:
-        """Publish a remark for a reader."""
+        """Publish a remark for a person."""
         self.events.publish(Remarked(text))
 
     def ask(self, key: str, ask: Callable[[], T]) -> T:
-        """The answer of `ask`, through the outside. key: the name of the question.
+        """Call `ask` through `outside`, which may record or replay it. key: the question's name.
 
         Raises:
             Failure: there is no answer.

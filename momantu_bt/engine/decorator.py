@@ -8,11 +8,11 @@ from momantu_bt.engine.status import FAILURE, IDLE, SUCCESS, Status
 
 
 class Decorator(TreeNode):
-    """A node around one child. An end that the child is left with is cleared after each tick."""
+    """A node around one child. When the child has ended, it is reset after the tick."""
 
     @property
     def role(self) -> Role:
-        """It is drawn with its child."""
+        """Its role in displays: it is drawn together with its child."""
         return Role.AROUND
 
     @property
@@ -21,7 +21,7 @@ class Decorator(TreeNode):
         return self.kids[0]
 
     def execute(self) -> Status:
-        """Tick, then clear the child's end, so that its conditions are asked again."""
+        """Tick, then reset a child that has ended, so that its conditions are evaluated again."""
         new = super().execute()
         child = self.kids[0]
         if child.state is SUCCESS or child.state is FAILURE:
@@ -29,7 +29,7 @@ class Decorator(TreeNode):
         return new
 
     def pass_on(self, status: Status) -> Status:
-        """The child's status as this node's own, its failure included."""
+        """Return the child's status as this node's, with the child's failure."""
         if status is FAILURE:
             return self.fail_with(self.failure_of(self.child))
         return status

@@ -1,4 +1,4 @@
-"""Values as bytes, the same bytes for the same value in every process."""
+"""Encodes values as bytes; equal values give the same bytes in every process."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ from momantu_bt.skill import MISSING
 
 _FLOAT = struct.Struct("<d").pack
 _PLACE, _TRACEBACK = "place", "traceback"
-"""Parts of a failure that depend on where the files lie; neither enters."""
+"""Parts of a failure that depend on where files are; they are left out."""
 
 _Writer: TypeAlias = Callable[[Any, list[bytes]], None]
 
 
 def encode(value: Any) -> bytes:
-    """Canonical bytes: every float to its last bit, mappings in the order of their keys.
+    """Canonical bytes of a value: all bits of each float, mappings sorted by key.
 
-    A value of an unknown kind counts by its type alone.
+    For a value of an unknown kind, only the name of its type is encoded.
     """
     if type(value) is float:
         return b"f" + _FLOAT(value)
@@ -117,4 +117,4 @@ _WRITERS: tuple[tuple[Any, _Writer], ...] = (
     (list | tuple, _list),
     (FailureValue, _failure),
 )
-"""What is written how, the first that fits; the rest are dataclasses, or unknown."""
+"""The writer for each type; the first that fits is used. Other types are dataclasses or unknown."""

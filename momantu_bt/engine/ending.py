@@ -8,7 +8,7 @@ from momantu_bt.failure import FailureValue
 from momantu_bt.world import Verdict
 
 SUCCESS, FAILURE, INTERRUPTED, ERROR = "SUCCESS", "FAILURE", "INTERRUPTED", "ERROR"
-"""Of the tree; somebody ended it; an internal error did."""
+"""The four ways to end: the tree's two results, interrupted by somebody, an internal error."""
 
 
 @dataclass(frozen=True, slots=True)

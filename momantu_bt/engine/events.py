@@ -1,4 +1,4 @@
-"""The stream of events of a run: each event reaches its subscribers at the moment it happens.
+"""The events of a run: each one is passed to its subscribers at the moment it happens.
 
 Kinds of events are defined beside their publishers: `Ticked`, `Stepping` and `NodeStarting` in
 `executor.py`, `SkillStepped`, `SkillEnded` and `Answered` in `outside.py`, `Remarked` in
@@ -17,7 +17,7 @@ E = TypeVar("E")
 class Events:
     """The stream of one run. Events of one kind reach their subscribers in order of subscription.
 
-    An exception of a subscriber ends the run: one that must not disturb the run catches its own.
+    An exception in a subscriber ends the run. A subscriber that must not do so catches its own.
     """
 
     def __init__(self) -> None:

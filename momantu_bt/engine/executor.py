@@ -1,4 +1,4 @@
-"""The run: step the world, services, tree, observers, until it ends and everything stands still."""
+"""Runs a tree: steps the world, services, tree and observers, until the robot stands still."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ from momantu_bt.messages import RobotState
 from momantu_bt.world import Verdict, World
 
 SETTLE = 1.5
-"""Simulated seconds after the end in which everything stops: the referee wants 1 s of stillness."""
+"""Simulated time after the end, s, for everything to stop; the referee needs 1 s of stillness."""
 
 
 class Stepper(Protocol):
-    """A world, or a clock where a tree needs no world."""
+    """A world, or only a clock for a tree without a world."""
 
     def now(self) -> float:
         """Seconds since the run began."""
@@ -39,31 +39,31 @@ class Stepper(Protocol):
 
 
 class Observer(Protocol):
-    """Sees each tick and changes nothing."""
+    """Observes each tick without changing the run."""
 
     def ticked(self, run: Executor) -> None:
-        """After each tick, and after each step while everything comes to rest."""
+        """Called after each tick, and after each step while the robot comes to rest."""
         ...
 
     def close(self) -> None:
-        """The run is over."""
+        """Called when the run is over."""
         ...
 
 
 class Stepping(NamedTuple):
-    """The world is about to step on. settling: the tree has ended, and the robot comes to rest."""
+    """The world will step now. settling: the tree has ended and the robot is coming to rest."""
 
     settling: bool
 
 
 class Ticked(NamedTuple):
-    """A tick is over, or a step while everything comes to rest; the journals still hold it."""
+    """A tick is over, or a step while the robot comes to rest. The journals still describe it."""
 
     run: Executor
 
 
 class NodeStarting(NamedTuple):
-    """A node that is not running is about to be ticked."""
+    """A node that is not running will be ticked now."""
 
     node: TreeNode
 
@@ -71,7 +71,7 @@ class NodeStarting(NamedTuple):
 class Executor:
     """Runs one tree once.
 
-    settling: the tree has ended and the robot comes to rest. state: what the robot reported last.
+    settling: the tree has ended and the robot is coming to rest. state: the robot's last state.
     """
 
     def __init__(
@@ -104,7 +104,7 @@ class Executor:
         self.context.events.subscribe(Ticked, lambda event: observer.ticked(event.run))
 
     def run(self, interrupts: Interrupts) -> Ending:
-        """From the first tick to the last; nothing but an interrupt's second signal escapes."""
+        """Run from the first tick to the last. Only a second signal of an interrupt is raised."""
         started = time.perf_counter()
         interrupts.patient = True
         self._publish_starts(interrupts)
@@ -123,7 +123,7 @@ class Executor:
         return Ending(status, self._failure, verdict, sim_time, wall_time, ticks, self._error)
 
     def _publish_starts(self, interrupts: Interrupts) -> None:
-        """Publish the starts of nodes, if there are subscribers; an interrupt suspends the tree."""
+        """Make nodes publish their starts, if anyone subscribes; after an interrupt none is ticked."""
         if not self.context.events.has_subscribers(NodeStarting):
             return
         for node in self.built.nodes:
@@ -156,7 +156,7 @@ class Executor:
                 time.sleep(max(0.0, due - time.perf_counter()))
 
     def _step(self) -> None:
-        """Step the world; it is known to be sound when it comes back."""
+        """Step the world; mark it as broken while the step lasts, in case it raises."""
         if self._error is None:
             self.context.events.publish(Stepping(self.settling))
         self.context.watchdog.beat()
@@ -165,7 +165,7 @@ class Executor:
         self._world_is_sound = True
 
     def begin(self) -> None:
-        """Before the first tick: services start."""
+        """Start the services; call it before the first tick."""
         body = self.context.body
         self.fingerprint.add(None, (), (), self._written())
         if body is not None:
@@ -173,7 +173,7 @@ class Executor:
             self.services.start(body.site, body.frames, self._stepper, self.context.seed)
 
     def tick(self) -> Status:
-        """One tick: the world steps, then services, the tree and the observers take their turns."""
+        """Run one tick: step the world, then the services, the tree and the observers."""
         self._step()
         self.context.begin_tick()
         body = self.context.body
@@ -186,7 +186,7 @@ class Executor:
         return status
 
     def _note(self) -> None:
-        """Fingerprint what happened, then show it to the observers."""
+        """Add the tick to the fingerprint, then call the observers."""
         context, body = self.context, self.context.body
         issued = [] if body is None else body.actuators.issued
         self.fingerprint.add(
@@ -227,7 +227,7 @@ class Executor:
             return None
 
     def stop(self) -> None:
-        """Halt the tree; every actuator is stopped even when halting the tree goes wrong."""
+        """Halt the tree and stop every actuator, even if halting the tree raises."""
         try:
             halt_tree(self.built)
         finally:
@@ -247,7 +247,7 @@ class Executor:
         self._note()
 
     def _settle_unseen(self) -> None:
-        """Let the world come to rest after an error, without observers: they may have broken."""
+        """Let the world come to rest after an error, without observers, as one may be the cause."""
         if self.world is None or not self._world_is_sound:
             return
         until = self._stepper.now() + SETTLE
@@ -256,16 +256,16 @@ class Executor:
 
 
 def _told(error: Exception) -> str:
-    """The traceback; its last line ends with the node in which it happened."""
+    """The traceback of an error; its last line also names the node in which it happened."""
     text = "".join(traceback.format_exception(error)).rstrip()
     node = ticked_in(error)
     return f"{text}\n" if node is None else f"{text}, in the node {node.where}\n"
 
 
 def halt_tree(built: Built) -> None:
-    """Halt a tree; nodes that an exception left running are halted one by one.
+    """Halt a tree; also halt each node that an exception left running.
 
-    What goes wrong in one node keeps no other from being halted; the first is raised.
+    All nodes are halted even if one raises; the first exception is raised at the end.
     """
     troubles: list[Exception] = []
     for halt in (built.root.reset, *map(_halting, reversed(built.nodes))):

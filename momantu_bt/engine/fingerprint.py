@@ -13,11 +13,11 @@ from momantu_bt.messages import ActuatorGoal, RobotState
 
 
 class Fingerprint:
-    """Feed it each tick; `hexdigest` at the end.
+    """Call `add` for each tick, and `hexdigest` at the end.
 
-    It takes what the robot reported, each command and stop in order, each node whose status
-    changed, and each cell that was written. Names of files do not enter.
-    state: what the robot reported in the newest tick, every float to its last bit.
+    The hash covers the robot's state, each command and stop in order, each change of a node's
+    status, and each write to a cell. It does not cover names of files.
+    state: bytes of the robot's state in the newest tick, with all bits of each float.
     """
 
     def __init__(self) -> None:
@@ -33,7 +33,7 @@ class Fingerprint:
         statuses: Iterable[tuple[int, str]],
         written: Iterable[tuple[str, Any]],
     ) -> None:
-        """One tick. statuses: (node index, status name); written: (cell name, value)."""
+        """Add one tick. statuses: (node index, status name). written: (cell name, value)."""
         update = self._hash.update
         if state is not None:
             self.state = _state_bytes(state)
@@ -46,11 +46,11 @@ class Fingerprint:
         update(b"|")
 
     def hexdigest(self) -> str:
-        """64 hexadecimal digits of all ticks so far."""
+        """The fingerprint of all ticks so far, 64 hexadecimal digits."""
         return self._hash.hexdigest()
 
     def _status_bytes(self, change: tuple[int, str]) -> bytes:
-        """The same few changes come again and again."""
+        """The bytes of a status change; cached, as the same ones recur often."""
         known = self._statuses.get(change)
         if known is None:
             index, status = change
@@ -58,7 +58,7 @@ class Fingerprint:
         return known
 
     def _goal_bytes(self, command: Issued) -> bytes:
-        """A goal's bytes; a trajectory that is commanded again is not encoded again."""
+        """The bytes of a command; cached for a trajectory that is commanded again."""
         goal = command.goal
         assert goal is not None
         known = self._goals.get(command.actuator)

@@ -1,7 +1,7 @@
-"""Ctrl-C and SIGTERM: noted when they come, obeyed between two ticks.
+"""Ctrl-C and SIGTERM: noted when they arrive, handled between two ticks.
 
-Native code (a planner, a renderer) is never torn out of its work. Before the first tick, and
-when a second signal comes, it is a KeyboardInterrupt wherever the program is.
+So native code (a planner, a renderer) is never interrupted. Before the first tick, and on a second
+signal, a KeyboardInterrupt is raised at once.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 class Interrupts:
-    """While it is entered it catches the signals. Outside the main thread it does nothing.
+    """A context manager that catches the signals. Outside the main thread it does nothing.
 
-    requested: a signal has come. patient: it is obeyed between two ticks; else at once.
+    requested: a signal has arrived. patient: handle it between two ticks; else at once.
     """
 
     def __init__(self) -> None:

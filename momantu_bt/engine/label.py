@@ -1,4 +1,4 @@
-"""A node's one line for people, with the values that its wires carried when it started."""
+"""The text of a node in one line, with the values of its inputs at its start."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from momantu_bt.tree.model import Literal, Node, PortValue
 from momantu_bt.tree.show.printing import text
 
 _SHORT = (str, int, float, bool)
-"""Values that fit into a line; of others the wire's name is shown."""
+"""Types of values that fit into a line; for others the key is shown."""
 
 
 def label(model: Node, values: Mapping[str, Any]) -> str:
-    """`dock at bay_a` where the file says `dock: {at: $bay}`."""
+    """A node's text with values for keys: `dock at bay_a` for `dock: {at: $bay}`."""
     ports: dict[str, PortValue] = {}
     for name, written in model.ports.items():
         value = values.get(name)

@@ -1,7 +1,7 @@
-"""What reaches a tree from outside: steps of skills, published values, odometry, people's answers.
+"""Everything a tree gets from outside: steps of skills, published values, odometry, answers.
 
-All else that a tree does follows from its file, its clock and its own blackboard. So who keeps
-what came from outside can have the same tree do the same again, without a world.
+The rest of a run follows from the tree file, the clock and the blackboard. So a replay that has
+recorded these things can repeat the run without a world.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from momantu_bt.world import seeded
 T = TypeVar("T")
 
 PERSON, POSITION, SPEED = "a person", "odometry's position", "odometry's speed"
-"""Keys of what is asked. Those of published values are the blackboard's, which have no spaces."""
+"""Names of questions. Published values use their blackboard keys, which have no spaces."""
 
 
 class SkillSession(Protocol):
@@ -33,7 +33,7 @@ class SkillSession(Protocol):
 
     @property
     def outputs(self) -> dict[str, Any]:
-        """Values of the output ports that hold one."""
+        """Values of the output ports that have one."""
         ...
 
     def step(self, live_inputs: Mapping[str, Any] | None = None) -> Status:
@@ -41,7 +41,7 @@ class SkillSession(Protocol):
         ...
 
     def halt(self) -> None:
-        """End it wherever it is."""
+        """Stop the skill at any point."""
         ...
 
 
@@ -55,12 +55,12 @@ class Surroundings(Protocol):
 
     @property
     def seed(self) -> int:
-        """The run's."""
+        """The run's seed."""
         ...
 
     @property
     def body(self) -> Body | None:
-        """The robot; None in a run without a world."""
+        """The robot and its surroundings; None in a run without a world."""
         ...
 
 
@@ -78,15 +78,15 @@ class SkillNode(SeenNode, Protocol):
 
     @property
     def context(self) -> Surroundings:
-        """The run that it belongs to."""
+        """The run to which it belongs."""
         ...
 
 
 class Outside:
-    """The real outside: skills run on the robot, questions go to a person."""
+    """The outside of a normal run: skills run on the robot, and a person answers questions."""
 
     def runs_skills(self, body: Body | None) -> bool:
-        """Whether a tree may have skills."""
+        """Whether the run can start skills."""
         return body is not None
 
     def begin(self, leaf: SkillNode, inputs: Mapping[str, Any]) -> SkillSession:
@@ -105,12 +105,12 @@ class Outside:
         return Session(leaf.kind, inputs, lease, surroundings)
 
     def ask(self, key: str, ask: Callable[[], T]) -> T:
-        """The answer of `ask`. key: the name of the question, such as `battery`."""
+        """Call `ask` and return its answer. key: the name of the question, such as `battery`."""
         return ask()
 
 
 class SkillStepped(NamedTuple):
-    """A leaf's skill has made a step; what it gave is not on the blackboard yet."""
+    """A leaf's skill has made a step. Its outputs are not on the blackboard yet."""
 
     leaf: SkillNode
     session: SkillSession
@@ -118,14 +118,14 @@ class SkillStepped(NamedTuple):
 
 
 class SkillEnded(NamedTuple):
-    """A leaf's skill has ended on its own; its outputs are not on the blackboard yet."""
+    """A leaf's skill has ended without being halted. Its outputs are not on the blackboard yet."""
 
     leaf: SkillNode
     session: SkillSession
 
 
 class Answered(NamedTuple):
-    """The outside has answered. key: as in `Outside.ask`. answer: `Refused` for a failure."""
+    """A question was answered. key: as in `Outside.ask`. answer: `Refused` for a failure."""
 
     key: str
     answer: Any

@@ -1,4 +1,4 @@
-"""Persons who answer a tree's questions: at the terminal, scripted, or none."""
+"""The person who answers a tree's questions, and a scripted one."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from typing import Protocol
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """A question of a tree. choices: the valid answers; without any, every text is valid.
+    """A question of a tree. choices: the valid answers; if empty, every text is valid.
 
-    default: what counts when nobody answers; None: then there is no answer.
+    default: the answer if nobody answers, or None.
     """
 
     text: str
@@ -19,7 +19,7 @@ class Question:
     default: str | None = None
 
     def taken(self, said: str) -> str | None:
-        """The answer that something said means; None where it means none."""
+        """The valid answer for what a person said, or None."""
         said = said.strip()
         if not self.choices:
             return said or None
@@ -31,14 +31,14 @@ class Question:
         return near[0] if len(near) == 1 else None
 
     def complaint(self, said: str) -> str:
-        """Why something said is not an answer."""
+        """Why what a person said is not a valid answer."""
         if not self.choices:
             return "an answer is needed"
         return f"{said.strip()!r} is not one of: {', '.join(self.choices)}"
 
 
 class Interrupted(Exception):
-    """The run was interrupted while a person was thinking."""
+    """The run was interrupted while it waited for an answer."""
 
 
 class Person(Protocol):
@@ -50,28 +50,28 @@ class Person(Protocol):
         complaint: why the previous answer was refused, empty at first.
 
         Raises:
-            Interrupted: instead of answering, the person ended the run.
+            Interrupted: the person ended the run instead of answering.
         """
         ...
 
 
 class Scripted:
-    """A scripted person: gives its answers in turn, and none after the last."""
+    """A scripted person: gives its answers in order; after the last one, nobody answers."""
 
     def __init__(self, answers: Iterable[str | bool] = ()) -> None:
         self._answers = iter(answers)
 
     def ask(self, question: Question, complaint: str) -> str | None:
-        """The next answer; True and False are yes and no."""
+        """The next answer; True and False become yes and no."""
         said = next(self._answers, None)
         return {True: "yes", False: "no"}[said] if isinstance(said, bool) else said
 
 
 def answer(person: Person, question: Question) -> str | None:
-    """Ask until an answer is valid; the default, or None, when nobody answers.
+    """Ask until an answer is valid; if nobody answers, return the default or None.
 
     Raises:
-        Interrupted: the run is to end.
+        Interrupted: the person ended the run.
     """
     complaint = ""
     while True:

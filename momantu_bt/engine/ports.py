@@ -1,4 +1,4 @@
-"""Readers and writers of a node's wired ports, made once when the tree is built."""
+"""Functions that read a node's inputs and write its outputs, made when the tree is built."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ Reader: TypeAlias = Callable[[], Any]
 
 
 def cell_of(reference: Reference, board: Board) -> Cell:
-    """The cell that a wire leads to; parts of a value are not followed."""
+    """The cell of the key that a reference names; for `$found.pose` that of `found`."""
     mark = ROOT_MARK if reference.scope is Scope.ROOT else ""
     return board.cell(mark + reference.key)
 
 
 def reader(port: Port, value: PortValue, board: Board) -> Reader:
-    """A function that gives the input's value as its port takes it.
+    """Make a function that returns the input's value, converted to the port's type.
 
     Raises:
-        ConversionError: a literal does not fit its port. (Wires fail when they are read, with
-            INPUT_MISSING or WRONG_TYPE.)
+        ConversionError: a literal does not fit its port. (A key that does not fit raises Failure
+            INPUT_MISSING or WRONG_TYPE when it is read.)
     """
     if isinstance(value, Literal):
         constant = convert(value.value, port)
@@ -39,13 +39,13 @@ def reader(port: Port, value: PortValue, board: Board) -> Reader:
 
 
 def wire(reference: Reference) -> str:
-    """A wire as a person writes it: `$found.pose`, `$@key`."""
+    """A reference as in a tree file: `$found.pose`, `$@key`."""
     mark = ROOT_MARK if reference.scope is Scope.ROOT else ""
     return "$" + ".".join((mark + reference.key, *reference.fields))
 
 
 def _wire_reader(port: Port, reference: Reference, board: Board) -> Reader:
-    """Reads a cell and caches the converted value until the cell holds another one."""
+    """A function that reads a cell; it caches the converted value until the cell changes."""
     cell = cell_of(reference, board)
     last: Any = MISSING
     fitted: Any = None
@@ -102,7 +102,7 @@ def _template_reader(port: Port, template: Template, board: Board) -> Reader:
 
 
 class Inputs:
-    """The inputs of one node by port name; reading one asks its wire."""
+    """The inputs of one node by port name; each access reads the current value."""
 
     def __init__(self, readers: Mapping[str, Reader]) -> None:
         self.readers = dict(readers)
@@ -114,12 +114,12 @@ class Inputs:
         return name in self.readers
 
     def all(self) -> dict[str, Any]:
-        """Every input's value; the first that cannot be read raises its Failure."""
+        """The values of all inputs; the first that cannot be read raises a Failure."""
         return {name: read() for name, read in self.readers.items()}
 
 
 def inputs_of(ports: Mapping[str, Port], values: Mapping[str, PortValue], board: Board) -> Inputs:
-    """Readers of all inputs that are wired, written out, or have a default.
+    """Readers of all inputs that the tree gives or that have a default.
 
     Raises:
         ConversionError: a literal does not fit its port.
@@ -136,9 +136,9 @@ def inputs_of(ports: Mapping[str, Port], values: Mapping[str, PortValue], board:
 
 
 def _default_reader(port: Port) -> Reader:
-    """None as a default means that nothing is given, whatever the port's type.
+    """A reader of the port's default. The default None fits every type and means "not given".
 
-    Another default that does not fit its type fails when it is read, with WRONG_TYPE.
+    Any other default that does not fit the type raises Failure WRONG_TYPE when it is read.
     """
     try:
         default = None if port.default is None else admit(port.default, port)
@@ -148,21 +148,21 @@ def _default_reader(port: Port) -> Reader:
 
 
 class Output:
-    """An output of a node that is wired. cell: the cell it writes to."""
+    """An output of a node that is connected to a key. cell: the key's cell."""
 
     def __init__(self, port: Port, cell: Cell) -> None:
         self.port = port
         self.cell = cell
 
     def write(self, value: Any) -> None:
-        """Write a value; Failure WRONG_TYPE where it is not of the port's type."""
+        """Write a value; Failure WRONG_TYPE if it does not fit the port's type."""
         self.cell.store(admit(value, self.port))
 
 
 def outputs_of(
     ports: Mapping[str, Port], values: Mapping[str, PortValue], board: Board
 ) -> dict[str, Output]:
-    """The outputs that are wired, by port name."""
+    """The outputs that are connected to keys, by port name."""
     return {
         name: Output(ports[name], cell_of(value, board))
         for name, value in values.items()

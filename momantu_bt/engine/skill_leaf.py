@@ -1,4 +1,4 @@
-"""The leaf that runs a skill: a fresh instance for each start."""
+"""The leaf that runs a skill, with a new instance for each start."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from momantu_bt.skill import Skill
 class SkillLeaf(TreeNode):
     """RUNNING at each `yield`, SUCCESS when `run` returns, FAILURE when it raises.
 
-    Inputs are read at the start (live ones at each tick), outputs written with SUCCESS (live
-    ones when assigned). Halting closes the generator and stops what the skill owns.
-    slow_steps: ticks in which the skill worked longer than SLOW_STEP without declaring it;
-    slowest: the longest, s.
+    Inputs are read at the start (live ones on each tick); outputs are written on SUCCESS (live ones
+    when assigned). A halt closes the generator and stops the actuators that the skill owns.
+    slow_steps: ticks in which the skill took longer than SLOW_STEP of wall time outside `compute`.
+    slowest: the longest of them, s.
     """
 
     def __init__(self, parts: Parts, *, kind: type[Skill], path: str) -> None:
@@ -38,7 +38,7 @@ class SkillLeaf(TreeNode):
 
     @property
     def role(self) -> Role:
-        """Its role for a reader: something that the robot does."""
+        """Its role in displays: an action of the robot."""
         return Role.ACT
 
     @property
@@ -80,7 +80,7 @@ class SkillLeaf(TreeNode):
         return FAILURE
 
     def clear(self) -> None:
-        """Close the skill and stop what it owns."""
+        """Close the skill and stop the actuators that it owns."""
         session, self.session = self.session, None
         if session is not None:
             self.context.watchdog.begin_step()

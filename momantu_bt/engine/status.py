@@ -1,4 +1,4 @@
-"""What a node reports: BehaviorTree.CPP's five statuses."""
+"""The status of a node: the five of BehaviorTree.CPP."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from enum import Enum
 
 
 class Status(Enum):
-    """IDLE before the first tick and after a halt; SKIPPED goes to the parent and is not kept."""
+    """IDLE before the first tick and after a halt. SKIPPED is returned, but not kept as a state."""
 
     IDLE = "IDLE"
     RUNNING = "RUNNING"

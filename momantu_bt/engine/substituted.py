@@ -1,4 +1,4 @@
-"""Nodes that stand in for those of the file: replaced by a rule of a test, or disabled."""
+"""Nodes that replace those of the tree file: by a rule for a test, or because of `disabled`."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from momantu_bt.tree.substitute.substitution import Result
 
 
 class Substituted(TreeNode):
-    """Gives the results that a rule of a test names, each as often as it says; then runs its child.
+    """Returns the results that a test's rules give, each as often as they say; then runs its child.
 
-    The child is the node itself. Conditions are this node's; the child has none of its own.
+    The child is the replaced node. Its conditions are moved to this node.
     """
 
     def __init__(
@@ -30,21 +30,21 @@ class Substituted(TreeNode):
 
     @property
     def is_itself(self) -> bool:
-        """Whether the rules are used up and the node runs."""
+        """Whether the rules are used up, so that the replaced node runs."""
         return self.at >= len(self.results)
 
     @property
     def role(self) -> Role:
-        """It acts, whatever it stands for."""
+        """Its role in displays: an action, whatever node it replaces."""
         return Role.ACT
 
     @property
     def note(self) -> str:
-        """That this is not the node."""
+        """Text that says that the node is replaced."""
         return "" if self.is_itself and self.result is None else "substituted"
 
     def step(self) -> Status:
-        """Begin the next result, or go on with this one."""
+        """Begin the next result, or continue with the current one."""
         if self.state is not RUNNING:
             self._next()
         self.state = RUNNING

@@ -15,11 +15,11 @@ from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, Status
 
 
 class SubTree(Decorator):
-    """The status of the tree inside; its failures carry this node's name and place.
+    """Runs another tree and returns its status; failures get this node's name and place.
 
-    A key that is wired to a key outside is that key. Everything else that is given (a value, a
-    part of a value, a text, a default) is written to the inner key at each start. board: the keys
-    inside.
+    An inner key that is connected to an outer key shares its cell. All other inputs (a value, a
+    part of a value, a text, a default) are written to the inner key at each start. board: the
+    board inside.
     """
 
     def __init__(
@@ -37,7 +37,7 @@ class SubTree(Decorator):
 
     @property
     def role(self) -> Role:
-        """A tree of its own."""
+        """Its role in displays: a tree of its own."""
         return Role.TREE
 
     def step(self) -> Status:

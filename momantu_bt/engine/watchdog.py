@@ -1,9 +1,9 @@
-"""The watchdog: ends what hangs, by wall time.
+"""The watchdog: ends steps that hang, by wall time.
 
-A skill's step in Python that takes longer than the run's patience is left by an exception that a
-signal raises. What hangs elsewhere, or in native code, where no handler of a signal ever runs,
-ends the process: faulthandler's own thread needs no lock of the interpreter's. It writes where
-each thread is to standard error and exits with code 1.
+If a skill's step in Python takes longer than the run's limit, the `patience`, a signal raises an
+exception in it. Signal handlers do not run in native code. So for native code, and for hangs
+outside of skills, faulthandler's thread ends the process; it does not need the interpreter's lock.
+It writes the stack of each thread to standard error and exits with code 1.
 """
 
 from __future__ import annotations
@@ -19,22 +19,25 @@ from types import FrameType
 from typing import Any
 
 PATIENCE = 60.0
-"""Seconds of wall time that one step of a skill may take."""
+"""Default limit of wall time for one step of a skill, s."""
 LAST = 1.5
-"""Times the patience, after which a tick that is not over ends the process."""
+"""A tick that takes longer than this factor times the patience ends the process."""
 _FRESH = 0.05
-"""Share of the patience for which the last net is not stretched anew: that costs a thread."""
+"""The faulthandler's timer is restarted at most once per this share of the patience.
+
+Each restart costs a new thread.
+"""
 _STDERR = 2
 
 
 class Hung(BaseException):
-    """Raised within a step of a skill; no Exception, which the skill might catch."""
+    """Raised inside a skill's step. It is not an Exception, so that the skill does not catch it."""
 
 
 class Watchdog:
-    """While it is entered it watches. Outside the main thread, and with no end of patience, never.
+    """A context manager that watches. It does nothing outside the main thread or without a limit.
 
-    SIGALRM, its timer and faulthandler's are given back afterwards as they were found.
+    At the end it restores SIGALRM's handler, its timer and that of faulthandler.
     """
 
     def __init__(self, patience: float = math.inf) -> None:
@@ -69,25 +72,25 @@ class Watchdog:
             signal.setitimer(signal.ITIMER_REAL, left, interval)
 
     def beat(self) -> None:
-        """The run goes on."""
+        """Report that the run makes progress."""
         if self._on and time.monotonic() - self._stretched > _FRESH * self.patience:
             self._stretch()
 
     def begin_step(self) -> None:
-        """A skill is about to make a step, or to be closed."""
+        """Report that a skill will make a step or will be closed."""
         if self._on:
             self._in_step, self._rung = True, False
             signal.setitimer(signal.ITIMER_REAL, self.patience, self.patience)
 
     def end_step(self) -> None:
-        """It is back."""
+        """Report that the skill's step is over."""
         if self._on:
             self._in_step = False
             signal.setitimer(signal.ITIMER_REAL, 0.0)
 
     @contextmanager
     def paused(self) -> Iterator[None]:
-        """Do not count this time: the run waits for a person."""
+        """Do not count the time inside this context, while the run waits for a person."""
         if self._on:
             faulthandler.cancel_dump_traceback_later()
         try:
@@ -105,5 +108,5 @@ class Watchdog:
             return
         if not self._rung:
             self._rung = True
-            self._stretch()  # once, for what the skill does to close itself
+            self._stretch()  # once more, for the skill's own clean-up
         raise Hung

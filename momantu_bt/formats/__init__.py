@@ -1,4 +1,4 @@
-"""The ground floor: files, formats and mistakes in them, for framework, skills and worlds.
+"""Basics for all packages: reading and writing files, file formats, and problems in files.
 
-Nothing here knows trees, robots or worlds, and nothing here imports another room.
+Nothing here depends on trees, robots or worlds, or imports another folder of the framework.
 """

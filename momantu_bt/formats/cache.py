@@ -9,7 +9,7 @@ from functools import cache
 from pathlib import Path
 
 CACHE_VARIABLE = "MOMANTU_BT_CACHE"
-"""Environment variable that names another cache folder, for homes that cannot be written."""
+"""Environment variable for another cache folder, for example if the home is read-only."""
 
 
 def cache_folder() -> Path:
@@ -22,10 +22,10 @@ def cache_folder() -> Path:
 
 
 def cache_subfolder(kind: str) -> Path:
-    """A folder for one kind of thing: in the user's cache, or one that goes with the process.
+    """A folder for one kind of file, in the user's cache or, if that is read-only, temporary.
 
     Raises:
-        OSError: neither the cache nor the folder of temporary files can be written.
+        OSError: neither the cache nor the folder for temporary files can be written.
     """
     with suppress(OSError):
         return _writable(cache_folder() / kind)

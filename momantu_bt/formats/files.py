@@ -14,9 +14,9 @@ class OutputError(MomantuError, OSError):
 
 
 def write_whole(path: Path, content: str | bytes, *, folders: bool = False) -> None:
-    """Write a file under another name, then rename it.
+    """Write a file under a temporary name, then rename it.
 
-    folders: make the folders above it, too, where they are missing.
+    folders: also make missing folders above it.
 
     Raises:
         OutputError: the folder is missing or read-only, or the disk is full.
@@ -34,7 +34,7 @@ def write_whole(path: Path, content: str | bytes, *, folders: bool = False) -> N
 
 
 def check_writable(path: Path) -> None:
-    """Make sure, before anything starts, that a file can be written there.
+    """Check that a file can be written at a path, before the work for it starts.
 
     Raises:
         OutputError: its folder does not exist or cannot be written, or it is a folder itself.

@@ -29,15 +29,15 @@ with lazily():
     from PIL import Image
 
 FREE, OCCUPIED, UNKNOWN = 0, 1, 2
-"""What a cell can be."""
+"""The values of a cell."""
 OCCUPIED_ABOVE, FREE_BELOW = 0.65, 0.196
-"""map_server's usual thresholds: shares of black above and below which a cell is known."""
+"""map_server's default thresholds of darkness (0 white, 1 black) of occupied and free cells."""
 MAX_CELLS = 100_000_000
-"""A picture of more pixels is taken for a mistake: 500 m x 500 m at 0.05 m."""
+"""Most pixels of a picture, enough for 500 m x 500 m at 0.05 m; more are taken for a mistake."""
 
 _RULES = YamlRules("map file", most_bytes=100_000, most_depth=10, most_values=1000)
 _FORMATS = ("PPM", "PNG", "BMP")
-"""Pillow's names; PPM has PGM with it."""
+"""Pillow's names of the formats; PPM includes PGM."""
 _GAP = rb"(?:\s|#[^\r\n]*[\r\n])+"
 _PGM = re.compile(rb"P[25]" + _GAP + rb"\d+" + _GAP + rb"\d+" + _GAP + rb"(\d+)\s")
 
@@ -48,7 +48,7 @@ class MapError(MomantuError, ValueError):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MapPicture:
-    """A map as its files have it.
+    """The content of a map's files.
 
     levels: grey levels (rows, columns), row 0 at the top, 0 black. brightest: the level of white.
     resolution: m per pixel. origin: map coordinates (x, y) of the picture's lower left corner, m.
@@ -65,15 +65,15 @@ class MapPicture:
 
     @property
     def free_level(self) -> int:
-        """The grey level of what is surely free."""
+        """The grey level of a cell that is surely free."""
         return 0 if self.negate else self.brightest
 
     def occupied(self) -> NDArray[np.bool_]:
-        """(rows, columns), row 0 at the top: which pixels are occupied."""
+        """Which pixels are occupied: (rows, columns) of bool, row 0 at the top."""
         return np.asarray(self._darkness() > self.occupied_thresh)
 
     def cells(self) -> NDArray[np.uint8]:
-        """(rows, columns) of FREE, OCCUPIED and UNKNOWN, row 0 at the smallest y."""
+        """The cells: (rows, columns) of FREE, OCCUPIED and UNKNOWN, row 0 at the smallest y."""
         free = self._darkness() < self.free_thresh
         cells = np.where(self.occupied(), OCCUPIED, np.where(free, FREE, UNKNOWN))
         return np.ascontiguousarray(cells.astype(np.uint8)[::-1])
@@ -197,7 +197,7 @@ def _read_picture(path: Path) -> tuple[NDArray[Any], int]:
         raise MapError(f"the map's picture {path} cannot be read: {error}") from None
     white = 255 if levels.dtype == np.uint8 else 65535
     brightest = _brightest(path) or white
-    if brightest != white:  # Pillow spreads them over all levels; each has one of its own
+    if brightest != white:  # Pillow scales levels up to white; undo that
         levels = np.rint(levels * (brightest / white)).astype(np.int32)
     return levels, brightest
 

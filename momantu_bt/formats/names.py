@@ -1,4 +1,4 @@
-"""Nearest names: "did you mean" for unknown ones."""
+"""Hints for unknown names: "did you mean" with the nearest known ones."""
 
 from __future__ import annotations
 
@@ -7,22 +7,22 @@ from collections.abc import Iterable
 from itertools import islice
 
 _MOST_COMPARED = 300
-"""Known names that a mistyped one is compared with."""
+"""At most so many known names are compared with a mistyped one."""
 _MOST_LISTED = 60
-"""Known names that a hint lists."""
+"""At most so many known names are listed in a hint."""
 _MOST_MEANT = 3
-"""Names that are offered where they are equally like what is written."""
+"""At most so many equally near names are offered."""
 _LEAST_LIKE = 0.6
-"""difflib's ratio from which on a name is like another."""
+"""Names with at least this ratio of difflib count as near."""
 
 
 def nearest(word: str, candidates: Iterable[str]) -> str | None:
-    """The known name that a mistyped one most likely means."""
+    """The known name that is nearest to a mistyped one."""
     return next(iter(_equally_near(word, candidates)), None)
 
 
 def valid_names(word: str, candidates: Iterable[str], what: str) -> str:
-    """A hint: the nearest names when there are some, else all of them ("Places: a, b")."""
+    """A hint with the nearest names; without any, it lists all names ("Places: a, b")."""
     names = list(dict.fromkeys(candidates))
     near = _equally_near(word, names)
     if near:

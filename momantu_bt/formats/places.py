@@ -13,14 +13,14 @@ KeyPath: TypeAlias = tuple[str | int, ...]
 """Keys and indices from the top of a YAML file down to a value."""
 
 _WIDEST = 120
-"""Characters of a line that are shown."""
+"""At most so many characters of a line are shown."""
 _LONGEST_STRETCH = 5000
-"""Characters in which a word is looked for; more than a script or a list of codes has."""
+"""A word is searched in this many characters; scripts and lists of codes are shorter."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
 class Place:
-    """A stretch of one line in a file; line and column count from 1, in characters."""
+    """A part of one line in a file. line, column: from 1; length: in characters."""
 
     file: str
     line: int = 1
@@ -32,22 +32,22 @@ class Place:
         return f"{self.file}:{self.line}:{self.column}"
 
     def seen_from(self, here: Place) -> str:
-        """In words, for a person who looks at another place: "line 3", or with another file."""
+        """In words, for a message at another place: "line 3", or "line 3 of b.yaml"."""
         return f"line {self.line}" + (f" of {self.file}" if self.file != here.file else "")
 
 
 NOWHERE = Place("", 0, 0, 0)
-"""The place of what has none."""
+"""For things without a place in a file."""
 
 
 @lru_cache(maxsize=16)
 def lines_of(text: str) -> tuple[str, ...]:
-    """A text's lines as YAML counts them; some characters that end lines elsewhere do not here."""
+    """The lines of a text as YAML counts them; `str.splitlines` splits at more characters."""
     return tuple(re.split(r"\r\n|\r|\n", text))
 
 
 def within(place: Place, word: str, source: Mapping[str, str]) -> Place:
-    """The stretch of a place's line that holds a word; the place itself where it does not."""
+    """The place of a word in the line of a place; the place itself if the word is not there."""
     lines = lines_of(source.get(place.file, ""))
     line = lines[place.line - 1] if 0 < place.line <= len(lines) else ""
     begin = place.column - 1
@@ -64,8 +64,8 @@ def excerpt(place: Place, text: str, note: str = "") -> str:
       3 |     - pik: $can
         |       ^^^ did you mean pick?
 
-    text: of the whole file. Where the file has no such line, only the note stands there. Tabs, wide
-    characters and lines of any length are shown so that the caret stands where it should.
+    text: of the whole file. If the file has no such line, the result is the note alone. The caret
+    is at the right column even with tabs, wide characters and very long lines.
     """
     lines = lines_of(text)
     if not text or not 0 < place.line <= len(lines):
@@ -74,7 +74,7 @@ def excerpt(place: Place, text: str, note: str = "") -> str:
 
 
 def marked(place: Place, line: str, note: str = "") -> str:
-    """As `excerpt`, from the place's line alone."""
+    """As `excerpt`, given only the line of the place."""
     shown, carets = underlined(line, place.column - 1, place.length)
     number = str(place.line)
     below = f"  {' ' * len(number)} | {carets}{' ' + note if note else ''}"
@@ -84,7 +84,8 @@ def marked(place: Place, line: str, note: str = "") -> str:
 def underlined(line: str, start: int, length: int) -> tuple[str, str]:
     """A line as a terminal shows it, and the carets to print below it.
 
-    start: index of the first character to mark; length: how many are marked, one at least.
+    start: index of the first character to mark. length: number of characters; at least one is
+    marked.
     """
     line, start = _window(line, start)
     marked = line[start : start + max(1, length)]
@@ -104,7 +105,7 @@ def cells(character: str) -> int:
 
 
 def _window(text: str, column: int) -> tuple[str, int]:
-    """A stretch of a long line around a column, and the column in it."""
+    """The part of a long line around a column, and the column within that part."""
     if len(text) <= _WIDEST:
         return text, column
     start = max(0, column - _WIDEST // 2)

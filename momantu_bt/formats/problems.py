@@ -11,7 +11,7 @@ from momantu_bt.formats.places import NOWHERE, Place, excerpt
 
 
 class Severity(IntEnum):
-    """With an error a file cannot be used; with a warning or a hint it can."""
+    """How serious a problem is. A file with an error cannot be used; the others allow its use."""
 
     ERROR = 0
     WARNING = 1
@@ -19,16 +19,16 @@ class Severity(IntEnum):
 
     @property
     def label(self) -> str:
-        """The word that a person and a program read: "error", "warning", "hint"."""
+        """The word in messages and in JSON: "error", "warning" or "hint"."""
         return self.name.lower()
 
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """One thing that is wrong.
+    """One thing that is wrong in a file.
 
-    code: stable, lower-case words joined by dashes; empty where problems of a file have no codes.
-    message: what is there and what was expected. hint: what would be valid, or what to do.
+    code: a stable name, lower-case words joined by dashes; empty for files without such codes.
+    message: what was found and what was expected. hint: what would be valid, or what to do.
     """
 
     code: str
@@ -38,13 +38,13 @@ class Problem:
     severity: Severity = Severity.ERROR
 
     def __str__(self) -> str:
-        """On one line, without the hint: `t.yaml:3:7: error: no node is called 'pik' [code]`."""
+        """One line without the hint: `t.yaml:3:7: error: no node is called 'pik' [code]`."""
         place = f"{self.place}: " if self.place != NOWHERE else ""
         code = f" [{self.code}]" if self.code else ""
         return f"{place}{self.severity.label}: {self.message}{code}"
 
     def as_dict(self) -> dict[str, Any]:
-        """Plain data for JSON."""
+        """The problem as plain data for JSON."""
         return {
             "code": self.code,
             "severity": self.severity.label,
@@ -58,7 +58,7 @@ class Problem:
 
 
 def in_order(problems: Iterable[Problem]) -> list[Problem]:
-    """By file, line and column; errors first within one place."""
+    """Sort by file, line and column; at the same place, errors come first."""
     return sorted(
         problems,
         key=lambda p: (p.place.file, p.place.line, p.place.column, p.severity, p.code, p.message),
@@ -66,12 +66,12 @@ def in_order(problems: Iterable[Problem]) -> list[Problem]:
 
 
 def errors(problems: Iterable[Problem]) -> list[Problem]:
-    """Those with which the file cannot be used."""
+    """The errors among some problems; with one of them, the file cannot be used."""
     return [problem for problem in problems if problem.severity is Severity.ERROR]
 
 
 def show(problem: Problem, source: Mapping[str, str]) -> str:
-    """The problem with its line and a caret under the place. source: texts by names of files.
+    """The problem with its line and a caret under the place. source: the files' texts by name.
 
     tree.yaml:3:7: error: no node is called 'pik' [unknown-node]
       3 |     - pik: $can

@@ -8,19 +8,19 @@ from collections.abc import Iterable
 from momantu_bt.errors import MomantuError
 
 MOST = 1_000_000
-"""Seeds of one bench."""
+"""Most seeds in one bench."""
 MOST_NAMED = 8
-"""Seeds that a line names."""
+"""Most seeds that one line lists."""
 _PART = re.compile(r"(\d+)(?::(\d+))?")
 _VALID = "write 0:500 (500 itself is not among them), 3,5,7 or 0:10,20:30"
 
 
 class SeedsError(MomantuError, ValueError):
-    """A text does not name seeds; the message says what would."""
+    """A text is not a list of seeds; the message says what would be valid."""
 
 
 def parse_seeds(text: str) -> tuple[int, ...]:
-    """The seeds that a text means, in its order, each once.
+    """Read seeds from a text, in its order, without duplicates.
 
     Raises:
         SeedsError: the text has none of the forms, a range is empty, or there are too many.
@@ -43,7 +43,7 @@ def parse_seeds(text: str) -> tuple[int, ...]:
 
 
 def seeds_text(seeds: Iterable[int]) -> str:
-    """Seeds in order, runs of three and more as ranges: `12, 40-47`."""
+    """Seeds in order; three or more in a row become a range: `12, 40-47`."""
     runs: list[list[int]] = []
     for seed in sorted(set(seeds)):
         if runs and seed == runs[-1][-1] + 1:
@@ -55,7 +55,7 @@ def seeds_text(seeds: Iterable[int]) -> str:
 
 
 def few_seeds(seeds: Iterable[int]) -> str:
-    """`seeds 3, 40-47 and 12 more`: not more than a line holds."""
+    """Seeds as a short text that fits into a line: `seeds 3, 40-47 and 12 more`."""
     found = sorted(set(seeds))
     more = f" and {len(found) - MOST_NAMED} more" if len(found) > MOST_NAMED else ""
     return f"seed{'s' if len(found) > 1 else ''} {seeds_text(found[:MOST_NAMED])}{more}"

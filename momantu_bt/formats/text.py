@@ -1,4 +1,4 @@
-"""Texts of files: read within bounds, the characters they may have, comments in them."""
+"""Texts of files: reading them up to a size limit, valid characters, comments."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from momantu_bt.formats.places import Place
 from momantu_bt.formats.problems import Problem
 
 NOT_TEXT = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-"""Control characters and the like, which stand in values alone: XML cannot hold them."""
+"""Control characters and other characters that XML cannot contain."""
 
 
 class Beside(str):
-    """A comment at the end of the line of what it belongs to; a plain text stands above it."""
+    """A comment at the end of a line. A comment on a line of its own is a plain `str`."""
 
 
 class TextError(Exception):
@@ -27,11 +27,11 @@ class TextError(Exception):
 def read_text(path: Path, shown: str, what: str, most_bytes: int) -> str:
     """The text of a file, without a byte order mark.
 
-    shown: its name in places. what: what a person calls such a file, in messages.
+    shown: the file's name in messages. what: what messages call this kind of file.
 
     Raises:
-        OSError: it cannot be read.
-        TextError: it has more than `most_bytes`, or is not UTF-8.
+        OSError: the file cannot be read.
+        TextError: the file has more than `most_bytes`, or is not UTF-8.
     """
     with path.open("rb") as file:
         data = file.read(most_bytes + 1)

@@ -1,7 +1,7 @@
-"""Quantities as people write them: `66 mm`, `2 min`, `90 deg`, `1 min 30 s`; everything to SI.
+"""Quantities as people write them (`66 mm`, `2 min`, `90 deg`, `1 min 30 s`), converted to SI.
 
-What is decimal is converted exactly and rounded once: `66 mm` is the double 0.066, as `0.066 m` is
-(66 * 0.001 is another one). Degrees are converted as by `math.radians`.
+Decimal units are converted exactly and rounded once, so `66 mm` gives the same float as `0.066 m`
+(66 * 0.001 gives another one). Degrees are converted as in `math.radians`.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _SCALE: dict[str, tuple[str, Decimal | float]] = {
     "rad/s2": ("rad/s2", Decimal(1)),
     "deg/s2": ("rad/s2", _DEGREE),
 }
-"""unit -> its SI unit, and how many of those it is; a float where that is irrational."""
+"""For each unit: its SI unit and the factor to it; the factor is a float if it is irrational."""
 
 _WHAT = {
     "s": "a time",
@@ -55,14 +55,14 @@ _WHAT = {
 }
 
 NUMBER = r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
-"""Regular expression of a number before a unit; ECMA's as well, for JSON Schemas."""
+"""Regular expression for a number before a unit; it is also valid in JSON Schemas (ECMA 262)."""
 _PART = re.compile(rf"\s*({NUMBER})\s*([A-Za-z°%µ/]+[0-9]?)\s*")
 _EXACT = Context(prec=60, Emax=MAX_EMAX, Emin=MIN_EMIN, traps=[])
-"""More digits than anybody writes; too large numbers become infinite instead of an exception."""
+"""Decimal arithmetic with ample digits; a number that is too large becomes infinite."""
 
 
 class UnitError(ValueError):
-    """A text is a number with a unit, but not a right one; the message says what would be."""
+    """A text looks like a number with a unit but is not valid; the message says what would be."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,18 +79,19 @@ def units_of(unit: str) -> tuple[str, ...]:
 
 
 def quantity(text: str) -> Quantity | None:
-    """A text that is wholly a quantity, in SI; None when it does not look like one.
+    """Read a text as a quantity, in SI; None if it does not look like one.
 
-    Several parts are added when they are of one kind: `1 min 30 s`.
+    Several parts of the same kind are added: `1 min 30 s`.
 
     Raises:
-        UnitError: it looks like one, but a unit is unknown, the kinds differ or it is too large.
+        UnitError: the text looks like a quantity, but a unit is unknown, the parts are of different
+            kinds, or the number is too large.
     """
     return _sum(text, _SCALE)
 
 
 def _sum(text: str, valid: Iterable[str]) -> Quantity | None:
-    """As `quantity`; where a unit is unknown, the message names the valid ones."""
+    """As `quantity`; the message about an unknown unit lists the valid ones."""
     parts = _parts(text)
     if not parts:
         return None
@@ -114,7 +115,7 @@ def _sum(text: str, valid: Iterable[str]) -> Quantity | None:
 
 
 def in_unit(text: str, unit: str) -> float | None:
-    """A text as a number in the SI unit `unit`; None when it does not look like a quantity.
+    """Read a text as a number in the SI unit `unit`; None if it does not look like a quantity.
 
     Raises:
         UnitError: the unit is unknown, or of another kind than `unit`.
@@ -124,7 +125,7 @@ def in_unit(text: str, unit: str) -> float | None:
 
 
 def in_one_of(text: str, units: Iterable[str]) -> Quantity | None:
-    """A text as a number in one of some SI units; None when it does not look like a quantity.
+    """Read a text as a quantity in one of some SI units; None if it does not look like one.
 
     Raises:
         UnitError: the unit is unknown, or of another kind.

@@ -19,15 +19,16 @@ SHAPES = ("mesh", "box", "cylinder", "sphere")
 
 
 class UrdfError(MomantuError, ValueError):
-    """A file is not a URDF, or one of its numbers is not one; the message says which."""
+    """A file is not a URDF file, or has a text where a number belongs; the message says where."""
 
 
 @dataclass(frozen=True, slots=True)
 class Shape:
     """One `visual` or `collision` of a link. kind: mesh, box, cylinder or sphere.
 
-    xyz (m), rpy (rad): its pose in the link. size: scale of a mesh; edges of a box; (radius,
-    length, 0); (radius, 0, 0); m. mesh: the address of its file, as it is written.
+    xyz (m), rpy (rad): its pose in the link. size: scale of a mesh; of a box the edges, of a
+    cylinder (radius, length, 0), of a sphere (radius, 0, 0), all in m. mesh: the address of the
+    mesh file, as written in the URDF.
     """
 
     kind: str
@@ -39,9 +40,9 @@ class Shape:
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """One link. mass: kg, 0 where the file gives none. visuals, collisions: how many it has.
+    """One link. mass: kg, 0 if the file gives none. visuals, collisions: how many it has.
 
-    shapes: of its collisions, those with a geometry that is known.
+    shapes: its collision shapes, as far as their kind is known.
     """
 
     name: str
@@ -53,7 +54,7 @@ class Link:
 
 @dataclass(frozen=True, slots=True)
 class Mimic:
-    """A joint follows `leader`: its position is multiplier * leader + offset."""
+    """A joint that follows `leader`: its position is multiplier * leader's position + offset."""
 
     leader: str
     multiplier: float
@@ -64,7 +65,7 @@ class Mimic:
 class Joint:
     """One joint; kind is URDF's type. xyz (m), rpy (rad): pose of the child's frame in the parent.
 
-    lower, upper: rad or m; velocity: per second; effort: Nm or N; None where the file gives none.
+    lower, upper: rad or m. velocity: rad/s or m/s. effort: Nm or N. None: not in the file.
     """
 
     name: str
@@ -82,13 +83,13 @@ class Joint:
 
 
 class Urdf:
-    """A URDF; links and joints are read when they are first asked for, in the file's order.
+    """A URDF. `links` and `joints` are in file order and are read at their first use.
 
-    Both raise UrdfError where a number is not one.
+    Both raise UrdfError if the file has a text where a number belongs.
     """
 
     def __init__(self, root: etree._Element) -> None:
-        """root: the file's `robot` element, which stays as it is."""
+        """root: the file's `robot` element; it is not changed."""
         self.root = root
 
     @cached_property
@@ -103,25 +104,25 @@ class Urdf:
 
     @property
     def mass(self) -> float:
-        """Of all links, kg."""
+        """The mass of all links, kg."""
         return sum(link.mass for link in self.links)
 
 
 def read_urdf(path: Path) -> Urdf:
-    """A URDF file.
+    """Read a URDF file.
 
     Raises:
-        OSError: it cannot be read.
-        UrdfError: it is not XML.
+        OSError: the file cannot be read.
+        UrdfError: the file is not XML.
     """
     return Urdf(parse_urdf(path.read_bytes(), str(path)))
 
 
 def parse_urdf(text: bytes, file: str) -> etree._Element:
-    """The `robot` element of a URDF, for changing it; nothing else is read from disk.
+    """Read a URDF's text as a `robot` element that can be changed; other files are not read.
 
     Raises:
-        UrdfError: it is not XML; `file` names it in the message.
+        UrdfError: the text is not XML. file: the URDF's name in this message.
     """
     parser = etree.XMLParser(
         resolve_entities=False, no_network=True, load_dtd=False, remove_comments=True
@@ -133,7 +134,7 @@ def parse_urdf(text: bytes, file: str) -> etree._Element:
 
 
 def linked(joint: etree._Element, end: str) -> str:
-    """The link at the `parent` or `child` end of a joint; empty when none is named."""
+    """The link at the `parent` or `child` end of a joint; empty if the joint names none."""
     return _attribute(joint, end, "link", "")
 
 

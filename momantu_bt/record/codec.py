@@ -1,8 +1,9 @@
 """Values as JSON and back, without loss.
 
-None, booleans, numbers and text are themselves; a tuple is an array and a read-only mapping with
-text keys an object, for so are values on the board. Everything else is an object whose keys begin
-with `$`: `{"$type": "momantu_bt.geometry:Pose2D", "x": 1.0, …}` is a dataclass.
+None, booleans, numbers and texts stay as they are. The two containers of the board become their
+JSON counterparts: a tuple an array, a read-only mapping with text keys an object. Everything else
+becomes an object with keys that begin with `$`, for example a dataclass:
+`{"$type": "momantu_bt.geometry:Pose2D", "x": 1.0, …}`.
 """
 
 from __future__ import annotations
@@ -25,9 +26,9 @@ from momantu_bt.record.codec_types import find_type, type_name
 from momantu_bt.skill import MISSING
 
 MAX_DEPTH = 60
-"""Values within values; what lies deeper is told as text."""
+"""Deepest nesting of values; a value that is deeper is written as text."""
 FEW = 16
-"""Elements up to which an array is written as numbers, for people; longer ones in base64."""
+"""Arrays with at most so many elements are written as readable numbers; longer ones in base64."""
 _ADDRESS = re.compile(r" at 0x[0-9a-fA-F]+")
 
 dumps: Callable[[Any], str] = json.JSONEncoder(separators=(",", ":"), allow_nan=False).encode
@@ -43,11 +44,11 @@ class Opaque:
 
 
 class CodecError(ValueError):
-    """JSON data that `to_json` has not made."""
+    """The JSON data was not made by `to_json`."""
 
 
 def to_json(value: Any) -> Any:
-    """JSON data for any value; one that cannot be encoded becomes what `Opaque` becomes."""
+    """JSON data for any value; a value that cannot be encoded is written like an `Opaque`."""
     return _to_json(value, MAX_DEPTH)
 
 
@@ -73,7 +74,7 @@ def from_json(data: Any) -> Any:
     """The value that `to_json` was given.
 
     Raises:
-        CodecError: it has not made this.
+        CodecError: the data was not made by `to_json`.
     """
     try:
         return _from_json(data, 3 * MAX_DEPTH)
@@ -138,7 +139,7 @@ def _tuple(value: tuple[Any, ...], depth: int) -> dict[str, Any]:
 
 
 def _set(value: set[Any] | frozenset[Any], depth: int) -> dict[str, Any]:
-    """In the order of their text: a set has none that is the same in every process."""
+    """Items sorted by their text, as the order of a set differs between processes."""
     tag = "$set" if isinstance(value, set) else "$frozenset"
     return {tag: sorted((_to_json(item, depth - 1) for item in value), key=dumps)}
 
@@ -208,7 +209,7 @@ def _read_array(data: Any, inner: Callable[[Any], Any]) -> np.ndarray[Any, Any]:
 
 
 def _read_dataclass(data: Any, inner: Callable[[Any], Any]) -> Any:
-    """The fields as they were, past `__init__`, which may change them (a quaternion's length)."""
+    """Set the fields without `__init__`, which may change them (it normalizes a quaternion)."""
     kind = find_type(data["$type"])
     named = {key: item for key, item in data.items() if key != "$type"}
     if kind is None or not is_dataclass(kind) or {f.name for f in fields(kind)} != set(named):

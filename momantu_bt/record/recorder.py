@@ -1,7 +1,7 @@
 """Recording a run: an observer that writes `run.mcap` while the run lasts.
 
-It changes nothing in the run. What goes wrong in it (a full disk) is remarked on once; then the
-run goes on without it, and what was written before stays readable.
+The recorder does not change the run. On an error, such as a full disk, it publishes one remark and
+stops; the run continues, and the part that was written stays readable.
 """
 
 from __future__ import annotations
@@ -36,13 +36,13 @@ from momantu_bt.record.report import Report
 from momantu_bt.tree.model import Document
 
 MOST_TICKS, MOST_SECONDS = 10, 0.1
-"""Ticks in which nothing changed, and seconds of wall time, that a crash may take away."""
+"""Most unchanged ticks, and most wall time in s, that a crash may lose."""
 
 
 class Recorder:
-    """One record: hears the run's events from the start, then `begin`, then `finish`.
+    """Writes one record. It subscribes to the run's events; call `begin`, and `finish` at the end.
 
-    remark: tells a person what goes wrong with the record itself.
+    remark: called with a message for a person if the record cannot be written.
 
     Raises:
         OutputError: the folder cannot be written, or holds a record already.
@@ -70,7 +70,7 @@ class Recorder:
         options: Mapping[str, Any],
         substitution: Mapping[str, str],
     ) -> None:
-        """Write what is known before the first tick, the board's first values included.
+        """Write the start of the record: the run, its files, its nodes and the initial values.
 
         options, substitution: as in `run_data` and `files_of`.
         """
@@ -78,11 +78,11 @@ class Recorder:
         run.context.events.subscribe(Ticked, lambda event: self._ticked(event.run))
 
     def _ticked(self, run: Executor) -> None:
-        """Write the tick; hand it to the operating system when anything changed or it is time."""
+        """Write the tick; flush the file if anything changed or the last flush is too old."""
         self._guarded(self._write, run)
 
     def finish(self, report: Report) -> None:
-        """Write how the run ended, in the log and as a file of its own."""
+        """Write the report, into the log and as a file of its own."""
         text = json.dumps(report.as_dict(), default=str)
         self._guarded(self._end, text)
         try:
@@ -91,14 +91,14 @@ class Recorder:
             self._remark(f"the record has no report: {error}")
 
     def release(self) -> None:
-        """Close the log of a run that has no report; one that never began leaves nothing."""
+        """Close the log of a run without a report; remove the log if the run never began."""
         if self._file is not None:
             self._guarded(self._file.close)
         elif not self._broken:
             (self._folder / LOG).unlink(missing_ok=True)
 
     def _guarded(self, work: Callable[..., None], *arguments: Any) -> None:
-        """Do it, unless the record has broken off; from the first trouble on it has."""
+        """Call `work`, unless an earlier call failed; the first failure ends the record."""
         if self._broken:
             return
         try:

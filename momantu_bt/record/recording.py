@@ -16,8 +16,8 @@ from momantu_bt.failure import FailureValue
 class NodeInfo:
     """One node of the tree. type: the built-in's name, the skill's or the subtree's.
 
-    index: its number in the order of the file; parent: that of the node above it. label: the node
-    in one line, as the file has it. role: how it is drawn and told of.
+    index: its number in file order. parent: the number of its parent. label: the node in one line,
+    as in the file. role: how displays show it.
     """
 
     index: int
@@ -32,7 +32,7 @@ class NodeInfo:
 
 @dataclass(frozen=True, slots=True)
 class ChangeRecord:
-    """A node's status changed, or its note did while it was RUNNING. failure: with FAILURE."""
+    """A change of a node's status, or of its note while RUNNING. failure: set with FAILURE."""
 
     node: int
     status: str
@@ -42,7 +42,7 @@ class ChangeRecord:
 
 @dataclass(frozen=True, slots=True)
 class StepRecord:
-    """One step of one skill. outputs: the values, by port, that are new since its last step."""
+    """One step of one skill. outputs: by port, the values that changed since its last step."""
 
     node: int
     status: str
@@ -53,15 +53,14 @@ class StepRecord:
 
 @dataclass(frozen=True, slots=True)
 class TickRecord:
-    """One tick. Tick 0 has the values that the run begins with.
+    """One tick. Tick 0 has the initial values of the run.
 
-    writes: cells with what was written, in order. reads: what came from outside, by its key, in
-    order; `Refused` where it was a failure. issued: actuators with their goals, None to stop; the
-    same object where the same was commanded again. state: a digest of what the robot reported,
-    empty without a robot. settling: the tree had ended and the robot came to rest; the first such
-    record has the number of the last tick, and in it everything is halted. notes, labels: by node,
-    those that are new and that `changes` does not say: what a running node is at, and its line with
-    the values of its newest start.
+    writes: names of cells with the values written, in order. reads: answers from outside with their
+    keys, in order; `Refused` for a failure. issued: actuators with their goals, None for a stop; a
+    goal that is commanded again is the same object. state: a digest of the robot's state, empty
+    without a robot. settling: the tree had ended and the robot came to rest; the first such record
+    has the number of the last tick, and in it all nodes are halted. notes: by node, new notes that
+    are not in `changes`. labels: by node, new lines with the values of the node's newest start.
     """
 
     number: int
@@ -81,10 +80,10 @@ class TickRecord:
 class Recording:
     """A whole record.
 
-    about: what `/run` says: format, tree, main, world, robot, seed, options, values, versions,
-    unix_time. files: texts by name; `kinds` says of each whether it is a tree, values, a
-    substitution, the site or a world's. report: as in `report.json`, None when the run was cut
-    off. complete: the log has its end.
+    about: the message of `/run` with format, tree, main, world, robot, seed, options, values,
+    versions and unix_time. files: texts by name. kinds: for each file, whether it is a tree,
+    values, a substitution, the site or a file of the world. report: as in `report.json`; None if
+    the run was cut off. complete: the log is not cut off.
     """
 
     folder: Path
@@ -98,10 +97,10 @@ class Recording:
     raw: Mapping[str, tuple[tuple[float, bytes], ...]] = field(default_factory=dict, repr=False)
 
     def topics(self) -> tuple[str, ...]:
-        """Topics of all channels that hold a message, in the order of their names."""
+        """Topics of all channels with messages, sorted by name."""
         return tuple(sorted(self.raw))
 
     def messages(self, topic: str) -> Iterator[tuple[float, Mapping[str, Any]]]:
-        """Messages of a channel as JSON data, with the seconds of the world's clock."""
+        """Messages of a channel as JSON data, each with its time of the world's clock, s."""
         for time, text in self.raw.get(topic, ()):
             yield time, json.loads(text)

@@ -21,10 +21,10 @@ from momantu_bt.world import Incident
 class NodeReport:
     """One node: how often it was ticked, started and failed, and its active simulated seconds.
 
-    slow_ticks: in how many ticks its skill worked longer than 20 ms of wall time without
-    declaring it; slowest_s: the longest of them.
-    conditions: by name (`skip_if`), how often it was asked and how often it held.
-    answered: how often each handler under `catch` has answered a failure, in their order.
+    slow_ticks: number of ticks in which its skill took longer than 20 ms of wall time outside
+    `compute`. slowest_s: the longest of them.
+    conditions: by name (`skip_if`), how often it was evaluated and how often it was true.
+    answered: for each handler under `catch`, in order, how many failures it has handled.
     """
 
     name: str
@@ -42,9 +42,9 @@ class NodeReport:
 
 @dataclass(frozen=True, slots=True)
 class FalseClaim:
-    """An end that ground truth contradicts: at time (s), of the node at place.
+    """A skill's result that is false by ground truth: at time (s), of the node at place.
 
-    code: the failure's, None where success was claimed. claim: the sentences that were judged.
+    code: the failure's code; None for SUCCESS. claim: the sentences that were judged.
     """
 
     time: float
@@ -55,11 +55,11 @@ class FalseClaim:
 
 @dataclass(frozen=True, slots=True)
 class SkillClaims:
-    """The claims of one skill's ends, compared with ground truth.
+    """The claims of one skill, compared with ground truth.
 
-    runs: how often it ended. judged_successes, judged_failures: of how many ends something was
-    claimed that the world could judge. false_successes: SUCCESS that is denied; false_failures:
-    false alarms. lies: both, in the order of time.
+    runs: how often it ended. judged_successes, judged_failures: number of results with a claim that
+    the world could judge. false_successes: successes that were not true. false_failures: false
+    alarms. lies: both kinds of false results, ordered by time.
     """
 
     runs: int = 0
@@ -74,9 +74,9 @@ class SkillClaims:
 
 @dataclass(frozen=True, slots=True)
 class FaultReport:
-    """One requested fault, as it is written, with its resolved phase.
+    """One requested fault. fault: its text, with the resolved phase.
 
-    began: s; None when its phase never came. ended: s; None when it was not mended.
+    began: s; None if its phase never started. ended: s; None if the fault did not end.
     """
 
     fault: str
@@ -88,13 +88,13 @@ class FaultReport:
 class Report:
     """How a run ended.
 
-    status: SUCCESS or FAILURE of the tree, INTERRUPTED, or ERROR. success: the referee's word,
-    None without one. unmet, measures: what it found. failure: the tree's, with its causes.
-    sim_time_s: world's clock when the tree ended. wall_time_s: from the first tick to the last;
-    start_time_s: what building the world took before. ticks: of the tree. blackboard: the
-    root's values at the end. error: traceback of an internal error. incidents: what was dangerous,
-    by the referee. claims: what skills claimed, by their names in the tree; None in a run without
-    an audit. faults: those asked for.
+    status: SUCCESS or FAILURE of the tree, INTERRUPTED, or ERROR. success: the referee's verdict;
+    None without a referee. unmet, measures: from the verdict. failure: the tree's, with its causes.
+    sim_time_s: the world's clock at the tree's end. wall_time_s: from the first tick to the last.
+    start_time_s: wall time before the first tick. ticks: number of ticks of the tree. blackboard:
+    the root's values at the end. error: traceback of an internal error. incidents: dangerous events
+    that the referee saw. claims: results of the audit by the skill's name in the tree; None without
+    an audit. faults: the requested faults.
     """
 
     tree: str
@@ -162,12 +162,12 @@ class Report:
         }
 
     def write(self, path: Path) -> None:
-        """Write it as JSON; OutputError when that is not possible."""
+        """Write the report as JSON; OutputError if the file cannot be written."""
         write_whole(path, json.dumps(self.as_dict(), indent=2, default=str) + "\n")
 
 
 def finite(value: Any) -> Any:
-    """JSON has no infinity and no NaN: they become text."""
+    """Replace infinities and NaN by texts, as JSON has neither."""
     if isinstance(value, float) and not math.isfinite(value):
         return str(value)
     if isinstance(value, dict):

@@ -39,20 +39,19 @@ def run(
 ) -> Report:
     """Run a tree file, or a bundled tree by name.
 
-    Most arguments are those of `RunOptions`; these are not, or are written otherwise:
-
-    report: where to write it as JSON. registry: what trees can name; everything installed
-    unless given. watch: makes observers of the run. answers: what `ask` and `confirm` are told,
-    in turn; afterwards nobody answers. faults: such as `camera.dead@12 s`.
-    patience: seconds of wall time that a skill's step may take; what hangs longer in native code
-    ends the process, which is yours: so there is no limit unless one is given.
+    Most arguments are those of `RunOptions`. The others, or those with another form, are:
+    report: path for the report as JSON. registry: the skills, worlds, robots and services that the
+    tree can name; by default everything installed. watch: makes observers of the run. answers: the
+    answers for `ask` and `confirm`, in order; after the last one, nobody answers. faults: texts
+    such as `camera.dead@12 s`. patience: limit of wall time for a skill's step, s. There is none by
+    default, as a hang in native code beyond the limit ends the process, which here is yours.
 
     Raises:
         TreeNotFound: there is no such tree.
-        TreeError: the tree has errors; all of them are in it.
-        LaunchError: the run cannot begin as asked.
+        TreeError: the tree has errors; the exception lists all of them.
+        LaunchError: the run cannot begin with these arguments.
         WorldError: the world could not start.
-        FaultError: no fault is written so, or this run cannot have it.
+        FaultError: a fault's text is not valid, or this run cannot have the fault.
         OutputError: the record's folder cannot be written, or holds a record already.
     """
     options = RunOptions(

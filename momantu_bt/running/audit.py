@@ -1,4 +1,4 @@
-"""The audit: what skills claim when they end, against the truth."""
+"""The audit: compares what skills claim when they end with the true state of the world."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from momantu_bt.world import World
 
 
 class Auditor:
-    """Hears of each skill that ends, asks it what it claims, and the world whether that is so.
+    """When a skill ends, asks it what it claims, and asks the world whether that is true.
 
-    It hears `SkillEnded`. Nothing in the run depends on it: what goes wrong here is
-    remarked on, and does not count as a claim. Without a `Judge`, nothing is judged.
+    It subscribes to `SkillEnded`. The run does not depend on it: an error here is only a remark,
+    and the claim is not counted. In a world without a `Judge`, nothing is judged.
     """
 
     def __init__(self, context: RunContext, world: World | None) -> None:
@@ -28,7 +28,7 @@ class Auditor:
         context.events.subscribe(SkillEnded, self._ended)
 
     def claims(self) -> Mapping[str, SkillClaims]:
-        """The counts so far, by the skills' names in the tree, in the order of their first ends."""
+        """The counts so far, by the skill's name in the tree, in the order in which they ended."""
         return dict(self._claims)
 
     def _ended(self, event: SkillEnded) -> None:
@@ -63,7 +63,7 @@ class Auditor:
         body = self._context.body
         if self._judge is None or skill is None or body is None:
             return None, None
-        # a lease that owns nothing: whoever claims, moves nothing
+        # A lease without actuators: making a claim must not move the robot.
         robot = body.actuators.lease(f"the claim of {leaf.name}", ())
         try:
             claim = skill.claim(robot, session.failure)

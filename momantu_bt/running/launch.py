@@ -1,4 +1,4 @@
-"""From a checked document to a report: open the world, build the tree, run it, close all."""
+"""Runs a checked document: opens the world, builds the tree, runs it, closes everything."""
 
 from __future__ import annotations
 
@@ -51,12 +51,12 @@ class LaunchError(MomantuError):
 def launch(prepared: Prepared, watch: Watch | None = None) -> Report:
     """Run a checked tree to its end.
 
-    watch: makes the observers once the world is open; they are closed at the end.
+    watch: makes the observers after the world was opened; they are closed at the end.
 
     Raises:
-        LaunchError: no world for a tree with skills, a service that is not installed, or a robot
-            that lacks what a skill uses, or no patience.
-        FaultError: the tree, the robot or the world cannot have a fault that is asked for.
+        LaunchError: a tree with skills has no world, a service is not installed, the robot lacks
+            something that a skill uses, or the patience is not above 0.
+        FaultError: the tree, the robot or the world cannot have a requested fault.
         OutputError: the record's folder cannot be written, or holds a record already.
         WorldError: the world could not start.
         KeyboardInterrupt: Ctrl-C before the first tick.
@@ -91,9 +91,9 @@ def launch(prepared: Prepared, watch: Watch | None = None) -> Report:
 
 
 def assemble(prepared: Prepared, stack: ExitStack) -> Executor:
-    """A run that the caller ticks: `begin`, then `tick` until it ends, or `stop`.
+    """Build a run that the caller ticks: call `begin`, then `tick` until it ends, or `stop`.
 
-    stack: closes what is opened here.
+    stack: everything that is opened here is closed with it.
 
     Raises:
         LaunchError, FaultError, OutputError, WorldError: as `launch` does.
@@ -131,7 +131,7 @@ def _planned(prepared: Prepared, kinds: Mapping[str, type[Skill]]) -> tuple[Plan
 
 
 def _close(observers: Sequence[Observer]) -> str | None:
-    """Close all, whatever goes wrong; the first traceback."""
+    """Close all observers, even if one raises; return the first traceback."""
     troubles: list[str] = []
     for observer in observers:
         try:
@@ -167,12 +167,12 @@ def _open(
 def check_world(
     document: Document, asked: str | None, skills: Iterable[str], registry: Registry
 ) -> None:
-    """Refuse a tree with skills that is to run without a world.
+    """Check that a tree with skills has a world to run in.
 
-    asked: the world that is given instead of the tree's own. skills: what the tree starts.
+    asked: the world to use instead of the tree's own. skills: names of the tree's skills.
 
     Raises:
-        LaunchError: there are skills and no world.
+        LaunchError: the tree has skills but no world.
     """
     names = ", ".join(skills)
     if names and world_of(document, asked) is None:
@@ -203,7 +203,7 @@ def _check_sensors(needed: Mapping[str, type[Service]], description: RobotDescri
 
 
 def _services(kinds: Mapping[str, type[Skill]], registry: Registry) -> dict[str, type[Service]]:
-    """The services that skills need, and those that these need, each after what it needs."""
+    """The services that skills need and, before each, the services that it needs itself."""
     for name, kind in kinds.items():
         try:
             in_order(kind.needs, registry.services.__getitem__)
@@ -258,7 +258,7 @@ def _executor(
 def _board(
     context: RunContext, document: Document, services: Services, robot: Robot | None
 ) -> Board:
-    """The root's board as the first tick finds it."""
+    """The root's board as it is at the first tick."""
     board = Board(context.writes)
     for name, service in services.running.items():
         board.publish(ReadOnlyCell(name, _asking(context, name, service.published)))

@@ -24,18 +24,18 @@ class RunOptions:
 
     world: a name, a file, `"none"`, an open world (which stays open), or None for the tree's own.
     robot: a name or a file, or None for the world's default.
-    seed: varies the episode. values: keys of the root's board, as `--set` gives them.
-    substitute: a file of rules that say what nodes do instead of themselves.
-    faults: what is broken on purpose.
-    max_time: simulated seconds after which the run fails with TIMEOUT.
-    realtime: no faster than the simulated clock.
-    referee: False takes it out, which changes nothing else. audit: judge by ground truth what
-    skills claim, which changes nothing else.
-    patience: seconds of wall time that a skill's step may take before it fails with HUNG; half as
-    much more, and the process ends. inf: for ever.
+    seed: selects the variation of the episode. values: initial keys of the root's board, as with
+    `--set`. substitute: a file of rules that replace nodes.
+    faults: the faults to inject.
+    max_time: simulated time after which the run fails with TIMEOUT, s.
+    realtime: do not run faster than real time.
+    referee: False removes the referee; the run stays the same. audit: compare the skills' claims
+    with ground truth; the run stays the same.
+    patience: limit of wall time for a skill's step, s; then it fails with HUNG. After 1.5 times
+    the limit the process ends. inf: no limit.
     record: a new folder for the run's record.
-    person: who answers `ask` and `confirm`; nobody unless given.
-    remark: tells a person something that never influences the run.
+    person: answers `ask` and `confirm`; by default nobody answers.
+    remark: called with messages for a person; they never influence the run.
     """
 
     world: str | World | None = None
@@ -55,11 +55,11 @@ class RunOptions:
 
     @property
     def world_name(self) -> str | None:
-        """The world as a tree or a command line names it."""
+        """The world's name or path, as in a tree file or on the command line."""
         world = self.world
         return world if world is None or isinstance(world, str) else world.name
 
     def recorded(self) -> dict[str, Any]:
-        """The options that a record stores, beside the seed and the texts of files."""
+        """The options that a record stores, without the seed and the texts of files."""
         chosen = {name: getattr(self, name) for name in _RECORDED}
         return {**chosen, "world": self.world_name}

@@ -1,4 +1,4 @@
-"""From what is asked of a run to a checked tree with all that its run needs to know."""
+"""Reads and checks a tree for a run, and collects what the run needs."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from momantu_bt.world import Site, World
 
 @dataclass(frozen=True, slots=True)
 class Prepared:
-    """A tree that can be run. document: without errors. registry: what it can name.
+    """A tree that is ready to run. document: without errors. registry: the plug-ins it can name.
 
-    substitution: what nodes do instead of themselves.
+    substitution: the nodes to replace, and by what.
     """
 
     document: Document
@@ -30,11 +30,11 @@ class Prepared:
 
 
 def prepare(tree: str, options: RunOptions, registry: Registry | None = None) -> Prepared:
-    """Read and check a tree for a run. registry: what trees can name; what is installed by default.
+    """Read and check a tree for a run. registry: plug-ins it can name; by default all installed.
 
     Raises:
-        TreeNotFound: there is no such tree, or no such file of rules.
-        TreeError: the tree or the rules have errors; all of them are in it.
+        TreeNotFound: the tree or the file of rules does not exist.
+        TreeError: the tree or the rules have errors; the exception lists all of them.
     """
     having = registry if registry is not None else Registry.installed()
     world = options.world_name
@@ -48,7 +48,7 @@ def prepare(tree: str, options: RunOptions, registry: Registry | None = None) ->
 
 
 def with_world(registry: Registry, world: World) -> Registry:
-    """The same registry, and in it an open world under its own name."""
+    """A copy of the registry with an open world added under the world's name."""
     description = world.robot.description
     return replace(
         registry,
@@ -58,12 +58,12 @@ def with_world(registry: Registry, world: World) -> Registry:
 
 
 def _mutable(mapping: Mapping[str, Any]) -> Any:
-    """ChainMap asks for mutable mappings, though it writes to the first one only."""
+    """Cast for ChainMap, which requires mutable mappings but writes only to the first one."""
     return mapping
 
 
 class _OpenWorld:
-    """A world entry whose world is open already."""
+    """A world entry for a world that is already open."""
 
     def __init__(self, world: World) -> None:
         self._world = world
@@ -75,5 +75,5 @@ class _OpenWorld:
         return self._world.site
 
     def open(self, description: RobotDescription, seed: int, *, referee: bool = True) -> World:
-        """The world itself."""
+        """Return the open world."""
         return self._world

@@ -1,4 +1,4 @@
-"""Collecting the report of a run from everything that took part in it."""
+"""Makes the report of a run that has ended."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def report_of(
 ) -> Report:
     """The report of a run that has ended.
 
-    tree: its file. started: seconds of wall time until the first tick.
+    tree: the tree's file. started: wall time before the first tick, s.
     """
     world, verdict = executor.world, ending.verdict
     return Report(

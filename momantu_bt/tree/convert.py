@@ -1,4 +1,4 @@
-"""Converting a tree from one spelling to the other, with a check that nothing was lost."""
+"""Converts tree files between YAML and XML, and checks that nothing is lost."""
 
 from __future__ import annotations
 
@@ -34,35 +34,35 @@ __all__ = [
 
 
 class Spelling(StrEnum):
-    """The spelling of a tree file."""
+    """The two formats of tree files."""
 
     YAML = "yaml"
     XML = "xml"
 
     @property
     def other(self) -> Spelling:
-        """The one that this is not."""
+        """The other of the two formats."""
         return Spelling.XML if self is Spelling.YAML else Spelling.YAML
 
 
 def spelling_of(path: Path) -> Spelling | None:
-    """The spelling that a file's suffix means; None for any other suffix."""
+    """The format for a file's suffix; None for an unknown suffix."""
     known = {".yaml": Spelling.YAML, ".yml": Spelling.YAML, ".xml": Spelling.XML}
     return known.get(path.suffix.lower())
 
 
 def document_spelling(document: Document) -> Spelling:
-    """The spelling that a document was read from."""
+    """The format from which a document was read."""
     xml = is_xml(document.file, document.source[document.file])
     return Spelling.XML if xml else Spelling.YAML
 
 
 def read_right(path: Path, registry: Registry) -> Document:
-    """A tree file that is right in form; its nodes need not be installed.
+    """Read a tree file and check its syntax; its nodes need not be installed.
 
     Raises:
-        TreeNotFound: it cannot be read.
-        TreeError: it is wrong in form.
+        TreeNotFound: the file cannot be read.
+        TreeError: the file has syntax errors.
     """
     document, problems = read_file(path, registry)
     found = problems.sorted()
@@ -72,10 +72,10 @@ def read_right(path: Path, registry: Registry) -> Document:
 
 
 def write(document: Document, to: Spelling, registry: Registry) -> str:
-    """A document that is right in form, as text that reads back as the same document.
+    """Write a document as text in a format; reading it back gives the same document.
 
     Raises:
-        CannotWrite: something in it has no words in that spelling.
+        CannotWrite: the format cannot express something in the document.
     """
     document = _named(document, registry)
     writing = yaml_writer.write if to is Spelling.YAML else xml_writer.write
@@ -117,10 +117,10 @@ def _read_again(
 
 
 def meaning(document: Document) -> object:
-    """The content of a document for comparisons, with the types of its values.
+    """The content of a document for comparisons, including the types of values.
 
-    Python's own `==` takes `true` for 1, and 1 for 1.0. Of nodes it has a list for each tree, in
-    the order of the file and with the number of their children, so that deep ones can be compared.
+    The types are needed as `true == 1 == 1.0` in Python. For each tree there is a flat list of
+    nodes in file order with the number of their children, so that very deep trees can be compared.
     """
     nodes = {name: [_node(n) for n in tree.root.walk()] for name, tree in document.trees.items()}
     return (_typed(document, leaving=("trees",)), _trees(document), nodes)

@@ -1,4 +1,4 @@
-"""What YAML and XML share: the version, names of trees, words of handlers; which file is which."""
+"""What both formats share: version, valid names of trees, handlers' codes; and how to tell them."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from momantu_bt.formats.places import Place
 from momantu_bt.tree.problems import Problems
 
 VERSION = 1
-"""What `momantu_bt:` says; a later one may read differently."""
+"""The version of the language, the value of `momantu_bt:`."""
 
 TREE_NAME = re.compile(r"[^\W\d][\w.-]*(?: [\w.-]+)*")
-"""Names that a tree can have; BehaviorTree.CPP's may hold more than letters."""
+"""Valid names of trees; as in BehaviorTree.CPP they may have more than letters."""
 TREE_NAME_HINT = "letters, digits, `_`, `-`, `.` and single spaces, a letter first"
 
 AGAIN = "again"
-"""The handler that tries once more and runs no node."""
+"""The handler that tries again without running a node."""
 ANY = "any"
-"""What a handler of all other codes is for."""
+"""The code of a handler for all other codes."""
 _HANDLER_CODE = re.compile(rf"(?:\w+\.)?{CODE.pattern}|{ANY}")
 
 FAILURE_KEY = "failure"
-"""The key by which a handler reads what it answers."""
+"""The key from which a handler reads the failure."""
 
 
 def handler_codes(text: str, place: Place, problems: Problems) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""Loading a tree: from its name to a checked document."""
+"""Finds, reads and checks a tree."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from momantu_bt.tree.problems import Problems, TreeError
 from momantu_bt.tree.registry import Registry
 
 WORD = re.compile(r"[^\W\d]\w*")
-"""What can be a key in a script."""
+"""A valid key in a script."""
 
 __all__ = ["Checked", "TreeError", "TreeNotFound", "load", "read_file", "read_values"]
 
@@ -35,9 +35,9 @@ def load(
 ) -> Checked:
     """Find, read and check a tree.
 
-    tree: a path or the name of a bundled tree. values: keys of the root's board that replace or
-    join the file's own (`--set`, `--values`), raw as in the file ("66 mm"); `Given` knows where
-    they are written.
+    tree: a path or the name of a bundled tree. values: keys of the root's board, in addition to
+    those in the file or in their place (`--set`, `--values`), not converted ("66 mm"); `Given` also
+    has their places.
 
     Raises:
         TreeNotFound: there is no such file.
@@ -53,23 +53,23 @@ def load(
 
 
 def read_file(path: Path, registry: Registry | None = None) -> tuple[Document, Problems]:
-    """Read one tree file, in either spelling, and those that it includes, unchecked.
+    """Read a tree file, YAML or XML, and the files that it includes, without checking them.
 
-    registry: whose skills' port types XML is read with; the installed ones unless given.
+    registry: has the skills whose port types are needed to read XML; by default those installed.
 
     Raises:
         TreeNotFound: the file cannot be opened.
-        TreeError: it is neither YAML nor XML, or holds no tree.
+        TreeError: the file is neither YAML nor XML, or has no tree.
     """
     return read_project(path, registry if registry is not None else Registry.installed())
 
 
 def read_values(path: Path) -> Given:
-    """A file of values: one YAML mapping.
+    """Read a file of values, which is one YAML mapping.
 
     Raises:
         TreeNotFound: the file cannot be opened.
-        TreeError: it is not a YAML mapping, or has a key twice.
+        TreeError: the file is not a YAML mapping, or has a key twice.
     """
     given = Given()
     given.read(read_text(path, str(path)), str(path))
@@ -92,7 +92,7 @@ def _override(document: Document, values: Mapping[str, Any], problems: Problems)
 
 
 def _keys_read(document: Document) -> set[str]:
-    """Names of all keys that a port or a condition of the document mentions."""
+    """Names of all keys in the ports and conditions of a document."""
     names: set[str] = set()
     for tree in document.trees.values():
         for node in tree.root.walk():

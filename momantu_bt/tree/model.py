@@ -1,6 +1,6 @@
-"""The one model of a tree file, whichever spelling it was written in.
+"""The model of a tree file, the same for YAML and XML.
 
-Two documents are equal when they mean the same: places, comments and the source do not count.
+Two documents are equal if they mean the same; places, comments and source texts are not compared.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from momantu_bt.values.types import parse_type
 
 
 class Scope(Enum):
-    """Which board a reference means."""
+    """The board that a reference looks at."""
 
     LOCAL = "local"
     ROOT = "root"
@@ -25,9 +25,9 @@ class Scope(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Literal:
-    """A value written out. value: text, bool, int, float, list or mapping, as the file says.
+    """A value in the file. value: text, bool, int, float, list or mapping.
 
-    Units stay in the text ("66 mm"); the checker turns it into the port's type and unit.
+    A quantity stays a text ("66 mm"); it is converted later to the port's type and unit.
     """
 
     value: Any
@@ -35,7 +35,7 @@ class Literal:
 
 @dataclass(frozen=True, slots=True)
 class Reference:
-    """A wire to a blackboard key: `$key.field`, `$@key`. `fields` are parts of a value."""
+    """A reference to a blackboard key: `$key.field`, `$@key`. fields: the part of the value."""
 
     key: str
     fields: tuple[str, ...] = ()
@@ -53,17 +53,17 @@ PortValue: TypeAlias = Literal | Reference | Template
 
 
 FIRST_INPUT = ""
-"""Key of a port value written without a name (`dock: bay_a`); the checker names it."""
+"""Name of a port whose value is written without one (`dock: bay_a`); the checker fills it in."""
 
 BROKEN = ""
-"""Type of a node that could not be read; the problem is reported, the place kept."""
+"""Type of a node that could not be read; the problem was reported already."""
 
 
 @dataclass(slots=True)
 class Handler:
-    """One entry of `catch:`. codes: `("any",)` is the rest; a code may read `grip.TOO_FAR`.
+    """One entry of `catch:`. codes: codes such as `TOO_FAR` or `grip.TOO_FAR`; `("any",)`: others.
 
-    node: what to do, None for `again`.
+    node: the node to run; None for `again`.
     """
 
     codes: tuple[str, ...]
@@ -76,13 +76,14 @@ class Handler:
 class Node:
     """One node.
 
-    `type` is the canonical name: BehaviorTree.CPP's for what it has ("Sequence",
-    "RetryUntilSuccessful", "SubTree"), ours otherwise ("Recover"), or a skill's ("navigate").
+    `type` is the canonical name: that of BehaviorTree.CPP if it has the node ("Sequence",
+    "RetryUntilSuccessful", "SubTree"), otherwise Momantu's ("Recover"), or a skill's ("navigate").
+    A decorator that the file writes as a modifier is a node of its own around the other node, with
+    `written_as_modifier` set. conditions: by modifier name ("skip_if", "while", "on_success", …),
+    a script in canonical form (`&& || !`).
 
-    Modifiers that are decorators are nodes of their own around the node they were written on;
-    `written_as_modifier` keeps the spelling. conditions: modifier name ("skip_if", "while",
-    "on_success", …) to a script in canonical form (`&& || !`).
-    For a SubTree, `ports` are the wires to its inputs and outputs and `target` is its name.
+    For a SubTree, `ports` are its inputs and outputs, and `target` is the name of the tree.
+
     port_places: of the ports' values; port_name_places: of their names. condition_places: of the
     conditions' scripts, and of `name`, `note` and `disabled`; of `ID`, which names a target.
     comments: those written before the node or at the end of its line (`Beside`), without their
@@ -108,7 +109,7 @@ class Node:
     end_comments: tuple[str, ...] = field(default=(), compare=False)
 
     def walk(self) -> Iterator[Node]:
-        """The node and everything below it, in the order of the file, without recursion."""
+        """The node and all nodes below it, in file order, without recursion."""
         stack = [self]
         while stack:
             node = stack.pop()
@@ -124,9 +125,9 @@ class Node:
 class PortDeclaration:
     """An input or output of a subtree.
 
-    direction: "in", "out" or "inout" (a key that may come in with a value and go out with
-    another). type_name: "text", "list of pose2d", … or "any". default: a value, or the key outside
-    that a node is wired to where it does not say.
+    direction: "in", "out" or "inout" (a key that the subtree may read and write). type_name:
+    "text", "list of pose2d", … or "any". default: a value, or the outer key to use if a node does
+    not give the port.
     """
 
     name: str
@@ -149,7 +150,7 @@ class PortDeclaration:
 class Tree:
     """One named tree of a document.
 
-    open: it declares no ports, and takes whatever it is given, as BehaviorTree.CPP's trees do.
+    open: it declares no ports and accepts any, as in BehaviorTree.CPP.
     """
 
     name: str
@@ -163,7 +164,7 @@ class Tree:
 
 @dataclass(frozen=True, slots=True)
 class Include:
-    """A file whose trees the document takes over. path: as written."""
+    """A file whose trees the document includes. path: as written."""
 
     path: str
     place: Place = field(compare=False)
@@ -174,8 +175,8 @@ class NodeModel:
     """A file's model of a kind of node, for an editor's palette; it has no effect here.
 
     kind: "Action", "Condition", "Control" or "Decorator". ports: types and defaults as written.
-    editable: as an editor set it, None where it did not. metadata: pairs of name and value, one
-    for each `<Metadata name="value"/>`.
+    editable: as an editor wrote it; None if it did not. metadata: a pair of name and value for
+    each `<Metadata name="value"/>`.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""The problems of a tree file: a list that grows within bounds, and the error that carries it."""
+"""The problems of a tree file: a list of limited length, and the exception that carries it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from momantu_bt.formats.places import Place
 from momantu_bt.formats.problems import Problem, Severity, in_order, show
 
 MOST_PROBLEMS = 500
-"""Problems of one file that are kept."""
+"""Most problems of one file that are kept."""
 
 
 class TreeError(MomantuError):
@@ -21,19 +21,19 @@ class TreeError(MomantuError):
         super().__init__("\n".join(f"{p.place}: {p.message}" for p in self.problems))
 
     def printed(self) -> str:
-        """Every problem in its line, and how many there are."""
+        """Every problem with its line, and the number of problems."""
         return report(self.problems, self.source)
 
 
 class TooManyProblems(TreeError):
-    """Nothing is gained by looking on."""
+    """The list of problems is full; the check stops."""
 
 
 class Problems:
-    """A growing list of problems; the same one is kept once.
+    """A list of problems without duplicates.
 
-    The error after the first MOST_PROBLEMS raises TooManyProblems: what else is wrong, and what
-    would have been valid, would cost more than anyone reads. Warnings are then left out.
+    An error after the first MOST_PROBLEMS problems raises TooManyProblems, as nobody reads more;
+    warnings after them are dropped.
     """
 
     def __init__(self) -> None:
@@ -65,11 +65,11 @@ class Problems:
 
 
 MOST_SHOWN = 50
-"""Problems printed in full; a terminal holds no more, and the rest often follow from them."""
+"""Most problems that are printed in full; later ones are often consequences of earlier ones."""
 
 
 def report(problems: Sequence[Problem], source: Mapping[str, str]) -> str:
-    """Problems as a person reads them: each with its line and a caret, then how many there are."""
+    """Problems as text: each with its line and a caret, then the number of problems."""
     lines = [show(problem, source) for problem in problems[:MOST_SHOWN]]
     if len(problems) > MOST_SHOWN:
         lines.append(f"… and {len(problems) - MOST_SHOWN} more (--json has them all)")

@@ -19,7 +19,7 @@ class Registry:
     """The plug-ins that one check or run works with.
 
     skills: Skill classes by name. worlds: WorldEntry by name. robots: functions that give a
-    RobotDescription, by name. services: anything, by the names that trees read as `$@name`.
+    RobotDescription, by name. services: by the names that trees read as `$@name`.
     """
 
     skills: Mapping[str, type[Skill]] = field(default_factory=dict)
@@ -33,10 +33,10 @@ class Registry:
         return cls(SKILLS, WORLDS, ROBOTS, SERVICES)
 
     def site(self, world: str) -> Site:
-        """The nominal site of a world; KeyError when there is none of that name."""
+        """The nominal site of a world; KeyError if there is no such world."""
         return self.worlds[world].site()
 
     def description(self, robot: str) -> RobotDescription:
-        """A robot's description; KeyError when there is none of that name."""
+        """A robot's description; KeyError if there is no such robot."""
         found: RobotDescription = self.robots[robot]()
         return found

@@ -21,7 +21,7 @@ _NAME = re.compile(r"[a-z][a-z0-9_]*")
 
 
 def bad_skill_name(name: str) -> str | None:
-    """Why no skill can be called so; None when one can."""
+    """Why a skill cannot have this name; None if it can."""
     if not _NAME.fullmatch(name):
         return f"{name!r} is not a name for a skill: lower-case letters, digits and underscores"
     taken = SPELLED.get(name) or NODES.get(name)
@@ -36,7 +36,7 @@ def bad_skill_name(name: str) -> str | None:
 
 
 def skill_objection(name: str, plugin: Any) -> str | None:
-    """Why trees cannot use this as a skill; None when they can."""
+    """Why trees cannot use a plug-in as a skill; None if they can."""
     if not (isinstance(plugin, type) and issubclass(plugin, Skill)):
         kind = plugin.__name__ if isinstance(plugin, type) else type(plugin).__name__
         return f"{kind} is not a subclass of momantu_bt.Skill"
@@ -55,7 +55,7 @@ def skill_objection(name: str, plugin: Any) -> str | None:
 
 
 def _own_doc(kind: type[Skill]) -> bool:
-    """Whether it or a class above it, below Skill itself, says what it does."""
+    """Whether the class, or a base class other than Skill, has a docstring."""
     above = kind.__mro__[: kind.__mro__.index(Skill)]
     return any((vars(each).get("__doc__") or "").strip() for each in above)
 

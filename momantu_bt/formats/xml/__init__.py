@@ -1,1 +1,1 @@
-"""XML as elements that know their place: read without recursion and within bounds."""
+"""Reads XML as elements with their places in the file, without recursion and with size limits."""

@@ -1,4 +1,4 @@
-"""Comments as XML can hold them: two dashes must not stand together there."""
+"""Escaping of comments for XML, which does not allow `--` in them."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ _APART = re.compile(r"-(\\*)\\(?=-)")
 
 
 def hide_dashes(comment: str) -> str:
-    r"""A comment without `--`: a backslash stands between, `-\-`."""
+    r"""Escape a comment for XML: `--` becomes `-\-`."""
     return _DASHES.sub(r"-\1\\", comment)
 
 
 def show_dashes(comment: str) -> str:
-    """What `hide_dashes` was given."""
+    """Undo `hide_dashes`."""
     return _APART.sub(r"-\1", comment)

@@ -9,9 +9,10 @@ from momantu_bt.formats.places import Place
 
 @dataclass(frozen=True, slots=True)
 class Attribute:
-    """One attribute. name: without prefix; space: its namespace, "" without a prefix.
+    """One attribute. name: without prefix. space: its namespace, "" without a prefix.
 
-    place: of the value, quotes aside; as long as the value where it is written without entities.
+    place: of the value without its quotes. Its length is that of the value, unless the file writes
+    the value with entities.
     """
 
     name: str
@@ -23,13 +24,13 @@ class Attribute:
 
 @dataclass(slots=True)
 class Element:
-    """One element. name: without prefix; space: its namespace; said: the tag as it is written.
+    """One element. name: without prefix. space: its namespace. said: the tag as written.
 
     place: of the tag's name.
 
-    text: what stands inside it before its first child; text_place: where the first letter
-    directly inside it stands. comments: those before it and beside it; end_comments: those after
-    everything that is inside it.
+    text: the text inside it before its first child. text_place: the place of the first character
+    of text directly inside it. comments: those before it and on its line. end_comments: those
+    inside it, after its last child.
     """
 
     name: str
@@ -44,13 +45,13 @@ class Element:
     end_comments: tuple[str, ...] = ()
 
     def get(self, name: str, space: str = "") -> Attribute | None:
-        """The attribute of that name."""
+        """The attribute of a name, or None."""
         return next((a for a in self.attributes if a.name == name and a.space == space), None)
 
 
 @dataclass(frozen=True, slots=True)
 class Parsed:
-    """A file's root, and the comments after it."""
+    """A file's root element, and the comments after it."""
 
     root: Element
     comments: tuple[str, ...]

@@ -17,9 +17,9 @@ from momantu_bt.formats.problems import Problem
 class XmlRules:
     """How to read one kind of file: its limits, and its words in messages.
 
-    what: what a person calls such a file, in messages. most_nodes: elements, attributes and
-    comments; most_attributes: of one element. beginning: what to do about an empty file.
-    prefixes: namespaces of the language, by their usual prefixes.
+    what: what messages call this kind of file. most_nodes: limit of elements, attributes and
+    comments together. most_attributes: limit for one element. beginning: the hint for an empty
+    file. prefixes: the namespaces of this kind of file, by their usual prefixes.
     """
 
     what: str
@@ -33,7 +33,7 @@ class XmlRules:
 
 @dataclass(frozen=True, slots=True)
 class LibraryError:
-    """An error of lxml. kind: such as "ERR_TAG_NAME_MISMATCH"; line, column: from 1."""
+    """An error from lxml. kind: for example "ERR_TAG_NAME_MISMATCH". line, column: from 1."""
 
     kind: str
     message: str
@@ -42,7 +42,7 @@ class LibraryError:
 
 
 def first_error(error: etree.XMLSyntaxError, parser: etree.XMLParser) -> LibraryError:
-    """The first of the errors that a text has; the others often follow from it."""
+    """The first error in a text; later ones are often consequences of it."""
     for entry in parser.error_log:
         if entry.level_name != "WARNING":
             return LibraryError(entry.type_name, entry.message, entry.line, max(1, entry.column))
@@ -50,7 +50,7 @@ def first_error(error: etree.XMLSyntaxError, parser: etree.XMLParser) -> Library
 
 
 def in_our_words(error: LibraryError, text: str, file: str, rules: XmlRules) -> Problem:
-    """One problem with the code "syntax" (or "too-large")."""
+    """Turn an error of lxml into a problem with the code "syntax" (or "too-large")."""
     lines = lines_of(text)
     line = min(max(1, error.line), len(lines))
     place = Place(file, line, min(error.column, len(lines[line - 1]) + 1))
@@ -86,7 +86,7 @@ def _tags(error: LibraryError, place: Place, lines: tuple[str, ...]) -> Problem 
 
 
 def _lost_bracket(lines: Sequence[str]) -> str:
-    """The hint where a line above ends a tag that it does not begin."""
+    """A hint if an earlier line ends a tag that it does not begin; else empty."""
     for number, line in enumerate(lines, 1):
         if re.fullmatch(r"\s*/?[\w:]+(\s+[\w:]+=\"[^\"<>]*\")*\s*/?>\s*", line):
             return f"line {number} ends a tag that it does not begin: a `<` is missing"
@@ -161,13 +161,13 @@ def _rest(error: LibraryError, place: Place, lines: tuple[str, ...]) -> Problem 
 
 
 def _before(place: Place, lines: tuple[str, ...], word: str, length: int) -> Place:
-    """The last place of a word up to here in the same line."""
+    """The last place of a word in the same line, before a place."""
     found = lines[place.line - 1].rfind(word, 0, place.column + length)
     return place if found < 0 else Place(place.file, place.line, found + 1, length)
 
 
 def _opened_quote(place: Place, lines: tuple[str, ...]) -> Place:
-    """The attribute before here whose quotes are open; it may be some lines above."""
+    """The attribute before a place whose quotes are not closed; it may be on an earlier line."""
     for number in range(place.line, 0, -1):
         line = lines[number - 1]
         end = place.column if number == place.line else len(line)

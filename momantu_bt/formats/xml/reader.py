@@ -1,7 +1,7 @@
-"""XML text as elements that know their place, read without recursion and within bounds.
+"""Reads XML as elements with their places in the file, without recursion and with size limits.
 
-lxml decides whether the text is XML and what its attributes say; a scan of the same text tells
-where every tag and attribute stands, to the column.
+lxml parses the text and decides whether it is valid XML. A second pass over the text finds the line
+and column of each tag and attribute.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from momantu_bt.formats.xml.errors import XmlRules, first_error, in_our_words
 
 
 class XmlSyntaxError(Exception):
-    """A file that is not XML, or out of bounds."""
+    """A file is not XML, or exceeds a limit."""
 
     def __init__(self, problem: Problem) -> None:
         super().__init__(f"{problem.place}: {problem.message}")
@@ -33,7 +33,7 @@ def parse(text: str, file: str, rules: XmlRules) -> Parsed:
     """Read a text.
 
     Raises:
-        XmlSyntaxError: with the one problem, in our words.
+        XmlSyntaxError: the text is not XML, or exceeds a limit.
     """
     size = len(text.encode("utf-8", "surrogatepass"))
     if size > rules.most_bytes:
@@ -70,7 +70,7 @@ _ENDS = (("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>"))
 
 @dataclass(slots=True)
 class _Scan:
-    """Walks a text that is known to be XML, tag by tag."""
+    """Goes through a text that is known to be valid XML, tag by tag."""
 
     text: str
     file: str
@@ -102,7 +102,7 @@ class _Scan:
                 return
 
     def tokens(self) -> Iterator[tuple[int, str, int]]:
-        """Start, kind and end of everything that begins with `<`, and of the text between."""
+        """Start, kind and end of everything that begins with `<`, and of the texts in between."""
         text, position = self.text, 0
         while True:
             start = text.find("<", position)
@@ -125,7 +125,7 @@ class _Scan:
             kind = "declaration" if following == "!" else "end"
             return kind, len(self.text) if end < 0 else end + 1
         match = _START.match(self.text, start)
-        if match is None:  # not XML: lxml says so
+        if match is None:  # not XML; lxml reports it
             return "start", start + 1
         end = match.end()
         while attribute := _ATTRIBUTE.match(self.text, end):

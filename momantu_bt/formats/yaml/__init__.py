@@ -1,1 +1,1 @@
-"""YAML 1.2 as values that know their place: read without recursion and within bounds."""
+"""Reads YAML 1.2 as values with their places in the file, without recursion, with size limits."""

@@ -1,4 +1,4 @@
-"""The comments of a YAML text, which its parser skips."""
+"""Finds the comments of a YAML text, which the YAML parser skips."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _COMMENT = re.compile(r"(?<!\S)#([^\r\n]*)")
 
 @dataclass(frozen=True, slots=True)
 class Comment:
-    """A comment in the file, without its `#`. beside: something stands before it on its line."""
+    """A comment in the file, without its `#`. beside: it follows something on the same line."""
 
     line: int
     column: int
@@ -21,7 +21,7 @@ class Comment:
 
 
 def span(event: Any) -> list[tuple[int, int]]:
-    """The place of a scalar's text; that of `|` and `>` begins on the next line."""
+    """The place of a scalar's text; after `|` and `>` the text begins on the next line."""
     start, end = event.start_mark.index, event.end_mark.index
     if event.style not in ("|", ">"):
         return [(start, end)]
@@ -30,7 +30,7 @@ def span(event: Any) -> list[tuple[int, int]]:
 
 
 def comments(text: str, spans: list[tuple[int, int]]) -> list[Comment]:
-    """The comments of a text. spans: of its scalars, within which `#` begins none."""
+    """The comments of a text. spans: places of its scalars, in which `#` starts no comment."""
     found: list[Comment] = []
     starts = [0, *(match.end() for match in re.finditer(r"\r\n|\r|\n", text))]
     position = 0

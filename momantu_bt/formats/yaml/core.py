@@ -10,11 +10,11 @@ _NULL = re.compile(r"|~|null|Null|NULL")
 _INT = re.compile(r"[-+]?[0-9]+|0o[0-7]+|0x[0-9a-fA-F]+")
 _FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
 _LARGEST_NUMBER = 40
-"""Digits; longer ones stay text, as no port takes them."""
+"""Most digits of a number; longer ones stay texts, as no port takes them."""
 
 
 def resolve(text: str) -> Any:
-    """A plain scalar's value by YAML 1.2's core schema, without .inf and .nan."""
+    """The value of a plain scalar by YAML 1.2's core schema, but .inf and .nan stay texts."""
     if _NULL.fullmatch(text):
         return None
     if text in ("true", "false"):

@@ -18,10 +18,11 @@ _FLOW_MAPPING = "a flow mapping"
 class YamlRules:
     """How to read one kind of file: its limits, and its words in messages.
 
-    what: what a person calls such a file, in messages. most_values: those behind aliases are
-    counted each time they are used; comments have the same bound.
-    beginning: what to do about an empty file. tag_hint: about a tag, `!x`. braces_hint: about a
-    mapping as a key, `{x}:`. scripts: keys whose values are expressions that YAML may misread.
+    what: what messages call this kind of file. most_values: limit of values; a value behind an
+    alias counts each time the alias is used. Comments have the same limit.
+    beginning: the hint for an empty file. tag_hint: the hint for a tag, `!x`. braces_hint: the hint
+    for a mapping as a key, `{x}:`. scripts: keys whose values are expressions that YAML may
+    misread.
     """
 
     what: str
@@ -36,13 +37,13 @@ class YamlRules:
 
 
 _UNQUOTED = r""":\s+([^\s"'{}\[][^"{}]*?)\s*(?:,\s+\w+:|}|$)"""
-"""A script without quotes within braces, up to the next key or the brace that ends the mapping."""
+"""A script without quotes inside braces, up to the next key or the closing brace."""
 _OPENED_QUOTE = re.compile(r"""[^"'#]*(?:[:-]\s+|[\[{,]\s*)(?:"(?:[^"\\]|\\.)*|'[^']*)""")
-"""A line in which a value begins with a quote that the line does not close."""
+"""A line on which a value begins with a quote that is not closed on that line."""
 
 
 def in_our_words(error: MarkedYAMLError, text: str, file: str, rules: YamlRules) -> Problem:
-    """The one problem of a text that is not YAML."""
+    """Turn the error of the YAML parser into a problem."""
     problem = str(error.problem or "")
     context = str(error.context or "")
     at = error.problem_mark or error.context_mark
@@ -61,10 +62,10 @@ def in_our_words(error: MarkedYAMLError, text: str, file: str, rules: YamlRules)
 
 
 def _indented_above(text: str, begin: StringMark, at: StringMark | None) -> str:
-    """The place where a mapping or list begins, and the lines above that may be misindented.
+    """Text that says where a mapping or list begins, and which lines above may be misindented.
 
-    The line would fit if the one that it stands below were further out or in, or that one's first
-    line were.
+    The wrong line would fit if the line above it had another indentation, or if the first line of
+    the mapping or list had.
     """
     said = f"; line {begin.line + 1} begins it in column {begin.column + 1}"
     lines = lines_of(text)
@@ -82,7 +83,7 @@ def _indented_above(text: str, begin: StringMark, at: StringMark | None) -> str:
 
 
 def _cause_above(text: str, mark: StringMark | None) -> str:
-    """The hint where an earlier line is what is wrong: an open quote, or a `:` that is missing."""
+    """The hint if an earlier line is wrong: a quote that is not closed, or a missing `:`."""
     above = lines_of(text)[: mark.line + 1 if mark is not None else 0]
     for number, line in enumerate(above[:-1], 1):
         opened = _OPENED_QUOTE.fullmatch(line)
@@ -101,7 +102,7 @@ def _cause_above(text: str, mark: StringMark | None) -> str:
 def _script_within(
     text: str, begin: StringMark | None, at: StringMark | None, keys: Sequence[str]
 ) -> str:
-    """The hint where an unquoted script within braces has a `?`, `:` or `,` that YAML reads."""
+    """The hint if an unquoted script inside braces has a `?`, `:` or `,` that YAML interprets."""
     if begin is None or at is None or not keys or begin.line >= len(lines_of(text)):
         return ""
     line = lines_of(text)[begin.line]
@@ -112,7 +113,7 @@ def _script_within(
 
 
 def _start_of_text(lines: Sequence[str]) -> int | None:
-    """Index of the line without `:` that YAML reads on from into the last line."""
+    """Index of the line without `:` whose text YAML continues in the last line."""
     start, least = None, _indent(lines[-1]) if lines else 0
     for index in range(len(lines) - 2, -1, -1):
         line = lines[index]

@@ -1,7 +1,7 @@
-"""YAML 1.2 text as values that know their place, read without recursion and within bounds.
+"""Reads YAML 1.2 as values with their places in the file, without recursion, with size limits.
 
-Every key of a mapping is kept, so that all duplicates can be reported; booleans are `true` and
-`false` alone, numbers are YAML 1.2's.
+A mapping keeps all its keys, so that every duplicate can be reported. Only `true` and `false` are
+booleans; numbers are those of YAML 1.2.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _SURROGATE = re.compile("[\ud800-\udfff]")
 
 
 class YamlSyntaxError(Exception):
-    """A file that is not YAML, or out of bounds."""
+    """A file is not YAML, or exceeds a limit."""
 
     def __init__(self, problem: Problem) -> None:
         super().__init__(f"{problem.place}: {problem.message}")
@@ -37,7 +37,7 @@ def compose(text: str, file: str, rules: YamlRules) -> Raw:
     """Read a text.
 
     Raises:
-        YamlSyntaxError: with the one problem, in our words.
+        YamlSyntaxError: the text is not YAML, or exceeds a limit.
     """
     return compose_with_comments(text, file, rules)[0]
 
@@ -46,7 +46,7 @@ def compose_with_comments(text: str, file: str, rules: YamlRules) -> tuple[Raw, 
     """Read a text and its comments.
 
     Raises:
-        YamlSyntaxError: with the one problem, in our words.
+        YamlSyntaxError: the text is not YAML, or exceeds a limit.
     """
     size = len(text.encode("utf-8", "surrogatepass"))
     if size > rules.most_bytes:
@@ -81,7 +81,7 @@ def compose_with_comments(text: str, file: str, rules: YamlRules) -> tuple[Raw, 
 
 @dataclass(slots=True)
 class _Open:
-    """A list or mapping that is being read. key: waiting for its value."""
+    """A list or mapping that is being read. key: the key whose value comes next."""
 
     raw: Items | Entries
     anchor: str | None
@@ -128,7 +128,7 @@ class _Builder:
         return Place(self.file, start.line + 1, start.column + 1, max(1, length))
 
     def up_to(self, place: Place, event: Any) -> Place:
-        """The whole list or mapping, where it is written on one line."""
+        """The place of a whole list or mapping if it is on one line; else of its start."""
         mark = event.end_mark
         if mark.line + 1 != place.line or mark.column < place.column:
             return place
@@ -153,7 +153,7 @@ class _Builder:
         return Scalar(value, str(event.value), quoted, self.scalar_place(event))
 
     def scalar_place(self, event: Any) -> Place:
-        """Of the scalar; of its key where nothing is written, as YAML ends that on a later line."""
+        """The place of a scalar; for an empty one that of its key, as YAML puts it further down."""
         place = self.place(event)
         key = self.stack[-1].key if self.stack else None
         missing = event.style is None and event.value == "" and key is not None

@@ -10,9 +10,9 @@ from momantu_bt.formats.places import Place
 
 @dataclass(slots=True)
 class Scalar:
-    """A text, number, true, false or nothing (None). text: as written; quoted: in quotes.
+    """A text, number, true, false or None. text: as written. quoted: it is in quotes.
 
-    size, depth: how many values it holds and how deep they are nested, aliases counted.
+    size, depth: number of values in it and depth of their nesting, those behind aliases included.
     """
 
     value: Any
@@ -35,7 +35,7 @@ class Items:
 
 @dataclass(slots=True)
 class Entries:
-    """A mapping: its keys and values in the order of the file. flow: written with braces."""
+    """A mapping: its keys and values in file order. flow: it is written with braces."""
 
     entries: list[tuple[Scalar, Raw]]
     place: Place
@@ -48,8 +48,8 @@ Raw: TypeAlias = Scalar | Items | Entries
 
 
 def plain_value(raw: Raw) -> Any:
-    """The value alone; mappings keep the last of several equal keys."""
-    # as deep as the file, whose depth has a bound
+    """The value without places; of several equal keys, the last one counts."""
+    # The recursion is safe: the reader limits the depth of a file.
     if isinstance(raw, Scalar):
         return raw.value
     if isinstance(raw, Items):

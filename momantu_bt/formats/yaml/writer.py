@@ -1,4 +1,4 @@
-"""Texts as scalars of YAML 1.2: plain where they can be, in quotes where they must be."""
+"""Writes texts as YAML 1.2 scalars, with quotes only if needed."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ _ESCAPES = {"\n": "\\n", "\t": "\\t", "\r": "\\r", '"': '\\"', "\\": "\\\\", "\0
 
 
 def scalar(text: str, *, flow: bool = False, typed: bool = True) -> str:
-    """A text as one scalar that reads back as this text.
+    """Write a text as a scalar that reads back as the same text.
 
-    flow: it stands within brackets or braces. typed: there a number could stand as well, so that
-    a text like one needs quotes.
+    flow: the scalar is inside brackets or braces. typed: a number would be valid there too, so a
+    text that looks like a number needs quotes.
     """
     return text if _is_plain(text, flow, typed) else quoted(text)
 
 
 def quoted(text: str) -> str:
-    """A text in quotes: double ones, single ones where that saves escapes."""
+    """A text in double quotes, or in single quotes if that needs fewer escapes."""
     if text.isprintable() and ('"' in text or "\\" in text) and "'" not in text:
         return f"'{text}'"
     return '"' + "".join(map(_escaped, text)) + '"'

@@ -44,7 +44,7 @@ _ONLY_WITH = {"code": "FAILURE", "message": "FAILURE", "outputs": "SUCCESS"}
 
 @dataclass(slots=True)
 class Rule:
-    """One rule. place: of the rule; places: of its keys' values. used: it replaces some node."""
+    """One rule. place: of the rule. places: of its keys' values. used: it replaces a node."""
 
     node: str
     status: Status
@@ -60,7 +60,7 @@ class Rule:
     used: bool = False
 
     def place_of(self, key: str) -> Place:
-        """The place of a key's value, or of the rule without one."""
+        """The place of a key's value; that of the rule if it lacks the key."""
         return self.places.get(key, self.place)
 
 
@@ -74,7 +74,7 @@ class RuleFile:
 
 
 def read_rules(raw: Raw, problems: Problems) -> RuleFile:
-    """The rules of a composed file; those with errors are reported and left out."""
+    """Read the rules of a file; wrong ones are reported and left out."""
     found = RuleFile()
     having = top_values(raw, ("substitute", "values"), "a file of substitutions", problems)
     if having is None:
@@ -144,7 +144,7 @@ def _rule(raw: Raw, problems: Problems) -> Rule | None:
 
 
 def _is_consistent(rule: Rule, problems: Problems) -> bool:
-    """Whether the keys of a rule go together."""
+    """Whether the keys of a rule can be combined."""
     said: list[tuple[str, str, str]] = []
     for key, status in _ONLY_WITH.items():
         if key in rule.places and rule.status != status:

@@ -1,4 +1,4 @@
-"""Applying a file's rules to a document: the nodes they replace, and whether they are valid."""
+"""Applies a file of rules to a document: checks the rules and finds the nodes that they replace."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ from momantu_bt.values.words import ConversionError
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """The outcome that replaces a node at one start.
+    """A result that replaces the run of a node.
 
-    delay: seconds of the world's clock before its end. times: how often; None: always.
-    outputs: values by port.
+    delay: time of the world's clock until the end, s. times: number of starts that it replaces;
+    None: all. outputs: values by port.
     """
 
     status: Status
@@ -49,8 +49,8 @@ class Result:
 class Substitution:
     """The effect of a file of rules on one document.
 
-    values: keys of the root's board in the place of what services publish. source: the file's
-    text, by its name.
+    values: keys of the root's board that replace published values of services. source: the file's
+    text by its name.
     """
 
     results: Mapping[int, tuple[Result, ...]] = field(default_factory=dict)
@@ -58,11 +58,11 @@ class Substitution:
     source: Mapping[str, str] = field(default_factory=dict)
 
     def of(self, node: Node) -> tuple[Result, ...]:
-        """The outcomes that replace a node at its starts, in turn; then it runs itself."""
+        """The results that replace the starts of a node, in order; after them it runs normally."""
         return self.results.get(id(node), ())
 
     def replaces(self, node: Node) -> bool:
-        """Whether the node never runs itself."""
+        """Whether every start of the node is replaced."""
         results = self.of(node)
         return bool(results) and results[-1].times is None
 
@@ -70,11 +70,11 @@ class Substitution:
 def load_substitution(
     path: Path, document: Document, registry: Registry, world: str | None = None
 ) -> Substitution:
-    """Read a file of rules for a checked document. world: the run's, where it is not the tree's.
+    """Read a file of rules for a checked document. world: of the run, if not the tree's own.
 
     Raises:
         TreeNotFound: the file cannot be opened.
-        TreeError: it has errors; all of them are in it.
+        TreeError: the file has errors; the exception lists all of them.
     """
     text, name, problems = read_text(path, str(path)), str(path), Problems()
     source = {**document.source, name: text}
@@ -93,9 +93,9 @@ def load_substitution(
 
 
 def reached(document: Document, replaced: Mapping[int, tuple[Result, ...]]) -> Iterator[Node]:
-    """Nodes that can run, in the order of the file: none disabled, none inside of replaced ones.
+    """Nodes that can run, in file order, without disabled ones and those inside replaced ones.
 
-    `replaced` may grow while the nodes are gone through.
+    `replaced` may grow during the iteration.
     """
     waiting, seen = [document.main], {document.main}
     while waiting:
@@ -116,7 +116,7 @@ def reached(document: Document, replaced: Mapping[int, tuple[Result, ...]]) -> I
 
 
 def names(node: Node) -> list[str]:
-    """The names that can mean a node: its own name, its tree's, its type or skill."""
+    """The names by which a rule can select a node: its name, its tree's, its type or skill."""
     spec = NODES.get(node.type)
     spellings = spec.yaml if spec is not None else ()
     said = (node.name, node.target, node.type if node.type != SUBTREE else None, *spellings)
@@ -146,7 +146,7 @@ def _match(context: Context, rules: list[Rule]) -> dict[int, tuple[Result, ...]]
 
 
 def _result(context: Context, rule: Rule, node: Node) -> Result:
-    """The rule for this node, its outputs converted; what does not fit is reported."""
+    """The result of a rule for a node, with converted outputs; problems are reported."""
     signature = context.signature(node)
     ports = signature.ports if signature is not None else {}
     said = signature.said if signature is not None else node.type
@@ -198,7 +198,7 @@ def _check_used(context: Context, rules: list[Rule]) -> None:
 
 
 def _known(nodes: list[Node], rule: Rule) -> list[str]:
-    """Names of nodes worth offering; where the name fits and the line does not, the lines."""
+    """Names to offer in a hint; if the name fits but the line does not, the lines."""
     lines = [n.place.line for n in nodes if any(fnmatchcase(w, rule.node) for w in names(n))]
     if lines:
         return [f"{rule.node} in line {line}" for line in lines]
@@ -211,7 +211,7 @@ def _check_values(
     results: Mapping[int, tuple[Result, ...]],
     without_world: bool,
 ) -> None:
-    """Values stand for what services publish, where no world runs them; then all are needed."""
+    """Check that values replace published keys; without a world, all such keys need a value."""
     published = {*context.registry.services, ROBOT_KEY}
     for key, place in found.value_places.items():
         if key not in published:
@@ -232,7 +232,7 @@ def _check_values(
 
 
 def _read_by(node: Node, replaced: bool) -> Iterator[Reference]:
-    """Keys of the root's board that a node reads; of a replaced one in its conditions alone."""
+    """Keys of the root's board that a node reads; for a replaced node only its conditions count."""
     scripts = list(node.conditions.values())
     if not replaced:
         for value in node.ports.values():
