@@ -123,7 +123,7 @@ class Executor:
         return Ending(status, self._failure, verdict, sim_time, wall_time, ticks, self._error)
 
     def _publish_starts(self, interrupts: Interrupts) -> None:
-        """Make nodes publish their starts, if anyone subscribes; after an interrupt none is ticked."""
+        """Make nodes publish their starts, if anyone subscribes; an interrupt suspends the tree."""
         if not self.context.events.has_subscribers(NodeStarting):
             return
         for node in self.built.nodes:
