@@ -17,13 +17,13 @@ from momantu_skills.robot_setup.urdf.body import Body
 from momantu_skills.robot_setup.urdf.cells import cuts_of, swallowed
 
 OUTSIDE = 0.01
-"""m by which the base may leave its footprint: hulls and rounding."""
+"""How far the base may extend beyond its footprint, m: errors of hulls and rounding."""
 ROOMY = 0.06
-"""m by which the footprint may leave the base: a bumper, or caution."""
+"""How far the footprint may extend beyond the base, m: a bumper, or a safety margin."""
 TALL = 0.02
-"""m by which a posture may be taller than the robot says it is."""
+"""How much taller than the description's height a posture may be, m."""
 SLACK = 1e-3
-"""rad or m, and per second, by which a limit may pass the URDF's: rounding."""
+"""How much a limit may exceed the URDF's, rad or m, and per second: rounding."""
 
 
 def check_poses(description: RobotDescription, model: ArmModel) -> Iterator[FindingAtKeys]:
@@ -82,7 +82,7 @@ def in_poses(names: list[str]) -> str:
 
 
 def _links(one: str, other: str) -> tuple[str, str]:
-    """Shapes of long links are numbered: the links that they belong to."""
+    """The links that shapes belong to; shapes of long links are numbered."""
     return one.split(":")[0], other.split(":")[0]
 
 
@@ -195,7 +195,7 @@ def _forces(description: RobotDescription, body: Body) -> Iterator[FindingAtKeys
 
 
 def check_hulls(description: RobotDescription, body: Body) -> Iterator[FindingAtKeys]:
-    """Links that lie in the hull of a long mesh: a simulator pushes them out."""
+    """Links inside the hull of a long mesh: a simulator pushes them out."""
     if description.simulation is None:
         return
     cut = description.simulation.convex_cells
@@ -218,7 +218,7 @@ def check_hulls(description: RobotDescription, body: Body) -> Iterator[FindingAt
 
 
 def check_looks(description: RobotDescription) -> Iterator[FindingAtKeys]:
-    """Links that touch things and that no camera sees."""
+    """Links with a collision shape but no visual shape."""
     links = read_urdf(description.urdf).links
     bare = [link.name for link in links if link.collisions and not link.visuals]
     if bare:

@@ -17,15 +17,17 @@ from momantu_skills.robot_setup.urdf.body import Body, placed
 from momantu_skills.robot_setup.urdf.rays import opening_between
 
 ALONG = 0.7
-"""Cosine between the grasp frame's axes and what they are to point along: less is a wrong frame."""
+"""Least cosine between the grasp frame's axes and their required directions; less means a wrong
+frame."""
 SIDEWAYS = 0.5
-"""Share of a finger's way that is along y: fingers that turn also go out."""
+"""Share of a finger's motion that must be along y: fingers that rotate also move outwards."""
 MISFIT = (0.012, 0.15)
-"""m, and share of the width, by which an opening may differ from the distance of the hulls."""
+"""Largest difference between an opening and the distance of the hulls, m, and as a share of the
+width."""
 SAMPLES = (0.3, 0.6, 1.0)
-"""Shares of the widest opening at which the table is held against the fingers."""
+"""Shares of the widest opening at which the table is compared with the fingers."""
 HEIGHT_SHARE = 0.2
-"""Share of the tables' heights at which the farthest things must be within reach."""
+"""Share of the tables' heights at which objects at the largest distance must be in reach."""
 
 
 def check_hand(description: RobotDescription, body: Body) -> Iterator[FindingAtKeys]:

@@ -22,19 +22,22 @@ from momantu_skills.robot_setup.urdf.body import Body, placed
 from momantu_skills.robot_setup.urdf.rays import blocked, planes_of
 
 COLUMNS, ROWS = 48, 36
-"""Rays through a camera's picture."""
+"""Columns and rows of rays through a camera's picture."""
 COVERED, BLIND = 0.2, 0.6
-"""Share of the picture that the robot covers: more is worth a look, or makes the camera useless."""
+"""Shares of the picture covered by the robot above which a camera gets a warning, or counts as
+useless."""
 SECTORS = 180
-"""Directions of a laser that are looked at."""
+"""Directions of a laser that are checked."""
 SHADOW, DARK = 0.1, 0.5
-"""Share of the beams that the robot stops: more is worth a look, or makes the laser useless."""
+"""Shares of the beams blocked by the robot above which a laser gets a warning, or counts as
+useless."""
 LEVEL = 0.05
-"""rad; a laser's plane may be tilted by this."""
+"""Largest tilt of a laser's plane, rad."""
 TILTED = 0.5
-"""Cosine between the picture's downward direction and the vertical: less is a wrong frame."""
+"""Least cosine between the picture's downward direction and the vertical; less means a wrong
+frame."""
 LOOKING = "look_around"
-"""The pose in which a camera is meant to see."""
+"""The pose in which a camera is meant to have a free view."""
 
 
 def check_sensors(description: RobotDescription, body: Body) -> Iterator[FindingAtKeys]:

@@ -8,12 +8,12 @@ from momantu_skills.robot_setup.find.fingers import Hand
 from momantu_skills.robot_setup.urdf.body import Body
 
 LEAST_JOINTS = 4
-"""A chain with fewer joints is not an arm: it cannot choose from where a hand gets to a place."""
+"""Fewest joints of an arm: with fewer it cannot choose the direction of approach."""
 
 
 @dataclass(frozen=True)
 class Limb:
-    """A chain of joints. name: of its actuator. tip: the link it carries. hand: at its end."""
+    """A chain of joints. name: of its actuator. tip: its last link. hand: at its end."""
 
     name: str
     joints: tuple[str, ...]
@@ -23,9 +23,9 @@ class Limb:
 
 @dataclass(frozen=True)
 class Limbs:
-    """arm: the one that is planned for. others: further arms. head: carries the camera.
+    """arm: the one for planning. others: further arms. head: carries the camera.
 
-    rest: joints that belong to nothing and are to be held still. notes: what was decided and why.
+    rest: all other joints, which are held still. notes: decisions and their reasons.
     """
 
     arm: Limb | None
@@ -43,7 +43,7 @@ class _Draft:
 def find_limbs(
     body: Body, hands: tuple[Hand, ...], camera: str | None, wheels: tuple[str, ...]
 ) -> Limbs:
-    """Share the joints out. camera: the link that carries one. wheels: links that roll."""
+    """Assign the joints to limbs. camera: the link with the camera. wheels: links that roll."""
     draft = _Draft()
     arms = _arms(body, hands, draft)
     if not arms:
@@ -63,7 +63,7 @@ def find_limbs(
 
 
 def own_chain(body: Body, link: str) -> tuple[str, ...]:
-    """Joints between the base and a link that are moved by themselves, from the base outwards."""
+    """Actively moved joints between the base and a link, from the base outwards."""
     return tuple(
         joint.name for joint in body.skeleton.chain(link) if joint.name in body.free_joints
     )

@@ -12,26 +12,26 @@ from momantu_skills.robot_setup.urdf.body import Body
 from momantu_skills.robot_setup.urdf.skeleton import TURNING, SetupJoint, Skeleton
 
 NAMES = ("base_footprint", "base_link", "base")
-"""What bases are called, the one on the floor first."""
+"""Usual names of base links, the one on the floor first."""
 ABOVE = 0.25
-"""m above the floor up to which what stands there makes the footprint."""
+"""Height above the floor up to which shapes belong to the footprint, m."""
 ON_FLOOR = 0.03
-"""m from the lowest point of the robot within which a wheel touches the floor."""
+"""Height above the robot's lowest point within which a wheel touches the floor, m."""
 OVER_FLOOR = 0.05
-"""m; links of the base that reach this far down may touch an uneven floor."""
+"""Height above the floor, m, below which links of the base may touch an uneven floor."""
 CORNERS = 12
-"""Corners that a footprint has at most: as many as go around a round base."""
+"""Most corners of a footprint: enough for a round base."""
 THIN = 1e-3
-"""m; a side that can be left out while the footprint grows by less is left out."""
+"""A side is removed if the footprint grows by less than this, m."""
 WHEEL = 0.5
-"""m; a wheel with its fork is smaller."""
+"""Largest size of a wheel with its fork, m."""
 LEVEL = 0.2
-"""Share of a wheel's axis that may point up."""
+"""Largest vertical component of a wheel's axis (unit vector)."""
 
 
 @dataclass(frozen=True)
 class BaseFrame:
-    """frame: the link that the robot is placed by. virtual: joints above it that carry it."""
+    """frame: the link that defines the robot's pose. virtual: joints above it that move it."""
 
     frame: str
     virtual: tuple[str, ...] = ()
@@ -68,7 +68,7 @@ class Stand:
 
 
 def find_base(skeleton: Skeleton) -> BaseFrame:
-    """The link that carries everything, below joints that only place the robot in a world."""
+    """The root of the robot, below joints that only place the robot in a world."""
     link = skeleton.root
     virtual: list[str] = []
     while not any(skeleton.links[name].collisions for name in skeleton.rigid(link)):
@@ -170,10 +170,11 @@ def outline(points: Array) -> Array | None:
 
 
 def _enclosing(corners: Array) -> Array:
-    """A polygon around a convex one (n, 2) that has few sides and is hardly larger.
+    """A polygon around a convex one (n, 2) that has few sides and is only slightly larger.
 
-    One side after the other goes, and its neighbours are made longer until they meet: always the
-    side by which that reaches out least, while there are too many or it is by less than THIN.
+    Sides are removed one by one, and their neighbours extended until they meet. The next side is
+    the one with the smallest extension, while there are too many sides or the extension is less
+    than THIN.
     """
     while len(corners) > 3:
         tips, heights = _without_sides(corners)

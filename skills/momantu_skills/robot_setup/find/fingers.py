@@ -12,24 +12,24 @@ from momantu_skills.robot_setup.urdf.body import Body, placed
 from momantu_skills.robot_setup.urdf.skeleton import SetupJoint
 
 FINGER_JOINTS = 5
-"""A branch with more moving joints is not a finger."""
+"""Most moving joints of a finger."""
 FINGER_REACH = 0.25
-"""m from its joint to its farthest point; what is longer is not a finger."""
+"""Largest distance from a finger's joint to its farthest point, m."""
 NEAR = 0.03
-"""m; fingers that stay farther apart do not close."""
+"""Fingers that stay farther apart than this do not close, m."""
 TRAVEL = 0.008
-"""m by which fingers that open change the gap at least."""
+"""Least change of the gap between fingers that open, m."""
 JAW = re.compile(r"gripper|jaw|finger|claw|pinc|grasp", re.IGNORECASE)
-"""What the joint of a single jaw is called: a last wrist joint looks the same."""
+"""Usual names of the joint of a single jaw; without them it looks like a last wrist joint."""
 STEPS = 41
-"""Openings that are looked at between open and closed."""
+"""Openings that are sampled between open and closed."""
 SHUT = 0.03
-"""Share of the way before its end at which fingers that touch count as closed at the end."""
+"""Fingers that touch within this share of the travel before its end count as closed at the end."""
 
 
 @dataclass(frozen=True)
 class Branch:
-    """A finger. joint: where it begins. links: all of it. tip: its last rigid piece."""
+    """A finger. joint: its first joint. links: all of it. tip: its last rigid part."""
 
     joint: str
     links: tuple[str, ...]

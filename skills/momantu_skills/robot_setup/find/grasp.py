@@ -16,25 +16,26 @@ from momantu_skills.robot_setup.urdf.body import Body, placed
 from momantu_skills.robot_setup.urdf.rays import opening_between
 
 SNAP = 0.2
-"""rad; directions nearer than this to an axis of the palm's frame are that axis."""
+"""Directions within this angle to an axis of the palm's frame are set to that axis, rad."""
 SAME_PLACE = 0.012
-"""m from between the pads within which an existing link serves as the grasp frame."""
+"""Distance from the centre between the pads within which an existing link is used as the grasp
+frame, m."""
 SAME_WAY = 0.06
-"""rad by which its axes may be turned."""
+"""Largest rotation of its axes, rad."""
 FACE = 0.003
-"""m; corners this near to a finger's innermost one are its pad."""
+"""Distance from a finger's innermost corner within which corners belong to its pad, m."""
 SHORT = 0.015
-"""m; what faces each other for less than this is an edge, no pad."""
+"""Least length of a pad, m; a shorter one is an edge."""
 LEAST_PAD = 0.02
-"""m; pads are taken to be this long and high at least: rounded tips give way."""
+"""Least assumed length and height of a pad, m: rounded tips deform."""
 STRONGEST = 60.0
-"""N; the most a gripper is proposed to press with: it crushes no can."""
+"""Largest proposed closing force, N: it does not crush a can."""
 APART = 2e-3
-"""m; fingers that are farther apart when closed do not touch."""
+"""Least distance between closed fingers at which they do not touch, m."""
 LINEAR = 1.2e-3
-"""m; an opening that is this near to a straight line needs two rows."""
+"""Largest deviation from a straight line, m, at which two rows describe an opening."""
 ROWS = 6
-"""Rows of an opening that bends."""
+"""Rows of an opening that is not linear."""
 
 
 @dataclass(frozen=True)

@@ -15,19 +15,19 @@ from momantu_skills.robot_setup.urdf.body import Body
 from momantu_skills.robot_setup.urdf.skeleton import SetupJoint
 
 POSTURES = 200
-"""Random postures in which the inertia about each joint is looked at."""
+"""Random postures for the inertia about each joint."""
 USABLE = 0.5
-"""Share of a joint's effort that is left for accelerating beside gravity and friction."""
+"""Share of a joint's effort for acceleration; the rest is for gravity and friction."""
 GENTLE = {"prismatic": 0.3, "revolute": 1.5, "continuous": 1.5}
-"""m/s2, rad/s2; the most that is proposed: arms of usual weight bear it."""
+"""Largest proposed acceleration, m/s2 and rad/s2: arms of usual weight can do it."""
 LIGHT = 2.0
-"""Heads and fingers may do this many times as much."""
+"""Heads and fingers may accelerate this many times as much."""
 USUAL_SPEED = {"prismatic": 0.05, "revolute": 1.0, "continuous": 1.0}
-"""m/s, rad/s where the URDF gives none."""
+"""Speed if the URDF gives none, m/s and rad/s."""
 SLOWEST = 0.01
-"""m/s2, rad/s2; a lower limit would be useless."""
+"""Least acceleration, m/s2 and rad/s2; a lower limit would be useless."""
 FOUR_DIGITS = Context(prec=4, rounding=ROUND_DOWN)
-"""How speeds and accelerations are written."""
+"""Format of speeds and accelerations: four digits, rounded towards 0."""
 
 
 @dataclass(frozen=True)
@@ -108,5 +108,5 @@ def _inside(value: float, *, up: bool) -> float:
 
 
 def _short(value: float) -> float:
-    """Four digits, rounded towards 0: a joint is never proposed to go faster than it can."""
+    """Four digits, rounded towards 0: the proposal never exceeds the joint's limit."""
     return float(FOUR_DIGITS.create_decimal(repr(value)))

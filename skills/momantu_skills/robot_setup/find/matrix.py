@@ -17,11 +17,11 @@ from momantu_bt.geometry import Array
 from momantu_skills.robot_setup.urdf.body import Body, Contacts, hulls_meet, placed
 
 SAMPLES = 10_000
-"""Random postures: a pair that meets in one of a thousand is missed in one of 20,000 set-ups."""
+"""Random postures: a pair that collides in one of a thousand is missed in one of 20,000 set-ups."""
 FEW = 20
-"""Postures in which neighbours that overlap show themselves."""
+"""Postures for detecting neighbours that overlap."""
 ALWAYS = 0.95
-"""Share of the postures in which a pair meets because its shapes overlap for good."""
+"""Share of the postures in which a pair must collide to count as always overlapping."""
 
 
 class Why(StrEnum):
@@ -54,12 +54,12 @@ class CollisionMatrix:
 
     @property
     def ignored(self) -> tuple[tuple[str, str], ...]:
-        """Pairs whose meeting says nothing, beyond parents and their children."""
+        """Pairs whose contact is ignored, in addition to parents and their children."""
         return (*self.overlapping, *self.pairs(Why.DEFAULT, Why.ALWAYS))
 
     @property
     def checked(self) -> tuple[tuple[str, str], ...]:
-        """Pairs that are worth a check."""
+        """Pairs that need a check."""
         return self.pairs(Why.SOMETIMES)
 
 

@@ -25,7 +25,7 @@ from momantu_skills.robot_setup.find.poses import (
 from momantu_skills.robot_setup.urdf.arm_ik import LimbSolver
 
 DIGITS = 3
-"""A thousandth of a radian or a millimetre is near enough for a pose that somebody will edit."""
+"""Decimals of a pose: a thousandth of a radian or a millimetre is enough for a draft."""
 
 
 def find_poses(
@@ -73,7 +73,7 @@ def _at_work(finder: PoseFinder, closed: dict[str, float]) -> dict[str, float]:
 
 
 def _raised(finder: PoseFinder, home: FoundPose, target: np.ndarray) -> FoundPose | None:
-    """The arm folded as at home, lifted, and the head turned to a point; None if it is not free."""
+    """The arm folded as in `home` but raised, with the head turned to a point; None if not free."""
     posture = finder.aimed({**home.joints, **finder.lifted(HIGH)}, target)
     if home.clear is None or not finder.clear(posture, home.clear):
         return None
@@ -105,7 +105,7 @@ def _view(
 
 
 def _carry(finder: PoseFinder, hand: LimbSolver | None, ahead: np.ndarray) -> FoundPose | None:
-    """The hand level, what it holds within the footprint as far as that can be."""
+    """The hand level, with the held object inside the footprint as far as possible."""
     if hand is None:
         return None
     floor, front, half = finder.stand.floor, finder.stand.front, finder.stand.width / 2

@@ -17,37 +17,37 @@ from momantu_skills.robot_setup.urdf.arm_ik import LimbSolver
 from momantu_skills.robot_setup.urdf.body import Body, Contacts
 
 SAMPLES = 1500
-"""Random postures of the arm that are looked at for folding it."""
+"""Random postures of the arm that are tried for folding it."""
 BEST = 40
-"""Of these, the ones that are checked for collisions."""
+"""The best of these, which are checked for collisions."""
 ROUNDS = 300
-"""Small changes by which the best is made better."""
+"""Small changes that improve the best one."""
 MARGINS = (0.03, 0.015, 0.005)
-"""m that links keep from each other, tried in turn."""
+"""Clearances between links, m, tried in turn."""
 PARTING = 60
-"""Postures in which a pair that stays nearer than a margin shows itself."""
+"""Postures for detecting a pair that is always nearer than a margin."""
 AIMING = 6
-"""Times that each joint of a head is turned, ever more finely."""
+"""Iterations over each joint of a head, with decreasing steps."""
 LAZY = 1e-3
-"""rad per rad; a head does not turn where that hardly helps."""
+"""A head does not turn for a gain of less than this, rad per rad."""
 OVER_FLOOR = 0.05
-"""m that the arm keeps from the floor."""
+"""Clearance of the arm above the floor, m."""
 TARGETS = 120
-"""Poses of the hand or the camera that inverse kinematics tries."""
+"""Poses of the hand or the camera that are tried with inverse kinematics."""
 SEEDS = 6
-"""Starts of each."""
+"""Start postures for each."""
 HELD = 0.06
-"""m around the grasp frame that what is carried takes up sideways."""
+"""Assumed radius of a held object around the grasp frame, m."""
 TABLE = 0.7
-"""m above the floor: what `ready` looks at."""
+"""Height above the floor that `ready` looks at, m."""
 FLOOR_AHEAD = 2.0
-"""m before the base that `home` looks at the floor."""
+"""Distance before the base at which `home` looks at the floor, m."""
 AROUND = 1.5
-"""m before the base that `look_around` looks at, at the height of a table."""
+"""Distance before the base that `look_around` looks at, at the height of a table, m."""
 VIEW = 1.05
-"""rad; picture's width where the camera's is not known."""
+"""Assumed horizontal field of view of a camera, rad, if unknown."""
 LOW, HIGH = 0.05, 0.9
-"""Share of its range that a vertical slide takes: folded, and at work."""
+"""Shares of its range for a vertical slide: folded, and at work."""
 
 Cost = Callable[[Mapping[str, float]], float]
 
@@ -140,7 +140,7 @@ class PoseFinder:
         return self.body.corners(self.links, posture)
 
     def outside(self, corners: Array, around: float = 0.0) -> float:
-        """M by which the arm's corners, and `around` them, leave the footprint."""
+        """Distance in m by which the arm's corners, plus `around`, extend beyond the footprint."""
         return _outside(self._outline, corners, around)
 
     def covered(self, posture: Mapping[str, float], corners: Array) -> float:

@@ -12,27 +12,27 @@ from momantu_skills.robot_setup.find.base import Stand
 from momantu_skills.robot_setup.urdf.arm_ik import LimbSolver
 
 HEIGHTS = (0.4, 0.5, 0.6, 0.7, 0.8)
-"""m; of the tables."""
+"""Heights of the tables, m."""
 ABOVE = 0.06
-"""m above the table that something is grasped."""
+"""Height of a grasp above the table, m."""
 STEP = 0.05
-"""m between distances that are tried."""
+"""Step between distances that are tried, m."""
 FARTHEST = 1.6
-"""m; no arm on a mobile base reaches farther."""
+"""Largest distance, m; no arm on a mobile base reaches farther."""
 YAWS = (-1.0, -0.5, 0.0, 0.5, 1.0)
-"""rad; directions of the hand from which something is grasped, level."""
+"""Yaw angles of the hand in a level grasp, rad."""
 PITCHES = (0.0, math.pi / 4, math.pi / 2)
-"""rad; how far the hand points down."""
+"""Downward angles of the hand, rad."""
 SEEDS = 8
-"""Starts of the inverse kinematics per pose."""
+"""Start postures of the inverse kinematics per pose."""
 GOOD = 0.8
-"""Share of the heights at which something must be reached for a distance to count."""
+"""Share of the heights that must be reached for a distance to count."""
 ROOM = 0.13
-"""m between the footprint and a table's edge."""
+"""Distance between the footprint and a table's edge, m."""
 BESIDE = 0.08
-"""m from a table's edge that things stand at least."""
+"""Least distance of objects from a table's edge, m."""
 LOOK_BACK = 0.18
-"""m farther back that the robot stands when it looks."""
+"""Additional distance of the robot for looking, m."""
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,7 @@ KINDS = {
     "gpu_lidar": "laser",
     "force_torque": "wrench",
 }
-"""Gazebo's types of sensors, as ours. A ray sensor of several rings is a lidar."""
+"""Gazebo's types of sensors, mapped to this project's. A ray sensor of several rings is a lidar."""
 OPTICAL = re.compile(r"optical", re.IGNORECASE)
 NAMES = (
     ("camera", re.compile(r"(rgb|color|head|wrist|hand|^|_)_?(camera|cam|realsense|kinect)", re.I)),
@@ -31,25 +31,25 @@ NAMES = (
     ("laser", re.compile(r"laser|hokuyo|sick|rplidar|lidar|base_scan", re.I)),
     ("wrench", re.compile(r"(force_?torque|wrench|_ft_?(sensor|tool|link)|ftsensor)", re.I)),
 )
-"""What links with a sensor are called, the surer name first."""
+"""Usual names of links with a sensor, the more reliable ones first."""
 NO_FRAME = re.compile(r"screw|mount|bracket|cable|laser_?pointer|projector|button|imu", re.I)
-"""Links that are named after a sensor, but are not sensors."""
+"""Names of links that contain a sensor's name but are not sensors."""
 PREFERRED = re.compile(r"rgb|color", re.IGNORECASE)
-"""Of a camera's several optical frames, the one in which a registered picture is given."""
+"""The preferred one of a camera's optical frames: that of a registered picture."""
 
 PICTURE = (0.01, 3.09)
-"""rad; widths of pictures that a lens draws flat."""
+"""Range of horizontal fields of view of a flat picture, rad."""
 PIXELS = (1, 100_000)
 BEAMS = (2, 100_000)
 RINGS = (1, 4096)
 TURN = (-2 * math.pi, 2 * math.pi)
-"""rad; directions of the first and the last beam."""
+"""Range of directions of the first and the last beam, rad."""
 STEEP = (-math.pi / 2, math.pi / 2)
-"""rad; elevations of rings."""
+"""Range of elevations of rings, rad."""
 NEAR, FAR = (0.0, 5.0), (0.6, 10_000.0)
-"""m; at which lasers begin and end to measure."""
+"""Ranges of the least and the largest measured distance of a laser, m."""
 SECTOR = 0.01
-"""rad; a sensor that sweeps less is not a laser."""
+"""Least swept angle of a laser, rad."""
 
 
 @dataclass(frozen=True)
