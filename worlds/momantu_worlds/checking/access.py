@@ -14,12 +14,12 @@ from momantu_worlds.checking.overlaps import TOUCHING
 from momantu_worlds.checking.scenario import UNKNOWN, Scenario
 
 DOOR = 0.1
-"""m; search radius around a doorway's middle for its widest point. It is at most the thickness of
-walls, so that the room behind does not count."""
+"""Search radius around a doorway's centre for its widest point, m. It is at most the thickness of
+walls, so that the room behind is not included."""
 
 
 def start(scenario: Scenario) -> Iterator[FindingAtKeys]:
-    """At the start pose the base overlaps nothing."""
+    """Check that the base overlaps nothing at the start pose."""
     pose = scenario.episode.start
     base = scenario.robot.outline(pose)
     worst: dict[str, float] = {}
@@ -39,7 +39,7 @@ def start(scenario: Scenario) -> Iterator[FindingAtKeys]:
 
 
 def places(scenario: Scenario) -> Iterator[FindingAtKeys]:
-    """The robot can stand at every place; furniture that an episode adds is ignored."""
+    """Check that the robot can stand at every place; furniture that an episode adds is ignored."""
     ground, robot = scenario.known_ground, scenario.robot
     begin = scenario.episode.start
     reached = ground.reached((begin.x, begin.y), robot.half_width)
@@ -73,7 +73,7 @@ def places(scenario: Scenario) -> Iterator[FindingAtKeys]:
 
 
 def doorways(scenario: Scenario) -> Iterator[FindingAtKeys]:
-    """Walls leave room for the robot in every doorway, and nothing stands in it."""
+    """Check that every doorway is wide enough for the robot and that nothing stands in it."""
     width = 2 * scenario.robot.half_width
     for name, gap in scenario.episode.doorways.items():
         walls, free = scenario.walls, scenario.ground
@@ -104,7 +104,7 @@ def doorways(scenario: Scenario) -> Iterator[FindingAtKeys]:
 
 
 def surfaces(scenario: Scenario) -> Iterator[FindingAtKeys]:
-    """The robot can drive up to each surface, and its hand reaches what stands on it."""
+    """Check that the robot can drive up to each surface and that its hand reaches objects on it."""
     robot = scenario.robot
     for name, (map_from_top, size) in scenario.surfaces.items():
         place, height = scenario.place(name), float(map_from_top.position[2])

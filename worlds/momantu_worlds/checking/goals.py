@@ -20,11 +20,11 @@ from momantu_worlds.scenes.geometry.support import SupportTop
 SPARSE = 3
 """Every third reachable cell is tested: cells are 2 cm apart."""
 STEP = 0.05
-"""m; grid step of the positions that are tested for the item."""
+"""Grid step of the item positions that are tested, m."""
 
 
 FAR = 2.0
-"""m along x and along y; no arm reaches farther."""
+"""Distance along x and along y that no arm can reach, m."""
 
 
 def goals(scenario: Scenario) -> Iterator[FindingAtKeys]:
@@ -67,7 +67,7 @@ def goals(scenario: Scenario) -> Iterator[FindingAtKeys]:
 
 
 def _where(goal: Goal) -> str:
-    """Where the item is to go, in words."""
+    """Where the item is to be placed, in words."""
     beside = "" if goal.marker is None else f" within {goal.max_distance:g} m of {goal.marker}"
     return f"on {goal.support}{beside}"
 
@@ -130,10 +130,9 @@ def _foot(scenario: Scenario, item: Body) -> Transform:
 
 
 def _spots(scenario: Scenario, goal: Goal, item: Body) -> Array:
-    """Places (n, 2) in the map where the item could stand whole on the support, beside the marker.
+    """Positions (n, 2) in the map where the whole item fits on the support beside the marker.
 
-    Without a marker: anywhere on it.
-    They keep FLUSH from everything.
+    Without a marker: anywhere on the support. The positions keep FLUSH from everything.
     """
     map_from_top, size = scenario.surfaces[goal.support]
     marker, within = map_from_top.position, math.hypot(*size) / 2

@@ -14,11 +14,11 @@ from momantu_bt.geometry import Array
 from momantu_worlds.checking.convex import Convex
 
 CELL = 0.02
-"""m; of the grid, so that free spots are known to about 1.5 cm."""
+"""Cell size of the grid, m; free spots are known to about 1.5 cm."""
 MOST_CELLS = 4_000_000
-"""A larger floor gets larger cells."""
+"""Most cells; a larger floor gets larger cells."""
 DOORSTEP = 0.03
-"""m; a robot drives over what is lower."""
+"""Height below which a robot drives over a part, m."""
 FRACTION_BITS = 4
 """Outlines are drawn with a precision of a sixteenth of a cell."""
 
@@ -78,7 +78,7 @@ class Ground:
         """(rows along y, columns along x) m; distance of a cell's centre from what is nearest."""
 
     def free(self, radius: float) -> NDArray[np.bool_]:
-        """Where the centre of a disc may be; rounding to the grid is in favour of the disc."""
+        """Where the centre of a disc may be; rounding to the grid favours the disc."""
         return np.asarray(self.clearance >= max(self.cell / 2, radius - self.cell))
 
     def reached(self, start: Point, radius: float) -> NDArray[np.bool_]:

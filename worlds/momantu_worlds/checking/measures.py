@@ -19,7 +19,7 @@ SAMPLES = 2000
 FREE_TURN = math.pi
 """rad; sampled range of a continuous joint, either way."""
 EYES = ("look_around", "ready")
-"""Named poses in which the camera looks at things."""
+"""Named poses in which the camera looks at objects."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,9 +48,10 @@ class Measures:
         return pose.transform().apply(points)[:, :2]
 
     def works_at(self, height: float) -> bool:
-        """Whether the hand gets to things that stand on a surface of this height, before the base.
+        """Whether the hand reaches objects on a surface of this height, before the base.
 
-        A posture counts when the hand is at most `GRASP` above it and beyond the base's front.
+        A posture counts if the hand is at most `GRASP` above the surface and beyond the base's
+        front.
         """
         front = float(self.footprint[:, 0].max()) + FRONT
         out, up = self.hand[:, 0], self.hand[:, 1]
@@ -59,15 +60,17 @@ class Measures:
 
 
 GRASP = (0.03, 0.20)
-"""m above a surface: where a hand grasps what stands on it."""
+"""Range of heights above a surface in which the hand grasps, m."""
 FRONT = 0.10
-"""m before the base's front: a surface's edge is no nearer, and things stand behind it."""
+"""Distance before the base's front, m: a surface's edge is no nearer, and objects stand behind
+it."""
 ENOUGH = 3
-"""Of `SAMPLES` configurations, so many must reach: fewer are outliers at the limit of the reach."""
+"""Fewest of `SAMPLES` configurations that must reach; fewer are outliers at the limit of the
+reach."""
 
 
 def measured(description: RobotDescription) -> Measures:
-    """The measures of a robot; self-collision is not looked at."""
+    """The measures of a robot; self-collision is ignored."""
     kinematics = description.kinematics()
     footprint = np.array(description.footprint, dtype=np.float64)
     return Measures(

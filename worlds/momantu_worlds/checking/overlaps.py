@@ -54,7 +54,7 @@ def _depth(scenario: Scenario, first: str, second: str) -> float:
 
 
 def _overlap(scenario: Scenario, first: Body, second: Body, depth: float) -> FindingAtKeys:
-    """It is told of the loose body, else of the one that is not a wall, else of the later one."""
+    """Report it at the loose body, else at the one that is not a wall, else at the later one."""
     blamed, other = (first, second) if second.category == WALL else (second, first)
     if blamed.static and not other.static:
         blamed, other = other, blamed

@@ -66,7 +66,7 @@ class Scenario:
 
     @cached_property
     def known_ground(self) -> Ground:
-        """The floor without what an episode adds somewhere."""
+        """The floor without furniture that an episode adds."""
         known = [each for each in self.obstacles if not each.body.startswith(UNKNOWN)]
         return self.ground if len(known) == len(self.obstacles) else Ground(known, *self.extent)
 
@@ -88,7 +88,7 @@ class Scenario:
 
     @cached_property
     def surfaces(self) -> Mapping[str, tuple[Transform, tuple[float, float]]]:
-        """Frame of the top (z up) and its extent, m, of every surface, as it truly stands."""
+        """Frame of the top (z up) and its extent, m, of every surface at its true pose."""
         found = {}
         for name in self.episode.site.surfaces:
             body = self.episode.body(name)

@@ -15,23 +15,27 @@ from momantu_worlds.checking.scenario import Scenario
 from momantu_worlds.scenes.geometry.bodies import Body, Picture
 
 RINGS = (0.4, 0.7, 1.0, 1.4, 1.9, 2.5)
-"""m; distances from the tag along the floor that are tested. Few cameras read it from farther."""
+"""Distances from the tag along the floor that are tested, m. Few cameras read it from farther
+away."""
 RING = 0.15
-"""m; half the width of a ring."""
+"""Half the width of a ring, m."""
 SECTORS = 24
 """Directions around the tag that are tested."""
 SLANT = math.radians(75)
-"""rad from straight before the tag, beyond which its squares are too flat to be read."""
+"""Largest viewing angle to the tag's normal, rad; beyond it the squares are too narrow to be
+read."""
 PAPER = 0.001
-"""m; test points lie this far before the tag, so that its own carrier does not hide them."""
+"""Distance of test points before the tag, m, so that the body that carries the tag does not hide
+them."""
 INSIDE = 0.95
-"""How far out on the paper the points are that must all be visible."""
+"""Position of the points that must all be visible, as a share of the distance to the paper's
+edge."""
 GRID = np.array([(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)]) / 2
 """Of those points, for a paper with edges of 1."""
 
 
 def tags(scenario: Scenario) -> Iterator[FindingAtKeys]:
-    """Every tag is wholly visible from some reachable point."""
+    """Check that every tag is completely visible from some reachable point."""
     for body in scenario.bodies:
         if body.category == "tag" and scenario.robot.eyes:
             hidden = _hidden(scenario, body)
@@ -81,7 +85,7 @@ def _hidden(scenario: Scenario, tag: Body) -> tuple[str, str] | None:
 
 
 def _points(tag: Body) -> tuple[Array, Array]:
-    """Points (9, 3) just before a tag's paper, and the direction it looks in, map."""
+    """Points (9, 3) just before a tag's paper, and the direction that it faces, map."""
     part = next(part for part in tag.parts if isinstance(part.geometry, Picture))
     assert isinstance(part.geometry, Picture)
     map_from_paper = tag.map_from_body @ part.body_from_part
@@ -106,7 +110,7 @@ def _eyes(scenario: Scenario, stands: Array, middle: Array, ring: float) -> Arra
 
 
 def _seen(scenario: Scenario, eyes: Array, points: Array, tag: str, blockers: Counter[str]) -> bool:
-    """Whether one of the eyes has a line to all points; counts what is in the way."""
+    """Whether one of the eyes has a free line to all points; counts the bodies in the way."""
     origins = np.repeat(eyes, len(points), axis=0)
     rays = np.tile(points, (len(eyes), 1)) - origins
     at, which = scenario.hit(origins, rays, frozenset({tag}))

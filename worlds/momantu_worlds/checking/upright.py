@@ -16,20 +16,20 @@ from momantu_worlds.scenes.geometry.bodies import Body
 from momantu_worlds.scenes.geometry.solids import FLUSH
 
 FROM_ABOVE = 0.002
-"""m above a body's lowest points; the search for what carries them starts here."""
+"""Height above a body's lowest points, m, at which the search for its support starts."""
 FALL = 3.0
-"""m; depth below a body of the search for what carries it."""
+"""Depth below a body of the search for its support, m."""
 TIPPING = 0.003
-"""m; tolerance of a body's middle beyond its support, and the sampling step of its outline."""
+"""Tolerance of a body's centre beyond its support, m, and the sampling step of its outline."""
 MOST_STEPS = 1000
-"""Along the outline of what is large."""
+"""Most steps along the outline of a large body."""
 WITHIN, COARSE = (0.0, 0.25, 0.5, 0.75), 8
 """Scales of the outline, and the step along it, at which the inside of the bottom is sampled: a
 tray may stand on a narrow foot."""
 
 
 def upright(scenario: Scenario) -> Iterator[FindingAtKeys]:
-    """Every loose body is carried from below, under its middle."""
+    """Check that every loose body is supported from below, under its centre."""
     for body in scenario.bodies:
         if body.static or not scenario.solids[body.name]:
             continue
@@ -59,7 +59,7 @@ def upright(scenario: Scenario) -> Iterator[FindingAtKeys]:
 
 
 def _lowest(scenario: Scenario, body: Body) -> Array:
-    """Points (n, 3) all over the bottom of a body."""
+    """Points (n, 3) on the whole bottom of a body."""
     solids = scenario.solids[body.name]
     height = min(float(solid.box[0][2]) for solid in solids) + FLUSH
     return np.concatenate([_bottom(s.vertices[s.vertices[:, 2] <= height]) for s in solids])
@@ -85,7 +85,7 @@ def _bottom(corners: Array) -> Array:
 
 
 def _falls(scenario: Scenario, body: Body, points: Array) -> tuple[Array, list[str]]:
-    """How far below each point something is, m, and what."""
+    """Distance from each point down to the next body, m, and that body."""
     origins = points + np.array([0.0, 0.0, FROM_ABOVE])
     rays = np.tile((0.0, 0.0, -FALL), (len(points), 1))
     at, which = scenario.hit(origins, rays, frozenset({body.name}))

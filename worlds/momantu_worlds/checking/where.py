@@ -25,7 +25,7 @@ class Where:
         self._reading = Reading(path, read_text(path, DescriptionError), DescriptionError)
 
     def at(self, keys: KeyPath) -> Place:
-        """The place of what some keys lead to, or of the nearest thing around it."""
+        """The place of the element that some keys lead to, or of the nearest element around it."""
         return self._reading.at(keys, key=True)
 
     def body(self, name: str) -> KeyPath:

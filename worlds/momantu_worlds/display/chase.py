@@ -12,32 +12,32 @@ from momantu_bt.geometry import Array, Pose2D, Transform, wrap_angle
 from momantu_worlds.scenes.geometry.bodies import Body, Box
 
 BASE_HEIGHT = 0.25
-"""m; of the middle of a robot's base above the floor."""
+"""Height of the centre of a robot's base above the floor, m."""
 PARALLEL = 1e-12
-"""m; a ray that advances less than this along an axis counts as parallel to it."""
+"""A ray that advances less than this along an axis counts as parallel to it, m."""
 
 
 @dataclass(frozen=True, slots=True)
 class ChaseConfig:
-    """How a film looks at the robot."""
+    """Where the camera of a video is placed."""
 
     distance: float = 2.3
-    """m; from the robot, along the floor."""
+    """Distance from the robot along the floor, m."""
     height: float = 2.9
-    """m; above the floor, so above the walls."""
+    """Height above the floor, m: higher than the walls."""
     beside: float = math.radians(105)
-    """rad; preferred direction from the robot, left or right of its heading: beside and a little
-    behind, so that the hand is seen at work and the way ahead as well."""
+    """Preferred direction from the robot, left or right of its heading, rad: to the side and
+    slightly behind, so that both the working hand and the path ahead are visible."""
     loyalty: float = 0.4
     """Weight of the current direction against the preferred one."""
     choices: int = 16
-    """Directions that are tried."""
+    """Number of directions that are tried."""
     rate: float = 0.8
-    """rad/s; how fast the camera goes round."""
+    """Angular speed of the camera around the robot, rad/s."""
     hurry: float = 4.0
-    """Factor of its rate while a wall hides the robot."""
+    """Factor of that speed while a wall hides the robot."""
     lag: float = 0.6
-    """s; time constant with which it follows its target."""
+    """Time constant with which the camera follows its target, s."""
 
 
 class Chase:
@@ -94,7 +94,7 @@ class Chase:
         return min(turns, key=cost)
 
     def _hidden(self, eye: Array, focus: Array) -> bool:
-        """Whether a wall lies between the eye and what it looks at, or the robot's base below."""
+        """Whether a wall lies between the eye and its target, or the robot's base below."""
         base = np.array([focus[0], focus[1], BASE_HEIGHT])
         return len(self._half) > 0 and (self._between(eye, focus) or self._between(eye, base))
 

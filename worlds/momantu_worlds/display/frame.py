@@ -23,9 +23,9 @@ HEAD = (PANEL, PANEL * 3 // 4)
 """(width, height), px, of the head camera's picture."""
 MARGIN = 10
 TEXT = 12
-"""px; height of the tree's letters."""
+"""Height of the tree's letters, px."""
 LINE = 17
-"""px; from one line of the tree to the next."""
+"""Distance between lines of the tree, px."""
 BACKGROUND = (24, 26, 30)
 COLORS: Mapping[str, tuple[int, int, int]] = MappingProxyType(
     {
@@ -53,7 +53,7 @@ def compose(scene: Image, head: Image, lines: Sequence[TreeLine], headline: str)
 
 
 def shown(lines: Sequence[TreeLine], room: int) -> list[TreeLine]:
-    """The lines that fit into `room`: when there are too many, those around what is running."""
+    """The lines that fit into `room`; if there are too many, those around the running node."""
     if len(lines) <= room:
         return list(lines)
     running = [i for i, line in enumerate(lines) if line.status == "RUNNING"]

@@ -29,7 +29,7 @@ class ColoredMesh:
 
 
 def still_meshes(bodies: Iterable[Body]) -> list[ColoredMesh]:
-    """All that stands still, in the map's frame, one mesh for each colour."""
+    """All static bodies, in the map's frame, one mesh for each colour."""
     found = []
     for body in bodies:
         for mesh in body_meshes(body):
@@ -39,18 +39,18 @@ def still_meshes(bodies: Iterable[Body]) -> list[ColoredMesh]:
 
 
 def body_meshes(body: Body) -> list[ColoredMesh]:
-    """What is to be seen of a body, in its own frame; pictures are left out."""
+    """The visual shapes of a body, in its own frame, without pictures."""
     return merged([_part_mesh(part) for part in body.parts if _has_mesh(part)])
 
 
 def link_meshes(link: Any) -> list[ColoredMesh]:
-    """What is to be seen of a robot's link, in the link's frame."""
+    """The visual shapes of a robot's link, in the link's frame."""
     look = link.entity.find_component_by_type(sapien.render.RenderBodyComponent)
     return merged(list(_render_meshes(look))) if look is not None else []
 
 
 def merged(meshes: Iterable[ColoredMesh]) -> list[ColoredMesh]:
-    """The same triangles with all of one colour in one mesh."""
+    """The same triangles, merged into one mesh per colour."""
     by_color: dict[Rgb, list[ColoredMesh]] = {}
     for mesh in meshes:
         by_color.setdefault(mesh.color, []).append(mesh)

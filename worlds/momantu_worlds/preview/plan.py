@@ -26,9 +26,9 @@ RED: Rgb = (190, 32, 24)
 BLUE: Rgb = (24, 92, 176)
 GREEN: Rgb = (20, 120, 80)
 MARGIN = 0.4
-"""m of floor that is drawn around everything."""
+"""Margin of floor that is drawn around everything, m."""
 BIG = 0.18
-"""m; loose bodies that are smaller either way are drawn, but not named: there are too many."""
+"""Least extent of a loose body for which its name is drawn, m."""
 BENEATH = 12
 """px; of a surface's name beneath its edge."""
 ARROW = 0.28
@@ -36,7 +36,7 @@ ARROW = 0.28
 
 
 def draw_plan(scenario: Scenario, width: int) -> Image.Image:
-    """The plan, its longer side up. width: px."""
+    """Draw the plan, its longer side upright. width: px."""
     low, high = extent(scenario)
     canvas = Canvas(low, high, width, PAPER)
     _ways(canvas, scenario, scenario.ground)
@@ -70,7 +70,7 @@ def _ways(canvas: Canvas, scenario: Scenario, ground: Ground) -> None:
 
 
 def _bodies(canvas: Canvas, scenario: Scenario) -> None:
-    """Every part of every body, the highest last; of what is above the robot only the outline."""
+    """Every part of every body, the highest last; parts above the robot as outlines only."""
     parts = [
         (body, part, part_points(body, part))
         for body in scenario.bodies
