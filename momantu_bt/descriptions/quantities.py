@@ -12,15 +12,15 @@ from pydantic_core import core_schema
 from momantu_bt.formats.units import NUMBER, in_one_of, units_of
 
 UNITS_KEY = "x-units"
-"""In a JSON Schema: the units that a quantity may be written with, the first that of a number."""
+"""Key in a JSON Schema for the valid units of a quantity; the first is that of a bare number."""
 
 
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """Has pydantic read a field as a quantity: a number in SI, or a text with one of the units.
+    """Makes pydantic read a field as a quantity: a number in SI, or a text with a unit.
 
-    what: its name in messages. si: the SI units that it may have, the first that of a bare number.
-    gt, ge: what it must be above, or at least, in SI.
+    what: its name in messages. si: its valid SI units; the first is that of a bare number.
+    gt: it must be greater than this, ge: at least this, both in SI.
     """
 
     what: str
@@ -30,7 +30,7 @@ class Measured:
 
     @property
     def units(self) -> list[str]:
-        """Every unit that it may be written with, the first that of a bare number."""
+        """All valid units; the first is that of a bare number."""
         return [
             unit
             for si in self.si
@@ -38,7 +38,7 @@ class Measured:
         ]
 
     def read(self, value: object) -> float:
-        """The number in SI; ValueError for anything else than a number or a text with a unit."""
+        """The number in SI; ValueError if the value is neither a number nor a text with a unit."""
         if isinstance(value, bool) or not isinstance(value, int | float | str):
             raise ValueError(f"expected {self.what} such as '2 {self.si[0]}', found {value!r}")
         if not isinstance(value, str):
@@ -52,7 +52,7 @@ class Measured:
     def __get_pydantic_core_schema__(
         self, source: type, handler: GetCoreSchemaHandler
     ) -> core_schema.CoreSchema:
-        """How pydantic reads it; a field's own range narrows the quantity's."""
+        """How pydantic reads the field; the field's own range narrows that of the quantity."""
         number = core_schema.float_schema(allow_inf_nan=False, gt=self.gt, ge=self.ge)
         narrowed = core_schema.chain_schema([number, handler(source)])
         return core_schema.no_info_before_validator_function(self.read, narrowed)

@@ -1,4 +1,4 @@
-"""Reading YAML 1.2 as plain values, with the place of each."""
+"""Reads YAML 1.2 as plain values, and keeps the place of each value."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ MOST_BYTES = 1_000_000
 MOST_ERRORS = 30
 
 KeyMessage: TypeAlias = tuple[KeyPath, str]
-"""Keys, and what is wrong there."""
+"""The keys that lead to a value, and what is wrong with it."""
 
 
 @dataclass(frozen=True, slots=True)
 class KeyProblem(Problem):
-    """A problem of a file whose values are known. keys: those that lead to what is wrong."""
+    """A problem of a value in a file. keys: the keys and indices that lead to the value."""
 
     keys: KeyPath = ()
 
@@ -34,7 +34,7 @@ class DescriptionError(MomantuError):
     """A description is wrong; the message lists every problem with its line and a caret."""
 
     what: ClassVar[str] = "description"
-    """What the file describes, as a person would say it."""
+    """What the file describes, for messages, such as "robot"."""
 
     def __init__(self, path: Path, text: str, problems: Iterable[KeyProblem]) -> None:
         self.path, self.text = path, text
@@ -50,10 +50,10 @@ class DescriptionError(MomantuError):
 
 
 def read_text(path: Path, error: type[DescriptionError]) -> str:
-    """The text of a file.
+    """Read the text of a file.
 
     Raises:
-        DescriptionError: it cannot be read, is too long or not UTF-8; of the class `error`.
+        DescriptionError: the file cannot be read, is too long or not UTF-8; of the class `error`.
     """
     try:
         return text.read_text(path, str(path), f"{error.what} file", MOST_BYTES)
@@ -67,14 +67,14 @@ def read_text(path: Path, error: type[DescriptionError]) -> str:
 
 
 class Reading:
-    """A file's values, and where they stood. plain: mappings, lists and scalars."""
+    """A file's values with their places. plain: the values as mappings, lists and scalars."""
 
     def __init__(self, path: Path, text: str, error: type[DescriptionError]) -> None:
-        """Read a text; `path` is for the messages.
+        """Read a text. path: the file's path, for messages.
 
         Raises:
-            DescriptionError: it is not YAML, is empty, has a key twice or nests too deep; of the
-                class `error`.
+            DescriptionError: the text is not YAML, is empty, has a key twice or is nested too
+                deep; of the class `error`.
         """
         self.path, self.text, self._error = path, text, error
         self._values: dict[KeyPath, Place] = {}
@@ -85,7 +85,7 @@ class Reading:
             raise error(path, text, self._twice)
 
     def refuse(self, wrong: Iterable[KeyMessage]) -> None:
-        """Raise a DescriptionError for what is wrong at these keys, if anything is."""
+        """Raise a DescriptionError with the given problems, if there are any."""
         found = [self.problem(keys, message) for keys, message in wrong]
         if found:
             raise self._error(self.path, self.text, found)
@@ -95,9 +95,9 @@ class Reading:
         return KeyProblem("", message, self.at(keys, key=key), keys=keys)
 
     def at(self, keys: KeyPath, *, key: bool = False) -> Place:
-        """The place of the value at some keys, or of the nearest thing around it that is there.
+        """The place of the value at some keys; if it does not exist, of the nearest one around it.
 
-        key: the place of the last key itself.
+        key: return the place of the last key instead of its value.
         """
         while keys:
             place = (self._keys if key else self._values).get(keys) or self._values.get(keys)
@@ -107,7 +107,7 @@ class Reading:
         return Place(str(self.path))
 
     def value(self, keys: KeyPath) -> Any:
-        """The plain value at some keys; KeyError or IndexError when there is none."""
+        """The plain value at some keys; KeyError or IndexError if there is none."""
         here = self.plain
         for part in keys:
             here = here[part]
@@ -125,7 +125,7 @@ class Reading:
             raise self._error(self.path, self.text, [problem]) from None
 
     def _plain(self, raw: Raw, keys: KeyPath) -> Any:
-        # as deep as the file, whose depth has a bound
+        # The recursion is safe: the reader limits the depth of a file.
         self._values.setdefault(keys, raw.place)
         if isinstance(raw, Entries):
             return self._mapping(raw, keys)
@@ -143,7 +143,7 @@ class Reading:
                 continue
             self._keys[here] = key.place
             if isinstance(value, Scalar) and value.text == "" and not value.quoted:
-                # what is not there has no place of its own: its key tells more
+                # An empty value has no place of its own: use that of its key.
                 self._values[here] = key.place
             found[key.text] = self._plain(value, here)
         return found

@@ -9,16 +9,16 @@ from momantu_bt.descriptions.quantities import UNITS_KEY
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 _NAMING = ("properties", "patternProperties", "$defs")
-"""Keys of a schema beneath which every key is a name, not a word of schemas."""
+"""Keywords of a schema whose value is a mapping by names, not another schema."""
 
 
 def editor_schema(made: Mapping[str, Any], title: str) -> dict[str, Any]:
-    """A model's schema as editors show it: units of quantities in words, few titles."""
+    """A model's schema for editors: it describes units in words and has few titles."""
     return {"$schema": DIALECT, **_told(dict(made)), "title": title}
 
 
 def _told(schema: Any) -> Any:
-    """A schema whose quantities name their units, without the titles that repeat the keys."""
+    """A copy of a schema that names units, without titles that only repeat keys."""
     if isinstance(schema, list):
         return [_told(each) for each in schema]
     if not isinstance(schema, dict):

@@ -1,8 +1,8 @@
-"""Tunables: what a site may set of a service or skill, with unit, range, default and meaning.
+"""Tunables: parameters of a service or skill that a site can set, with unit, range and default.
 
-A plug-in declares its tunables as a subclass of `Tunables` under the entry point group
-`momantu_bt.tunables`, by the service's or skill's name. A world file sets them at
-`site.services.NAME`; whatever is wrong there is told at its place.
+A plug-in declares its tunables as a subclass of `Tunables` in the entry point group
+`momantu_bt.tunables`, by the service's or skill's name. A world file sets them under
+`site.services.NAME`; problems are reported at their place in that file.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ from momantu_bt.plugins import Group, PluginError, installed_names
 
 
 class Tunables(BaseModel):
-    """The tunables of one service or skill; a field each, with a default and a description.
+    """The tunables of one service or skill. Each is a field with a default and a description.
 
-    Quantities have the types of `quantities`; `pydantic.Field(ge=…, le=…)` gives the range. A
-    field may be a `Tunables` itself: a group of them.
+    Use the types of `quantities` for quantities, and `pydantic.Field(ge=…, le=…)` for ranges. A
+    field can be a `Tunables` too; it is then a group of tunables.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -46,10 +46,11 @@ Kind = TypeVar("Kind", bound=Tunables)
 
 
 def configured(kind: type[Kind], parameters: Mapping[str, Any], owner: str) -> Kind:
-    """Tunables with what a site sets of them.
+    """Make tunables with the values that a site sets.
 
     Raises:
-        ValueError: an unknown name, a wrong unit, or a value out of range; all that is wrong.
+        ValueError: a name is unknown, a unit is wrong, or a value is out of range; the message
+            lists all problems.
     """
     try:
         return kind.model_validate(dict(parameters))
@@ -68,7 +69,7 @@ def _told(kind: type[Tunables], owner: str, finding: dict[str, Any]) -> str:
 
 
 def tunable_problems(reading: Reading, keys: KeyPath) -> Iterator[KeyProblem]:
-    """The problems of the tunables that a file sets, by service, at their keys."""
+    """The problems of the tunables that a file sets, each with its keys."""
     given: Any = reading.plain
     for part in keys:
         given = given.get(part) if isinstance(given, dict) else None
@@ -85,7 +86,7 @@ def tunable_problems(reading: Reading, keys: KeyPath) -> Iterator[KeyProblem]:
 
 
 def _problems_of(reading: Reading, keys: KeyPath) -> Iterator[KeyProblem]:
-    """The problems of the tunables of one service or skill, whose name is the last key."""
+    """The problems of the tunables of one service or skill; its name is the last of `keys`."""
     try:
         kind = TUNABLES.load(str(keys[-1]))
     except PluginError as error:
@@ -96,7 +97,7 @@ def _problems_of(reading: Reading, keys: KeyPath) -> Iterator[KeyProblem]:
 
 @dataclass(frozen=True, slots=True)
 class Tunable:
-    """One tunable, in words."""
+    """One tunable as texts for a table."""
 
     name: str
     unit: str
@@ -106,7 +107,7 @@ class Tunable:
 
 
 def groups_of(kind: type[Tunables]) -> Iterator[tuple[str, type[Tunables]]]:
-    """The groups of tunables within a set, by name."""
+    """The groups in a set of tunables, by name."""
     for key, field in kind.model_fields.items():
         inner = field.annotation
         if isinstance(inner, type) and issubclass(inner, Tunables):
@@ -114,7 +115,7 @@ def groups_of(kind: type[Tunables]) -> Iterator[tuple[str, type[Tunables]]]:
 
 
 def tunables_of(kind: type[Tunables]) -> Iterator[Tunable]:
-    """The tunables of a set, without its groups, in the order in which it declares them."""
+    """The tunables of a set in the order of their declaration, without its groups."""
     groups = dict(groups_of(kind))
     for key, field in kind.model_fields.items():
         if key not in groups:

@@ -15,10 +15,10 @@ Model = TypeVar("Model", bound=BaseModel)
 
 
 def checked(reading: Reading, model: type[Model], error: type[DescriptionError]) -> Model:
-    """The values that were read, as a model.
+    """Validate the values of a file with a pydantic model.
 
     Raises:
-        DescriptionError: they are not what the model wants; all findings, of the class `error`.
+        DescriptionError: values do not fit the model; it lists all problems; of the class `error`.
     """
     try:
         return model.model_validate(reading.plain)
@@ -42,13 +42,13 @@ class _Located:
     def __init__(
         self, reading: Reading, model: type[BaseModel], what: str, keys: KeyPath = ()
     ) -> None:
-        """keys: the place in the file of the part that the model validated."""
+        """keys: they lead to the part of the file that the model validated."""
         self._reading, self._what, self._keys = reading, what, keys
         self._plain = reading.value(keys)
         self._schema: dict[str, Any] = model.model_json_schema()
 
     def problems(self, error: ValidationError) -> list[KeyProblem]:
-        """Every finding, once: not what lacks because it is misspelt or wrong within."""
+        """All problems, without those that only follow from a misspelt key or an inner problem."""
         findings = [(self._place(finding["loc"]), dict(finding)) for finding in error.errors()]
         misspelt = {
             (*place[:-1], self._nearest(str(place[-1]), place[:-1]))
@@ -65,7 +65,7 @@ class _Located:
         return list(told)
 
     def _place(self, location: tuple[str | int, ...]) -> KeyPath:
-        """The place of a finding in the file, without the names of a union's members."""
+        """The keys of a finding in the file; pydantic also gives names of a union's members."""
         place: list[str | int] = []
         here: Any = self._plain
         for i, part in enumerate(location):
@@ -100,7 +100,7 @@ class _Located:
     def _at(
         self, place: KeyPath, message: str, *, key: bool = False, at: KeyPath | None = None
     ) -> KeyProblem:
-        """A problem of what stands at `place` in the part; shown `at` another one."""
+        """A problem of the value at `place` in the part; `at`: show it at another place."""
         whole = (*self._keys, *place)
         where = self._reading.at((*self._keys, *(place if at is None else at)), key=key)
         return KeyProblem("", message, where, keys=whole)
@@ -112,7 +112,7 @@ class _Located:
         """The valid kinds, for a value whose kind is missing or unknown."""
         key = str(finding["ctx"]["discriminator"]).strip("'")
         union = _inner(self._schema_at(place[:-1]), place[-1])
-        members = (union, *union.get("anyOf", ()))  # what may be left out is one of nothing and it
+        members = (union, *union.get("anyOf", ()))  # an optional value is a union with None
         mappings = (member.get("discriminator", {}).get("mapping", {}) for member in members)
         kinds = ", ".join(kind for mapping in mappings for kind in mapping)
         given = _item(self._value(place), key)

@@ -24,16 +24,15 @@ def check_skill(
     max_time: float = 30.0,
     halts: int = 20,
 ) -> list[Problem]:
-    """Everything that is wrong with a skill, from its source and from running it.
+    """Find everything that is wrong with a skill, from its source and by running it.
 
-    example: keyword arguments of `run_skill` for a seed (inputs, world or robot, site,
-    services), made anew at each call; those it leaves out, and all without one, are made from
-    the types of the ports, in a scripted room with installed services. A skill may bring its
-    own: `Skill.rehearsal`.
-    max_time: simulated seconds of a run. halts: it is halted at each of its ticks; of a longer
-    run at that many, those where its phase changes first.
+    example: a function of the seed that returns keyword arguments for `run_skill` (inputs, world or
+    robot, site, services), new ones at each call. Missing arguments are made from the types of the
+    ports, in a scripted room with the installed services. The default is `Skill.rehearsal`.
+    max_time: simulated time of a run, s. halts: the skill is halted at each of its ticks; in a
+    longer run at this many, with preference for ticks at which its phase changes.
 
-    Returns: findings by rule; an empty list, or notes alone, for a skill that is right.
+    Returns: the problems; for a correct skill the list is empty or has only notes.
     """
     found = [*documented(skill), *ports(skill), *codes(skill), *clocks_in_source(skill)]
     rehearsals = Rehearsals(skill, example, seed, max_time)
@@ -47,7 +46,7 @@ def check_skill(
 
 
 def assert_skill(skill: type[Skill], example: Example | None = None, **options: Any) -> None:
-    """As `check_skill`; AssertionError that lists what is wrong, if anything is."""
+    """As `check_skill`, but raise an AssertionError that lists the problems, if there are any."""
     wrong = [
         finding
         for finding in check_skill(skill, example, **options)
@@ -59,7 +58,7 @@ def assert_skill(skill: type[Skill], example: Example | None = None, **options: 
 
 
 def _distinct(found: list[Problem]) -> list[Problem]:
-    """The findings without duplicates: one for each line and rule."""
+    """The problems without duplicates: one for each line and rule."""
     first: dict[tuple[str, object], Problem] = {}
     for finding in found:
         nowhere = finding.place == NOWHERE
@@ -85,14 +84,14 @@ def _run(rehearsals: Rehearsals, halts: int) -> Iterator[Problem]:
 
 
 def _deterministic(first: Take, second: Take) -> Iterator[Problem]:
-    """Two runs of one seed in two worlds that are alike."""
+    """Compare two runs with the same seed in two equal worlds."""
     difference = first.difference(second)
     if difference:
         yield Problem("not-deterministic", f"two runs with one seed differ in {difference}")
 
 
 def _chosen(whole: Take, most: int) -> list[int]:
-    """Ticks at which it is halted while it still runs."""
+    """The ticks at which to halt the skill while it runs."""
     running = range(1, whole.ticks + (1 if whole.status == "HALTED" else 0))
     if len(running) <= most:
         return list(running)

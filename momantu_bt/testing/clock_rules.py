@@ -1,4 +1,4 @@
-"""Find clocks and random numbers other than the run's, in a skill's source and at run time."""
+"""Find uses of clocks and random numbers that are not the run's, in the source and at run time."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _SEEDED = frozenset(
         *(f"numpy.random.{bits}" for bits in ("PCG64", "MT19937", "Philox", "SFC64", "PCG64DXSM")),
     }
 )
-"""Right when they get a seed."""
+"""Functions that are allowed if they get a seed."""
 _TYPES = frozenset({"numpy.random.Generator", "numpy.random.BitGenerator"})
 
 
@@ -97,10 +97,10 @@ def _rule(called: str, node: ast.Call) -> str | None:
 
 
 class ClockWatch:
-    """While it is entered, notes which clocks and random numbers a package asks for.
+    """A context manager that notes which clocks and random numbers a package uses.
 
-    It sees calls however their names were come by. Only calls from the package's own modules
-    count for clocks; shared random generators must be as they were, whoever drew from them.
+    It sees the calls themselves, whatever names the source uses. For clocks, only calls from the
+    package's own modules count. The shared random generators must not change at all.
     """
 
     def __init__(self, skill: type[Skill]) -> None:
@@ -121,7 +121,7 @@ class ClockWatch:
             self._found["unseeded-random", "a generator that all share"] = NOWHERE
 
     def findings(self) -> list[Problem]:
-        """What was noted."""
+        """The problems that were noted."""
         return [_finding(rule, name, place) for (rule, name), place in self._found.items()]
 
     def _called(self, frame: FrameType, event: str, argument: Any) -> None:
@@ -150,11 +150,11 @@ def _of_builtin(function: Any) -> tuple[str, str]:
         return "", ""
     try:
         return _BUILTINS.get(function, ("", ""))
-    except TypeError:  # bound to something that has no hash
+    except TypeError:  # bound to an object that cannot be hashed
         return "", ""
 
 
 def _shared_generators() -> tuple[Any, Any]:
     """The states of the generators that `random` and `numpy.random` share."""
-    kind, keys, *rest = np.random.get_state(legacy=True)  # noqa: NPY002 - what nobody may use
+    kind, keys, *rest = np.random.get_state(legacy=True)  # noqa: NPY002 - the generator to watch
     return random.getstate(), (kind, np.asarray(keys).tobytes(), *rest)

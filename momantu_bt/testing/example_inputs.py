@@ -34,11 +34,11 @@ _KNOWN: Mapping[Any, Any] = {
         ((-0.4, -0.6), (0.4, -0.6), (0.4, 0.6), (-0.4, 0.6)),
     ),
 }
-"""Values that mean something in `ExampleWorld`."""
+"""Values that are valid in `ExampleWorld`."""
 
 
 class NoExample(Exception):
-    """No value of a port's type is known; the message says of which port."""
+    """No example value is known for a port's type; the message names the port."""
 
 
 def example_inputs(
@@ -47,12 +47,12 @@ def example_inputs(
     description: RobotDescription,
     given: Mapping[str, Any] | None = None,
 ) -> dict[str, Any]:
-    """`given`, and a value for each other input that a tree would have to give.
+    """`given` and an example value for each other required input.
 
-    Of inputs that exclude each other it is the first.
+    Of inputs that exclude each other, the first one gets a value.
 
     Raises:
-        NoExample: nothing is known of the type of one of them.
+        NoExample: no example is known for the type of an input.
     """
     having = dict(given or {})
     chosen = {group[0] for group in skill.one_of if not having.keys() & set(group)}
@@ -63,7 +63,7 @@ def example_inputs(
 
 
 def example_value(port: Port, site: Site, description: RobotDescription) -> Any:
-    """A value for one input; NoExample when nothing is known of its type."""
+    """An example value for an input; NoExample if none is known for its type."""
     named = {
         "place": site.known_places(),
         "surface": tuple(site.surfaces),
@@ -79,7 +79,7 @@ def example_value(port: Port, site: Site, description: RobotDescription) -> Any:
 
 
 def of_type(type_: ValueType) -> Any:
-    """Some value of a type; NoExample when nothing is known of it."""
+    """An example value of a type; NoExample if none is known."""
     return _of_kind(kind_of(type_))
 
 

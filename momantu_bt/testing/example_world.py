@@ -1,6 +1,6 @@
 """A room to test skills in: two tables, a can, four walls, and its map.
 
-What is in it is what camera and laser see; the site tells the same.
+The camera and the laser see the objects in the room; the site describes the same objects.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ _WALLS = (
     Block((2 * HALF[0], 0.1, 2.0), (0.0, -HALF[1], 1.0)),
     Block((0.1, 2 * HALF[1], 2.0), (HALF[0], 0.0, 1.0)),
     Block((0.1, 2 * HALF[1], 2.0), (-HALF[0], 0.0, 1.0)),
-    # without it the room looks the same from its two ends
+    # Without it, both ends of the room look the same.
     Block((0.6, 0.4, 2.0), (-HALF[0] + 0.3, HALF[1] - 0.2, 1.0)),
 )
 
@@ -42,8 +42,8 @@ _WALLS = (
 class ExampleWorld(ScriptedWorld):
     """A scripted world with the tables of `scripted_site`, a can on table A, walls, and a map.
 
-    robot: the small robot unless given; sensors for which it has no reading see the room.
-    Tables reach down to the floor. The map lies in a temporary folder that goes with the world.
+    robot: by default the small robot. Sensors without a scripted reading see the room. Tables are
+    solid down to the floor. The map is in a temporary folder, which is removed with the world.
     """
 
     def __init__(self, seed: int = 0, robot: ScriptedRobot | None = None) -> None:
@@ -105,7 +105,7 @@ class _Laser:
         self._sensor, self._solids, self._seed = sensor, solids, seed
 
     def __call__(self, robot: ScriptedRobot) -> SensorReading:
-        """The scan of now."""
+        """The current scan."""
         sensor = self._sensor
         mount = robot.description.kinematics().base_from_frame(sensor.frame, robot.joints)
         odom_from_laser = robot.base.transform() @ mount

@@ -26,7 +26,7 @@ from momantu_bt.tree.registry import Registry
 from momantu_bt.world import TICK, World
 
 STILL = 1.0
-"""Simulated seconds after a halt in which nothing may be commanded."""
+"""Simulated time after a halt, s, in which the skill must not command anything."""
 
 
 class CannotRehearse(Exception):
@@ -35,7 +35,7 @@ class CannotRehearse(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Take:
-    """One run. turns: ticks at which the phase changed. escaped: what came out of `run_skill`."""
+    """One run. turns: ticks at which the phase changed. escaped: what `run_skill` raised."""
 
     skill: type[Skill]
     result: SkillResult | None
@@ -45,7 +45,7 @@ class Take:
 
     @property
     def status(self) -> str:
-        """As `SkillResult`."""
+        """The status, as in `SkillResult`."""
         return "" if self.result is None else self.result.status
 
     @property
@@ -55,12 +55,12 @@ class Take:
 
     @property
     def code(self) -> str | None:
-        """The failure's code, if it failed; one of its halting is not its own."""
+        """The failure's code, if the skill failed by itself; None if it was halted."""
         return self.result.code if self.result is not None and self.status == "FAILURE" else None
 
     @property
     def broken(self) -> bool:
-        """Whether it ended in a way that no skill may."""
+        """Whether it ended in a way that is not allowed for any skill."""
         return bool(self.escaped) or self.code in (SKILL_ERROR, WRONG_TYPE)
 
     def difference(self, other: Take) -> str:
@@ -115,7 +115,7 @@ def _last_line(traceback: str) -> Place:
 
 @dataclass
 class Rehearsals:
-    """Makes everything that a run needs, the same each time; `close` ends the worlds."""
+    """Runs a skill several times with equal arguments and worlds; `close` closes the worlds."""
 
     skill: type[Skill]
     example: Callable[[int], Mapping[str, Any]] | None
@@ -136,7 +136,7 @@ class Rehearsals:
     def blind(self) -> Take:
         """A run in which no sensor answers.
 
-        One that needs services is not run: theirs would be the first failure.
+        A skill that needs services is not run, as the services would fail first.
         """
         if self.skill.needs:
             return Take(self.skill, None)
@@ -146,7 +146,7 @@ class Rehearsals:
         return self._take(arguments)
 
     def halted(self, tick: int, *, restart: bool, whole: Take) -> Iterator[Problem]:
-        """Halt it at a tick, twice; then let time pass, and perhaps start it again."""
+        """Halt the skill twice at a tick, then let time pass; with `restart` start it again."""
         arguments = self._arguments()
         robot = _scripted(arguments["world"].robot)
         found: list[Problem] = []
@@ -195,7 +195,7 @@ class Rehearsals:
         return Take(self.skill, result, commands, tuple(turns))
 
     def _arguments(self) -> dict[str, Any]:
-        """Keyword arguments of `run_skill`: the example's, and made ones where it gives none."""
+        """Keyword arguments for `run_skill`: those of the example, and generated ones."""
         try:
             arguments = dict((self.example or self.skill.rehearsal)(self.seed))
         except Exception as error:  # other people's code: it may raise anything
@@ -239,7 +239,7 @@ def _scripted(robot: Robot) -> ScriptedRobot:
 
 
 def _halt(session: Session, robot: ScriptedRobot, began: int, tick: int) -> Iterator[Problem]:
-    """Halt twice. What the first halt leaves, the second may not change."""
+    """Halt twice; the second halt must not change anything."""
     session.halt()
     if session.failure is not None:
         yield Problem("halt", f"halting it at tick {tick}: {session.failure.message}")
@@ -253,7 +253,7 @@ def _halt(session: Session, robot: ScriptedRobot, began: int, tick: int) -> Iter
 
 
 def _moving(robot: ScriptedRobot, began: int) -> str:
-    """Actuators whose newest command, from a number of commands on, is not to stop."""
+    """Actuators whose newest command is not a stop. began: ignore commands before this index."""
     newest = {actuator: goal for _, actuator, goal in robot.commands[began:]}
     return ", ".join(name for name, goal in newest.items() if goal is not None)
 

@@ -1,7 +1,7 @@
-"""A robot without physics: joints reach their goals at their speed limits, the base integrates.
+"""A robot without physics: joints move at their speed limits, the base integrates its velocity.
 
-What disturbs it is scripted: `frozen` actuators do not move, `dead` sensors do not answer,
-`object_width` is what stands between the fingers.
+Tests script disturbances: `frozen` actuators do not move, `dead` sensors do not answer, and
+`object_width` is the width of an object between the fingers.
 """
 
 from __future__ import annotations
@@ -33,9 +33,9 @@ Scripted: TypeAlias = "SensorReading | Callable[[ScriptedRobot], SensorReading]"
 
 
 class ScriptedRobot:
-    """Implements `Robot`. Call `advance(seconds)` to let time pass; `run_skill` does.
+    """Implements `Robot`. Call `advance(seconds)` to let time pass; `run_skill` does so.
 
-    readings: by sensor name, what `read` returns, or a function of this robot that makes it.
+    readings: by sensor name, the reading that `read` returns, or a function of this robot for it.
     """
 
     def __init__(
@@ -58,14 +58,14 @@ class ScriptedRobot:
         self.gripper_width = full if gripper_width is None else gripper_width
         self.gripper_effort = 0.0
         self.object_width: float | None = None
-        """Size of what stands between the fingers, m; None when nothing does."""
+        """Width of the object between the fingers, m; None if there is none."""
         self.frozen: set[str] = set()
-        """Names of actuators that do not move whatever they are told."""
+        """Names of actuators that ignore commands and do not move."""
         self.dead: set[str] = set()
         """Names of sensors that do not answer (SENSOR_DEAD)."""
         self.readings: dict[str, Scripted] = dict(readings or {})
         self.commands: list[tuple[float, str, ActuatorGoal | None]] = []
-        """(time, actuator, goal) of all that was commanded; a goal of None is `stop`."""
+        """(time, actuator, goal) of all commands; the goal None is a `stop`."""
         self._goals: dict[str, _Goal] = {}
 
     @property
@@ -74,11 +74,11 @@ class ScriptedRobot:
         return self._description
 
     def now(self) -> float:
-        """Seconds since it was made: the robot serves as a clock."""
+        """Seconds since the robot was created; so the robot can serve as a clock."""
         return self.time
 
     def state(self) -> RobotState:
-        """Joints and odometry of now, without any error."""
+        """The current joints and odometry, without errors."""
         names = tuple(self.joints)
         return RobotState(
             stamp=self.time,
@@ -111,7 +111,7 @@ class ScriptedRobot:
         return scripted(self) if callable(scripted) else scripted
 
     def command(self, actuator: str, goal: ActuatorGoal) -> None:
-        """Take a goal; KeyError or ValueError as a driver raises them."""
+        """Accept a goal; raises KeyError or ValueError as `Robot.command` does."""
         self._check(actuator, goal)
         before = self._goals.get(actuator)
         same = before is not None and before.goal is goal
@@ -120,7 +120,7 @@ class ScriptedRobot:
         self.commands.append((self.time, actuator, goal))
 
     def stop(self, actuator: str) -> None:
-        """Drop the goal; a gripper keeps its own, as a driver keeps the last force."""
+        """Drop the goal. A gripper keeps its goal, as real drivers keep the last force."""
         if actuator not in self._description.actuators:
             raise KeyError(f"no actuator {actuator!r}; {', '.join(self._description.actuators)}")
         self.commands.append((self.time, actuator, None))
@@ -128,7 +128,7 @@ class ScriptedRobot:
             self._goals.pop(actuator, None)
 
     def advance(self, seconds: float) -> None:
-        """Let time pass: move everything towards its goal."""
+        """Let time pass: move all actuators towards their goals."""
         self.time += seconds
         for joint in self.speeds:
             self.speeds[joint] = 0.0

@@ -27,9 +27,9 @@ from momantu_bt.world import TICK, Site, World, seeded
 class SkillResult:
     """How a run ended.
 
-    status: SUCCESS, FAILURE, or HALTED when `max_time` passed first. phases: each phase once per
-    change, in order. duration: seconds of the world's clock. ticks: how often it was stepped.
-    skill: the instance, None when it never came to exist.
+    status: SUCCESS, FAILURE, or HALTED if `max_time` was over first. phases: the phases in order,
+    without repetitions. duration: time of the world's clock, s. ticks: number of steps.
+    skill: the instance; None if it could not be created.
     """
 
     status: str
@@ -47,13 +47,13 @@ class SkillResult:
         return None if self.failure is None else self.failure.code
 
     def claim(self) -> Claim | None:
-        """What its end claims about the world; None when it claims nothing, or was halted."""
+        """What the result claims about the world; None without a claim or after a halt."""
         if self.skill is None or self.status == "HALTED":
             return None
         return self.skill.claim(self.robot, self.failure)
 
     def explain(self) -> str:
-        """Everything about a failure, the traceback included, for an assertion's message."""
+        """All details of the result, with the traceback of a failure, for assertion messages."""
         if self.failure is None:
             return f"{self.status} after {self.duration:.2f} s in {' > '.join(self.phases)}"
         trace = self.failure.data.get("traceback", "")
@@ -77,13 +77,13 @@ def run_skill(
 ) -> SkillResult:
     """Start a skill and tick it to its end, as the engine does.
 
-    robot, site: a ScriptedRobot at the origin and a scripted site unless given; or give `world`,
-    which has both and is stepped. services: by name; those that subclass `Service` are started
-    and updated at their rate (unless `frames` is given, in which case they were started with it),
-    others are used as they are. map_from_odom: told to the frame buffer at the start; the
-    identity when no service is a Localization. frames: the buffer of an earlier run on the same
-    world, so that skills can be run one after the other. on_tick: called after each step of the
-    skill, to script events. After `max_time` simulated seconds the skill is halted.
+    robot, site: by default a ScriptedRobot at the origin and a scripted site. Or give `world`,
+    which has both. services: by name. Instances of `Service` are started and are updated at their rate;
+    with `frames` they count as started already. Other objects are used as they are. map_from_odom:
+    set in the frame buffer at the start; by default the identity if no service is a Localization.
+    frames: the buffer of an earlier run in the same world, to run skills one after the other.
+    on_tick: called after each step of the skill, to script events. The skill is halted after
+    `max_time` simulated seconds.
     """
     place = world if world is not None else ScriptedWorld(robot, site)
     try:
@@ -133,10 +133,10 @@ def run_skill(
 
 
 def _admitted(skill: type[Skill], inputs: Mapping[str, Any]) -> dict[str, Any]:
-    """Inputs as a tree would give them; those that the skill does not have as they are.
+    """Convert inputs as a tree would; unknown ones stay as they are.
 
     Raises:
-        Failure: WRONG_TYPE.
+        Failure: WRONG_TYPE, a value does not fit its input.
     """
     ports = skill.ports
     return {n: admit(v, ports[n]) if n in ports else v for n, v in inputs.items()}

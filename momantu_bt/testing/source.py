@@ -15,7 +15,7 @@ from momantu_bt.formats.places import Place
 from momantu_bt.skill import Skill
 
 MOST_MODULES = 500
-"""Modules of one package that are looked at."""
+"""Most modules of one package that are read."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +33,7 @@ class Module:
 
 
 def classes(skill: type[Skill]) -> list[tuple[Module, ast.ClassDef]]:
-    """The class statements of a skill and of what it inherits from, below Skill."""
+    """The class statements of a skill and of its base classes, except Skill."""
     found: list[tuple[Module, ast.ClassDef]] = []
     for kind in skill.__mro__[: skill.__mro__.index(Skill)]:
         module = _module(kind.__module__)
@@ -45,9 +45,9 @@ def classes(skill: type[Skill]) -> list[tuple[Module, ast.ClassDef]]:
 
 
 def reached(skill: type[Skill]) -> list[Module]:
-    """The skill's module and all that it imports from its own package, directly or not.
+    """The skill's module and all modules of its own package that it imports, also indirectly.
 
-    Imports inside functions count. Nothing is imported for it but parent packages.
+    Imports inside functions count too. The search imports only parent packages.
     """
     top = skill.__module__.partition(".")[0]
     waiting, found = [skill.__module__], dict[str, Module]()
@@ -63,7 +63,7 @@ def reached(skill: type[Skill]) -> list[Module]:
 
 @cache
 def _module(name: str) -> Module | None:
-    """A module's source; None when it has none, as built-in modules."""
+    """A module's source; None if it has none, such as a built-in module."""
     path = _path(name)
     if path is None or path.suffix != ".py":
         return None

@@ -37,8 +37,8 @@ def scripted_site(
 class ScriptedWorld:
     """Implements `World`. on_step: called after each step, to script what happens in it.
 
-    verdict_of: what the referee says; None: no referee. pictures: how many frames
-    an open video got.
+    verdict_of: computes the referee's verdict; None: no referee. pictures: number of frames in an
+    open video.
     """
 
     def __init__(
@@ -68,19 +68,19 @@ class ScriptedWorld:
             self._on_step(self.robot)
 
     def verdict(self) -> Verdict | None:
-        """The scripted referee's word."""
+        """The verdict of the scripted referee."""
         return None if self._verdict_of is None else self._verdict_of(self.robot)
 
     def open_video(self, path: Path, title: str) -> Video:
-        """A text file with one line per frame in the place of a film."""
+        """Open a text file with one line per frame instead of a film."""
         return _TextVideo(path, title)
 
     def open_view(self, port: int) -> View:
-        """There is nothing to see."""
+        """Raise: a scripted world has no view."""
         raise NotImplementedError("a scripted world has no view")
 
     def close(self) -> None:
-        """Nothing to free."""
+        """Do nothing: there is nothing to free."""
         self.closed = True
 
 
