@@ -78,9 +78,10 @@ def run_skill(
     """Start a skill and tick it to its end, as the engine does.
 
     robot, site: by default a ScriptedRobot at the origin and a scripted site. Or give `world`,
-    which has both. services: by name. Instances of `Service` are started and are updated at their rate;
-    with `frames` they count as started already. Other objects are used as they are. map_from_odom:
-    set in the frame buffer at the start; by default the identity if no service is a Localization.
+    which has both. services: by name. Instances of `Service` are started, and updated at their
+    rate; with `frames` they count as started already. Other objects are used as they are.
+    map_from_odom: set in the frame buffer at the start; by default the identity if no service is
+    a Localization.
     frames: the buffer of an earlier run in the same world, to run skills one after the other.
     on_tick: called after each step of the skill, to script events. The skill is halted after
     `max_time` simulated seconds.

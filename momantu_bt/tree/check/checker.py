@@ -31,14 +31,14 @@ from momantu_bt.tree.script import parse
 from momantu_bt.values.kinds import ScriptText
 
 ROBOT_KEY = "robot"
-"""`$@robot.…`: what every run publishes of its robot."""
+"""The key `$@robot.…`, which every run publishes."""
 
 
 @dataclass(frozen=True, slots=True)
 class Checked:
-    """A checked document. problems: errors, warnings and hints in the order of the file.
+    """A checked document. problems: errors, warnings and hints in file order.
 
-    document: as it runs: the ports of bare values (`dock: bay_a`) have their names.
+    document: the document to run; bare values (`dock: bay_a`) now have the names of their ports.
     """
 
     document: Document
@@ -55,8 +55,8 @@ def check(
 ) -> Checked:
     """Check a document, without changing it.
 
-    world, robot: named on the command line, instead of the file's and the world's own.
-    reading: problems that reading the file has found; they come back with the rest.
+    world, robot: names from the command line, instead of the file's world and the world's robot.
+    reading: problems that were found while reading the file; the result includes them.
     """
     problems = reading if reading is not None else Problems()
     context = Context(_concerned(document), registry, problems)
@@ -68,9 +68,9 @@ def check(
 
 
 def _concerned(document: Document) -> Document:
-    """The document without included trees that neither its main tree nor an own one runs.
+    """The document without included trees that none of the file's own trees runs.
 
-    They are checked where they are run, and with the file that they stand in.
+    Such trees are checked with their own file, or with a file that runs them.
     """
     trees, file = document.trees, document.file
     starts = [n for n, tree in trees.items() if n == document.main or tree.place.file == file]

@@ -1,4 +1,4 @@
-"""Checks of guards that are asked once before something long, and not while it runs."""
+"""Hints for conditions that are evaluated only once before a long action."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from momantu_bt.tree.model import Node, Reference, Scope, Tree
 
 
 def check_guards(context: Context, order: list[Tree], published: frozenset[str]) -> None:
-    """Hint at conditions in plain sequences whose answer may change while a later child runs.
+    """Report conditions in plain sequences whose result may change while a later child runs.
 
-    order: trees after those that they run. published: keys of the root's board that change by
-    themselves, such as the robot's state.
+    order: the trees, each after those that it runs. published: keys of the root's board whose
+    values change during a run, such as the robot's state.
     """
     long: set[str] = set()
     for tree in order:
@@ -53,7 +53,7 @@ def _first_long(context: Context, nodes: list[Node], long: set[str]) -> Node | N
 
 
 def _runs_long(context: Context, node: Node, long: set[str]) -> bool:
-    """Whether it commands actuators, itself or by the tree that it runs."""
+    """Whether a node, or the tree that it runs, commands actuators."""
     if node.disabled:
         return False
     if node.type == SUBTREE:

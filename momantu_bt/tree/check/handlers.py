@@ -14,13 +14,13 @@ from momantu_bt.tree.language import ANY
 from momantu_bt.tree.model import Handler, Literal, Node, Reference, Tree
 
 _ANY_SKILL = frozenset(ENGINE_CODES) - {TIMEOUT, FAILED, HALTED, SCRIPT_ERROR}
-"""What the engine makes of a skill's end beside the codes that it declares."""
+"""Codes with which the engine fails a skill, in addition to those that the skill declares."""
 
 _HANDLED_CODE = Reference("failure", ("code",))
 
 
 def check_handlers(context: Context, order: list[Tree]) -> None:
-    """Every handler of every tree. order: trees after those that they run."""
+    """Check every handler of every tree. order: the trees, each after those that it runs."""
     of_tree: dict[str, Codes] = {}
     for tree in order:
         of_node: dict[int, Codes] = {}
@@ -33,7 +33,7 @@ def check_handlers(context: Context, order: list[Tree]) -> None:
 
 
 def _handled(tree: Tree) -> dict[int, Codes]:
-    """The possible `$failure.code` for each node in a handler; the innermost handler counts."""
+    """For each node in a handler, the possible values of `$failure.code`."""
     found: dict[int, Codes] = {}
     for node in tree.root.walk():
         for handler in node.handlers:
@@ -73,7 +73,7 @@ def _own(context: Context, node: Node, failing: Failing, of_tree: Mapping[str, C
 
 
 def _named(node: Node, handled: Codes | None) -> Codes:
-    """The codes that the port `code` of a node can hold."""
+    """The possible values of a node's port `code`."""
     code = node.ports.get("code")
     if code == _HANDLED_CODE and handled is not None:
         return handled

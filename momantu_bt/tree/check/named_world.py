@@ -8,14 +8,14 @@ from momantu_bt.tree.model import Document
 from momantu_bt.world_plugins import WORLDS
 
 WITHOUT_WORLD = "none"
-"""As a world's name: run without one."""
+"""The name that means "run without a world"."""
 
 
 def world_of(document: Document, asked: str | None) -> str | None:
-    """A name or a path; None without a world.
+    """The name or path of the run's world; None without a world.
 
-    asked: instead of the tree's own, a path of it seen from the working directory. A path that the
-    tree has itself is seen from the tree's file.
+    asked: the world to use instead of the tree's own. If it is a path, it is relative to the
+    working directory; a path in the tree file is relative to that file.
     """
     if asked is not None:
         return None if asked == WITHOUT_WORLD else asked

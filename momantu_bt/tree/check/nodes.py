@@ -1,4 +1,4 @@
-"""Checks of single nodes: is it known, are its children right, do its ports fit."""
+"""Checks of single nodes: their names, their children and their ports."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from momantu_bt.values.words import ConversionError
 
 
 def check_tree_ports(context: Context, tree: Tree) -> None:
-    """Types and defaults of a tree's inputs and outputs."""
+    """Check the types and defaults of a tree's inputs and outputs."""
     for name, declaration in tree.ports.items():
         type_ = known_type(declaration.type_name)
         if type_ is None:
@@ -56,7 +56,7 @@ def _type_names() -> list[str]:
 
 
 def check_node(context: Context, node: Node) -> None:
-    """One node: name, children, ports."""
+    """Check one node: its name, its children and its ports."""
     signature = context.signature(node)
     if signature is None:
         if node.type:
@@ -86,14 +86,14 @@ def _is_needed(port: Port, signature: Signature) -> bool:
 
 
 def autoremaps(node: Node) -> bool:
-    """Whether a SubTree takes every key that is not given from the key of the same name."""
+    """Whether a SubTree connects all other keys to the outer keys of the same name."""
     return node.ports.get(AUTOREMAP) == Literal(True)
 
 
 def with_named_inputs(context: Context) -> Document:
-    """The document with the ports of bare values named (`dock: bay_a`), where it is known.
+    """A copy of the document in which bare values (`dock: bay_a`) have their ports' names.
 
-    The given document stays as it is; trees without bare values are shared.
+    Bare values of unknown nodes stay. Trees without bare values are shared with the original.
     """
     document = context.document
     trees = {name: _with_named_inputs(context, tree) for name, tree in document.trees.items()}
@@ -101,7 +101,7 @@ def with_named_inputs(context: Context) -> Document:
 
 
 def _with_named_inputs(context: Context, tree: Tree) -> Tree:
-    """Nodes are copied from the innermost outwards, for trees may be deep."""
+    """Copy a tree, innermost nodes first instead of by recursion, as trees may be deep."""
     nodes = list(tree.root.walk())
     if not any(FIRST_INPUT in node.ports for node in nodes):
         return tree
@@ -160,7 +160,7 @@ def _child_hint(context: Context, node: Node) -> str:
 
 
 def _check_one_of(context: Context, node: Node, signature: Signature) -> None:
-    """Of some inputs exactly one is given, such as a time in seconds or in milliseconds."""
+    """Check that exactly one input of a group is given, such as of `duration` and `msec`."""
     for group in signature.one_of:
         nothing = [name for name in group if node.ports.get(name) == Literal(None)]
         named = [name for name in group if name in node.port_places or name in node.ports]
@@ -178,7 +178,7 @@ def _check_one_of(context: Context, node: Node, signature: Signature) -> None:
 
 
 def _check_values(context: Context, node: Node, signature: Signature) -> None:
-    """The node's own checks of its values."""
+    """Run the checks of values that the node's spec defines."""
     objection = None if signature.spec is None else signature.spec.objection
     found = None if objection is None else objection(node)
     if found is not None:
@@ -187,7 +187,7 @@ def _check_values(context: Context, node: Node, signature: Signature) -> None:
 
 
 def _check_switch(context: Context, node: Node, signature: Signature) -> None:
-    """A switch on a text that is written out always goes one way."""
+    """Report a switch whose variable is a literal, as it always chooses the same child."""
     value = node.ports.get("variable")
     if signature.spec is None or not signature.spec.switch or not isinstance(value, Literal):
         return
@@ -246,7 +246,7 @@ def _check_key(
 
 
 def check_literal(context: Context, value: Literal, place: Place, port: Port) -> None:
-    """A written value against a port: its type, its unit, and the names it may be."""
+    """Check a literal against a port: its type, its unit, and the names that are valid."""
     try:
         found = convert(value.value, port)
     except ConversionError as error:
@@ -268,7 +268,7 @@ _KINDS = {
 
 
 def check_name(context: Context, name: str, place: Place, kind: str) -> None:
-    """A place, surface, named pose or plug-in by name, where the valid names are known."""
+    """Check the name of a place, surface, named pose or plug-in, if the valid names are known."""
     valid = context.names_of(kind)
     if valid is None or name in valid:
         return

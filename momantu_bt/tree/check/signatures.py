@@ -25,9 +25,9 @@ _AUTOREMAP_PORT = Port(AUTOREMAP, "in", bool, "whether keys of one name are one 
 
 @dataclass(frozen=True, slots=True)
 class Signature:
-    """One kind of node. said: its name in the file. first: the input that a bare value means.
+    """One kind of node. said: its name in the file. first: the input that a bare value sets.
 
-    spec: of a built-in node; skill: of a skill; both None for a subtree.
+    spec: set for a built-in node. skill: set for a skill. Both are None for a subtree.
     """
 
     said: str
@@ -38,7 +38,7 @@ class Signature:
 
     @property
     def one_of(self) -> tuple[tuple[str, ...], ...]:
-        """Groups of inputs of which exactly one is given."""
+        """Groups of inputs; a tree gives exactly one of each."""
         owner = self.spec or self.skill
         return () if owner is None else owner.one_of
 
@@ -49,7 +49,7 @@ class Signature:
 
 @dataclass(slots=True)
 class Context:
-    """One check of one document. site, description: None where there is no world or robot."""
+    """One check of one document. site, description: None without a world or robot."""
 
     document: Document
     registry: Registry
@@ -74,7 +74,7 @@ class Context:
         return Signature(node.type, skill.ports, _first(skill.ports), skill=skill)
 
     def _call_signature(self, node: Node, tree: Tree) -> Signature:
-        """A subtree's, with what this node may give besides: of an open tree any key."""
+        """The signature of a subtree; for an open tree, with all keys that this node gives."""
         declared = self.tree_signature(tree)
         ports = dict(declared.ports)
         if AUTOREMAP in node.ports:
@@ -85,7 +85,7 @@ class Context:
         return Signature(tree.name, ports, declared.first)
 
     def in_xml(self, place: Place) -> bool:
-        """Whether the file of this place is XML, so that its words are used."""
+        """Whether the file of a place is XML, so that messages use XML's words."""
         known = self._xml_files.get(place.file)
         if known is None:
             text = self.document.source.get(place.file, "")
@@ -94,7 +94,7 @@ class Context:
         return known
 
     def wire(self, key: str, place: Place) -> str:
-        """A wire as the file of this place spells it."""
+        """A reference to a key in the format of the file of a place."""
         return f"{{{key}}}" if self.in_xml(place) else f"${key}"
 
     def tree_signature(self, tree: Tree) -> Signature:
@@ -110,7 +110,7 @@ class Context:
         return self._trees[tree.name]
 
     def skill(self, name: str) -> type[Skill] | None:
-        """A skill's class; None when there is none or it is broken (reported then)."""
+        """A skill's class; None if there is none, or if it is broken, which is reported."""
         if name not in self._skills:
             try:
                 self._skills[name] = self.registry.skills[name]
@@ -134,7 +134,7 @@ def _first(ports: Mapping[str, Port]) -> str | None:
 
 
 def report_unknown_node(context: Context, node: Node) -> None:
-    """Say that no node has this name, or why the skill of this name cannot be used."""
+    """Report that no node has this name, or why the skill of this name cannot be used."""
     name = node.type
     broken = _why_broken(context, name)
     if broken is not None:
@@ -164,7 +164,7 @@ def _why_broken(context: Context, name: str) -> str | None:
 
 
 def known_type(text: str) -> Any:
-    """The type of that name, or None."""
+    """The type of a name, or None."""
     try:
         return parse_type(text)
     except KeyError:

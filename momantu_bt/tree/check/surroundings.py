@@ -1,4 +1,4 @@
-"""The world and the robot that a tree is checked with."""
+"""Finds the world and the robot with which a tree is checked."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from momantu_bt.world import WorldError
 from momantu_bt.world_plugins import WORLDS
 
 WORLD_OPTION, ROBOT_OPTION = "--world", "--robot"
-"""What stands for a file's name in problems with what the command line names."""
+"""The file name that problems have if the command line is wrong."""
 
 
 def look_up_surroundings(context: Context, world: str | None, robot: str | None) -> None:
-    """Set the world's site and the robot's description; reports where there are none.
+    """Set the world's site and the robot's description; report if they cannot be found.
 
-    world, robot: names or paths that replace the document's own and the world's usual robot.
+    world, robot: names or paths that replace the document's world and the world's default robot.
     """
     document = context.document
     name, start = world_of(document, world), Place(document.file, 1, 1)
@@ -37,12 +37,12 @@ def look_up_surroundings(context: Context, world: str | None, robot: str | None)
 
 
 def _told(option: str, name: str) -> Place:
-    """A place on the command line, for what no file says."""
+    """A place on the command line, for problems that are not in a file."""
     return Place(option, 1, 1, len(name))
 
 
 def _look_up_world(context: Context, name: str, place: Place) -> str | None:
-    """Sets the context's site; returns the robot that the world is meant for."""
+    """Set the context's site; return the world's default robot."""
     worlds = context.registry.worlds
     if name not in worlds:
         hint = WORLDS.near_file(name) or valid_names(name, worlds, "worlds")
@@ -75,7 +75,7 @@ def _look_up_robot(context: Context, name: str, place: Place) -> None:
     except PluginError as error:
         _error("broken-robot", context, place, name, str(error))
     except WorldError as error:
-        # its files are not installed, as without the extra [worlds]; trees are checked all the same
+        # Its files are not installed, for example without the extra [worlds]; check the rest.
         message = f"poses and actuators of {name!r} are not checked: {error}"
         context.problems.warning("robot-not-installed", place, message)
     except Exception as error:  # a plug-in's code, which may raise anything
@@ -86,14 +86,14 @@ def _look_up_robot(context: Context, name: str, place: Place) -> None:
 def _error(
     code: str, context: Context, place: Place, name: str, message: str, hint: str = ""
 ) -> None:
-    """Report a world or robot; one that the command line names is shown as it was given there."""
+    """Report a problem of a world or robot, in the file or on the command line that names it."""
     if place.file in (WORLD_OPTION, ROBOT_OPTION):
         context.document.source[place.file] = name
     context.problems.error(code, place, message, hint)
 
 
 def _broken(code: str, context: Context, error: DescriptionError) -> None:
-    """Report what is wrong in a file that describes a world or a robot, in its own lines."""
+    """Report the problems of a file that describes a world or a robot, at their lines there."""
     file = str(error.path)
     context.document.source[file] = error.text
     for problem in error.problems:

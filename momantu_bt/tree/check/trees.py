@@ -11,15 +11,15 @@ from momantu_bt.tree.check.signatures import Context
 from momantu_bt.tree.model import Document, Node, Tree
 
 MAX_NESTING = 150
-"""Nodes within nodes, decorators counted; bounds the stack of whatever walks a tree."""
+"""Deepest nesting of nodes, including decorators; it limits the stack of recursive functions."""
 
 
 Uses: TypeAlias = dict[str, Node]
-"""Actuators by name, each with the node that commands it."""
+"""Names of actuators, each with the node that commands it."""
 
 
 def calls(tree: Tree) -> dict[str, Place]:
-    """Trees that a tree runs, with the place of the first call."""
+    """The trees that a tree runs, each with the place of the first call."""
     found: dict[str, Place] = {}
     for node in tree.root.walk():
         if node.type == SUBTREE and node.target is not None:
@@ -28,7 +28,7 @@ def calls(tree: Tree) -> dict[str, Place]:
 
 
 def reached(document: Document, starts: Iterable[str]) -> set[str]:
-    """Names of the trees that the given ones run, and those that these run; they are in it too."""
+    """Names of the given trees and of all trees that they run, directly or indirectly."""
     waiting = list(starts)
     found = set(waiting)
     while waiting:
@@ -40,7 +40,7 @@ def reached(document: Document, starts: Iterable[str]) -> set[str]:
 
 
 def callees_first(context: Context) -> list[Tree] | None:
-    """The trees, each after those it runs; None when they run in circles (reported then)."""
+    """The trees, each after those that it runs; None if they form a circle, which is reported."""
     document = context.document
     order: list[str] = []
     state: dict[str, int] = {}
@@ -74,7 +74,7 @@ def _report_circle(context: Context, path: list[str], callee: str, place: Place)
 
 
 def check_nesting(context: Context, tree: Tree) -> bool:
-    """Whether a tree is shallow enough for what follows; reports it when not."""
+    """Whether a tree is not nested too deeply for the later checks; reports it if it is."""
     stack = [(tree.root, 1)]
     while stack:
         node, depth = stack.pop()
@@ -98,9 +98,9 @@ def check_unused(context: Context) -> None:
 
 
 def check_given_names(context: Context, tree: Tree) -> None:
-    """Names given with `name:` are unique within a tree: records and statistics use them.
+    """Check that names given with `name:` are unique in a tree; records and statistics use them.
 
-    BehaviorTree.CPP does not ask for that, so that an open tree is only warned of.
+    BehaviorTree.CPP does not require this, so for an open tree it is only a warning.
     """
     first: dict[str, Node] = {}
     for node in tree.root.walk():
@@ -117,7 +117,7 @@ def check_given_names(context: Context, tree: Tree) -> None:
 
 
 def check_parallel(context: Context, order: list[Tree]) -> None:
-    """Children of a parallel node must not command the same actuator."""
+    """Check that children of a parallel node do not command the same actuator."""
     of_tree: dict[str, Uses] = {}
     for tree in order:
         of_node: dict[int, Uses] = {}
@@ -131,7 +131,7 @@ def check_parallel(context: Context, order: list[Tree]) -> None:
 
 
 def _check_overlap(context: Context, parallel: Node, of_node: dict[int, Uses]) -> None:
-    """Report each child that commands what one before it commands."""
+    """Report each child that commands an actuator of an earlier child."""
     first: Uses = {}
     for child in parallel.children:
         used = of_node[id(child)]
