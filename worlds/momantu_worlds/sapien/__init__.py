@@ -7,13 +7,9 @@ rendering.
 
 import warnings
 
-from momantu_bt.world import WorldError
-from momantu_worlds.vulkan import VulkanMissingError, ensure_vulkan
+from momantu_worlds.vulkan import ensure_vulkan
 
-try:
-    ensure_vulkan()
-except VulkanMissingError as error:
-    raise WorldError(str(error)) from None
+ensure_vulkan()
 
 with warnings.catch_warnings():
     # it brings a loader of its own where the system has none, which is not a reason to warn

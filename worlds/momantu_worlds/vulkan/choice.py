@@ -10,6 +10,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from momantu_bt.world import WorldError
 from momantu_worlds.vulkan.places import choices_file
 from momantu_worlds.vulkan.private import ICD_VARIABLE, installed_driver, is_ours
 from momantu_worlds.vulkan.probe import ProbeResult, Way, probe
@@ -42,7 +43,7 @@ class Choice:
     device: str
 
 
-class VulkanMissingError(RuntimeError):
+class VulkanMissingError(WorldError):
     """SAPIEN finds nothing to render with; the message says why and names the cure."""
 
 
