@@ -33,7 +33,7 @@ class SensorRead(NamedTuple):
 
 
 class Actuators:
-    """The ownership book of one run."""
+    """Keeps track of which skill owns which actuator in a run."""
 
     def __init__(self, robot: Robot, events: Events | None = None) -> None:
         self.robot = robot
@@ -47,7 +47,7 @@ class Actuators:
         """The robot for a skill called `owner` that declares `uses`.
 
         Raises:
-            KeyError: this robot lacks one of them, with the actuators it has.
+            KeyError: the robot lacks one of them; the message lists the actuators it has.
         """
         resolved = map(self.robot.description.resolve_use, sorted(uses))
         return Lease(self, owner, frozenset(name for name in resolved if name is not None))
@@ -60,7 +60,7 @@ class Actuators:
     def stop_all(self) -> None:
         """Stop every actuator of the robot, owned or not.
 
-        One that cannot be stopped keeps no other from it; what the first raised is raised then.
+        All are stopped even if one raises; the first exception is raised at the end.
         """
         self._owners.clear()
         troubles: list[Exception] = []
@@ -114,14 +114,14 @@ class Lease:
         return self._robot.description
 
     def state(self) -> RobotState:
-        """Joints and odometry of now."""
+        """The current joints and odometry."""
         return self._robot.state()
 
     def read(self, sensor: str) -> SensorReading:
         """The newest reading of a sensor.
 
         Raises:
-            Failure: SENSOR_DEAD, also for one that answers with nothing to rely on.
+            Failure: SENSOR_DEAD, the sensor does not answer, or its readings are unreliable.
         """
         return self._book._read(sensor)
 
@@ -142,7 +142,7 @@ class Lease:
         self._book._stop(actuator)
 
     def end(self) -> None:
-        """Stop and give back all that is owned; safe to call twice."""
+        """Stop and release all owned actuators. Calling it twice is safe."""
         self._book._release(self)
 
     def _enter(self, actuator: str) -> None:

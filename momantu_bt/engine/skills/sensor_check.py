@@ -25,7 +25,7 @@ TURN = 0.04
 
 
 COVERED = 0.15
-"""rad of neighbouring beams at the least range that mean a covered lens."""
+"""Neighbouring beams at the least range over this angle, rad, mean that the lens is covered."""
 AT_LENS = 0.01
 """m beyond the least range that still count as it."""
 
@@ -38,14 +38,14 @@ class _Seen:
 
 
 class SensorCheck:
-    """Remembers of each sensor the last reading that was new, and where the robot was then."""
+    """Remembers each sensor's last new reading and the robot's pose at its time."""
 
     def __init__(self, description: RobotDescription) -> None:
         self._description = description
         self._seen: dict[str, _Seen] = {}
 
     def check(self, sensor: str, reading: SensorReading, state: RobotState) -> None:
-        """Take a reading that has just come in.
+        """Check a new reading.
 
         Raises:
             Failure: SENSOR_DEAD, when it repeats an older one though the robot has moved since, or

@@ -22,7 +22,7 @@ from momantu_bt.world import Site
 SLOW_STEP = 0.020
 """Seconds of wall time that a skill may use in one tick without declaring them as `compute`."""
 CLOCK_SLACK = 1e-9
-"""Seconds by which the clock may fall short of a deadline and still have reached it: rounding."""
+"""Tolerance for rounding when the clock is compared with a deadline, s."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,7 +95,7 @@ class Session:
         return self.status
 
     def halt(self) -> None:
-        """End it at any point and stop the actuators it owns; safe to call twice."""
+        """End the skill at any point and stop its actuators. Calling it twice is safe."""
         generator, self._generator = self._generator, None
         self._waiting = None
         if generator is not None:
