@@ -1,4 +1,4 @@
-"""Preparing any URDF: its meshes are found, unusable parts are left out and reported."""
+"""Prepare any URDF: find its meshes, leave out unusable parts and report them."""
 
 from __future__ import annotations
 
@@ -25,14 +25,15 @@ from momantu_skills.robot_setup.urdf.skeleton import (
 
 SOLIDS = ("box", "cylinder", "sphere", "mesh")
 HALF_TURN = "3.14159"
-"""rad; the range that a hinge without limits is looked at in."""
+"""Range of a hinge without limits, rad."""
 LEAST_ROOM = 1e-4
-"""rad or m; a joint with less is taken as fixed, as are slides without limits."""
+"""Least range of a joint, rad or m; a joint with less is fixed, and so are slides without
+limits."""
 
 
 @dataclass(frozen=True)
 class Prepared:
-    """A URDF that can be worked on.
+    """A URDF that is ready for analysis.
 
     kind: urdf or xacro. urdf: the cleaned copy. notes: what was left out, and why.
     """
@@ -106,7 +107,7 @@ def prepare(source: Path, folder: Path) -> Prepared:
 
 
 def _is_xacro(source: Path) -> bool:
-    """By its ending, or because it has xacro's elements; expanded files only name xacro."""
+    """Recognized by its ending or by xacro's elements; expanded files only mention xacro."""
     if source.suffix == ".xacro":
         return True
     try:
@@ -167,9 +168,9 @@ def _mend_shape(
 
 
 def find_mesh(name: str, source: Path) -> Path | None:
-    """The file that a mesh address means: beside the URDF, or below a folder that it lies in.
+    """Find the file of a mesh address: beside the URDF, or below a folder that contains it.
 
-    A package's folder need not be called like the package.
+    A package's folder may have another name than the package.
     """
     if name.startswith("file://"):
         name = name.removeprefix("file://")
@@ -186,7 +187,7 @@ def find_mesh(name: str, source: Path) -> Path | None:
 
 
 def _drop_flat(root: etree._Element, path: Path, base: str, notes: _Notes) -> None:
-    """Take out what has no volume or cannot be read: no hull goes around it."""
+    """Remove shapes without volume and unreadable ones, as they have no hull."""
     links = {link.get("name"): link for link in root.findall("link")}
     left = {name: list(link.findall("collision")) for name, link in links.items()}
     for part in Placed(path, base).cut().parts:

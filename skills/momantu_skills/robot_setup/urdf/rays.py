@@ -1,4 +1,4 @@
-"""Where rays meet convex hulls."""
+"""Intersections of rays with convex hulls."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from scipy.spatial import ConvexHull
 from momantu_bt.geometry import Array
 
 PAD_ALONG = 0.2
-"""Share of the pads' length, to each side of their middle, that is looked at: fingers that turn are
-nearer to each other at one end."""
+"""Share of the pads' length, to each side of their centre, that is measured: fingers that rotate
+are closer to each other at one end."""
 PARALLEL = 1e-12
-"""A ray whose direction has less of a plane's normal runs along it."""
+"""A ray is parallel to a plane if the dot product of its direction and the normal is below this."""
 
 
 def planes_of(corners: Array) -> Array:
@@ -24,7 +24,7 @@ def planes_of(corners: Array) -> Array:
 def crossings(planes: Array, origins: Array, directions: Array) -> tuple[Array, Array]:
     """Where rays (n, 3) enter and leave a convex solid, in lengths of their directions, (n,).
 
-    Both are infinite where a ray passes by. What lies behind the origin is negative.
+    Both are infinite if a ray misses the solid, and negative behind the ray's origin.
     """
     slope = directions @ planes[:, :3].T
     height = origins @ planes[:, :3].T + planes[:, 3]
@@ -39,8 +39,7 @@ def crossings(planes: Array, origins: Array, directions: Array) -> tuple[Array, 
 def opening_between(fingers: Sequence[Array], pad_length: float, pad_height: float) -> float | None:
     """Distance between fingers along y, beside the origin of the grasp frame, m.
 
-    fingers: corners (n, 3) of each one's hull in that frame. None where there is no finger to one
-    of the sides.
+    fingers: corners (n, 3) of each one's hull in that frame. None if one side has no finger.
     """
     x, z = np.meshgrid(
         np.linspace(-PAD_ALONG, PAD_ALONG, 3) * pad_length,
@@ -57,9 +56,9 @@ def opening_between(fingers: Sequence[Array], pad_length: float, pad_height: flo
 
 
 def blocked(solids: list[Array], origins: Array, directions: Array) -> Array:
-    """(n,) distance at which rays meet the first of some solids, given by planes; else infinite.
+    """Distances (n,) to the first solid that rays hit, given by planes; infinite without a hit.
 
-    Solids that a ray begins in do not count: a sensor sits in its housing.
+    A solid that contains a ray's origin is ignored: a sensor is inside its housing.
     """
     nearest = np.full(len(directions), np.inf)
     for planes in solids:

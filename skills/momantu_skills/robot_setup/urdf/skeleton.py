@@ -16,7 +16,7 @@ MOVING = (*TURNING, "prismatic")
 
 
 class SetupError(MomantuError):
-    """A URDF that nothing can be found out of; the message says why and what to do."""
+    """A URDF that cannot be analysed; the message says why and what to do."""
 
 
 @dataclass(frozen=True)
@@ -40,17 +40,17 @@ class SetupJoint:
 
     @property
     def moving(self) -> bool:
-        """Whether it has a degree of freedom that is its own or that follows another."""
+        """Whether it has a degree of freedom, its own or one that follows another joint."""
         return self.kind in MOVING
 
     @property
     def endless(self) -> bool:
-        """Whether it turns for ever."""
+        """Whether it turns without limit."""
         return self.kind == "continuous"
 
     @property
     def range(self) -> tuple[float, float]:
-        """The positions it may take, rad or m; half a turn each way where it turns for ever."""
+        """Its range, rad or m; half a turn each way if it turns without limit."""
         if self.endless or self.lower is None or self.upper is None or self.lower >= self.upper:
             return (-math.pi, math.pi) if self.kind in TURNING else (0.0, 0.0)
         return self.lower, self.upper

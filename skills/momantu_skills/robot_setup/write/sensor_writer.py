@@ -11,27 +11,27 @@ from momantu_skills.robot_setup.find.sensors import FoundSensor
 from momantu_skills.robot_setup.write.file_text import scalar
 
 USUAL_FOV = 1.05
-"""rad; a picture 60 degrees wide."""
+"""Default field of view, rad: 60 degrees."""
 USUAL_SIZE = (640, 480)
 USUAL_DEPTH = (0.3, 4.5)
-"""m; what structured light measures indoors."""
+"""Default depth range, m: what structured light measures indoors."""
 USUAL_ANGLES = (-1.92, 1.92)
-"""rad; 110 degrees to each side."""
+"""Default angles of a laser, rad: 110 degrees to each side."""
 USUAL_BEAMS = 662
 USUAL_RANGE = (0.05, 25.0)
-"""m."""
+"""Default range of a laser, m."""
 USUAL_RINGS = tuple(round(math.radians(-15 + 2 * i), 4) for i in range(16))
-"""rad; sixteen rings, two degrees apart."""
+"""Default elevations of a lidar's rings, rad; sixteen rings, two degrees apart."""
 USUAL_COLUMNS = 900
 MOST_RINGS, MOST_COLUMNS = 256, 100_000
 BAND = (0.08, 0.5)
-"""m above the floor; what a scan made from a lidar takes for an obstacle."""
+"""Heights above the floor of obstacles in a scan made from a lidar, m."""
 LIDAR_SCAN = "scan_frame"
 """The level frame of a scan that is made from a lidar."""
 
 
 def sensor_names(proposal: Proposal) -> dict[str, FoundSensor]:
-    """Sensors by the names they get: of what carries a camera, of their kind, with a number."""
+    """Names of the sensors: the part that carries a camera, or the sensor's kind, with a number."""
     named: dict[str, FoundSensor] = {}
     for sensor in proposal.sensors:
         carrier = proposal.carriers.get(sensor.link, "")

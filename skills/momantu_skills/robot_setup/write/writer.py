@@ -24,13 +24,13 @@ from momantu_skills.robot_setup.write.file_text import comment, listed, number, 
 from momantu_skills.robot_setup.write.sensor_writer import sensor_frames, sensor_lines
 
 ON_FLOOR = 0.01
-"""m; a base frame this near to the floor lies on it."""
+"""Largest height of a base frame that counts as on the floor, m."""
 PUSH = 3.0
-"""m/s2; rubber wheels on a floor push with a third of the weight, not more."""
+"""Push force of the base per mass, m/s2: rubber wheels push with at most a third of the weight."""
 MOST_UP = 2
-"""Folders that a relative path goes up at most."""
+"""Most folders that a relative path goes up."""
 FLOOR_LINK = "base_footprint"
-"""The frame that is put on the floor where the URDF has none there."""
+"""Name of the frame that is added on the floor if the URDF has none there."""
 
 
 def robot_file(proposal: Proposal, folder: Path) -> str:
@@ -55,7 +55,7 @@ def robot_file(proposal: Proposal, folder: Path) -> str:
 
 
 def missing(proposal: Proposal) -> tuple[str, ...]:
-    """The values to fill in before the file can be read."""
+    """The values that must be filled in before the file can be read."""
     found = []
     if proposal.stand.footprint is None:
         found.append("`footprint`: the base has no collision shape to take it from")
@@ -76,9 +76,9 @@ def base_frame(proposal: Proposal) -> str:
 
 
 def _put_on_floor(proposal: Proposal) -> bool:
-    """Whether the robot gets a base frame of its own.
+    """Whether a base frame is added for the robot.
 
-    It does where the URDF's is not on the floor, or hangs below another link.
+    This is so if the URDF's is not on the floor, or is below another link.
     """
     skeleton = proposal.prepared.skeleton
     unfit = abs(proposal.stand.floor) > ON_FLOOR or proposal.base.frame != skeleton.root
