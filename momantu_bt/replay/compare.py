@@ -15,16 +15,16 @@ from momantu_bt.replay.difference import NOTHING, Difference, first_difference, 
 from momantu_bt.replay.run_text import run_lines
 
 _OUTCOME = ("status", "success", "failure", "unmet", "sim_time_s", "ticks", "error")
-"""Of a report what a run came to; wall times and folders do not count."""
+"""The parts of a report that say how a run ended. Wall times and folders do not count."""
 _COUNTS = ("runs", "failures", "seconds")
 _ABOUT = ("world", "robot", "seed")
 
 
 @dataclass(frozen=True, slots=True)
 class Parting:
-    """Where the printed lines of two runs part; times do not count.
+    """The place where the printed lines of two runs begin to differ. Times do not count.
 
-    before: the last line of both, empty at the beginning. left, right: the next one of each.
+    before: the last line that both have, empty at the beginning. left, right: each run's next line.
     """
 
     before: str
@@ -34,11 +34,11 @@ class Parting:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """Two runs. All but `first` and `parting` are one line each: name, left, right.
+    """Two runs compared. All fields but `first` and `parting` hold lines: name, left, right.
 
-    first: the first thing that differs, in time. given: what the runs were made with (versions,
-    options, values, seed). files: a unified diff per text that differs, by name. outcome: what
-    the runs came to. nodes: counts of nodes that differ.
+    first: the earliest difference. given: what the runs were made with (versions,
+    options, values, seed). files: a unified diff for each text that differs, by name. outcome: how
+    the runs ended. nodes: counts of nodes that differ.
     """
 
     first: Difference | None
@@ -50,7 +50,7 @@ class Comparison:
 
     @property
     def equal(self) -> bool:
-        """Whether the same happened in both runs, whatever they were made with."""
+        """Whether the same happened in both runs. What they were made with does not count."""
         return self.first is None and not self.outcome
 
     def as_dict(self) -> dict[str, Any]:
@@ -86,7 +86,7 @@ def compare(left: Recording, right: Recording) -> Comparison:
 
 
 def _tree(left: Sequence[NodeInfo], right: Sequence[NodeInfo]) -> Difference | None:
-    """Ticks of different trees cannot be compared node by node."""
+    """The first node that differs between the trees. If any does, ticks cannot be compared."""
     for number, (one, other) in enumerate(zip_longest(left, right)):
         if one is None or other is None or (one.name, one.type) != (other.name, other.type):
             words = [NOTHING if each is None else node_words(each) for each in (one, other)]
@@ -144,7 +144,7 @@ def _outcome(recording: Recording) -> dict[str, str]:
 
 
 def _counts(recording: Recording) -> dict[str, str]:
-    """Of each node of a report, as `runs 2, failures 1, seconds 3.5`."""
+    """The counts of each node of a report, as `runs 2, failures 1, seconds 3.5`."""
     found: dict[str, str] = {}
     rows = () if recording.report is None else recording.report["nodes"]
     for info, row in zip(recording.nodes, rows, strict=False):
@@ -160,7 +160,7 @@ def _unlike(left: Mapping[str, str], right: Mapping[str, str]) -> tuple[tuple[st
 
 
 def _files(left: Recording, right: Recording) -> Mapping[str, tuple[str, ...]]:
-    """Texts by their names; the two trees belong together whatever their files are called."""
+    """Texts by their names. The two trees are compared even if their files have other names."""
     ours, theirs = _texts(left), _texts(right)
     found = {}
     for name in dict.fromkeys((*ours, *theirs)):
@@ -173,7 +173,7 @@ def _files(left: Recording, right: Recording) -> Mapping[str, tuple[str, ...]]:
 
 
 def _texts(recording: Recording) -> dict[str, str]:
-    """All but those of values, which are compared one by one."""
+    """All options but values. Values are compared one by one."""
     tree, kinds = recording.about["tree"], recording.kinds
     return {
         "the tree" if name == tree else name: _readable(text) if kinds[name] == "site" else text

@@ -21,11 +21,11 @@ _WIDEST = 200
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """The point where two runs part. left, right: what the first and the second have there.
+    """The point where two runs begin to differ. left, right: what each run has there.
 
     kind: "tree", "time", "robot state", "published value", "status", "note", "failure", "write",
-    "command" or "end". where: the node with its place, or the cell, key or actuator; empty where
-    the kind says it all.
+    "command" or "end". where: the node with its place, or the cell, key or actuator; empty if
+    the kind says everything.
     """
 
     tick: int
@@ -48,7 +48,7 @@ class Difference:
 
 
 def same(left: Any, right: Any) -> bool:
-    """Whether two values are equal to the last bit, as far as a record can hold them."""
+    """Whether two values are equal to the last bit, as far as a record can store them."""
     return left is right or _bytes(left) == _bytes(right)
 
 
@@ -59,9 +59,9 @@ def _bytes(value: Any) -> bytes:
 def first_difference(
     left: TickRecord, right: TickRecord, nodes: Sequence[NodeInfo], *, surroundings: bool
 ) -> Difference | None:
-    """In the order in which a tick happens. nodes: of both runs.
+    """The first difference, in the order in which a tick happens. nodes: the nodes of both runs.
 
-    surroundings: also what the robot and its services reported and what it was told to do.
+    surroundings: also compare what the robot and its services reported, and its commands.
     """
     found = _outer(left, right) if surroundings else None
     found = found or _changes(left.changes, right.changes, nodes)
@@ -109,7 +109,7 @@ def _parted(one: ChangeRecord, other: ChangeRecord) -> tuple[str, str, str]:
 
 
 def _parted_failures(one: FailureValue | None, other: FailureValue | None) -> tuple[str, str]:
-    """Both in words; where these are the same, their data and causes too."""
+    """Both in words. If the words are the same, add their data and causes."""
     short = (NOTHING if one is None else str(one), NOTHING if other is None else str(other))
     return short if short[0] != short[1] else _apart(one, other)
 
@@ -143,12 +143,12 @@ def node_words(node: NodeInfo) -> str:
 
 
 def value_words(value: Any, widest: int = _WIDEST) -> str:
-    """A value in one line for a person; too long a one is cut."""
+    """A value in one line for a person. A long value is cut."""
     return _cut(_short_text(value), widest)
 
 
 def _apart(left: Any, right: Any) -> tuple[str, str]:
-    """Both in words that differ: from a little before where they part, if they are long."""
+    """Both texts, which differ. If they are long, begin a little before the difference."""
     texts = _short_text(left), _short_text(right)
     if texts[0] == texts[1]:
         texts = dumps(to_json(left)), dumps(to_json(right))
@@ -168,7 +168,7 @@ def _short_text(value: Any) -> str:
 
 
 def _essential(failure: dict[str, Any]) -> dict[str, Any]:
-    """A failure without what depends on where files lie, its causes too, which are few."""
+    """A failure, and its few causes, without what depends on where files lie."""
     kept = {key: value for key, value in failure.items() if key != "place"}
     kept["data"] = {key: v for key, v in failure["data"].items() if key != "traceback"}
     kept["cause"] = None if failure["cause"] is None else _essential(failure["cause"])

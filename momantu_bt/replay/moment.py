@@ -46,7 +46,7 @@ class ShownNode:
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """After a tick. index: of the tick in the record. nodes: by index. board: cells by name."""
+    """After a tick. index: the tick's in the record. nodes: by index. board: cells by name."""
 
     index: int
     tick: TickRecord
@@ -60,5 +60,5 @@ class Moment:
 
     @property
     def written(self) -> tuple[str, ...]:
-        """The cells that this tick wrote, in their order."""
+        """The cells that this tick wrote, in the order of writing."""
         return tuple(dict.fromkeys(cell for cell, _ in self.tick.writes))

@@ -38,10 +38,10 @@ def failures_of(moment: Moment) -> list[FailureValue]:
 
 
 def board_lines(moment: Moment) -> Iterator[tuple[str, str]]:
-    """Each key with its value, those that this tick wrote first and with the mark `*`.
+    """Each key with its value. Those that this tick wrote come first, with the mark `*`.
 
-    A key inside a subtree has the subtree's name before it; where several uses of one have the
-    key, the way from the root to the use as well.
+    A key inside a subtree has the subtree's name before it. If several uses of a subtree have the
+    key, the path from the root to the use is added.
     """
     short = {cell: "/".join(cell.split("/")[-2:]) for cell in moment.board}
     uses = Counter(short.values())
@@ -53,7 +53,7 @@ def board_lines(moment: Moment) -> Iterator[tuple[str, str]]:
 
 
 def moment_data(moment: Moment) -> dict[str, Any]:
-    """The moment as JSON data; nodes that are IDLE are left out."""
+    """The moment as JSON data. Nodes that are IDLE are left out."""
     tick = moment.tick
     return {
         "tick": tick.number,

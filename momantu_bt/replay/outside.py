@@ -17,7 +17,10 @@ T = TypeVar("T")
 
 
 class NotRecorded(Exception):
-    """The tree asks for what the record does not have; what: in words, node: its index."""
+    """The tree asks for something that the record does not have.
+
+    what: the request in words. node: the node's index.
+    """
 
     def __init__(self, what: str, node: int | None = None) -> None:
         super().__init__(what)
@@ -26,7 +29,7 @@ class NotRecorded(Exception):
 
 
 class RecordedOutside(Outside):
-    """Give it each tick's record with `load`, then tick the tree."""
+    """What was outside the tree. Before each tick of the tree, give the tick's record to `load`."""
 
     def __init__(self) -> None:
         self._steps: dict[int, deque[StepRecord]] = {}
@@ -52,15 +55,15 @@ class RecordedOutside(Outside):
         return None
 
     def runs_skills(self, body: Body | None) -> bool:
-        """They do what they did."""
+        """True: skills do what the record says they did."""
         return True
 
     def begin(self, leaf: SkillNode, inputs: Mapping[str, Any]) -> SkillSession:
-        """A start of a skill as it was."""
+        """Start a skill as recorded."""
         return _RecordedSession(self, leaf.index)
 
     def ask(self, key: str, ask: Callable[[], T]) -> T:
-        """The answer that was given."""
+        """The recorded answer."""
         answers = self._answers.get(key)
         if not answers:
             if key == PERSON and self._is_last:
@@ -98,7 +101,7 @@ class _RecordedSession:
         return Status(step.status)
 
     def halt(self) -> None:
-        """There is nothing to end."""
+        """Do nothing: a recorded skill has nothing to end."""
 
 
 def _words(step: StepRecord) -> str:

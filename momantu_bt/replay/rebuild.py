@@ -26,11 +26,11 @@ from momantu_bt.world import Site, World, WorldError
 
 _FOLDER = "files"
 _MOST = 3
-"""Problems of a tree that are told."""
+"""The most problems of a tree that a message lists."""
 
 
 class RebuildError(MomantuError):
-    """A record's tree cannot be made again here; the message says why."""
+    """The tree of a record cannot be rebuilt here; the message says why."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,12 +42,12 @@ class Rebuilt:
 
 
 def rebuild(recording: Recording, registry: Registry) -> Rebuilt:
-    """Read and check a record's tree as it was read for the run.
+    """Read and check a record's tree as the run did.
 
-    Neither the run's world nor its robot is opened: the record has the site.
+    The run's world and robot are not opened: the record has the site.
 
     Raises:
-        RebuildError: a text is missing, or the tree is wrong with the skills that are installed.
+        RebuildError: a text is missing, or the tree is wrong with the installed skills.
         PluginError: one of the skills cannot be loaded.
     """
     try:
@@ -80,11 +80,11 @@ def _rebuild(recording: Recording, registry: Registry) -> Rebuilt:
 
 @contextmanager
 def _written(recording: Recording) -> Iterator[Mapping[str, Path]]:
-    """The texts as files in a folder that goes away; as near to each other as they were."""
+    """Write the texts to a temporary folder. Their paths relative to each other stay the same."""
     names = [name for name, kind in recording.kinds.items() if kind in ("tree", "substitution")]
     with TemporaryDirectory() as made:
         top = Path(made).resolve()
-        # so that what lies above the main file is in its project
+        # so that files in folders above the main file are in its project
         (top / "pyproject.toml").touch()
         deep = top.joinpath(*[_FOLDER] * (1 + max(map(_ups, names), default=0)))
         paths = {name: Path(os.path.normpath(deep / name.lstrip("/"))) for name in names}
@@ -97,7 +97,7 @@ def _written(recording: Recording) -> Iterator[Mapping[str, Path]]:
 
 
 def _ups(name: str) -> int:
-    """How many folders up from where it is seen a file may lie."""
+    """How many folders up a file lies, by the number of `..` in its name."""
     return Path(name).parts.count("..")
 
 
@@ -125,12 +125,12 @@ class _RecordedWorld:
         return self._site
 
     def open(self, description: RobotDescription, seed: int, *, referee: bool = True) -> World:
-        """Never possible."""
+        """Always raises WorldError: the world cannot be opened."""
         raise WorldError(f"{self.name} is a record's and cannot be opened")
 
 
 class _Robots(Mapping[str, Any]):
-    """Has every robot by name, and of none what it is: the tree was checked for it before."""
+    """Has every robot by name, without a description: the tree was checked before the run."""
 
     def __getitem__(self, name: str) -> Any:
         def absent() -> NoReturn:

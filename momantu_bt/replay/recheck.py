@@ -1,7 +1,7 @@
 """Ticking the tree of a recorded run again without its world: it must do the same.
 
-Skills, services, odometry and people say what the record says they said; every other node is
-really executed, by the recorded clock. Each tick's changes and writes are compared.
+Skills, services, odometry and people give the recorded results and answers. Every other node
+really runs, by the recorded clock. Each tick's changes and writes are compared.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _SERVICES = "/service/"
 class Recheck:
     """The result. ticks: the number of equal ticks. difference: the first differing one.
 
-    In the difference, `left` is the record's and `right` what the tree does here.
+    In the difference, `left` is what the record has and `right` is what the tree does here.
     """
 
     ticks: int
@@ -42,7 +42,7 @@ def recheck(recording: Recording, registry: Registry) -> Recheck:
     """Tick a record's tree again.
 
     Raises:
-        RebuildError: the tree cannot be made again here.
+        RebuildError: the tree cannot be rebuilt here.
         PluginError: one of the skills cannot be loaded.
     """
     replica = _Replica(recording, rebuild(recording, registry), registry)
@@ -57,7 +57,7 @@ def recheck(recording: Recording, registry: Registry) -> Recheck:
 
 
 def _is_last(recording: Recording, number: int) -> bool:
-    """Whether the tree is not ticked after the tick."""
+    """Whether the tree has no more ticks after this one."""
     following = recording.ticks[number + 1 : number + 2]
     return not following or following[0].settling
 
@@ -93,7 +93,7 @@ class _Replica:
         return lambda: self._outside.ask(key, lambda: None)
 
     def tree_difference(self) -> Difference | None:
-        """Whether the tree has other nodes than the recorded one."""
+        """Whether the tree has other nodes than the recorded tree."""
         here = [(node.name, node.model.target or node.model.type) for node in self._built.nodes]
         for index in range(max(len(here), len(self._nodes))):
             left = self._nodes[index] if index < len(self._nodes) else None
@@ -105,7 +105,7 @@ class _Replica:
         return None
 
     def tick(self, tick: TickRecord, *, last: bool) -> Difference | None:
-        """Do what the run did in this tick; the first thing that is not the same."""
+        """Do what the run did in this tick. Returns the first thing that differs."""
         context = self._context
         if tick.settling:
             context.changes.clear()
@@ -123,7 +123,7 @@ class _Replica:
             status = self._built.root.execute()
         except NotRecorded as missing:
             return self._unlike(tick, "outside", missing.node, NOTHING, missing.what)
-        except Exception as error:  # the run had none here
+        except Exception as error:  # the run raised none here
             return self._unlike(tick, "error", 0, NOTHING, f"{type(error).__name__}: {error}")
         return self._compared(tick) or self._left_over(tick) or self._ended(tick, status, last)
 
@@ -153,7 +153,7 @@ class _Replica:
 
 
 def _published(recording: Recording) -> list[str]:
-    """The read-only keys of the run, as far as anybody can have noticed them."""
+    """The read-only keys of the run, as far as the record shows them."""
     read = {key for tick in recording.ticks for key, _ in tick.reads}
     running = {t.removeprefix(_SERVICES) for t in recording.topics() if t.startswith(_SERVICES)}
     robot = set() if recording.about["robot"] is None else {ROBOT_KEY}

@@ -44,7 +44,7 @@ def run_lines(recording: Recording) -> Iterator[tuple[int, str]]:
 
 
 def ending(recording: Recording) -> str:
-    """How the run ended, in one line; for a record that was cut off, where."""
+    """How the run ended, in one line. If the record was cut off, say where."""
     data = recording.report
     if data is None:
         last = recording.ticks[-1].now if recording.ticks else 0.0
@@ -56,7 +56,7 @@ def ending(recording: Recording) -> str:
 
 
 def report_of(data: Mapping[str, Any]) -> Report:
-    """The report in a record as far as its last line needs it."""
+    """As much of a record's report as its last line needs."""
     return Report(
         tree=data["tree"],
         world=data["world"],
@@ -79,7 +79,7 @@ def report_of(data: Mapping[str, Any]) -> Report:
 
 
 def _failure(data: Mapping[str, Any] | None) -> FailureValue | None:
-    """A failure as `FailureValue.as_dict` gives it; its chain is gone along, not into."""
+    """A failure as `FailureValue.as_dict` gives it. A loop reads its causes, without recursion."""
     links: list[Mapping[str, Any]] = []
     while data is not None:
         links.append(data)

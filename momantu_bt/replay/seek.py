@@ -19,7 +19,7 @@ class SeekError(MomantuError, ValueError):
 
 @dataclass(frozen=True, slots=True)
 class FailureAt:
-    """A node failed of its own. index: of the tick in the record."""
+    """A node failed by itself. index: the tick's in the record."""
 
     index: int
     node: NodeInfo
@@ -32,7 +32,7 @@ def changes(recording: Recording) -> list[int]:
 
 
 def failures(recording: Recording) -> list[FailureAt]:
-    """Every failure where it began: a node that only passes its child's on is left out."""
+    """Every failure where it began. Nodes that only pass on a child's failure are left out."""
     found: list[FailureAt] = []
     for index, tick in enumerate(recording.ticks):
         below: set[int | None] = set()
@@ -88,10 +88,10 @@ def changes_of(recording: Recording, nodes: Iterable[NodeInfo]) -> list[int]:
 
 
 def following(indices: Sequence[int], index: int) -> int | None:
-    """The first of some indices behind one."""
+    """The first index after a given one."""
     return next((each for each in indices if each > index), None)
 
 
 def preceding(indices: Sequence[int], index: int) -> int | None:
-    """The last of some indices before one."""
+    """The last index before a given one."""
     return next((each for each in reversed(indices) if each < index), None)

@@ -1,8 +1,8 @@
 """What each node showed, from the journal of changes.
 
-The journal has a line for every result that differs from the one before, and for the same result
-where the node above has begun a new run since. It has none when a node is shown as IDLE because
-the one above has begun anew: that has to be found out.
+The journal has a line for every result that differs from the one before. It has a line for the
+same result too if the node above has begun a new run since. It has no line when a node becomes
+IDLE because the node above has begun a new run: this module finds that out.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from momantu_bt.record.recording import ChangeRecord, NodeInfo
 
 
 class Statuses:
-    """The newest result of each node by index, brought forward change by change.
+    """The newest result of each node, by index. Each change updates it.
 
-    notes, failures: by index too; a note counts while its node is RUNNING.
+    notes, failures: also by index. A note counts while its node is RUNNING.
     """
 
     def __init__(self, nodes: Sequence[NodeInfo]) -> None:
@@ -39,7 +39,7 @@ class Statuses:
         return twin
 
     def tick(self, changes: Sequence[ChangeRecord]) -> None:
-        """Bring them forward by one tick's changes."""
+        """Apply the changes of one tick."""
         begun: list[int] = []
         for change in changes:
             self._change(change, begun)
@@ -72,7 +72,7 @@ class Statuses:
         self.failures[node] = change.failure
 
     def _work(self, node: int | None, begun: list[int]) -> None:
-        """A node is being ticked; if it was not at work, it has begun a new run."""
+        """Note that a node is being ticked. If it was not at work, it has begun a new run."""
         while node is not None and not self._at_work[node]:
             self._at_work[node] = True
             self._runs[node] += 1

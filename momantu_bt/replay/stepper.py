@@ -39,9 +39,9 @@ _PROMPTS = {"t": "time in s: ", "n": "node: "}
 class Stepper:
     """A place in a record. `press` takes the name of a key: a character, or `right`, `enter`, ….
 
-    index: of the tick. playing, speed: whether and how fast time passes. prompt: what is being
-    asked for, with what was typed so far; None else. said: what the last key has to say.
-    shows_board, shows_keys: what the person wants to see. leaving: the person has had enough.
+    index: the tick's index. playing, speed: whether and how fast time passes. prompt: the current
+    question with the text typed so far, or None. said: the last key's message.
+    shows_board, shows_keys: what the person wants to see. leaving: the person wants to leave.
     """
 
     def __init__(self, timeline: Timeline, start: int = 0) -> None:
@@ -79,12 +79,12 @@ class Stepper:
 
     @property
     def moment(self) -> Moment:
-        """The moment one is at."""
+        """The current moment."""
         return self.timeline.moment(self.index)
 
     @property
     def view(self) -> tuple[object, ...]:
-        """The state that a picture depends on."""
+        """The state on which a picture depends."""
         switches = self.playing, self.shows_board, self.shows_keys
         return (self.index, self.speed, self.said, self.prompt, *switches)
 
@@ -94,7 +94,7 @@ class Stepper:
         return f"{_PROMPTS[self._asking]}{self._typed}" if self._asking else None
 
     def press(self, key: str) -> None:
-        """A key was pressed; one that means nothing does nothing."""
+        """Handle a pressed key. A key without a meaning does nothing."""
         if self._asking:
             self._type(key)
             return
@@ -108,7 +108,7 @@ class Stepper:
             self._keys[key]()
 
     def pass_time(self, seconds: float) -> None:
-        """So much wall time has passed; while playing it takes the record along."""
+        """Let this much wall time pass. While playing, the record moves on with it."""
         if not self.playing:
             return
         self._played_to += seconds * self.speed
@@ -166,7 +166,7 @@ class Stepper:
         self.leaving = True
 
     def _type(self, key: str) -> None:
-        """A key during a prompt; Enter confirms, Escape cancels."""
+        """Handle a key during a prompt. Enter confirms, Escape cancels."""
         if key == "enter":
             asked, self._asking = self._asking, ""
             self._take(asked, self._typed.strip())

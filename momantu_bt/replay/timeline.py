@@ -13,7 +13,7 @@ from momantu_bt.replay.statuses import Statuses
 from momantu_bt.skill import MISSING
 
 EVERY = 64
-"""Ticks between two kept states: a moment is at most so many ticks' work away."""
+"""The ticks between two stored states. To find a moment takes at most so many ticks' work."""
 _SLACK = 1e-9
 
 
@@ -40,7 +40,7 @@ class Timeline:
         return self._built(range(len(self))[index])
 
     def at(self, time: float) -> int:
-        """The index of the last tick that is not later than a time, s; the first one's before.
+        """The index of the last tick at or before a time, s; the first tick's if all are later.
 
         Raises:
             SeekError: the time is not a number.
@@ -78,7 +78,7 @@ class _State:
         return twin
 
     def apply(self, tick: TickRecord) -> None:
-        """Go on by one tick."""
+        """Apply one tick."""
         self.statuses.tick(tick.changes)
         self.notes |= {change.node: change.note for change in tick.changes}
         self.notes.update(tick.notes)
@@ -90,7 +90,7 @@ class _State:
                 self.board[cell] = value
 
     def moment(self, index: int, recording: Recording) -> Moment:
-        """The state as a value of its own."""
+        """The state as a value that later ticks do not change."""
         nodes: list[ShownNode] = []
         below: dict[int, list[ShownNode]] = {}
         for info, status in zip(recording.nodes, self.statuses.shown(), strict=True):

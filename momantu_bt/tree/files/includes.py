@@ -22,10 +22,10 @@ from momantu_bt.tree.registry import Registry
 
 MAX_FILES = 64
 MAX_TOTAL = 3_000_000
-"""Characters of all files together."""
+"""The most characters that all files together may have."""
 
 _MARKS = (".git", "pyproject.toml")
-"""What the folder of a project holds."""
+"""Names that mark a folder as the folder of a project."""
 
 
 class Source(Protocol):
@@ -38,15 +38,15 @@ class Source(Protocol):
         ...
 
     def document(self, outside: dict[str, Tree], *, included: bool = False) -> Document | None:
-        """Its own part of the document; None, and reported, where there is none."""
+        """Its own part of the document; None, with a problem reported, if it has none."""
         ...
 
 
 def read_project(path: Path, registry: Registry) -> tuple[Document, Problems]:
     """Read a tree file and all that it includes.
 
-    Included files must lie in the project: the nearest folder above `path` with `.git` or
-    `pyproject.toml`, else the file's own folder. Of them only the trees are taken.
+    Included files must lie in the project. The project is the nearest folder above `path` that has
+    `.git` or `pyproject.toml`, or else the file's own folder. Includes give only their trees.
 
     Raises:
         TreeNotFound: the file itself cannot be opened.
@@ -70,7 +70,7 @@ def project_folder(path: Path) -> Path:
 
 @dataclass(slots=True)
 class _Open:
-    """A file whose includes are being read. path: its real one; shown: its name in reports."""
+    """A file whose includes are being read. path: its real path; shown: its name in reports."""
 
     path: Path
     shown: str
@@ -88,7 +88,7 @@ class _Project:
     visible: dict[Path, dict[str, Tree]] = field(default_factory=dict)
     source: dict[str, str] = field(default_factory=dict)
     broken: list[Problem] = field(default_factory=list)
-    """Syntax errors of included files; they are reported alone."""
+    """Syntax errors of included files. If there are any, only they are reported."""
 
     def read(self, path: Path) -> tuple[Document, Problems]:
         main = path.resolve()
@@ -121,7 +121,7 @@ class _Project:
         return _Open(path, shown, source, iter(source.includes()))
 
     def enter(self, target: Path, include: Include, stack: list[_Open]) -> None:
-        """Open an included file, unless there are too many or it is not what it should be."""
+        """Open an included file, unless there are too many or it is not a file to include."""
         shown = os.path.normpath(Path(stack[-1].shown).parent / include.path)
         total = sum(map(len, self.source.values()))
         if len(self.source) >= MAX_FILES or total >= MAX_TOTAL:
@@ -137,7 +137,7 @@ class _Project:
             self.visible[target] = {}
 
     def target(self, top: _Open, include: Include, stack: list[_Open]) -> Path | None:
-        """The included file's real path; None where it cannot be included, which is reported."""
+        """The included file's real path; None, and a problem, if it cannot be included."""
         try:
             wanted = (top.path.parent / include.path).resolve()
             exists = wanted.is_file()
@@ -169,7 +169,7 @@ class _Project:
         self.problems.error("include", include.place, f"there is no file {include.path}", hint)
 
     def close(self, done: _Open, parent: _Open | None) -> None:
-        """Read the file's own trees, now that those of its includes are known."""
+        """Read the file's own trees. The trees of its includes must be known."""
         document = done.source.document(done.visible, included=parent is not None)
         if document is not None:
             self.documents[done.path] = document
@@ -193,7 +193,7 @@ class _Project:
         return True
 
     def whole(self, main: Document) -> Document:
-        """The main document with the trees of all others, and every name resolved."""
+        """The main document with the trees of all others, and with every name resolved."""
         for other in self.documents.values():
             for name, tree in other.trees.items():
                 self._report_duplicate(name, tree, main.trees.get(name))

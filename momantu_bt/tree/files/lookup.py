@@ -8,18 +8,18 @@ from momantu_bt.errors import MomantuError
 from momantu_bt.formats.names import nearest
 
 SUFFIX = ".yaml"
-"""Of bundled trees."""
+"""The suffix of bundled trees."""
 SUFFIXES = (SUFFIX, ".yml", ".xml", ".btproj")
-"""Of tree files in either spelling."""
+"""The suffixes of tree files, in YAML and in XML."""
 FAULTS_SUFFIX = ".faults.yaml"
-"""Of a file of faults beside a tree file, in the place of the tree's own suffix."""
+"""The suffix of a file of faults beside a tree file. It replaces the tree's own suffix."""
 VALUES = "values"
 """The folder of values for `--values`, beside the bundled trees."""
 _PACKAGE = Path(__file__).resolve().parents[2]
 
 
 class TreeNotFound(MomantuError):
-    """There is no file and no bundled tree of this name; the message lists those that exist."""
+    """No file and no bundled tree has this name. The message lists those that exist."""
 
 
 def bundled_folder() -> Path | None:
@@ -31,7 +31,7 @@ def bundled_folder() -> Path | None:
 
 
 def bundled() -> dict[str, Path]:
-    """Bundled trees by name; those in a folder of their own have its name before theirs."""
+    """Bundled trees by name. A tree in a folder of its own has the folder's name in front."""
     folder = bundled_folder()
     if folder is None:
         return {}
@@ -41,7 +41,7 @@ def bundled() -> dict[str, Path]:
 
 
 def tree_files(folder: Path) -> list[Path]:
-    """Files in a folder that are trees by their suffix, by name."""
+    """The files in a folder that have a tree's suffix, by name."""
     try:
         files = [each for each in folder.iterdir() if each.suffix.lower() in SUFFIXES]
     except OSError:
@@ -63,7 +63,7 @@ def find(name: str) -> Path:
     """The file that a tree argument means: a path, or the name of a bundled tree.
 
     Raises:
-        TreeNotFound: with the nearest name there is.
+        TreeNotFound: there is no such tree; the message gives the nearest name.
     """
     path = Path(name)
     try:

@@ -19,9 +19,9 @@ _INSIDE = re.compile(rf"\$\$|\$\{{(@?)({_NAME})((?:\.{_NAME})*)\}}|\$")
 
 
 def port_value(raw: Raw, same_name: str, problems: Problems) -> PortValue | None:
-    """A port's value; None where a problem was reported.
+    """A port's value; None if a problem was reported.
 
-    same_name: what `$=` stands for.
+    same_name: the key that `$=` stands for.
     """
     if isinstance(raw, Scalar):
         return _scalar(raw, same_name, problems)
@@ -32,7 +32,7 @@ def port_value(raw: Raw, same_name: str, problems: Problems) -> PortValue | None
 
 
 def words(raw: Raw, problems: Problems, what: str) -> str:
-    """A name or a sentence, as it is written; empty where a problem was reported."""
+    """A name or a sentence, as it is written; empty if a problem was reported."""
     text = raw.text if isinstance(raw, Scalar) and raw.value is not None else ""
     forbidden = NOT_TEXT.search(text)
     if not isinstance(raw, Scalar) or (raw.value is None and not raw.quoted):
@@ -45,7 +45,7 @@ def words(raw: Raw, problems: Problems, what: str) -> str:
 
 
 def reference(raw: Raw, problems: Problems, what: str) -> Reference | None:
-    """A value that must be a wire; None where a problem was reported."""
+    """A value that must be a wire; None if a problem was reported."""
     value = port_value(raw, "", problems)
     if isinstance(value, Reference):
         return value
@@ -100,7 +100,7 @@ def _parts(text: str, place: Place, problems: Problems) -> list[str | Reference]
 
 
 def reported_braces(raw: Raw, problems: Problems) -> bool:
-    """Whether `{key}` stands where `$key` was meant; reports it."""
+    """Whether the file has `{key}` where it should have `$key`. If so, report it."""
     if not isinstance(raw, Entries) or not raw.flow or len(raw.entries) != 1:
         return False
     key, value = raw.entries[0]
@@ -115,7 +115,7 @@ _BROKEN = object()
 
 
 def _nested(raw: Raw, problems: Problems) -> Any:
-    # as deep as the file, which `source` bounds
+    # as deep as the file; `source` limits that depth
     if isinstance(raw, Items):
         items = [_nested(item, problems) for item in raw.items]
         return _BROKEN if any(item is _BROKEN for item in items) else items
@@ -137,7 +137,7 @@ def _nested(raw: Raw, problems: Problems) -> Any:
 
 
 def drop_duplicates(raw: Entries, problems: Problems) -> None:
-    """Report every key of a mapping that stands there before, and keep the first of each."""
+    """Report every key that a mapping repeats, and keep the first of each."""
     first: dict[str, tuple[Scalar, Raw]] = {}
     for key, value in raw.entries:
         if key.text in first:
@@ -150,7 +150,7 @@ def drop_duplicates(raw: Entries, problems: Problems) -> None:
 
 
 def mapping(raw: Raw, name: str, example: str, problems: Problems) -> list[tuple[Scalar, Raw]]:
-    """The entries of what stands under a key that takes a mapping; none where nothing does."""
+    """The entries of a mapping under a key; none if the key has no value."""
     if isinstance(raw, Entries):
         drop_duplicates(raw, problems)
         return raw.entries
@@ -161,7 +161,7 @@ def mapping(raw: Raw, name: str, example: str, problems: Problems) -> list[tuple
 
 
 def is_key(key: Scalar, problems: Problems) -> bool:
-    """Whether it can be the name of a blackboard key; a problem where it cannot."""
+    """Whether it can be the name of a blackboard key. If not, report a problem."""
     if isinstance(key.value, str) and KEY.fullmatch(key.text):
         return True
     hint = "letters, digits and underscores, no digit first"

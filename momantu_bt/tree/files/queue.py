@@ -11,7 +11,7 @@ Put: TypeAlias = Callable[[Node], None]
 
 
 def into_tree(tree: Tree) -> Put:
-    """The node becomes the tree's root."""
+    """Make the node the tree's root."""
 
     def put(node: Node) -> None:
         tree.root = node
@@ -20,7 +20,7 @@ def into_tree(tree: Tree) -> Put:
 
 
 def into_handler(handler: Handler) -> Put:
-    """The node becomes what the handler runs."""
+    """Make the node the one that the handler runs."""
 
     def put(node: Node) -> None:
         handler.node = node

@@ -10,7 +10,7 @@ from momantu_bt.tree.problems import Problems
 
 
 def resolve(document: Document, problems: Problems) -> None:
-    """Nodes that run a tree, once all trees are known; what names none is reported."""
+    """Resolve the nodes that run a tree, and report names of no tree. All trees must be known."""
     trees = document.trees
     for tree in trees.values():
         for node in tree.root.walk():

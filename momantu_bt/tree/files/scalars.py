@@ -14,9 +14,9 @@ from momantu_bt.tree.model import Literal, PortValue, Reference, Scope, Template
 
 
 class CannotWrite(MomantuError, ValueError):
-    """A value or node for which a spelling has no words; the message says which.
+    """A value or node that cannot be written in a spelling; the message says which.
 
-    place: of the node, where that is known.
+    place: the node's place, if it is known.
     """
 
     place: Place | None = None
@@ -28,7 +28,7 @@ def literal(value: Any, *, flow: bool = False) -> str:
     Raises:
         CannotWrite: YAML has no such value (infinities).
     """
-    # as deep as the value, which the readers bound
+    # as deep as the value; the readers limit that depth
     if value is None:
         return "null"
     if isinstance(value, bool):

@@ -14,13 +14,14 @@ from momantu_bt.tree.files.syntax import compose
 from momantu_bt.tree.problems import TreeError
 
 SET = "--set"
-"""As a file's name: what was given so, one setting a line."""
+"""The file name for values given by `--set`. Its text has one setting a line."""
 
 
 class Given(Mapping[str, Any]):
     """Values by key, raw as in a tree file.
 
-    places: of the values; key_places: of their keys. source: the text, by file, for displays.
+    places: where the values are. key_places: where their keys are. source: the text of each
+    file, for displays.
     """
 
     def __init__(self) -> None:
@@ -39,12 +40,12 @@ class Given(Mapping[str, Any]):
         return len(self._values)
 
     def give(self, key: str, value: Any, key_place: Place, place: Place) -> None:
-        """A value; it takes the place of one that the key has."""
+        """Set a value. It replaces the value that the key has."""
         self._values[key] = value
         self.key_places[key], self.places[key] = key_place, place
 
     def read(self, text: str, file: str) -> None:
-        """Everything in a file of values: one YAML mapping.
+        """Read everything in a file of values: one YAML mapping.
 
         Raises:
             TreeError: it is not a YAML mapping, or has a key twice.

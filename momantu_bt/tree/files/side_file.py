@@ -17,15 +17,15 @@ VERSION_KEY = "momantu_bt"
 def top_values(
     raw: Raw, keys: Sequence[str], what: str, problems: Problems
 ) -> Mapping[str, Raw] | None:
-    """Values by their keys at the top of a file; None where it is not a mapping.
+    """Values by the keys at the top of a file; None if the file is not a mapping.
 
-    What is wrong with the version and with the keys is reported.
+    Problems with the version and with the keys are reported.
 
     Args:
         raw: the composed file.
-        keys: that can stand at its top, beside the version.
+        keys: the keys that can be at its top, beside the version.
         what: the file in a few words, such as "a file of faults".
-        problems: where mistakes are reported.
+        problems: takes the mistakes.
     """
     if not isinstance(raw, Entries):
         hint = f"begin with `{VERSION_KEY}: {VERSION}`, then `{keys[0]}:`"

@@ -14,7 +14,7 @@ from momantu_bt.formats.yaml.values import Raw
 from momantu_bt.tree.catalogue import XML_CONDITIONS
 
 OURS = "urn:momantu-bt:1"
-"""Namespace of what only this language has."""
+"""Namespace of everything that only this language has."""
 
 WHAT = "tree file"
 MAX_BYTES = 500_000
@@ -43,7 +43,7 @@ def compose(text: str, file: str) -> Raw:
     """Read YAML.
 
     Raises:
-        YamlSyntaxError: with the one problem, in our words.
+        YamlSyntaxError: with one problem, in our words.
     """
     return yaml.compose(text, file, YAML_RULES)
 
@@ -57,6 +57,6 @@ def parse(text: str, file: str) -> Parsed:
     """Read XML.
 
     Raises:
-        XmlSyntaxError: with the one problem, in our words.
+        XmlSyntaxError: with one problem, in our words.
     """
     return xml.parse(text, file, XML_RULES)

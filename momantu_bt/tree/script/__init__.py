@@ -1,8 +1,7 @@
 """Conditions and scripts: reading them in either spelling, and running them.
 
-The canonical spelling is BehaviorTree.CPP's (`!at_a && n > 2; n += 1`); in YAML variables have
-a `$` and words may stand for signs (`not $at_a and $n > 2`). Nothing is ever given to Python's
-own `eval`.
+The canonical spelling is BehaviorTree.CPP's (`!at_a && n > 2; n += 1`). In YAML, variables have
+a `$`, and words may replace signs (`not $at_a and $n > 2`). Python's `eval` is never used.
 """
 
 from __future__ import annotations
@@ -34,12 +33,12 @@ def parse(text: str) -> Script:
 
 
 def canonical(text: str) -> str:
-    """Our YAML spelling in canonical form.
+    """Change our YAML spelling to the canonical form.
 
     Raises:
-        ScriptSyntaxError: it cannot be read; also where `and` and `or` are mixed without
-            brackets, and where `not` stands before a comparison, because the canonical form
-            means something else than it seems to say there.
+        ScriptSyntaxError: it cannot be read, or it mixes `and` and `or` without brackets, or it
+            has `not` before a comparison. The canonical form of the last two does not mean what
+            they seem to say.
     """
     found = tokens(text, dollar=True)
     script_of(found, text, strict=True)
@@ -47,8 +46,8 @@ def canonical(text: str) -> str:
 
 
 def yaml_spelling(text: str, *, words: bool = True) -> str:
-    """The canonical form in our YAML spelling; ScriptSyntaxError when it cannot be read.
+    """Change the canonical form to our YAML spelling; ScriptSyntaxError if it cannot be read.
 
-    words: write `and`, `or` and `not` for the signs.
+    words: write `and`, `or` and `not` instead of the signs.
     """
     return respell(text, tokens(text, dollar=False), dollar=True, words=words)

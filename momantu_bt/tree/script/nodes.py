@@ -11,7 +11,7 @@ from dataclasses import dataclass, fields, is_dataclass
 from typing import Any, Protocol, TypeAlias
 
 EPSILON = 1.1920929e-07
-"""Numbers nearer than this are equal: a single-precision ulp, BehaviorTree.CPP's choice."""
+"""Numbers nearer than this are equal. As in BehaviorTree.CPP, a single-precision ulp."""
 
 
 class ScriptError(RuntimeError):
@@ -19,7 +19,7 @@ class ScriptError(RuntimeError):
 
 
 class Board(Protocol):
-    """The keys that a script sees; `@key` is a key of the root's board."""
+    """The keys that a script can use. `@key` is a key of the root's board."""
 
     def get(self, key: str) -> Any:
         """The key's value; KeyError when it has none."""
@@ -55,7 +55,7 @@ class Variable:
     length: int
 
     def evaluate(self, board: Board) -> Any:
-        """The key's value; ScriptError when it has none."""
+        """The key's value; ScriptError if it has none."""
         if not board.has(self.key):
             raise ScriptError(f"${self.key} has no value")
         return part(board.get(self.key), self.parts)
@@ -69,7 +69,7 @@ class Unary:
     operand: Expression
 
     def evaluate(self, board: Board) -> Any:
-        """The result; ScriptError when the operand is not a number."""
+        """The result; ScriptError if the operand is not a number."""
         value = _number(self.operand.evaluate(board), self.operator)
         if self.operator == "!":
             return not value
@@ -80,13 +80,13 @@ class Unary:
 
 @dataclass(frozen=True, slots=True)
 class Chain:
-    """Operands joined from the left by operators of one rank: `a - b + c`, `a && b`."""
+    """Operands joined from the left by operators of the same rank: `a - b + c`, `a && b`."""
 
     first: Expression
     rest: tuple[tuple[str, Expression], ...]
 
     def evaluate(self, board: Board) -> Any:
-        """The result; ScriptError when the operands do not go together."""
+        """The result; ScriptError if the operands do not fit together."""
         value = self.first.evaluate(board)
         for operator, operand in self.rest:
             value = apply(operator, value, operand.evaluate(board))
@@ -95,13 +95,13 @@ class Chain:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """`a < b`, `a <= b < c`: true when each neighbouring pair is."""
+    """`a < b`, `a <= b < c`: true if each pair of neighbours is."""
 
     operands: tuple[Expression, ...]
     operators: tuple[str, ...]
 
     def evaluate(self, board: Board) -> Any:
-        """Whether it holds; ScriptError when a number is compared with a text."""
+        """Whether it is true; ScriptError if a number is compared with a text."""
         left = self.operands[0].evaluate(board)
         for operator, operand in zip(self.operators, self.operands[1:], strict=True):
             right = operand.evaluate(board)
@@ -152,7 +152,7 @@ def part(value: Any, parts: tuple[str, ...]) -> Any:
     """A part of a value, by the names of its fields.
 
     Raises:
-        ScriptError: there is no such part, with those there are.
+        ScriptError: there is no such part; the message lists those there are.
     """
     for name in parts:
         if isinstance(value, Mapping) and name in value:
@@ -175,7 +175,7 @@ def _names(value: Any) -> tuple[str, ...]:
 
 
 def truth(value: Any) -> bool:
-    """Whether a condition's value is true: a number other than 0, a text that is not empty.
+    """Whether a condition's value is true: a number other than 0, or a text that is not empty.
 
     Raises:
         ScriptError: the value is neither.
@@ -206,7 +206,7 @@ def apply(operator: str, left: Any, right: Any) -> Any:
     """`left operator right`.
 
     Raises:
-        ScriptError: the two do not go together, or a division by zero.
+        ScriptError: the two do not fit together, or it divides by zero.
     """
     if isinstance(left, str) and isinstance(right, str):
         if operator in ("+", ".."):
@@ -256,7 +256,7 @@ def _same(left: Any, right: Any) -> bool:
     if isinstance(left, bool | int | float) and isinstance(right, bool | int | float):
         try:
             return left == right or abs(left - right) <= EPSILON
-        except OverflowError:  # a whole number beyond every float
+        except OverflowError:  # a whole number too large for a float
             return False
     return bool(left == right)
 

@@ -18,10 +18,10 @@ from momantu_bt.tree.script.nodes import (
 from momantu_bt.tree.script.tokens import ScriptSyntaxError, Token
 
 MAX_DEPTH = 40
-"""Brackets within brackets; bounds the reader's own stack."""
+"""The most brackets within brackets. The limit protects the reader's own stack."""
 
 _MATHS = ({"+": 1, "-": 1, "*": 2, "/": 2}, {"|": 1, "^": 1, "&": 2}, {"..": 1})
-# each group's operators with their rank; groups mix only in brackets
+# each group's operators with their rank; groups mix only with brackets
 _COMPARE = ("==", "!=", "<", ">", "<=", ">=")
 _ASSIGN = (":=", "=", "+=", "-=", "*=", "/=")
 
@@ -30,8 +30,8 @@ _ASSIGN = (":=", "=", "+=", "-=", "*=", "/=")
 class Script:
     """A script ready to run. text: its canonical spelling.
 
-    reads: variables it reads, writes: keys it assigns, both in the order of the text.
-    needs: variables that must have a value before it runs; what it creates first is not among them.
+    reads: variables it reads. writes: keys it assigns. Both are in the order of the text.
+    needs: variables that must have a value before it runs, without those that it creates first.
     """
 
     text: str
@@ -41,7 +41,7 @@ class Script:
     needs: tuple[Variable, ...]
 
     def run(self, board: Board) -> object:
-        """Run all statements; the value of the last one (None when there is none).
+        """Run all statements. Returns the value of the last one (None if it has none).
 
         Raises:
             ScriptError: a variable has no value, or an operation does not fit its operands.
@@ -53,7 +53,7 @@ class Script:
 
 
 def script_of(found: list[Token], text: str, *, strict: bool = False) -> Script:
-    """The script that tokens form. strict: refuse what is easily misread.
+    """The script that tokens form. strict: refuse what people easily misread.
 
     Raises:
         ScriptSyntaxError: with the offset of the first thing that is wrong.

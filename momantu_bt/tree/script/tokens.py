@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from momantu_bt.formats.text import NOT_TEXT
 
 MAX_LENGTH = 4000
-"""Characters of one script; more than a person writes, less than hurts."""
+"""The most characters of one script: more than people write, and few enough to be safe."""
 
 
 class ScriptSyntaxError(ValueError):
@@ -113,7 +113,7 @@ def _stray(text: str, position: int) -> ScriptSyntaxError:
 
 
 def _apart(before: list[str], word: str, following: str) -> str:
-    """A word that replaces a sign, with the spaces that keep it apart from its neighbours."""
+    """A word for a sign, with the spaces that separate it from its neighbours."""
     last = "".join(before)[-1:]
     if word == "not":
         return word + ("" if following.isspace() else " ")
@@ -122,9 +122,9 @@ def _apart(before: list[str], word: str, following: str) -> str:
 
 
 def respell(text: str, found: list[Token], *, dollar: bool, words: bool = True) -> str:
-    """The same script in the other spelling, spaces and brackets kept.
+    """The same script in the other spelling, with the same spaces and brackets.
 
-    found: its tokens. dollar: the spelling wanted; words: in it, words for signs.
+    found: its tokens. dollar: whether our spelling is wanted. words: write words for signs there.
     """
     spelled = {operator: word for word, operator in _WORDS.items()}
     pieces: list[str] = []

@@ -1,6 +1,6 @@
 """The types in a script: numbers and texts are never mixed silently.
 
-Only what is sure to fail when it is evaluated is told; a variable whose type is not known fits
+Only what surely fails when it is evaluated is reported. A variable of unknown type fits
 everywhere.
 """
 
@@ -34,13 +34,13 @@ class Kind(Enum):
 
 
 TypeOf: TypeAlias = Callable[[Variable], ValueType]
-"""The type of a variable's value; `object` where it is not known."""
+"""The type of a variable's value; `object` if it is not known."""
 
 _WORDS = {Kind.NUMBER: "a number", Kind.TEXT: "a text", Kind.OTHER: "neither number nor text"}
 
 
 class Mismatch(Exception):
-    """Operands that cannot go together. variable: one that has the wrong type, if one has."""
+    """Operands that do not fit together. variable: the one with the wrong type, if any."""
 
     def __init__(self, message: str, variable: Variable | None) -> None:
         super().__init__(message)

@@ -10,7 +10,7 @@ from momantu_bt.tree.catalogue.wording import ports_in_words, script_text
 from momantu_bt.tree.model import Document, Handler, Node, Tree
 
 _WIDEST = 96
-"""Characters of one node's text; longer values are cut."""
+"""The most characters of one node's text. Longer values are cut."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +47,7 @@ def tree_lines(root: Node, depth: int = 0) -> Iterator[Line]:
 
 
 def below(node: Node) -> list[tuple[str, Node | Handler]]:
-    """A node's children and handlers; children that are not just a list come with what they are."""
+    """A node's children and handlers. Children with roles come with their roles."""
     roles = _roles(node)
     roles += [""] * (len(node.children) - len(roles))
     children: list[tuple[str, Node | Handler]] = [*zip(roles, node.children, strict=False)]
@@ -60,7 +60,7 @@ def handler_text(handler: Handler) -> str:
 
 
 def unwrap(node: Node) -> tuple[Node, list[Node]]:
-    """A node without the decorators around it, and those, outermost first."""
+    """A node without the decorators around it, and those decorators, outermost first."""
     around: list[Node] = []
     while _has_words(node) and len(node.children) == 1 and not node.conditions:
         around.append(node)
@@ -69,7 +69,7 @@ def unwrap(node: Node) -> tuple[Node, list[Node]]:
 
 
 def text(node: Node, around: list[Node] | None = None) -> str:
-    """One node in one line: what it is, its ports, and what is wrapped around it."""
+    """One node in one line: what it is, its ports, and the decorators around it."""
     words = title(node)
     ports = ", ".join(port_texts(node))
     if ports:

@@ -20,8 +20,8 @@ _LEVELS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.HINT: 
 def sarif(problems: Sequence[Problem], unread: Sequence[str] = ()) -> dict[str, Any]:
     """One run of the checker as a SARIF log; columns count characters.
 
-    unread: sentences about files that could not be opened. Rules are those that the results
-    name, in alphabetical order.
+    unread: sentences about files that could not be opened. The log lists the rules that the
+    results name, in alphabetical order.
     """
     used = sorted({problem.code for problem in problems})
     index = {code: number for number, code in enumerate(used)}
@@ -82,6 +82,6 @@ def _result(problem: Problem, rule: int) -> dict[str, Any]:
 
 
 def _uri(file: str) -> str:
-    """A relative path as it is, an absolute one as a file URI."""
+    """A relative path unchanged, or an absolute path as a file URI."""
     path = Path(file)
     return path.as_uri() if path.is_absolute() else quote(path.as_posix())

@@ -1,7 +1,7 @@
 """A JSON Schema of tree files, so that editors complete nodes, ports, codes and modifiers.
 
-It says less than the checker: a schema knows neither the file's own trees nor where a key comes
-from. What it refuses, the checker refuses too.
+It checks less than the checker: a schema does not know the file's own trees or where a key
+comes from. Whatever it refuses, the checker refuses too.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ _SCRIPT: Schema = {**SCRIPT, "description": "a condition or script"}
 def tree_schema(skills: Mapping[str, type[Skill]], names: Names | None = None) -> Schema:
     """The schema of a YAML tree file.
 
-    skills: those that complete, by name. names: valid values of ports that name something of the
-    world or robot ("place", "surface", "named_pose"), where they are known.
+    skills: the skills that editors complete, by name. names: valid values of ports that name a
+    part of the world or robot ("place", "surface", "named_pose"), if known.
     """
     having = names or {}
     return {
@@ -72,7 +72,7 @@ def _header() -> Schema:
 
 
 def _tree() -> Schema:
-    """A node, and beside it (or among its entries) what the tree takes and gives."""
+    """A node, and the keys beside it (or among its entries) for the tree's ports."""
     header = {
         "inputs": {"$ref": "#/$defs/declarations"},
         "outputs": {"$ref": "#/$defs/declarations"},
@@ -118,7 +118,7 @@ def _bare(skills: Mapping[str, type[Skill]]) -> Schema:
 
 
 def _mapping(skills: Mapping[str, type[Skill]], names: Names) -> Schema:
-    """One node key, its modifiers, and what stands beside it; other keys are the file's trees."""
+    """One node key, its modifiers, and the keys beside it. Other keys are the file's trees."""
     keys: Schema = {name: _built_in(spec, names) for name, spec in SPELLED.items()}
     keys |= {name: _skill(skill, names) for name, skill in skills.items()}
     for companions in COMPANIONS.values():
@@ -148,7 +148,7 @@ def _skill(skill: type[Skill], names: Names) -> Schema:
 
 
 def _with_ports(doc: str, ports: Iterable[Port], first: Port | None, names: Names) -> Schema:
-    """A leaf: its ports, one bare value for the first input, or nothing."""
+    """A leaf: its ports, one value alone for the first input, or nothing."""
     several = list(ports)
     forms: list[Schema] = [_ports(several, names)]
     if first is not None:
@@ -159,7 +159,7 @@ def _with_ports(doc: str, ports: Iterable[Port], first: Port | None, names: Name
 
 
 def _ports(ports: Iterable[Port], names: Names, more: Schema | None = None) -> Schema:
-    """A mapping of ports. more: keys that stand among them, such as `children`."""
+    """A mapping of ports. more: other keys among them, such as `children`."""
     several = list(ports)
     found: Schema = {
         "type": "object",
@@ -189,7 +189,7 @@ def _built_in(spec: NodeSpec, names: Names) -> Schema:
 
 
 def _decorator(spec: NodeSpec, names: Names) -> Schema:
-    """With `child:` among its ports; beside a node with its first port's value, or nothing."""
+    """A decorator: `child:` and its ports; or beside a node, its first port's value or nothing."""
     ports = list(spec.ports.values())
     forms = [_ports(ports, names, {"child": _NODE})]
     if spec.modifier and spec.first is not None:
@@ -212,7 +212,7 @@ def _modifiers(names: Names) -> Schema:
 
 
 def _catch(skills: Mapping[str, type[Skill]]) -> Schema:
-    """Handlers: every code of every skill completes, alone; `A | B` and `SKILL.CODE` are valid."""
+    """Handlers. Each code of each skill completes; `A | B` and `SKILL.CODE` are valid too."""
     answer: Schema = {"anyOf": [{"const": AGAIN, "description": "just try again"}, _NODE]}
     said: dict[str, str] = dict(ENGINE_CODES)
     for name, skill in skills.items():

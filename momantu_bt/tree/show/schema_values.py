@@ -28,7 +28,7 @@ Names: TypeAlias = Mapping[str, Sequence[str]]
 """Valid values by kind: "place", "surface", "named_pose"."""
 
 _DEEPEST = 4
-"""Fields within fields; deeper ones are left open."""
+"""The most levels of fields within fields. Deeper fields may have any value."""
 
 WIRE: Schema = {"type": "string", "pattern": r"^\$", "description": "a key"}
 

@@ -22,7 +22,7 @@ from momantu_bt.values.kinds import (
 )
 
 WIDEST = 76
-"""Characters of one line of an example."""
+"""The most characters of one line of an example."""
 _NAMED = {"place": "table_a", "surface": "table_a", "named_pose": "home"}
 _QUANTITIES = {"m": "10 cm", "rad": "30 deg", "s": "2 s"}
 
@@ -32,10 +32,10 @@ class Wire(str):
 
 
 def example_ports(skill: type[Skill]) -> dict[str, Any]:
-    """A value, or a Wire, for what a tree has to give, and a key for each output."""
+    """A value or a Wire for each port that a tree must give, and a key for each output."""
     try:
         rehearsed = dict(skill.rehearsal(0)).get("inputs", {})
-    except Exception:  # other people's code; `skills test` tells what it raises
+    except Exception:  # other people's code; `skills test` reports what it raises
         rehearsed = {}
     given = {
         name: value for name, value in rehearsed.items() if isinstance(value, str | int | float)
@@ -53,7 +53,7 @@ def example_ports(skill: type[Skill]) -> dict[str, Any]:
 
 
 def yaml_example(name: str, skill: type[Skill]) -> str:
-    """`dock: bay_a`, `grip: {thing: $seen}`, or a port per line where that is too long."""
+    """`dock: bay_a`, `grip: {thing: $seen}`, or one port a line if that is too long."""
     values = {port: _in_yaml(value) for port, value in example_ports(skill).items()}
     inputs = [port.name for port in skill.ports.values() if port.direction == "in"]
     if not values:
@@ -67,7 +67,7 @@ def yaml_example(name: str, skill: type[Skill]) -> str:
 
 
 def xml_example(name: str, skill: type[Skill]) -> str:
-    """The same in XML: `{key}` is a key, plain text is text, the rest is prefixed YAML."""
+    """The same in XML: `{key}` is a key, plain text is text, and the rest is YAML with a prefix."""
     attributes = [
         port_attribute(port, _in_model(value), skill.ports[port].type).lstrip()
         for port, value in example_ports(skill).items()
@@ -115,7 +115,7 @@ def within(number: float, port: Port) -> float:
 
 
 def _number(port: Port, type_: type) -> Any:
-    """A quantity where the port has a unit and no range, else a number in its range."""
+    """A quantity if the port has a unit and no range, or else a number in its range."""
     if not port.bounded and port.unit in _QUANTITIES and type_ is float:
         return _QUANTITIES[port.unit]
     value = type_(within(1, port))

@@ -76,7 +76,7 @@ def port_tables(owner: type[Skill] | NodeSpec) -> Iterator[str]:
 
 
 def pages(skills: Mapping[str, type[Skill]]) -> dict[str, str]:
-    """File names and texts of a folder with a page per skill and an index."""
+    """The file names and texts of a folder with one page a skill and an index."""
     found = {f"{name}.md": as_markdown(name, skill) for name, skill in skills.items()}
     rows = [
         [f"[{name}]({name}.md)", _doc(skill).partition("\n")[0]] for name, skill in skills.items()

@@ -1,6 +1,6 @@
 """Which keys each node of a tree, or something below it, writes or takes away.
 
-All nodes are asked once, from the leaves up, so that loops and conditions can look it up.
+All nodes are handled once, from the leaves up. Loops and conditions look up the result.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from momantu_bt.tree.model import Literal, Node, Reference, Scope, Tree
 from momantu_bt.values.kinds import ValueType
 
 Rewrites = dict[tuple[str, ValueType], Key]
-"""What nodes write: each key with each type it gets, and the place where it gets it first."""
+"""The keys that nodes write: each with every type it gets, and the first place for the type."""
 
 
 class KeyChanges:
@@ -28,11 +28,11 @@ class KeyChanges:
         self._rewrites = self._all_rewrites()
 
     def rewritten(self, node: Node) -> Iterable[tuple[str, Key]]:
-        """Keys of the tree's board that the node, or something below it, writes: what is known."""
+        """What is known of the board's keys that the node, or something below it, writes."""
         return ((name, key) for (name, _), key in self._rewrites[id(node)].items())
 
     def _all_rewrites(self) -> dict[int, Rewrites]:
-        """For each node of the tree what it, or something below it, writes."""
+        """For each node of the tree, the keys that it, or something below it, writes."""
         found: dict[int, Rewrites] = {}
         for node in reversed(list(self.tree.root.walk())):
             handlers = (handler.node for handler in node.handlers if handler.node is not None)
@@ -40,7 +40,7 @@ class KeyChanges:
             parts += [found[id(each)] for each in (*node.children, *handlers)]
             writing = [part for part in parts if part]
             if len(writing) == 1:
-                # long chains of nodes with one child share what is written at their end
+                # in long chains of nodes with one child, all share the keys written at the end
                 found[id(node)] = writing[0]
                 continue
             each_once = found[id(node)] = {}
@@ -70,7 +70,7 @@ class KeyChanges:
         return set().union(*(self._removals[id(node)] for node in nodes))
 
     def _all_removals(self) -> dict[int, frozenset[str]]:
-        """For each node of the tree the keys that it, or something below it, may take away."""
+        """For each node of the tree, the keys that it, or something below it, may take away."""
         found: dict[int, frozenset[str]] = {}
         for node in reversed(list(self.tree.root.walk())):
             handlers = (handler.node for handler in node.handlers if handler.node is not None)

@@ -1,7 +1,7 @@
 """Checks of keys and wires: nothing is read before it is written, and every value fits.
 
-Each tree is walked once, with what is surely known before each node; the result is what is
-known after its success and after its failure.
+Each tree is walked once. The walk knows which keys surely have a value before each node. Its
+result is what is known after the tree's success and after its failure.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ from momantu_bt.values.types import label
 
 
 def check_keys(context: Context, order: list[Tree], root_keys: Mapping[str, Key | None]) -> None:
-    """All keys of all trees. order: each tree after those it runs.
+    """Check all keys of all trees. order: each tree comes after the trees that it runs.
 
-    root_keys: every name that `$@name` can mean, and what is known of it, if anything is.
+    root_keys: every name that `$@name` can mean, with what is known of it, or None.
     """
     demands: dict[tuple[str, str], set[Demand]] = {}
     keys = shared_keys(context, order)
@@ -67,12 +67,12 @@ class _KeyCheck:
         self.watched()
 
     def walking(self, into: Callable[[Node, Known], After]) -> Walk:
-        """What a node's flow asks."""
+        """The functions with which a node's flow is walked."""
         removed, rewritten = self.changes.removed, self.changes.rewritten
         return Walk(into, removed, rewritten, self.outputs, self.script_at)
 
     def report_unread(self) -> None:
-        """Keys that are written and never read; any tree may read those of the main tree."""
+        """Report keys that are written and never read. Any tree may read the main tree's keys."""
         mine, seen = self.reads.keys[self.tree.name], self.reads.seen
         if self.tree.name == self.context.document.main:
             seen = seen | self.reads.seen_on_root
@@ -83,7 +83,7 @@ class _KeyCheck:
                 self.context.problems.warning("unread-output", written.place, message)
 
     def watched(self) -> None:
-        """A key that is watched for changes need not have a value, but something writes it."""
+        """Check watched keys: they need not have a value, but something must write them."""
         given = {written.key for written in self.reads.written} | self.reads.given
         for watch in self.reads.watched if not self.tree.open else ():
             if watch.key not in given:
@@ -117,7 +117,7 @@ class _KeyCheck:
             )
 
     def at_any_tick(self, node: Node, before: Known) -> Known:
-        """The wires that a node reads: again while its children run, and after them."""
+        """What is known when a node reads its wires again, during its children and after."""
         wired = any(isinstance(value, Reference) for value in node.ports.values())
         if not wired or not node.children:
             return before
@@ -130,7 +130,7 @@ class _KeyCheck:
             return After(NEVER, NEVER, before)
         if not node.conditions:
             return self.inside(node, before)
-        # `while` and `on_halt` come at any tick, also after something below has taken a key away
+        # `while` and `on_halt` run at any tick, also after something below has taken a key away
         anytime = before.lacking(self.changes.removed(node))
         for name in PRE_CONDITIONS:
             if name in node.conditions:
@@ -138,7 +138,7 @@ class _KeyCheck:
         after = self.inside(node, before)
         success, failure, skipped = after.success, after.failure, after.skipped
         if not node.conditions.keys().isdisjoint(PRE_CONDITIONS):
-            # a condition may fail the node by its value, or because it cannot be evaluated
+            # a condition may fail the node by its value, or because evaluating it fails
             failure = meet(failure, before)
         if "succeed_if" in node.conditions:
             success = meet(success, before)
@@ -167,7 +167,7 @@ class _KeyCheck:
         signature = self.context.signature(node)
         if signature is None:
             for value in node.ports.values():
-                # an unknown node may read or write: what it names is not called unread
+                # an unknown node may read or write: do not report the keys that it names as unread
                 for reference in references(value):
                     self.reads.see(reference)
             return After(before, before)
@@ -190,7 +190,7 @@ class _KeyCheck:
         return spec.flow(self.walk, node, before)
 
     def subtree(self, call: Call, before: Known) -> After:
-        """A tree that is run: what it needs, and which of the keys it shares have a value then."""
+        """Check a node that runs a tree: its needs, and which shared keys have a value then."""
         inside = self.reads.keys[call.tree.name]
         self.reads.of_call(call, inside, before)
         kept = before.lacking(call.local(inside.removed))
@@ -199,9 +199,9 @@ class _KeyCheck:
         return After(success, self.known_after(kept, call, call.local(inside.failure)))
 
     def known_after(self, known: Known, call: Call, shared: Mapping[str, str]) -> Known:
-        """Keys that the tree inside shares have values; what was known of them may be outdated.
+        """Give values to keys that the tree inside shares. What was known of them may be outdated.
 
-        shared: their names outside, each with that inside.
+        shared: each key's name outside, with its name inside.
         """
         writes, ports = self.reads.keys[call.tree.name].written, call.tree.ports
         types = self.context.tree_signature(call.tree).ports
@@ -249,7 +249,7 @@ class _KeyCheck:
         return after
 
     def with_item(self, loop: Node, item: tuple[str, str]) -> Walk:
-        """Walks a loop's child, which knows the item besides the rest."""
+        """Walk a loop's child, which also knows the item."""
         output, source = item
 
         def walk(child: Node, before: Known) -> After:
@@ -265,7 +265,7 @@ class _KeyCheck:
         return self.walking(walk)
 
     def written_items(self, loop: Node, source: str, before: Known) -> Key | None:
-        """The item of a loop over a list that is written in the file."""
+        """What is known of the item, for a loop over a list that is written in the file."""
         items = loop.ports.get(source)
         place = loop.port_places.get(source, loop.place)
         if isinstance(items, Reference) and not items.fields:
@@ -305,7 +305,7 @@ class _KeyCheck:
         return self.script_keys(script, before, place)
 
     def written_by_script(self, written: Written) -> None:
-        """Whether a script's key may be a result: the report shows those of the main tree."""
+        """Whether a script's key may be a result: the report shows the main tree's keys."""
         self.reads.written.append(written)
         if self.tree.name == self.context.document.main:
             self.reads.seen.add(written.key)
@@ -316,7 +316,7 @@ class _KeyCheck:
         return within(place, shown, self.context.document.source)
 
     def script_types(self, script: Script, known: Mapping[str, ValueType], place: Place) -> None:
-        """Operands that cannot go together. What the script itself writes is of any type."""
+        """Report operands that do not fit together. Keys that the script writes have any type."""
         written = {variable.key for variable in script.writes}
 
         def type_of(variable: Variable) -> ValueType:
@@ -333,7 +333,7 @@ class _KeyCheck:
                 self.context.problems.error("wrong-type", where, str(mismatch))
 
     def script_keys(self, script: Script, before: Known, place: Place) -> Known:
-        """Keys that a script needs, those that it reads, and what it leaves written."""
+        """Check the keys that a script needs and reads, and record those that it writes."""
         for variable in script.reads:
             self.reads.see(_reference(variable.key))
         known: dict[str, ValueType] = {}

@@ -22,12 +22,12 @@ from momantu_bt.values.types import label
 from momantu_bt.values.words import ConversionError
 
 Demand: TypeAlias = tuple[str, str]
-"""What a text must be: ("names", "place"), or a quantity in a unit: ("unit", "m")."""
+"""What a text must be: a name, ("names", "place"), or a quantity in a unit, ("unit", "m")."""
 
 
 @dataclass(frozen=True, slots=True)
 class Written:
-    """A key that a node writes, or watches. said: the node, in the file's words."""
+    """A key that a node writes or watches. said: the node, in the file's words."""
 
     key: str
     place: Place
@@ -36,14 +36,15 @@ class Written:
 
 @dataclass(slots=True)
 class KeyReads:
-    """The reads of one tree, reported as they are met.
+    """The reads of one tree. Each is reported when it is met.
 
-    root_keys: what `$@key` may read, and what is known of it, if anything is.
-    demands: by tree and input, what nodes below expect of a text there; trees that are run come
-    before those that run them. written: what has been written so far in the order of the file.
+    root_keys: the keys that `$@key` may read, each with what is known of it, or None.
+    demands: by tree and input, what nodes below expect of a text there; a tree comes before the
+    trees that run it. written: what has been written so far, in the order of the file.
     given: keys that may come from elsewhere: a script, a loop, the tree's inputs. watched: keys
-    that a node only looks at; nobody knows yet who writes them. keys: what is known of each tree's
-    keys by its name. seen: keys of this tree that are read; seen_on_root: by any tree as `$@key`.
+    that a node only looks at; who writes them is not known yet. keys: what is known of each tree's
+    keys, by the tree's name. seen: keys of this tree that are read. seen_on_root: keys that any
+    tree reads as `$@key`.
     """
 
     context: Context
@@ -58,7 +59,7 @@ class KeyReads:
     watched: list[Written] = field(default_factory=list)
 
     def inputs(self, node: Node, signature: Signature, before: Known) -> None:
-        """All inputs of a node. One that may be empty is read, and needs nothing before it."""
+        """Check all inputs of a node. Those that may be empty count as read and need no value."""
         lenient = signature.spec.may_be_empty if signature.spec is not None else ()
         self.seen.update(name for name in lenient if name not in node.ports)
         if node.type == SUBTREE:
@@ -88,11 +89,11 @@ class KeyReads:
                 self.watched.append(Written(reference.key, place, said))
 
     def see(self, reference: Reference) -> None:
-        """A key that something reads, whether it has a value or not."""
+        """Note a key that something reads, whether it has a value or not."""
         (self.seen_on_root if reference.scope is Scope.ROOT else self.seen).add(reference.key)
 
     def lookup(self, reference: Reference, before: Known, place: Place) -> Key | None:
-        """What is known of a key that is read here; None, and reported, where it may be empty."""
+        """What is known of a key that is read here; None, with a report, if it may be empty."""
         self.see(reference)
         if reference.key == BROKEN or not before.reached:
             return None
@@ -108,7 +109,7 @@ class KeyReads:
         return key
 
     def _unwritten(self, name: str, before: Known, place: Place) -> None:
-        """A key without a value: an error, unless a caller of the tree may give it one."""
+        """Report a key without a value, unless a caller of the tree may give it one."""
         declared = self.tree.ports.get(name)
         from_outside = self.tree.open if declared is None else declared.direction == "inout"
         if from_outside:
@@ -125,7 +126,7 @@ class KeyReads:
         self.context.problems.error("read-before-write", place, message, hint)
 
     def of_call(self, call: Call, inside: TreeKeys, before: Known) -> None:
-        """The keys that a tree needs, and attributes that it never mentions."""
+        """Check the keys that a tree needs, and the attributes that it never mentions."""
         for name, place in inside.needed.items():
             reference = call.outside(name)
             if reference is not None:
@@ -145,7 +146,7 @@ class KeyReads:
         self.seen.update(call.local(inside.mentioned))
 
     def report_needed(self) -> None:
-        """Keys that the main tree reads and nothing outside writes."""
+        """Report keys that the main tree reads and nothing outside writes."""
         mine = self.keys[self.tree.name]
         for name, place in mine.needed.items():
             self._report_needed(name, place, mine)
@@ -164,7 +165,7 @@ class KeyReads:
     def _shared(
         self, reference: Reference, before: Known, place: Place, port: Port, said: str
     ) -> None:
-        """A key that may come in with a value: what is known of it fits."""
+        """Check a key that may come in with a value: what is known of it must fit."""
         self.see(reference)
         key = before.get(reference.key) if reference.scope is Scope.LOCAL else None
         if key is not None and any(key.misfits(port.type)):
@@ -174,7 +175,7 @@ class KeyReads:
             self.context.problems.error("wrong-type", place, message, hint)
 
     def _report_misfit(self, key: Key, place: Place, message: str) -> None:
-        """A value of the tree's own is wrong where it is used; one given from outside is wrong."""
+        """Report a wrong value: where it is used, or where it is given if that is another file."""
         where, hint = place, f"it comes from {key.place.seen_from(place)}"
         if key.place.file != place.file:
             where, hint = key.place, f"it is used in {place.seen_from(key.place)}"
@@ -205,7 +206,7 @@ class KeyReads:
             self.context.problems.error("wrong-type", place, message, origin)
 
     def part_of(self, key: Key, parts: tuple[str, ...], place: Place) -> ValueType | None:
-        """The type of a part of a key's value; None, and reported, where there is none."""
+        """The type of a part of a key's value; None, with a report, if there is no such part."""
         try:
             return part_type(key.type, parts)
         except KeyError as error:
@@ -216,7 +217,7 @@ class KeyReads:
             return None
 
     def _demands(self, node: Node, name: str, value: PortValue, before: Known, port: Port) -> None:
-        """Names and quantities that reach a port by wire or through a subtree."""
+        """Check names and quantities that reach a port by wire or through a subtree."""
         demands = {("names", port.names)} if port.names is not None else set()
         if port.unit is not None:
             demands.add(("unit", port.unit))
@@ -229,7 +230,7 @@ class KeyReads:
         root = value.scope is Scope.ROOT
         key = self.root_keys.get(value.key) if root else before.get(value.key)
         if key is not None and key.literals:
-            if node.type != SUBTREE:  # the wire's own check has converted it with the port's unit
+            if node.type != SUBTREE:  # the check of the wire has converted it with the port's unit
                 demands = {demand for demand in demands if demand[0] == "names"}
             for literal in key.literals:
                 self._check_demands(literal, key.place, demands)

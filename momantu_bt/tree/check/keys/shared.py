@@ -15,11 +15,11 @@ from momantu_bt.tree.script import Script, ScriptSyntaxError, parse
 from momantu_bt.values.kinds import ScriptText
 
 MAX_KEYS = 1000
-"""Different keys of one tree; each node knows of all that there are before it."""
+"""The most different keys of one tree. Each node knows of all the keys before it."""
 MAX_SHARED = 50_000
-"""Keys that trees share with trees that run them, counted at each of these calls."""
+"""The most keys that trees share with trees that run them, added up over all those calls."""
 _PRIVATE = re.compile("_")
-"""A key that begins so is never remapped automatically (BehaviorTree.CPP's rule)."""
+"""The start of keys that are never remapped automatically (BehaviorTree.CPP's rule)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +30,7 @@ class Call:
     tree: Tree
 
     def outside(self, key: str) -> Reference | None:
-        """The key of the tree around the node that is this key of the tree inside."""
+        """The key of the outer tree that the inner tree's key stands for."""
         value = self._value(key)
         if value is not None:
             return value if isinstance(value, Reference) and not value.fields else None
@@ -39,11 +39,11 @@ class Call:
         return None
 
     def gives_value(self, key: str) -> bool:
-        """Whether a value, and no key, is written to this key of the tree inside."""
+        """Whether the call gives this key of the inner tree a value and not a key."""
         return self._value(key) is not None and self.outside(key) is None
 
     def local(self, keys: Iterable[str]) -> dict[str, str]:
-        """Those of the keys inside that are keys of the tree around, by their names there."""
+        """Those of the inner keys that are keys of the outer tree, by their names there."""
         inside = set(keys)
         named = {*self.node.ports, *self.tree.ports}
         found: dict[str, str] = {}
@@ -57,7 +57,7 @@ class Call:
         return found
 
     def place(self, key: str) -> Place:
-        """The place where the key is given, or else the node's."""
+        """The place where the call gives the key, or else the node's place."""
         return self.node.port_places.get(key, self.node.place)
 
     def _value(self, key: str) -> PortValue | None:
@@ -71,10 +71,11 @@ class Call:
 class TreeKeys:
     """What is known about a tree's keys, for its callers.
 
-    mentioned: all that it reads or writes, itself or by a tree below that shares them; written
-    and removed: what it may write and take away. shared: keys that some node wires from outside,
-    remapped: whether some node shares them all. needed: keys that it reads and may not have
-    written before, with the first place; success, failure: what has a value after it.
+    mentioned: all keys that it reads or writes, itself or by a tree below that shares them.
+    written, removed: keys that it may write, and take away. shared: keys that some node wires
+    from outside. remapped: whether some node shares them all. needed: keys that it reads and
+    may not have written before, with the first place. success, failure: which keys have a
+    value after each result.
     """
 
     mentioned: set[str] = field(default_factory=set)
@@ -92,9 +93,9 @@ class TreeKeys:
 
 
 def shared_keys(context: Context, order: list[Tree]) -> dict[str, TreeKeys] | None:
-    """The keys that each tree mentions, writes and removes; None, reported, if too many.
+    """The keys that each tree mentions, writes and removes; None, with a report, if too many.
 
-    order: trees after those that they run.
+    order: each tree comes after the trees that it runs.
     """
     found = {tree.name: TreeKeys() for tree in order}
     shared = 0
@@ -118,7 +119,7 @@ def shared_keys(context: Context, order: list[Tree]) -> dict[str, TreeKeys] | No
 
 
 def call_of(context: Context, node: Node) -> Call:
-    """The call that a SubTree node is."""
+    """The call that a SubTree node makes."""
     return Call(node, context.document.trees[node.target or ""])
 
 
@@ -142,7 +143,7 @@ def _own_keys(context: Context, node: Node, keys: TreeKeys) -> None:
 
 
 def _keys_of_call(call: Call, keys: TreeKeys, inside: TreeKeys) -> int:
-    """Add what a call says of the keys of the tree around it; returns how many they share."""
+    """Add what a call says of the outer tree's keys. Returns how many keys they share."""
     mentioned = call.local(inside.mentioned)
     keys.mentioned |= mentioned.keys()
     keys.written |= call.local(inside.written).keys()
@@ -154,7 +155,7 @@ def _keys_of_call(call: Call, keys: TreeKeys, inside: TreeKeys) -> int:
 
 
 def scripts_of(context: Context, node: Node) -> Iterator[Script]:
-    """The scripts of a node's ports and conditions; those that cannot be read are left out."""
+    """The scripts of a node's ports and conditions. Scripts that cannot be read are left out."""
     signature = context.signature(node)
     ports = signature.ports if signature is not None else {}
     texts = list(node.conditions.values())

@@ -36,7 +36,7 @@ def is_name(text: str) -> bool:
 
 
 def plain(value: PortValue, port: str, type_: ValueType) -> str | None:
-    """The text of an attribute without prefix that is read as this value; None without one."""
+    """The text that an attribute without prefix has for this value; None if no text gives it."""
     if isinstance(value, Reference):
         at = "@" if value.scope is Scope.ROOT else ""
         text = f"{{{at}{value.key}}}"
@@ -54,7 +54,7 @@ def plain(value: PortValue, port: str, type_: ValueType) -> str | None:
 
 
 def port_attribute(name: str, value: PortValue, type_: ValueType) -> str:
-    """The attribute of a skill's input or output: without prefix where it can be.
+    """The attribute of a skill's input or output, without prefix if possible.
 
     Raises:
         CannotWrite: XML has no such character.
@@ -66,7 +66,7 @@ def port_attribute(name: str, value: PortValue, type_: ValueType) -> str:
 
 
 def _is_reserved(name: str) -> bool:
-    """Whether an attribute without prefix of this name says something else than a port."""
+    """Whether an attribute without prefix of this name means something other than a port."""
     return name.startswith("_") or name in RESERVED
 
 
@@ -80,14 +80,14 @@ def _type(value: PortValue) -> type:
 
 @dataclass(frozen=True, slots=True)
 class AttributeWriter:
-    """Writes attributes. registry: the port types of its skills tell texts from numbers."""
+    """Writes attributes. registry: its skills' port types tell texts from numbers."""
 
     document: Document
     registry: Registry
     _skills: dict[str, Any] = field(default_factory=dict)
 
     def of(self, node: Node) -> str:
-        """All attributes of a node, in the order that they always have.
+        """All attributes of a node, always in the same order.
 
         Raises:
             CannotWrite: one has no spelling in XML.
@@ -104,7 +104,7 @@ class AttributeWriter:
         return "".join(words)
 
     def apart(self, node: Node) -> list[tuple[str, str]]:
-        """Ports that no attribute can be named after, and their values in YAML."""
+        """Ports whose names cannot be attribute names, and their values in YAML."""
         return [
             (name, port_text(value))
             for name, value in node.ports.items()
@@ -123,7 +123,7 @@ class AttributeWriter:
         if name == AUTOREMAP and node.type == SUBTREE:
             reserved = False
         if spec is not None and name in spec.keys and isinstance(value, Literal):
-            reserved = True  # a bare word there names a key
+            reserved = True  # in these attributes a bare word names a key
         text = None if reserved else plain(value, name, type_)
         if spec is not None and spec.removes == name:
             text = _unset_key(value, text)
@@ -156,12 +156,12 @@ class AttributeWriter:
 
 
 def _has_attribute(node: Node, name: str) -> bool:
-    """Whether an attribute can be named after a port."""
+    """Whether a port's name can be an attribute's name."""
     return is_name(name) and (node.type in NODES or name not in (DISABLED, NOTE))
 
 
 def _unset_key(value: PortValue, text: str | None) -> str | None:
-    """The bare name of the key: `{k}` is in BehaviorTree.CPP the key that $k names."""
+    """The bare name of the key: BehaviorTree.CPP's `{k}` names the same key as our $k."""
     if isinstance(value, Reference) and not value.fields:
         return f"@{value.key}" if value.scope is Scope.ROOT else value.key
     return text
@@ -174,7 +174,7 @@ def _script(node: Node, value: PortValue) -> str:
 
 
 def _milliseconds(spec: NodeSpec | None, name: str, value: PortValue) -> str:
-    """Beside a time of ours the same in BehaviorTree.CPP's milliseconds, where it is whole ones."""
+    """Our time in BehaviorTree.CPP's milliseconds too, if that is a whole number of them."""
     if spec is None or name != "duration" or "msec" not in spec.ports:
         return ""
     seconds = value.value if isinstance(value, Literal) else None

@@ -12,7 +12,7 @@ from momantu_bt.tree.problems import Problems
 
 
 def read_values(document: Document, root: Element, problems: Problems) -> None:
-    """Give the document its values, their places and comments."""
+    """Give the document its values, with their places and comments."""
     for section in root.children:
         if section.name == "Values" and section.space == OURS:
             for element in section.children:
@@ -36,7 +36,7 @@ def _value(document: Document, element: Element, problems: Problems) -> None:
 
 
 def _key(document: Document, element: Element, problems: Problems) -> str | None:
-    """The key that an element gives a value; None where a problem was reported."""
+    """The key to which an element gives a value; None if a problem was reported."""
     key = element.get("key")
     if element.name != "Value" or element.space != OURS or key is None:
         hint = 'write <momantu:Value key="name">value</momantu:Value>'

@@ -25,14 +25,14 @@ from momantu_bt.tree.registry import Registry
 
 
 def read(text: str, file: str, registry: Registry | None = None) -> tuple[Document, Problems]:
-    """Read a file by itself, without those that it includes.
+    """Read one file, without the files that it includes.
 
-    file: the name that places carry. registry: whose skills' port types tell texts from numbers;
-    nothing is known without one.
+    file: the file name in places. registry: its skills' port types tell texts from numbers;
+    without a registry nothing is known of skills.
 
     Raises:
-        TreeError: the text is not XML, has no trees, or too many problems; nothing else can be
-            said then.
+        TreeError: the text is not XML, has no trees, or has too many problems. Nothing else is
+            reported then.
     """
     problems = Problems()
     source = XmlSource.of(text, file, registry or Registry(), problems)
@@ -48,7 +48,7 @@ def read(text: str, file: str, registry: Registry | None = None) -> tuple[Docume
 
 @dataclass(slots=True)
 class XmlSource:
-    """A file that is XML; its trees are read when those that it includes are known."""
+    """A file in XML. Its trees are read once the trees of its includes are known."""
 
     text: str
     file: str
@@ -65,7 +65,7 @@ class XmlSource:
             raise TreeError([error.problem], {file: text}) from None
 
     def includes(self) -> tuple[Include, ...]:
-        """The files it includes; those that are not written well are reported."""
+        """The files it includes. Includes that are written wrongly are reported."""
         found = []
         for element in self.parsed.root.children:
             if element.name == "include" and not element.space:
@@ -92,8 +92,8 @@ class XmlSource:
     def document(self, outside: Mapping[str, Tree], *, included: bool = False) -> Document | None:
         """The file's own trees. outside: trees of the files that it includes.
 
-        included: it need not say which tree to run. None, with what is wrong reported, where
-        there is nothing to read.
+        included: whether another file includes this one; then it need not name a tree to run.
+        Returns None, with the problem reported, if there is nothing to read.
         """
         root = self.parsed.root
         if not is_root(root, self.problems):
@@ -118,7 +118,7 @@ class XmlSource:
         return document
 
     def _comments(self, document: Document, root: Element) -> None:
-        """Those that belong to no tree: to the header, to the last value, or to the end."""
+        """Give comments outside all trees to the header, to the last value, or to the end."""
         above, below = root.comments, tuple[str, ...]()
         for element in root.children:
             inside = [each.comments for each in element.children if each.name != "Value"]

@@ -22,7 +22,7 @@ _CHANGED = "words such as SubTree, `_autoremap` and `${key}` mean other things"
 
 
 def is_root(root: Element, problems: Problems) -> bool:
-    """Whether this begins a tree file; a problem where it does not."""
+    """Whether the element begins a tree file. If not, report a problem."""
     if root.name == _ROOT and not root.space:
         return True
     message = f"a tree file begins with <root>, not with <{root.said}>"
@@ -69,7 +69,10 @@ def main_tree(
 def report_unknown_attribute(
     attribute: Attribute, known: list[str], said: str, problems: Problems
 ) -> None:
-    """An attribute that an element does not have. known: those that it has; said: the element."""
+    """Report an attribute that an element cannot have.
+
+    known: the attributes that it can have. said: the element, in the message's words.
+    """
     message = f"{said} has no attribute {attribute.name!r}"
     hint = valid_names(attribute.name, known, "attributes")
     problems.error("unknown-key", attribute.name_place, message, hint)

@@ -85,7 +85,7 @@ def _read_model(element: Element, models: Models, problems: Problems) -> None:
 
 
 def _check_model_of_tree(element: Element, problems: Problems) -> None:
-    """Slips among the ports of a tree."""
+    """Report mistakes in the ports of a tree."""
     if ">" in element.text:
         place = element.text_place or element.place
         problems.error("unknown-key", place, "a text and no port", "a `<` may be missing")
@@ -116,7 +116,7 @@ def _tree_ports(element: Element, problems: Problems) -> dict[str, PortDeclarati
 
 
 def _port(element: Element, problems: Problems) -> PortDeclaration | None:
-    """A port as it is written: its type's name, its default as a text."""
+    """A port as it is written: the name of its type, and its default as a text."""
     if element.name == _METADATA:
         return None
     name = element.get("name")
@@ -156,7 +156,7 @@ def _of_tree(port: PortDeclaration, element: Element, problems: Problems) -> Por
 
 
 def our_type(name: str) -> str:
-    """Our name of a type; of a C++ type that we do not have, `any`."""
+    """Our name of a type; `any` for a C++ type that we do not have."""
     name = name.strip()
     listed = _CPP_LIST.fullmatch(name)
     if listed is not None:
@@ -172,7 +172,7 @@ def our_type(name: str) -> str:
 def _default(port: str, type_name: str, default: Attribute, problems: Problems) -> PortValue | None:
     try:
         type_ = parse_type(type_name)
-    except KeyError:  # the checker says that nobody knows it
+    except KeyError:  # the checker reports that the type is unknown
         type_ = object
     try:
         return attribute_value(default.value, port, type_)

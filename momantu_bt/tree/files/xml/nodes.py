@@ -23,14 +23,14 @@ from momantu_bt.tree.problems import Problems
 from momantu_bt.tree.registry import Registry
 
 PORT = "Port"
-"""Our element inside a node that is not a node itself: a port whose name no attribute can have."""
+"""Our element inside a node for a port whose name cannot be an attribute. It is not a node."""
 ONCE = {"SubTreePlus": SUBTREE, "Subtree": SUBTREE, "SequenceStar": "SequenceWithMemory"}
-"""Tags of BehaviorTree.CPP 3, and what they became."""
+"""Tags of BehaviorTree.CPP 3, and what they are called now."""
 
 
 @dataclass(slots=True)
 class NodeReader:
-    """Reads node positions. trees: the ports of the trees that are known, by name."""
+    """Reads node positions. trees: the ports of each known tree, by name."""
 
     trees: Mapping[str, Mapping[str, PortDeclaration]]
     registry: Registry
@@ -39,7 +39,7 @@ class NodeReader:
     _skills: dict[str, Mapping[str, Port] | None] = field(default_factory=dict)
 
     def read(self, element: Element, put: Put) -> None:
-        """Read one node and all below it, and give it to `put`; BROKEN where it cannot be."""
+        """Read one node and all below it, and give it to `put`; BROKEN if it cannot be read."""
         self._waiting.append((element, put))
         while self._waiting:
             following, its_put = self._waiting.popleft()
@@ -89,7 +89,7 @@ class NodeReader:
     # what it is
 
     def _type(self, element: Element) -> str | None:
-        """The canonical type; None where a problem was reported."""
+        """The canonical type; None if a problem was reported."""
         if element.space == OURS:
             return self._own_type(element)
         if element.space:
@@ -178,7 +178,7 @@ class NodeReader:
             self._waiting.append((child, node.children.append))
 
     def _count(self, node: Node, element: Element, count: int, spec: NodeSpec | None) -> None:
-        """Children whose positions have a meaning; the checker counts the others."""
+        """Read children whose positions have a meaning. The checker counts the others."""
         if spec is None or not spec.positions or spec.positions == ("child",):
             return
         if count < spec.children[0]:

@@ -17,11 +17,11 @@ from momantu_bt.values.types import label
 
 _KINDS = {Kind.CONTROL: "Control", Kind.DECORATOR: "Decorator", Kind.LEAF: "Action"}
 _TYPES = {"text": "std::string", "number": "double"}
-"""Where BehaviorTree.CPP has another name than we have."""
+"""Names that differ between BehaviorTree.CPP and us."""
 
 
 def palette(skills: Mapping[str, type[Skill]]) -> str:
-    """An XML file without trees: the models of skills, of nodes that only we have, and of Nav2's.
+    """An XML file without trees: the models of skills, of our own nodes and of Nav2's.
 
     An editor includes or imports it, so that the nodes can be dragged into a tree.
     """
@@ -67,7 +67,7 @@ def _type(port: Port) -> str:
 
 
 def _default(value: Any) -> str | None:
-    """A default as an attribute says it; None where there is none, or none that fits one."""
+    """A default as an attribute gives it; None if there is no default, or no attribute has it."""
     if isinstance(value, bool):
         return "true" if value else "false"
     return str(value) if isinstance(value, str | int | float) else None

@@ -30,7 +30,7 @@ from momantu_bt.values.kinds import ScriptText, ValueType
 from momantu_bt.values.types import parse_type
 
 EXPLICIT = ("Action", "Condition", "Control", "Decorator")
-"""Tags whose ID is the node's type."""
+"""Tags whose attribute ID is the node's type."""
 PREFIX = "momantu:"
 """Of our own nodes in an ID."""
 CATCH = "Catch"
@@ -39,7 +39,7 @@ DISABLED, NOTE, DESCRIPTION = "disabled", "note", "_description"
 _CONDITIONS = {theirs: ours for ours, theirs in XML_CONDITIONS.items()}
 RESERVED = ("ID", "name", DESCRIPTION, AUTOREMAP, *_CONDITIONS)
 _EDITORS = ("_uid", "_fullpath", "_collapsed", "__shared_blackboard")
-"""What editors keep for themselves; it says nothing about the tree."""
+"""What editors store for themselves. It says nothing about the tree."""
 _BOOLS = {"true": True, "1": True, "false": False, "0": False}
 
 TypeOf = Callable[[str], ValueType]
@@ -54,10 +54,10 @@ class PortReader:
     problems: Problems
     spec: NodeSpec | None = None
     _plain: dict[str, str] = field(default_factory=dict)
-    """Ports by the attribute that BehaviorTree.CPP has for them; of a built-in node."""
+    """The ports of a built-in node, by the attribute that BehaviorTree.CPP has for them."""
 
     def of_spec(self, spec: NodeSpec) -> None:
-        """A built-in node: only the attributes that it has."""
+        """Read a built-in node: it has only its own attributes."""
         self.spec = spec
         names = {spec.xml.get(port, port): port for port in spec.ports}
         self._plain = {name: port for name, port in names.items() if name}
@@ -65,19 +65,19 @@ class PortReader:
         self._one_time()
 
     def of_skill(self, ports: Mapping[str, Port] | None) -> None:
-        """A skill, or with None an unknown node."""
+        """Read a skill, or an unknown node for None."""
         known = ports or {}
         self._read(lambda port: known[port].type if port in known else object)
 
     def of_tree(self, ports: Mapping[str, PortDeclaration]) -> None:
-        """A tree that is run."""
+        """Read a node that runs a tree."""
         self._read(lambda port: _declared_type(ports[port]) if port in ports else object)
 
     def _error(self, code: str, place: Place, message: str, hint: str = "") -> None:
         self.problems.error(code, place, message, hint)
 
     def apart(self, name: str, element: Element) -> None:
-        """A port that no attribute can be named after: `<momantu:Port name="a b">5</…>`."""
+        """Read a port whose name cannot be an attribute: `<momantu:Port name="a b">5</…>`."""
         place = element.text_place or element.place
         value = flow_value(element.text.strip(), name, place, self.problems)
         if name in self.node.ports:
@@ -131,7 +131,7 @@ class PortReader:
             self.node.condition_places[name] = attribute.place
 
     def _script(self, attribute: Attribute) -> bool:
-        """Whether it is a script; what is wrong with it is reported."""
+        """Whether it is a script. If it is wrong, report the problem."""
         try:
             parse(attribute.value)
         except ScriptSyntaxError as error:
@@ -211,7 +211,7 @@ class PortReader:
             hint = valid_names(name, known, "ports") if known else f"{said} has no ports"
         self._error("unknown-port", attribute.name_place, message, hint)
         meant = self._plain.get(near, near) if near is not None else name
-        if self.spec is not None and meant in self.spec.ports:  # it is not missing besides
+        if self.spec is not None and meant in self.spec.ports:  # do not report it as missing too
             self._keep_places(meant, attribute)
 
     def _put(self, name: str, attribute: Attribute, value: PortValue) -> None:
@@ -231,14 +231,14 @@ class PortReader:
         self.node.port_name_places[name] = attribute.name_place
 
     def _one_time(self) -> None:
-        """`msec` beside `momantu:duration` is for others: it must say the same, and is dropped."""
+        """Drop `msec` beside `momantu:duration`. Others read it, so it must say the same."""
         ports, places = self.node.ports, self.node.port_places
         duration, msec = ports.get("duration"), ports.get("msec")
         if not (isinstance(duration, Literal) and isinstance(msec, Literal)):
             return
         seconds, milliseconds = _number(duration.value, "s"), _number(msec.value, None)
         if seconds is None or milliseconds is None:
-            return  # the checker says what is wrong with them
+            return  # the checker reports what is wrong with them
         if round(seconds * 1000.0, 6) != milliseconds:
             message = f"{duration.value} is not {msec.value} ms"
             hint = "momantu:duration is what counts here; correct the other one"
@@ -248,7 +248,7 @@ class PortReader:
 
 
 def _number(value: object, unit: str | None) -> float | None:
-    """A number, or a text that is one in this unit."""
+    """A number, or a text that is a number in this unit."""
     if isinstance(value, str) and unit is not None:
         try:
             return in_unit(value, unit)

@@ -27,7 +27,7 @@ def attribute(name: str, text: str) -> str:
 
 
 def escaped(text: str) -> str:
-    """A text for an attribute, or for between tags.
+    """A text for an attribute, or for use between tags.
 
     Raises:
         CannotWrite: XML has no such character.
@@ -39,7 +39,7 @@ def escaped(text: str) -> str:
 
 
 def above(comments: Sequence[str], pad: str, *, every: bool = False) -> list[str]:
-    """Comments as lines of their own. every: those too that stand beside something."""
+    """Comments on lines of their own. every: include those that stand beside something."""
     own = [c for c in comments if every or not isinstance(c, Beside)]
     return [pad + _comment(text) for text in own]
 

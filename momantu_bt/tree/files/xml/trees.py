@@ -23,7 +23,7 @@ _EDITORS = ("_fullpath", "_uid", "_description")
 
 @dataclass(frozen=True, slots=True)
 class TreesReader:
-    """Reads the trees of a file. models: what it says of their ports."""
+    """Reads the trees of a file. models: what the file says of their ports."""
 
     models: Models
     registry: Registry
@@ -89,14 +89,14 @@ class TreesReader:
                 report_unknown_attribute(each, known, "<BehaviorTree>", self.problems)
 
     def _model_others(self, outside: Mapping[str, Tree]) -> None:
-        """Models of trees in other files, as an editor's project file has them."""
+        """Use models of trees in other files. An editor's project file has such models."""
         for name, ports in self.models.trees.items():
             tree = outside.get(name)
             if tree is not None and tree.open:
                 tree.ports, tree.open = ports, False
 
     def _report_models_of_nothing(self, root: Element, known: Mapping[str, Tree]) -> None:
-        """A model of an unknown tree: a slip, or, if no name is similar, of another file."""
+        """Report a model of an unknown tree: an error if a name is similar, or else a warning."""
         for section in root.children:
             for model in section.children if section.name == "TreeNodesModel" else ():
                 identity = model.get("ID")

@@ -1,7 +1,7 @@
 """Port values in XML: what the text of an attribute means for a port of some type.
 
-Without a prefix attributes are BehaviorTree.CPP's: `{key}`, `{@key}`, `{=}`, else a text. With
-`momantu:` they hold the value as YAML writes it, for all that BehaviorTree.CPP cannot say.
+Attributes without a prefix are BehaviorTree.CPP's: `{key}`, `{@key}`, `{=}`, or else a text.
+Attributes with `momantu:` hold the value in YAML, for all that BehaviorTree.CPP cannot say.
 """
 
 from __future__ import annotations
@@ -34,17 +34,17 @@ SAME_NAME = "{=}"
 _HALF_A_WIRE = re.compile(r"\{(@?[^\W\d]\w*)|(@?[^\W\d]\w*)\}|\$(@?[^\W\d]\w*)")
 _POINTER = re.compile(r" *\{(.+)\} *", re.DOTALL)
 _BOOLS = {"True": True, "TRUE": True, "1": True, "False": False, "FALSE": False, "0": False}
-"""What BehaviorTree.CPP takes for a bool beside `true` and `false`."""
+"""The texts that BehaviorTree.CPP reads as a bool, beside `true` and `false`."""
 
 
 class WireError(ValueError):
-    """A text in braces does not name a key; the message says what would."""
+    """A text in braces does not name a key; the message says what to write."""
 
 
 def attribute_value(text: str, port: str, type_: ValueType) -> PortValue:
     """The value of an attribute without prefix.
 
-    port: its name, for `{=}`. type_: the port's; `object` where nobody knows it.
+    port: its name, for `{=}`. type_: the port's type; `object` if it is not known.
 
     Raises:
         WireError: braces around something that cannot be a key, or half a wire.
@@ -71,7 +71,7 @@ def _wire(key: str) -> Reference:
 
 
 def _refuse_half_a_wire(text: str) -> None:
-    """`{key`, `key}` and YAML's `$key` are slips; as a text they stand in `momantu:port="…"`."""
+    """Refuse `{key`, `key}` and YAML's `$key`. As texts they go into `momantu:port="…"`."""
     slipped = _HALF_A_WIRE.fullmatch(text)
     if slipped is not None:
         key = next(filter(None, slipped.groups()))
@@ -79,7 +79,7 @@ def _refuse_half_a_wire(text: str) -> None:
 
 
 def takes_text(type_: ValueType) -> bool:
-    """Whether a port of this type takes a text and nothing else, so that `5` is one."""
+    """Whether a port of this type takes only texts. Then `5` is a text too."""
     return all(map(_is_text, without_none(kind_of(type_))))
 
 
@@ -94,7 +94,7 @@ def _is_text(kind: ValueKind) -> bool:
 
 
 def _plain(text: str) -> Any:
-    """`5`, `0.5`, `true` as YAML 1.2 reads them, where it would write them so; else the text."""
+    """The value of `5`, `0.5`, `true` in YAML 1.2 if YAML writes it the same; else the text."""
     value = resolve(text)
     if isinstance(value, bool):
         return value
@@ -106,8 +106,8 @@ def _plain(text: str) -> Any:
 def flow_value(text: str, port: str, place: Place, problems: Problems) -> PortValue | None:
     """The value of a prefixed attribute: YAML on one line; None if a problem was reported.
 
-    place: of the text in the file; its own problems are placed within it where it is as long as
-    it is written, without entities.
+    place: where the text is in the file. Problems get places within the text if the file has it
+    character by character, without entities.
     """
     try:
         raw = compose(text, place.file)
@@ -121,7 +121,7 @@ def flow_value(text: str, port: str, place: Place, problems: Problems) -> PortVa
 
 
 def _move(root: Raw, place: Place, text: str) -> None:
-    """Places in the attribute become places in the file."""
+    """Turn places in the attribute into places in the file."""
     waiting, moved = [root], set[int]()
     while waiting:
         raw = waiting.pop()

@@ -28,9 +28,9 @@ _TAGS = {direction: tag for tag, direction in PORTS.items()}
 
 
 def write(document: Document, registry: Registry | None = None) -> str:
-    """The document's own trees in XML; those it includes stay in their files.
+    """The document's own trees in XML. Trees that it includes stay in their files.
 
-    registry: whose skills' port types tell texts from numbers; the reader must have the same.
+    registry: its skills' port types tell texts from numbers. The reader must have the same one.
 
     Raises:
         CannotWrite: something in it has no spelling in XML.
@@ -214,7 +214,7 @@ class _NodeWriter:
             yield f"{pad}</{tag}>"
 
     def _tag(self, node: Node) -> tuple[str, str]:
-        """The tag, and the attribute that says what it is where the tag cannot."""
+        """The tag, and the attribute that says what the node is if the tag cannot."""
         if is_ours(node.type):
             return PREFIX + node.type, ""
         if node.type in NODES or node.type == SUBTREE:

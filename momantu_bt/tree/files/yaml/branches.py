@@ -16,7 +16,7 @@ from momantu_bt.tree.model import BROKEN, Node
 def read_branches(
     node: Node, value: Raw, companions: list[tuple[Scalar, Raw]], reading: Reading
 ) -> None:
-    """`if:` or `while_do:`, and what stands beside it."""
+    """Read `if:` or `while_do:`, and the keys beside it."""
     places = {key.text: raw for key, raw in companions}
     reading.later(as_condition(value) or value, node.children.append)
     for name in COMPANIONS[NODES[node.type].yaml[0]]:
@@ -29,7 +29,7 @@ def read_branches(
 def read_switch(
     key: Scalar, value: Raw, companions: list[tuple[Scalar, Raw]], reading: Reading
 ) -> Node:
-    """`switch: $x` with `cases:` and `default:` beside it, or with ports and `children:`."""
+    """Read `switch: $x` with `cases:` and `default:` beside it, or with ports and `children:`."""
     if isinstance(value, Entries) and not companions:
         return _plain_switch(key, value, reading)
     beside = {name.text: raw for name, raw in companions}

@@ -13,7 +13,7 @@ from momantu_bt.tree.model import Handler, Node
 
 
 def read_control(node: Node, value: Raw, spec: NodeSpec, reading: Reading) -> None:
-    """Several children: a list, or ports and `children:`."""
+    """Read several children: a list, or ports and `children:`."""
     if isinstance(value, Items):
         reading.children(node, value)
     elif isinstance(value, Entries):
@@ -23,7 +23,7 @@ def read_control(node: Node, value: Raw, spec: NodeSpec, reading: Reading) -> No
 
 
 def read_decorator(node: Node, value: Raw, spec: NodeSpec, reading: Reading) -> None:
-    """Ports and `child:`."""
+    """Read ports and `child:`."""
     if not isinstance(value, Entries):
         hint = f"write `{spec.yaml[0]}: {{…, child: …}}`, or put it beside a node"
         reading.misfit(node, value, f"{said(node)} takes `child:`", hint)
@@ -33,7 +33,7 @@ def read_decorator(node: Node, value: Raw, spec: NodeSpec, reading: Reading) -> 
 
 
 def read_handlers(node: Node, value: Raw, spec: NodeSpec, reading: Reading) -> None:
-    """Ports, `try:`, and under `catch:` the handlers."""
+    """Read ports, `try:`, and the handlers under `catch:`."""
     if not isinstance(value, Entries):
         reading.misfit(node, value, f"{said(node)} takes `try:` and `catch:`")
         return
@@ -51,7 +51,10 @@ def read_handlers(node: Node, value: Raw, spec: NodeSpec, reading: Reading) -> N
 def split(
     node: Node, raw: Entries, spec: NodeSpec | None, kept: tuple[str, ...], reading: Reading
 ) -> list[Raw]:
-    """Ports of a mapping to the node; the values of the kept keys, `children` read."""
+    """Give a mapping's ports to the node, and read `children`. Returns the other kept values.
+
+    kept: the keys of the mapping that are not ports.
+    """
     drop_duplicates(raw, reading.problems)
     values: list[Raw] = []
     for key, value in raw.entries:

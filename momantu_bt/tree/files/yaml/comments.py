@@ -1,7 +1,7 @@
 """Comments of a YAML tree file, given to what they are about in the model.
 
-A comment belongs to what follows it, or to what stands before it on its line. One that is
-indented further than what follows ends the list or mapping above it.
+A comment belongs to what follows it. A comment at the end of a line belongs to what is on that
+line. A comment that is indented further than what follows ends the list or mapping above it.
 """
 
 from __future__ import annotations
@@ -19,14 +19,17 @@ from momantu_bt.tree.model import Document, Node, PortDeclaration, Tree
 _FIRST_KEYS = ("momantu_bt", "world", "main", "include")
 _PORT_KEYS = ("inputs:", "outputs:", "inouts:", "doc:", "open:")
 _DASH = 2
-"""Columns of `- `, by which an item's name stands right of its list."""
+"""The columns of `- `: an item's name stands so far to the right of its list."""
 
 Put = Callable[[str], None]
 
 
 @dataclass(frozen=True, slots=True)
 class _Anchor:
-    """Something that comments can belong to. above, beside: take one; node: where it is part of."""
+    """Something that comments can belong to.
+
+    above, beside: each takes a comment. node: the node that this is part of.
+    """
 
     line: int
     column: int
@@ -44,7 +47,7 @@ class _Attacher:
     parents: dict[int, Node] = field(default_factory=dict)
 
     def indent(self, line: int) -> int:
-        """Column of the first word of a line, behind dashes."""
+        """The column of the first word of a line, after dashes."""
         text = self.lines[line - 1]
         return len(text) - len(text.lstrip(" -")) + 1
 
@@ -109,12 +112,12 @@ class _Attacher:
             self.add(handler.place, _adder(handler, "comments"), of=node)
 
     def modifier(self, place: Place, key: Node, above: Put, end: Put) -> None:
-        """A modifier's line; where it begins the item, what is above it is about the item."""
+        """Add a modifier's line. If it begins the item, a comment above it is about the item."""
         first = (place.line, place.column) < (key.place.line, key.place.column)
         self.add(place, above if first else end, end, key)
 
     def is_bare_list(self, node: Node) -> bool:
-        """A sequence without a word of its own: its first item stands where it does."""
+        """Whether it is a list without a key of its own. Its first item has the same place."""
         text = self.lines[node.place.line - 1][node.place.column - 1 :]
         return node.type == "Sequence" and text.startswith("- ") and bool(node.children)
 
@@ -133,7 +136,7 @@ class _Attacher:
             self.above(remark, index)
 
     def opens(self, remark: Comment) -> bool:
-        """Whether what the comment stands beside only begins something: `catch:`."""
+        """Whether the text before the comment only begins something: `catch:`."""
         return self.lines[remark.line - 1][: remark.column - 1].rstrip().endswith((":", "-"))
 
     def above(self, remark: Comment, following: int) -> None:
@@ -149,14 +152,14 @@ class _Attacher:
             self.document.comments += (remark.text,)
 
     def is_deeper(self, remark: Comment) -> bool:
-        """Whether a comment is indented further than the next other line."""
+        """Whether a comment is indented further than the next line that is not a comment."""
         following = bisect_right(self.written, remark.line)
         if following == len(self.written):
             return True
         return remark.column > self.indent(self.written[following])
 
     def ended(self, node: Node | None, column: int) -> Node | None:
-        """The node whose inside a comment in this column ends, after all there is in it."""
+        """The node at whose end, after everything in it, a comment in this column stands."""
         while node is not None:
             if column > node.place.column:
                 return node

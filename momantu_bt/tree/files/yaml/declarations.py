@@ -13,7 +13,7 @@ _DECLARATION = ("type", "default", "doc")
 
 
 def read_declarations(tree: Tree, raw: Raw, name: str, problems: Problems) -> None:
-    """Give the tree its ports of one direction. name: the key that they stand under."""
+    """Give the tree its ports of one direction. name: the key above them."""
     direction = PORTS[name]
     if isinstance(raw, Items):
         raw = _untyped(raw, name, problems)
@@ -30,7 +30,7 @@ def read_declarations(tree: Tree, raw: Raw, name: str, problems: Problems) -> No
 
 
 def _untyped(raw: Items, name: str, problems: Problems) -> Entries:
-    """`[a, b]` as `{a: any, b: any}`."""
+    """Read `[a, b]` as `{a: any, b: any}`."""
     entries: list[tuple[Scalar, Raw]] = []
     for item in raw.items:
         if isinstance(item, Scalar):

@@ -24,13 +24,13 @@ _TOP = ("momantu_bt", "include", "world", "main", "values", "trees", "models")
 
 
 def read(text: str, file: str) -> tuple[Document, Problems]:
-    """Read a tree file by itself, without those that it includes.
+    """Read one tree file, without the files that it includes.
 
-    The document holds BROKEN nodes where problems were found. file: the name that places carry.
+    The document holds BROKEN nodes where problems were found. file: the file name in places.
 
     Raises:
-        TreeError: the text is not YAML, has no trees, or too many problems; nothing else can be
-            said then.
+        TreeError: the text is not YAML, has no trees, or has too many problems. Nothing else is
+            reported then.
     """
     problems = Problems()
     try:
@@ -44,7 +44,7 @@ def read(text: str, file: str) -> tuple[Document, Problems]:
 
 @dataclass(slots=True)
 class YamlSource:
-    """A file that is YAML; its trees are read when those that it includes are known."""
+    """A file in YAML. Its trees are read once the trees of its includes are known."""
 
     text: str
     file: str
@@ -61,7 +61,7 @@ class YamlSource:
             raise TreeError([error.problem], {file: text}) from None
 
     def includes(self) -> tuple[Include, ...]:
-        """The files it includes; those that are not written well are reported."""
+        """The files it includes. Includes that are written wrongly are reported."""
         raw = self.raw
         listed = (
             [value for key, value in raw.entries if key.text == "include"]
@@ -81,8 +81,8 @@ class YamlSource:
     def document(self, outside: Mapping[str, Tree], *, included: bool = False) -> Document | None:
         """The file's own trees. outside: trees of the files that it includes.
 
-        included: it need not say which tree to run. None, with what is wrong reported, where
-        there is nothing to read.
+        included: whether another file includes this one; then it need not name a tree to run.
+        Returns None, with the problem reported, if there is nothing to read.
         """
         document = _Reader(self.file, self.problems, outside, included).document(self.raw)
         if document is not None:
@@ -183,7 +183,7 @@ class _Reader:
                 document.value_places[key.text] = raw.place
 
     def written_out(self, raw: Raw, what: str) -> Literal | None:
-        """A value without wires; None where a problem was reported."""
+        """A value without wires; None if a problem was reported."""
         found = port_value(raw, "", self.problems)
         if found is None or isinstance(found, Literal):
             return found

@@ -19,13 +19,13 @@ from momantu_bt.values.kinds import ScriptText
 
 @dataclass(frozen=True, slots=True)
 class LeafWriter:
-    """Writes names and ports. trees: names that are trees; registry: skills, where one is known."""
+    """Writes names and ports. trees: the names of trees. registry: the skills, if known."""
 
     trees: Collection[str]
     registry: Registry
 
     def lines(self, node: Node, lead: str, pad: str, more: bool) -> list[str]:
-        """A leaf. lead: what stands before its key; more: other keys follow."""
+        """A leaf. lead: the text before its key. more: whether other keys follow."""
         key, remark = self.key(node), beside(node.comments)
         if not node.ports:
             colon = ":" if more or not lead.endswith("- ") else ""
@@ -45,7 +45,7 @@ class LeafWriter:
         return f"{{{', '.join(self.pairs(node))}}}" if node.ports else ""
 
     def pairs(self, node: Node) -> list[str]:
-        """Its ports as `key: value`, for within braces."""
+        """Its ports as `key: value`, to go inside braces."""
         return [
             f"{scalar(name, flow=True, typed=False)}: {self.port(node, name, value, flow=True)}"
             for name, value in node.ports.items()
@@ -62,7 +62,7 @@ class LeafWriter:
         return lines
 
     def port(self, node: Node, name: str, value: PortValue, *, flow: bool = False) -> str:
-        """One port's value; a script in our spelling."""
+        """One port's value. A script is in our spelling."""
         spec = NODES.get(node.type)
         port = spec.ports.get(name) if spec is not None else None
         if port is not None and port.type is ScriptText and isinstance(value, Literal):
@@ -70,7 +70,7 @@ class LeafWriter:
         return port_text(value, flow=flow)
 
     def _is_bare(self, node: Node) -> bool:
-        """Whether its one value stands without the port's name: `dock: bay_a`."""
+        """Whether its one value is written without the port's name: `dock: bay_a`."""
         if len(node.ports) != 1:
             return False
         ((name, value),) = node.ports.items()
@@ -88,7 +88,7 @@ class LeafWriter:
         return was_bare or (isinstance(value, Literal) and name == self._only_input(node))
 
     def _only_input(self, node: Node) -> str | None:
-        """The first input of a known skill, where nothing else is required."""
+        """The first input of a known skill, if nothing else is required."""
         try:
             ports = self.registry.skills[node.type].ports.values()
         except (KeyError, PluginError):

@@ -10,28 +10,28 @@ from momantu_bt.tree.files.scalars import literal
 from momantu_bt.tree.model import Literal, PortValue
 
 WIDTH = 100
-"""Columns of a line, where ports can be moved to lines of their own."""
+"""The most columns of a line whose ports can move to lines of their own."""
 
 STEP = "  "
 """One level of indentation."""
 
 
 def above(comments: Sequence[str], pad: str, *, every: bool = False) -> list[str]:
-    """Comments as lines of their own. every: those too that stand beside something."""
+    """Comments on lines of their own. every: include those that stand beside something."""
     own = [c for c in comments if every or not isinstance(c, Beside)]
-    # of several beside one line, one stays there
+    # if several stand beside one line, one of them stays there
     own += [] if every else [c for c in comments if isinstance(c, Beside)][1:]
     return [f"{pad}{signed(line)}" for comment in own for line in comment.split("\n")]
 
 
 def beside(comments: Sequence[str]) -> str:
-    """The comment at the end of a line, with what sets it apart; empty where there is none."""
+    """The comment at the end of a line, with the space before it; empty if there is none."""
     first = next((c for c in comments if isinstance(c, Beside)), None)
     return "" if first is None else f"  {signed(first.replace(chr(10), ' '))}"
 
 
 def spread(value: PortValue, lead: str, text: str, comments: Sequence[str]) -> list[str]:
-    """A value behind `key:`; a long list or mapping with an entry a line. text: it on one line."""
+    """A value after `key:`. A long list or mapping has one entry a line. text: it on one line."""
     line, pad = f"{lead} {text}", " " * (len(lead) - len(lead.lstrip()) + len(STEP))
     nested = value.value if isinstance(value, Literal) and is_nested(value) else None
     if len(line) <= WIDTH or not nested:
@@ -44,7 +44,7 @@ def spread(value: PortValue, lead: str, text: str, comments: Sequence[str]) -> l
 
 
 def signed(text: str) -> str:
-    """A comment's text behind its sign."""
+    """A comment's text after its `#`."""
     return f"#{text}" if not text or text.startswith("#") else f"# {text}"
 
 

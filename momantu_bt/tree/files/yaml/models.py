@@ -13,13 +13,13 @@ from momantu_bt.tree.model import Literal, NodeModel, PortDeclaration
 from momantu_bt.tree.problems import Problems
 
 KINDS = ("Action", "Condition", "Control", "Decorator")
-"""Kinds of nodes that a palette has; the key that names a model's node."""
+"""Kinds of nodes in a palette. The kind is the key that names a model's node."""
 _DIRECTIONS = ("in", "out", "inout")
 _HINT = "such as `- {Action: Name, ports: [{in: goal, type: Pose}]}`"
 
 
 def read_models(raw: Raw, problems: Problems) -> tuple[NodeModel, ...]:
-    """The models of a file, without those that are not written well, which are reported."""
+    """The models of a file. Models that are written wrongly are reported and left out."""
     if not isinstance(raw, Items):
         problems.error("wrong-value", raw.place, "`models` is a list of nodes", _HINT)
         return ()

@@ -15,12 +15,12 @@ from momantu_bt.tree.problems import Problems
 
 
 def near_modifier(name: str) -> str | None:
-    """The modifier that a name was perhaps meant to be."""
+    """The modifier that a wrong name probably means."""
     return nearest(name, MODIFIERS)
 
 
 def modified(node: Node, modifiers: list[tuple[Scalar, Raw]], reading: Reading) -> Node:
-    """The node with its modifiers, inside the decorators among them."""
+    """The node with its modifiers, inside the modifiers that are decorators."""
     outer = node
     for key, value in modifiers:
         kind = MODIFIERS.get(key.text)
@@ -59,7 +59,7 @@ def _node_entry(node: Node, key: Scalar, value: Raw, problems: Problems) -> None
 
 
 def _flag(value: Raw, problems: Problems) -> bool:
-    """True or false; false where a problem was reported."""
+    """True or false; false if a problem was reported."""
     if isinstance(value, Scalar) and isinstance(value.value, bool):
         return value.value
     text = value.text if isinstance(value, Scalar) else ""

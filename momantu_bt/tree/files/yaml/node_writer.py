@@ -31,9 +31,9 @@ from momantu_bt.tree.model import Handler, Node
 
 @dataclass(frozen=True, slots=True)
 class _Value:
-    """A node behind `key:`. lead: up to the colon; pad: before the lines below it.
+    """A node after `key:`. lead: the text up to the colon. pad: goes before the lines below it.
 
-    braces: a short node may stand on the line of its key.
+    braces: whether a short node may stand on the line of its key.
     """
 
     node: Node
@@ -46,7 +46,7 @@ class _Value:
 
 @dataclass(frozen=True, slots=True)
 class _Body:
-    """A node as the keys of a mapping. lead: what stands before its first key."""
+    """A node as the keys of a mapping. lead: the text before its first key."""
 
     node: Node
     lead: str
@@ -65,11 +65,11 @@ class NodeWriter:
     def value(
         self, node: Node, lead: str, pad: int, *, taken: Collection[str], comments: tuple[str, ...]
     ) -> list[str]:
-        """The lines of a node behind `key:`. taken: keys that mean something else beside it."""
+        """The lines of a node after `key:`. taken: keys that have another meaning beside it."""
         return self._lines(_Value(node, lead, " " * pad, comments, taken))
 
     def body(self, node: Node, pad: int, *, taken: Collection[str]) -> list[str]:
-        """The lines of a node as keys of the mapping they stand in."""
+        """The lines of a node as keys of the mapping that it is in."""
         return self._lines(_Body(node, " " * pad, taken))
 
     def _lines(self, first: _Piece) -> list[str]:
@@ -105,7 +105,7 @@ class NodeWriter:
         return [heading, _Body(node, pad, piece.taken)]
 
     def _inside(self, node: Node) -> str:
-        """The text after the key of a short node in braces; may be empty."""
+        """The text after the key of a short node in braces. It may be empty."""
         if not node.children:
             return self.leaves.text(node, flow=True)
         child = node.children[0]
@@ -134,7 +134,7 @@ class NodeWriter:
         return pieces
 
     def _unwrapped(self, node: Node) -> tuple[Node, list[Node]]:
-        """The node without what can be written as modifiers, and that, innermost first."""
+        """The node without its modifiers, and those modifiers, innermost first."""
         chain = [node]
         while can_be_modifier(chain[-1]):
             chain.append(chain[-1].children[0])
@@ -143,7 +143,7 @@ class NodeWriter:
         used = {self.leaves.key(inner)}
         for outer in reversed(chain):
             key = self._modifier(outer).partition(":")[0]
-            if key in used:  # a mapping has each key once: this one is written with `child:`
+            if key in used:  # a mapping has each key once, so write this one with `child:`
                 inner, modifiers, used = outer, [], {self.leaves.key(outer)}
             else:
                 modifiers.append(outer)
@@ -158,7 +158,7 @@ class NodeWriter:
         return f"{key}:{''.join(values)}"
 
     def _entries(self, node: Node, pad: str) -> list[str]:
-        """Name, note, conditions: what is the node's own beside its key."""
+        """Name, note and conditions: keys of the node itself, beside its own key."""
         lines = [
             f"{pad}{key}: {scalar(text)}"
             for key, text in (("name", node.name), ("note", node.note))
@@ -169,7 +169,7 @@ class NodeWriter:
         return lines + [f"{pad}{key}: {script_text(s)}" for key, s in node.conditions.items()]
 
     def _keyed(self, node: Node, lead: str, pad: str, more: bool) -> list[_Piece]:
-        """The node's key with all that belongs under it. more: other keys follow."""
+        """The node's key with everything under it. more: whether other keys follow."""
         spec = NODES.get(node.type)
         key, end = self.leaves.key(node), above(node.end_comments, pad + STEP, every=True)
         heading = f"{lead}{key}:{beside(node.comments)}"

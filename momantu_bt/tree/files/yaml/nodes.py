@@ -26,7 +26,7 @@ class NodeReader:
     reading: Reading
 
     def read(self, raw: Raw, put: Put) -> None:
-        """Read one node and all below it, and give it to `put`; BROKEN where it cannot be."""
+        """Read one node and all below it, and give it to `put`; BROKEN if it cannot be read."""
         waiting = self.reading.waiting
         waiting.append((raw, put))
         while waiting:
@@ -135,10 +135,10 @@ def _has_child(value: Raw) -> bool:
 
 
 def _has_below(value: Raw) -> bool:
-    """Whether nodes stand below it, which skills and trees do not have."""
+    """Whether nodes stand below it. Skills and trees have none."""
     return isinstance(value, Items) or _has_child(value)
 
 
 def _has_children(value: Entries) -> bool:
-    """Whether it is an unknown control node."""
+    """Whether it has a list of `children`, as an unknown control node has."""
     return any(key.text == "children" and isinstance(raw, Items) for key, raw in value.entries)

@@ -15,7 +15,7 @@ from momantu_bt.values.kinds import ScriptText
 
 
 def read_leaf(node: Node, value: Raw, spec: NodeSpec | None, reading: Reading) -> None:
-    """The value of a node that has ports alone; a value by itself is its first input."""
+    """Read a node that has only ports. A value without a name is its first input."""
     if isinstance(value, Entries):
         if reported_braces(value, reading.problems):
             node.type = BROKEN
@@ -39,7 +39,7 @@ def read_leaf(node: Node, value: Raw, spec: NodeSpec | None, reading: Reading) -
 
 
 def read_ports(node: Node, raw: Entries, spec: NodeSpec | None, problems: Problems) -> None:
-    """A mapping of ports to values."""
+    """Read a mapping of ports to values."""
     drop_duplicates(raw, problems)
     for key, value in raw.entries:
         read_port(node, (key.text, key.place), value, spec, problems)
@@ -48,7 +48,7 @@ def read_ports(node: Node, raw: Entries, spec: NodeSpec | None, problems: Proble
 def read_port(
     node: Node, named: tuple[str, Place], value: Raw, spec: NodeSpec | None, problems: Problems
 ) -> None:
-    """One port. named: its name, and where that is written."""
+    """Read one port. named: its name, and the place of the name."""
     name, place = named
     node.port_places[name] = value.place
     node.port_name_places[name] = place
@@ -63,11 +63,11 @@ def read_port(
 
 
 def is_empty(value: Raw) -> bool:
-    """Whether nothing is written."""
+    """Whether the file has no value here."""
     return isinstance(value, Scalar) and value.value is None and not value.quoted
 
 
 def _near_control(node: Node) -> str | None:
-    """The node that was probably meant by an unknown name with a list."""
+    """The node that an unknown name with a list probably means."""
     controls = [name for name, spec in SPELLED.items() if spec.kind is Kind.CONTROL]
     return None if node.type in (SUBTREE, *NODES) else nearest(node.type, controls)

@@ -16,7 +16,7 @@ from momantu_bt.tree.problems import Problems
 
 @dataclass(slots=True)
 class Reading:
-    """Problems go here, and values at node positions. trees: names of the document's trees."""
+    """Takes problems, and values at node positions. trees: names of the document's trees."""
 
     trees: Collection[str]
     problems: Problems
@@ -40,12 +40,12 @@ class Reading:
         self.problems.error(code, place, message, hint)
 
     def broken(self, code: str, place: Place, message: str, hint: str = "") -> Node:
-        """Report a problem for which there is no node."""
+        """Report a problem that belongs to no node."""
         self.error(code, place, message, hint)
         return Node(BROKEN, place)
 
     def misfit(self, node: Node, value: Raw, message: str, hint: str = "") -> None:
-        """Report a value of the wrong form: the node is read no further."""
+        """Report a value of the wrong form. The node is not read further."""
         self.error("wrong-value", value.place, message, hint)
         node.type = BROKEN
 

@@ -11,7 +11,7 @@ from momantu_bt.tree.script import ScriptSyntaxError, canonical, parse, yaml_spe
 
 
 def read_script(value: Raw, problems: Problems) -> str | None:
-    """A script in BehaviorTree.CPP's spelling; None where a problem was reported."""
+    """A script in BehaviorTree.CPP's spelling; None if a problem was reported."""
     if isinstance(value, Entries) and [key.text for key, _ in value.entries] == [BTCPP]:
         return _kept(value.entries[0][1], problems)
     if not isinstance(value, Scalar) or value.value is None:
@@ -26,7 +26,7 @@ def read_script(value: Raw, problems: Problems) -> str | None:
 
 
 def as_condition(value: Raw) -> Raw | None:
-    """`if: $n > 2` as the node `condition: $n > 2`; None where the value is a node itself."""
+    """`if: $n > 2` as the node `condition: $n > 2`; None if the value is a node itself."""
     if not isinstance(value, Scalar):
         return None
     if isinstance(value.value, str) and "$" not in value.value:
@@ -36,7 +36,7 @@ def as_condition(value: Raw) -> Raw | None:
 
 
 def _kept(value: Raw, problems: Problems) -> str | None:
-    """A script in BehaviorTree.CPP's spelling already, kept as it is."""
+    """A script that is in BehaviorTree.CPP's spelling already; it is kept as it is."""
     text = value.text if isinstance(value, Scalar) else ""
     try:
         return parse(text).text
@@ -50,7 +50,7 @@ def _within(value: Scalar, error: ScriptSyntaxError) -> Place:
     place = value.place
     quotes = 1 if value.quoted else 0
     if place.length != len(value.text) + 2 * quotes:
-        return place  # several lines, or escapes: an offset in the text is not one in the file
+        return place  # with several lines or escapes, an offset in the text is not one in the file
     offset = error.offset + quotes
     if offset >= place.length:
         return place
@@ -58,9 +58,9 @@ def _within(value: Scalar, error: ScriptSyntaxError) -> Place:
 
 
 def script_spelling(text: str) -> str | None:
-    """A canonical script in our spelling, with words or else with signs.
+    """A canonical script in our spelling, with words if possible, or else with signs.
 
-    None where neither comes back as the same script, as with `a && b || c`.
+    None if neither reads back as the same script, as with `a && b || c`.
     """
     for words in (True, False):
         try:
@@ -73,7 +73,7 @@ def script_spelling(text: str) -> str | None:
 
 
 def script_text(text: str, *, flow: bool = False) -> str:
-    """A canonical script as a YAML value; `{btcpp: …}` keeps one that our spelling cannot say."""
+    """A canonical script as a YAML value. `{btcpp: …}` holds one that our spelling cannot say."""
     spelled = script_spelling(text)
     if spelled is not None:
         return scalar(spelled, flow=flow, typed=False)

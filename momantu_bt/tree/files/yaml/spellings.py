@@ -10,11 +10,11 @@ from momantu_bt.tree.files.yaml.scripts import script_spelling
 from momantu_bt.tree.model import Literal, Node, PortValue
 
 FORCE = {type_: f"force: {word}" for word, type_ in FORCED.items()}
-"""Modifiers of the nodes that force an end."""
+"""Modifiers for the nodes that force a result."""
 
 
 def is_short(node: Node) -> bool:
-    """Whether it may stand in braces: a leaf with nothing but ports, or a decorator around one."""
+    """Whether it may stand in braces: a leaf with only ports, or a decorator around one."""
     spec = NODES.get(node.type)
     if spec is not None and spec.kind is Kind.DECORATOR:
         below = node.children[0] if len(node.children) == 1 else node
@@ -24,19 +24,19 @@ def is_short(node: Node) -> bool:
 
 
 def _says_more(node: Node) -> bool:
-    """Whether something besides key and ports needs a line."""
+    """Whether something other than its key and ports needs a line."""
     remarks = node.port_comments or node.end_comments or above(node.comments, "")
     return bool(remarks) or has_modifiers(node)
 
 
 def has_modifiers(node: Node) -> bool:
-    """Whether keys stand beside the node's own, or around it."""
+    """Whether it has modifiers as keys beside its own key, or is a modifier of its child."""
     named = node.name is not None or node.note is not None or node.disabled
     return bool(named or node.conditions or can_be_modifier(node))
 
 
 def can_be_modifier(node: Node) -> bool:
-    """Whether it is a decorator that says no more than a key beside its child can."""
+    """Whether it is a decorator that a key beside its child can replace."""
     spec = NODES.get(node.type)
     if spec is None or not (spec.modifier or node.type in FORCE) or len(node.children) != 1:
         return False
@@ -52,7 +52,7 @@ def _is_nothing(value: PortValue) -> bool:
 
 
 def switch_cases(node: Node) -> list[str] | None:
-    """The keys of `cases:`; None where the ports cannot be written so."""
+    """The keys of `cases:`; None if the ports cannot be written so."""
     values = [node.ports.get(name) for name in NODES[node.type].ports]
     if len(node.ports) != len(values) or len(node.children) != len(values):
         return None
@@ -64,7 +64,7 @@ def switch_cases(node: Node) -> list[str] | None:
 
 
 def bare_condition(node: Node) -> str | None:
-    """The script that `if:` can ask instead of a node; None where the node says more."""
+    """The script that `if:` can have instead of a node; None if the node says more."""
     code = node.ports.get("code")
     if node.type != "ScriptCondition" or not isinstance(code, Literal) or len(node.ports) != 1:
         return None

@@ -23,7 +23,7 @@ def read_trees(
 ) -> dict[str, Tree] | None:
     """The value under `trees:`; None, and a problem, if there is no tree.
 
-    place: of the whole file. outside: trees of the files that it includes.
+    place: the place of the whole file. outside: trees of the files that it includes.
     """
     having: list[tuple[Scalar, Raw]] = []
     if entry is not None:

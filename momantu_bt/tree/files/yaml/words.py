@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 BTCPP = "btcpp"
-"""Key of a script that our spelling has no words for: `skip_if: {btcpp: a && b || c}`."""
+"""Key of a script that our spelling cannot say: `skip_if: {btcpp: a && b || c}`."""
 
 SWITCH = "switch"
 COMPANIONS = {

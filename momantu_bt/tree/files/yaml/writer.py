@@ -19,9 +19,9 @@ __all__ = ["CannotWrite", "write"]
 
 
 def write(document: Document, registry: Registry | None = None) -> str:
-    """The document's own trees in YAML; those it includes stay in their files.
+    """The document's own trees in YAML. Trees that it includes stay in their files.
 
-    registry: skills; where it knows them, one value alone may stand without its port's name.
+    registry: the skills. A known skill's only value may be written without its port's name.
 
     Raises:
         CannotWrite: something in it has no spelling in YAML.
