@@ -23,15 +23,15 @@ from momantu_bt.errors import ExitCode, MomantuError
 from momantu_bt.version import __version__
 
 TRACEBACK = "MOMANTU_BT_TRACEBACK"
-"""Environment variable: set to anything, internal errors come with their traceback."""
+"""Environment variable: if it is set to anything, internal errors show their traceback."""
 _UNKNOWN = re.compile(r"No such command '(?P<word>.*)'\.(?P<nearest> Did you mean)?")
-"""What click says of a name that a group of commands does not have, with typer's addition."""
+"""Click's message about an unknown command of a group, with typer's addition."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command line and return its exit code; arguments default to the process's.
 
-    A verb returns its exit code or raises; what it raises is told here, and nowhere else.
+    A verb returns its exit code or raises; only this function reports what it raises.
     """
     given = list(sys.argv[1:] if arguments is None else arguments)
     try:
@@ -44,7 +44,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except SystemExit as error:
         return error.code if isinstance(error.code, int) else ExitCode.WRONG_INPUT
     except BrokenPipeError:
-        # whoever read the output has gone; nobody is left to tell
+        # the reader of the output has gone, so nobody would see a message
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return ExitCode.FAILURE
     except MomantuError as error:
@@ -116,10 +116,10 @@ def _other_error(error: Exception) -> ExitCode:
 
 
 def _usage_message(error: Any) -> str | None:
-    """One line of the message and of whose help to read; None for other errors.
+    """One line with the message and the command whose help to read; None for other errors.
 
-    error: one of typer's usage errors, of whichever click typer was built with: they have
-    `format_message()`, and `ctx` of the command that they happened in.
+    error: a usage error of typer, from the click version that typer was built with. It has
+    `format_message()` and the `ctx` of the command that it happened in.
     """
     if getattr(error, "format_message", None) is None:
         return None

@@ -1,7 +1,7 @@
 """Sub-verbs of other packages: `worlds import` is an entry point of that name.
 
-Only the one that is asked for is imported. The others are names with a line of help, which is
-read from their source, so that neither a heavy module nor a broken one is in anybody's way.
+Only the requested sub-verb is imported. The others are listed by name with a line of help from
+their source, so that a heavy or broken module does not disturb the rest.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from momantu_bt.cli.verbs import COMMANDS
 def with_subverbs(verb: Any, name: str, given: Sequence[str]) -> Any:
     """The verb; if it is a group of commands, a copy with the sub-verbs of other packages.
 
-    Of a name that the verb has itself, the verb's own command counts.
+    If the verb has a command of the same name itself, that command is used.
 
     Args:
         verb: a function or a typer app.
@@ -31,7 +31,7 @@ def with_subverbs(verb: Any, name: str, given: Sequence[str]) -> Any:
         given: the words that follow the verb on the command line.
 
     Raises:
-        PluginError: the sub-verb that is asked for is broken.
+        PluginError: the requested sub-verb is broken.
     """
     if not isinstance(verb, typer.Typer):
         return verb

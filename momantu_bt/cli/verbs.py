@@ -89,4 +89,4 @@ def _takes_subverbs(verb: str) -> bool:
 
 
 COMMANDS: Group[Any] = Group("momantu_bt.commands", "verb", _objection)
-"""Functions or typer apps; of two words, such as `worlds import`, they are sub-verbs."""
+"""Functions or typer apps; names of two words, such as `worlds import`, are sub-verbs."""

@@ -23,7 +23,7 @@ from momantu_bt.tree.show.printing import (
 )
 
 WIDEST = 56
-"""Cells of a terminal that a line in a box takes at most; the rest is cut."""
+"""Longest line in a box, in terminal cells; the rest is cut."""
 COLOURS = {
     "control": "#dbe7f6",
     "decorator": "#ece4f5",
@@ -31,18 +31,18 @@ COLOURS = {
     "skill": "#dcf0dd",
     "subtree": "#fbe9c6",
 }
-"""What a box of each kind is filled with."""
+"""Fill colour of each kind of box."""
 SKILL = "skill"
-"""Kind of a box, besides those of built-in nodes and `subtree`."""
+"""The kind of a box that is neither a built-in node nor a `subtree`."""
 
 
 @dataclass(frozen=True, slots=True)
 class Box:
     """One node of a tree with its decorators.
 
-    number: unique in the picture. kind: control, decorator, leaf, skill or subtree. parent: the
-    number of the box above it; role: what it is to that ("then", "on TOO_FAR"), or "".
-    nodes: the node, and its decorators, outermost first.
+    number: unique in the picture. kind: control, decorator, leaf, skill or subtree. parent: number
+    of the box above. role: its role for the parent ("then", "on TOO_FAR"), or "". nodes: the node
+    and its decorators, outermost first.
     """
 
     number: int

@@ -26,8 +26,8 @@ class Marked:
 def difference(first: Document, second: Document) -> list[Marked]:
     """The changes from the first to the second; nothing if they mean the same.
 
-    A node that says the same elsewhere is one changed line, where the second has it. Where nothing
-    below a node differs, that is left out ("…").
+    A node that moved without a change is one changed line, at its place in the second document.
+    If nothing below a node differs, that part is left out ("…").
     """
     return [*_header(first, second), *_Difference(first, second).lines()]
 

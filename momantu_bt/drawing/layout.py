@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from momantu_bt.drawing.boxes import WIDEST, Box, Thread, TreePicture, cut, width_of
 
 CELL = 7.3
-"""Width of a character; the SVG makes each text exactly as wide as this says."""
+"""Width of a character; the SVG stretches each text to exactly this width."""
 SMALL_CELL = 6.1
 LINE = 16.0
 PAD = 7.0

@@ -1,7 +1,8 @@
 """Match the nodes of two trees.
 
-Nodes are matched from the roots down: children of two matched nodes in an order that both have, by
-what they are, as alike as possible. What is left over and stands elsewhere unchanged has moved.
+Nodes are matched from the roots down. Children of two matched nodes are paired by content, in an
+order that both have, as alike as possible. An unmatched node that stands elsewhere unchanged has
+moved.
 """
 
 from __future__ import annotations
@@ -24,8 +25,8 @@ MOST_COMPARED = 250_000
 class Unit:
     """A node with its decorators, outermost first. role: its role for its parent.
 
-    digest: the same for units that say the same, with everything below; own: without that.
-    size: how many units it is, with everything below.
+    digest: equal for units with equal content, including everything below. own: the same for the
+    unit alone. size: number of units, including everything below.
     """
 
     node: Node
@@ -120,7 +121,7 @@ def _hash(*parts: object) -> str:
 def match(first: Mapping[str, Unit], second: Mapping[str, Unit]) -> Matching:
     """Match the trees of two documents, by name and then from the roots down.
 
-    The other way round the same units are matched: it is decided in one order of the two.
+    The order of the two documents does not matter: swapped, the same units are matched.
     """
     if _hash(*_digests(first)) <= _hash(*_digests(second)):
         return _match(first, second)
@@ -151,15 +152,15 @@ def _match(first: Mapping[str, Unit], second: Mapping[str, Unit]) -> Matching:
 
 
 def _find_moved(first: Mapping[str, Unit], second: Mapping[str, Unit], matching: Matching) -> None:
-    """Units that are left over on both sides and say the same, with all that is below them.
+    """Unmatched units of both sides that are equal, including everything below them.
 
-    A single node has moved within its tree alone: elsewhere, it is just another one like it.
+    A single node counts as moved only within its own tree; in another tree it is a new, equal node.
     """
     taken = {id(unit) for pair in matching.placed for unit in pair}
     waiting: dict[tuple[str, str], deque[Unit]] = {}
     for name, unit in _left_over(second, taken):
         waiting.setdefault(("" if unit.kids else name, unit.digest), deque()).append(unit)
-    # the largest first, so that none is torn apart
+    # the largest first, so that none is split
     for name, unit in sorted(_left_over(first, taken), key=lambda each: -each[1].size):
         candidates = waiting.get(("" if unit.kids else name, unit.digest), deque[Unit]())
         while candidates and id(unit) not in taken:

@@ -25,7 +25,7 @@ VALUES = "values"
 
 @dataclass(frozen=True, slots=True)
 class End:
-    """One end of a wire. said: a node in the file's words, or another source.
+    """One end of a wire. said: the node as the file writes it, or another source.
 
     node: None if it is not a node. tree: the tree that it stands in.
     """
@@ -40,7 +40,8 @@ class End:
 class Wire:
     """A key of one board with everything that writes and reads it, in the order of the file.
 
-    tree: whose board it is; the main tree's is the root's, and what is published has none ("").
+    tree: the tree that owns the board; the root's board belongs to the main tree, and published
+    keys belong to no tree ("").
     """
 
     tree: str
@@ -161,7 +162,7 @@ def _spelled(reference: Reference) -> str:
 def wire_lines(document: Document, found: list[Wire], tree: str) -> Iterator[str]:
     """The wires of one tree in words: `$seen  from scan (12)  to grip (14, 17)`.
 
-    Numbers are lines of the file that the tree is in; of another they come after its name.
+    Numbers are lines of the tree's own file; a line of another file comes after that file's name.
     """
     file = document.trees[tree].place.file
     rows = [

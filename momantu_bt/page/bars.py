@@ -14,7 +14,7 @@ class Bar:
     """A stretch in which a leaf was running, or the tick in which it began and ended.
 
     begin, end: indices of ticks. label: the node in one line, with the values it started with.
-    notes: what it was at, one after the other.
+    notes: its notes of progress, in order.
     """
 
     node: int

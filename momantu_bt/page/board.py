@@ -16,10 +16,10 @@ _SERVICE = "/service/"
 def board(recording: Recording) -> dict[str, Any]:
     """Columns and tables of what was written when.
 
-    keys: their names: the root's, those of its subtrees in the order of the tree, and those that
-    services publish, with the mark `@` that trees use.
-    values: texts. writes: columns tick, key, value; a value that is written again is kept, one
-    that a service publishes again is not.
+    keys: names of the root's keys, then of its subtrees' in the order of the tree, then of those
+    that services publish, with the mark `@` that trees use.
+    values: texts. writes: columns tick, key, value. It keeps repeated writes of the same value, but
+    not repeated publications by a service.
     """
     keys, values = Texts(), Texts()
     entries = [*_written(recording), *_published(recording)]

@@ -87,9 +87,9 @@ def _file_number(file: str, names: Sequence[str]) -> int:
 
 
 def _counts(recording: Recording) -> tuple[list[int], list[int]]:
-    """How often each node started and failed: from the report, or else counted.
+    """How often each node started and failed, from the report if it is there, or else counted.
 
-    The record shows no start that ends at once as the one before it did.
+    The count misses a start that ends at once with the same status as the start before it.
     """
     told: Sequence[Mapping[str, Any]] = (recording.report or {}).get("nodes", ())
     if len(told) == len(recording.nodes):

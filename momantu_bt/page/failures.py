@@ -14,7 +14,7 @@ from momantu_bt.record.text.failure import tries_text
 from momantu_bt.replay.run_text import report_of
 
 _MOST_LINKS = 200
-"""Of one chain; a longer one is cut."""
+"""Longest chain; a longer one is cut."""
 _CAUSE, _BESIDE = "because of ", "after "
 
 
@@ -93,7 +93,7 @@ def _links(
 def _node_of(nodes: Sequence[NodeInfo], failure: FailureValue, near: int) -> int:
     """The node that failed: below `near`, or else below what is around that, and so on.
 
-    A subtree's nodes are there often, with the same names in the same lines.
+    A tree that is used several times has nodes with the same names and lines each time.
     """
     above: int | None = near
     while above is not None:

@@ -16,17 +16,17 @@ from momantu_bt.record.recording import Recording
 from momantu_bt.world import Site
 
 _MARGIN = 0.5
-"""m around what is drawn."""
+"""Margin around the drawing, m."""
 _SMALLEST = 4.0
-"""m that the picture is at least wide and high."""
+"""Smallest width and height of the picture, m."""
 
 
 def floor(recording: Recording) -> dict[str, Any]:
     """Lengths in m, angles in rad, in the map's frame, or in odom without a map.
 
     image: the floor plan and where it lies. path: columns t, x, y, yaw. scenes: columns t and
-    items, all objects that are believed in from t on; one that is in the hand has no x and y.
-    bounds: left, bottom, right, top of what there is; None when there is nothing.
+    items: all objects that the robot believes in from t on; an object in the hand has no x and y.
+    bounds: left, bottom, right, top of the drawing; None if there is nothing to draw.
     """
     image = plan_image(recording)
     site = _site(recording)

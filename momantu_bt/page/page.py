@@ -34,10 +34,10 @@ SCRIPTS = (
     "source",
     "start",
 )
-"""The page's scripts, in the order of what needs what; together they are one."""
+"""The page's scripts, each after those that it needs; they are joined into one."""
 _FIELD = re.compile(r"@(\w+)@")
 _UNSAFE = str.maketrans({"<": "\\u003c", ">": "\\u003e", "&": "\\u0026"})
-"""What could end a script element, or begin a comment, in the middle of a text."""
+"""Characters that could end a script element or begin a comment inside a text."""
 
 
 def write_page(recording: Recording, path: Path) -> None:

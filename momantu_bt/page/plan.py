@@ -24,7 +24,7 @@ _COLOURS = {"free": (0, 0, 0, 0), "occupied": (112, 118, 126, 255), "unknown": (
 def plan_image(recording: Recording) -> dict[str, Any] | None:
     """The picture and its position, m; None if no floor plan was recorded.
 
-    x, y: its lower left corner. used: left, bottom, right, top of what is known of it.
+    x, y: its lower left corner. used: left, bottom, right, top of its known part.
     """
     if "/map" not in recording.topics():
         return None

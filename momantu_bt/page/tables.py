@@ -13,9 +13,9 @@ from momantu_bt.record.codec import Opaque
 from momantu_bt.skill import MISSING
 
 WIDEST = 300
-"""Characters of a value; longer ones are cut."""
+"""Most characters of a value; longer values are cut."""
 _FEW = 16
-"""Elements of an array that are written out."""
+"""Most elements of an array that are written out."""
 _CLEARED = "(no value)"
 
 

@@ -50,11 +50,11 @@ def as_behaviour(
 
 
 class TreeBehaviour(Behaviour):
-    """A tick of it is a tick of the tree: 0.05 s of its clock, and a step of its world.
+    """Each tick is one tick of the tree: 0.05 s of its clock, and a step of its world.
 
-    Each start is a run of its own, from the values of the file on. A world that is given by name
-    is opened anew at each start; an open one goes on as it is. `terminate` halts the tree and stops
-    the robot.
+    Each start is a new run that begins with the values of the file. A world given by name is
+    opened again at each start; an open world continues as it is. `terminate` halts the tree and
+    stops the robot.
     """
 
     def __init__(self, name: str | None, prepared: Prepared) -> None:
@@ -84,9 +84,9 @@ class TreeBehaviour(Behaviour):
         self._run.begin()
 
     def update(self) -> PyTreesStatus:
-        """One tick. SKIPPED, which py_trees does not know, is SUCCESS: nothing was to be done.
+        """One tick. py_trees has no SKIPPED, so it becomes SUCCESS: there was nothing to do.
 
-        Whatever a tick raises stops the robot first.
+        If a tick raises, the robot is stopped before the error goes on.
         """
         run = self._run
         assert run is not None

@@ -1,7 +1,7 @@
 """A running tree as py_trees sees it: for `py_trees.display`, visitors and `BehaviourTree`.
 
-A view has nothing of its own. It reads its node whenever it is asked; to tick or stop the view is
-to tick or reset the node.
+A view has no state of its own: it reads its node at each access. Ticking the view ticks the node,
+and stopping the view resets the node.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ PY_TREES_STATUS: Mapping[Status, common.Status] = {
     SUCCESS: common.Status.SUCCESS,
     FAILURE: common.Status.FAILURE,
 }
-"""py_trees has no words for IDLE and SKIPPED; both are its INVALID."""
+"""py_trees has no IDLE and no SKIPPED; both become its INVALID."""
 
 
 def view(root: TreeNode) -> Behaviour:
     """A py_trees behaviour for a node, and one for each node below it.
 
     `momantu_bt.engine.build.Built.root` is the root of a tree. Sequences, fallbacks, parallels and
-    decorators are of py_trees' classes of these names, so that displays draw them as such.
+    decorators have py_trees' classes of these names, so that displays draw them correctly.
     """
     return _kind(root)(root)
 
@@ -98,7 +98,7 @@ class SequenceView(NodeView, composites.Sequence):
 
 
 class ReactiveSequenceView(NodeView, composites.Sequence):
-    """Children in turn, from the first on at each tick."""
+    """Children in turn; each tick starts again with the first."""
 
     memory = False
 
@@ -110,7 +110,7 @@ class SelectorView(NodeView, composites.Selector):
 
 
 class ReactiveSelectorView(NodeView, composites.Selector):
-    """The same, from the first on at each tick."""
+    """Children until one succeeds; each tick starts again with the first."""
 
     memory = False
 

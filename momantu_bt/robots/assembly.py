@@ -24,15 +24,15 @@ from momantu_bt.robots.robot_file import RobotFile
 from momantu_bt.robots.structure import root_link, wrong_structure
 
 _DIGITS = 16
-"""Of the hash in the name of an assembled URDF in the cache."""
+"""Length of the hash in the name of an assembled URDF in the cache."""
 
 
 @dataclass(frozen=True, slots=True)
 class Assembled:
     """One URDF of a whole robot.
 
-    root: its `robot` element. path: where it lies. base_joints: virtual joints of the base, the
-    URDF's own or those that were added; None without a drive. files: what it was made from.
+    root: its `robot` element. path: the file. base_joints: virtual joints of the base, the URDF's
+    own or added ones; None: no drive. files: the files that it was made from.
     """
 
     root: etree._Element

@@ -24,7 +24,7 @@ SLACK = 1e-9
 
 
 def findings(robot: RobotFile, root: etree._Element, reading: Reading) -> list[KeyMessage]:
-    """Everything that does not fit; empty when the robot is as it should be.
+    """Everything that does not fit; empty if nothing is wrong.
 
     root: the assembled URDF's element. reading: the file, as it is written.
     """

@@ -15,15 +15,15 @@ from momantu_bt.geometry import Array, Transform
 from momantu_bt.robots.parts import line_of
 
 TRIANGLE_SLACK = 0.01
-"""Relative; how far rounding may carry one principal inertia beyond the sum of the others."""
+"""Rounding may bring one principal inertia above the sum of the others by this relative amount."""
 DENSITY = 500.0
-"""kg per m3 of the box around a part: housings of light metal with motors, and much air."""
+"""Density of the box around a part, kg/m3: light metal housings with motors, and much air."""
 
 
 def inertia_problems(root: etree._Element, file: str = "") -> list[Problem]:
     """The problems of masses and inertias of a URDF's links, each at its line.
 
-    An error: physics would have to invent something. A warning: it is only unlikely.
+    An error: no physical body has these values. A warning: the values are only unlikely.
     file: the URDF's name in the places.
     """
     moving = {

@@ -24,9 +24,9 @@ VIRTUAL_JOINTS = BaseJoints(x="base_x_joint", y="base_y_joint", yaw="base_yaw_jo
 """Names of the joints that are added above a base that has none of its own."""
 _VIRTUAL_LINKS = ("base_origin", "base_x_link", "base_y_link")
 _FAR, _FAST = "1000", "10"
-"""m and m/s; limits of the added slides, beyond every room and every base."""
+"""Limits of the added slides, m and m/s: larger than any room and faster than any base."""
 KEPT = ("link", "joint", "material")
-"""Elements of a URDF that count here; transmissions and extensions of other programs do not."""
+"""Elements of a URDF that are kept; transmissions and extensions of other programs are not."""
 
 
 class Joining:

@@ -13,12 +13,12 @@ LIMITED = ("revolute", "prismatic")
 
 
 def complete_limits(joints: Iterable[etree._Element], limits: Mapping[str, JointLimit]) -> bool:
-    """Write into joints what their limits lack; whether anything was lacking.
+    """Write missing limits into joints; return whether any was missing.
 
-    limits: of the robot file, by joint. A URDF whose range is empty has none: programs write a
-    hinge from 0 to 0 where nobody gave its ends. A hinge that has no ends in the robot file
-    either turns for ever; a joint that the robot file does not know stays where it is. An effort
-    of 0 is one that nobody gave.
+    limits: the robot file's, by joint. An empty range in a URDF counts as missing: programs write
+    0 to 0 for a hinge if nobody gave its ends. If the robot file gives no
+    ends either, the hinge turns for ever. A joint that is not in the robot file does not move. An
+    effort of 0 counts as missing.
     """
     lacking = [_complete(joint, limits.get(str(joint.get("name")))) for joint in joints]
     return any(lacking)

@@ -15,7 +15,7 @@ from momantu_bt.robots.parts import LoadedPart, line_of
 MESHES = "MOMANTU_BT_MESHES"
 """Environment variable: a folder with `<robot>/<part>/<link>.…`, used instead of a part's own."""
 ENDINGS = (".glb", ".dae", ".obj", ".stl")
-"""Kinds of mesh files, the first found is taken; upper case counts too."""
+"""Suffixes of mesh files, also in upper case; the first one found is used."""
 
 
 def users_folder(robot: str, part: str, given: str | None, folder: Path) -> Path | None:

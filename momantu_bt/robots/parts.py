@@ -16,7 +16,7 @@ from momantu_bt.robots.robot_file import PackageFile, PartSource
 from momantu_bt.robots.xacro_files import expand
 
 MOST_BYTES = 20_000_000
-"""No robot's URDF is longer."""
+"""Largest URDF that is read; no robot's is longer."""
 _TAIL = 3
 """Parts of a path that name a file of a package: `fetch_description/meshes/torso.dae`."""
 
@@ -25,8 +25,8 @@ _TAIL = 3
 class LoadedPart:
     """One part's URDF.
 
-    path: the file that the robot file names. root: its `robot` element. files: everything it was
-    read from, by names that mean something elsewhere. meshes: the user's folder of meshes.
+    path: the file that the robot file names. root: its `robot` element. files: all files that it
+    was read from, by names that other machines can use. meshes: the user's folder of meshes.
     """
 
     name: str

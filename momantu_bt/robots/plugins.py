@@ -12,7 +12,7 @@ from momantu_bt.robot import RobotDescription
 from momantu_bt.robots.reader import read_robot
 
 GEOMETRY = (".urdf", ".xacro")
-"""How files end that a robot file names, and that somebody may take for one."""
+"""Suffixes of files that a robot file names and that a user may mistake for a robot file."""
 
 Describe: TypeAlias = Callable[[], RobotDescription]
 

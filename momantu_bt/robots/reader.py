@@ -24,8 +24,8 @@ def read_robot(path: Path) -> RobotDescription:
 
     Raises:
         RobotNotInstalled: its files are in a Python package that is not installed.
-        RobotFileError: the file, or one that it names, is missing or wrong; every problem is told
-            with line and column.
+        RobotFileError: the file, or one that it names, is missing or wrong; the message gives every
+        problem with line and column.
     """
     reading, robot = _read(path)
     file = reading.path.absolute()

@@ -14,7 +14,7 @@ from momantu_bt.robots.limits import LIMITED
 from momantu_bt.robots.parts import LoadedPart, line_of
 
 JOINT_TYPES = ("fixed", "revolute", "continuous", "prismatic")
-"""Joints with at most one coordinate; `planar` and `floating` ones nothing here can drive."""
+"""Joints with at most one coordinate; nothing here can drive `planar` and `floating` joints."""
 _THREE = (("origin", "xyz"), ("origin", "rpy"), ("axis", "xyz"))
 _SHAPES = {"box": ("size",), "cylinder": ("radius", "length"), "sphere": ("radius",)}
 _INERTIA = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")

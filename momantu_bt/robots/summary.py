@@ -14,7 +14,7 @@ from momantu_bt.robots.assembly import load_parts
 from momantu_bt.robots.reader import read_robot_file
 
 HOME = "home"
-"""The named pose in which heights of sensors are told."""
+"""The named pose for the heights of sensors."""
 
 
 def summary(description: RobotDescription) -> dict[str, Any]:

@@ -1,8 +1,8 @@
 """Expand xacro files, without ROS.
 
 A xacro file is a program: it evaluates Python expressions, reads files and the environment. The
-`xacro` package keeps expressions from Python's built-in functions, which does not stop a
-file that was written to break through. Only files that one trusts may be expanded.
+`xacro` package hides Python's built-in functions from expressions, but a malicious file can get
+around that. Expand only files that you trust.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ with lazily():
 _LOCK = threading.Lock()
 """xacro keeps its state in module variables."""
 _INDEX = "ament_index_python"
-"""ROS's package index, which xacro asks for what `$(find …)` names."""
+"""ROS's package index; xacro looks up the packages of `$(find …)` in it."""
 
 
 def expand(
@@ -39,7 +39,7 @@ def expand(
     folder: of the robot file; `$(find x)` is looked up beside it and among installed packages.
 
     Raises:
-        PartError: xacro objects; with its words and the file.
+        PartError: xacro reports an error; the message has its words and the file.
     """
     given = {name: _argument(value) for name, value in args.items()}
     with _LOCK, _package_index(path, folder) as missing:
@@ -69,7 +69,7 @@ def _said(path: Path, message: str, stack: list[str | None]) -> str:
 def _package_index(path: Path, folder: Path) -> Iterator[list[str]]:
     """Stand in for ROS's package index while a file is expanded.
 
-    Yields: sentences about packages that were asked for and are not there.
+    Yields: sentences about requested packages that are missing.
     """
     missing: list[str] = []
 

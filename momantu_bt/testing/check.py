@@ -30,7 +30,7 @@ def check_skill(
     robot, site, services), new ones at each call. Missing arguments are made from the types of the
     ports, in a scripted room with the installed services. The default is `Skill.rehearsal`.
     max_time: simulated time of a run, s. halts: the skill is halted at each of its ticks; in a
-    longer run at this many, with preference for ticks at which its phase changes.
+    longer run, only at this many, first of all at ticks where its phase changes.
 
     Returns: the problems; for a correct skill the list is empty or has only notes.
     """

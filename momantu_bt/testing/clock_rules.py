@@ -38,7 +38,7 @@ _SEEDED = frozenset(
         *(f"numpy.random.{bits}" for bits in ("PCG64", "MT19937", "Philox", "SFC64", "PCG64DXSM")),
     }
 )
-"""Functions that are allowed if they get a seed."""
+"""Functions that are allowed if the call passes a seed."""
 _TYPES = frozenset({"numpy.random.Generator", "numpy.random.BitGenerator"})
 
 

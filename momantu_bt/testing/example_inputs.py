@@ -49,7 +49,7 @@ def example_inputs(
 ) -> dict[str, Any]:
     """`given` and an example value for each other required input.
 
-    Of inputs that exclude each other, the first one gets a value.
+    If inputs exclude each other, the first one gets a value.
 
     Raises:
         NoExample: no example is known for the type of an input.

@@ -21,7 +21,7 @@ URDF = Path(__file__).parent / "eye_in_hand.urdf"
 _ARM = ("turn", "shoulder", "elbow", "roll", "bend", "twist")
 _FINGERS = ("left_slide", "right_slide")
 _POSES = {
-    # the joints of each, in their order; the camera looks ahead and down, in "carry" level
+    # joint values of each pose, in order; the camera looks ahead and down, in "carry" horizontally
     "home": (0.01, 4.08, 0.66, 0.23, 1.11, 2.33),
     "ready": (-0.05, 4.28, 5.44, 0.02, -1.23, -2.55),
     "carry": (-0.38, 3.19, 0.46, -2.71, -2.31, 0.54),

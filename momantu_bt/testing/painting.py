@@ -19,11 +19,11 @@ from momantu_bt.testing.robot import ScriptedRobot
 from momantu_bt.world import seeded
 
 FAR = 50.0
-"""m; rays that hit nothing end here."""
+"""Length of rays that hit nothing, m."""
 SUBPIXELS = 4
-"""Rays per pixel and axis that give a card its grey."""
+"""Rays per pixel and axis; their mean is the grey of a card."""
 GAMMA = 2.2
-"""From light to the values of colours."""
+"""A colour value is light to the power of 1 / GAMMA."""
 
 
 @dataclass(frozen=True)
@@ -128,8 +128,8 @@ Solid = Block | Round | Card
 class Painter:
     """Draws what a scripted robot's first camera sees of `solids` (odom) and the floor.
 
-    noise: sigma of depth z is this times z2, 1/m. holes: share of pixels lost at depth edges.
-    mounting: where the camera truly sits in its own frame. All errors off: `exact=True`.
+    noise: sigma of depth z is noise times z2, 1/m. holes: share of pixels lost at depth edges.
+    mounting: the camera's true pose in its own frame. `exact=True` turns all errors off.
     """
 
     solids: Sequence[Solid]

@@ -215,7 +215,7 @@ class ScriptedRobot:
 
 
 LIMIT_SLACK = 1e-3
-"""rad or m by which a goal may exceed a joint's limit: joints are measured with an error."""
+"""A goal may exceed a joint's limit by this, rad or m, as joint measurements have an error."""
 
 _TAKES: dict[ActuatorKind, tuple[type[Any], ...]] = {
     ActuatorKind.BASE: (BaseVelocity,),

@@ -79,7 +79,7 @@ def run_skill(
 
     robot, site: by default a ScriptedRobot at the origin and a scripted site. Or give `world`,
     which has both. services: by name. Instances of `Service` are started, and updated at their
-    rate; with `frames` they count as started already. Other objects are used as they are.
+    rate; if `frames` is given, they count as already started. Other objects are used unchanged.
     map_from_odom: set in the frame buffer at the start; by default the identity if no service is
     a Localization.
     frames: the buffer of an earlier run in the same world, to run skills one after the other.

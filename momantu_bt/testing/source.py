@@ -15,7 +15,7 @@ from momantu_bt.formats.places import Place
 from momantu_bt.skill import Skill
 
 MOST_MODULES = 500
-"""Most modules of one package that are read."""
+"""Largest number of modules that are read from one package."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,7 +17,7 @@ from momantu_bt.bench.rows.store import Store
 from momantu_bt.engine.interrupts import Interrupts
 
 MOST_REFUSED = 3
-"""Episodes in a row that cannot begin, after which no other is tried."""
+"""After this many consecutive episodes that cannot begin, the bench stops."""
 
 
 class Watcher(Protocol):
@@ -38,7 +38,11 @@ class Watcher(Protocol):
 
 @dataclass(slots=True)
 class Ended:
-    """How a bench ended. refused: rows of episodes that could not begin, the last ones again."""
+    """How a bench ended.
+
+    refused: rows of the episodes that could not begin. refused_in_a_row: the latest of them, since
+    the last episode that did begin.
+    """
 
     interrupted: bool = False
     refused: list[Row] = field(default_factory=list)
@@ -49,7 +53,7 @@ def carry_out(work: Sequence[tuple[Plan, Store]], engine: Engine, watcher: Watch
     """Run the missing episodes, the trees in turn, and add each row to its store when it ends.
 
     Raises:
-        OutputError: a row cannot be written; those before it are.
+        OutputError: a row cannot be written; the rows before it are written.
     """
     asked = [plan.specs(store.rows, store.folder) for plan, store in work]
     homes = {spec.key: pair for specs, pair in zip(asked, work, strict=True) for spec in specs}
@@ -61,7 +65,7 @@ def carry_out(work: Sequence[tuple[Plan, Store]], engine: Engine, watcher: Watch
         try:
             with closing(engine.run(waiting)) as rows:
                 for row in rows:
-                    interrupts.patient = True  # a row that has come is kept before anything else
+                    interrupts.patient = True  # first keep a row that has arrived
                     _take(row, *homes[row["key"]], ended)
                     watcher.row(row)
                     interrupts.patient = False

@@ -28,10 +28,10 @@ class Engine(Protocol):
     def run(self, specs: Iterable[EpisodeSpec]) -> Generator[Row, None, None]:
         """Rows in the order in which episodes end; each requested episode has one.
 
-        A row whose `ended` is "refused" is of an episode that could not begin; `output` says why.
+        If an episode could not begin, its row has `ended` "refused", and `output` says why.
         Closing the generator, or an exception in it, ends everything that runs.
 
         Raises:
-            EngineError: what it runs on is not there, or is lost.
+            EngineError: the machine or cluster that runs the episodes is missing or was lost.
         """
         ...

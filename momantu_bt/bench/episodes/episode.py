@@ -1,7 +1,7 @@
 """Run one episode and write its row: `python -m momantu_bt.bench.episodes.episode SPEC ROW PARENT`.
 
-SPEC and ROW are JSON files; PARENT is the number of the process that waits for it: without that
-one this one ends too.
+SPEC and ROW are JSON files. PARENT is the number of the process that waits for this one; when it
+ends, this process ends too.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ _KEPT = (
     *("world", "robot", "status", "success", "failure", "unmet", "measures", "sim_time_s"),
     *("wall_time_s", "start_time_s", "fingerprint", "error", "incidents", "claims", "faults"),
 )
-"""What a row takes over from a report as it is."""
+"""Fields that a row copies unchanged from a report."""
 
 
 class Refused(MomantuError):
@@ -56,7 +56,7 @@ def main(arguments: Sequence[str]) -> int:
     """
     told, row, parent = arguments
     _end_with(int(parent))
-    signal.pthread_sigmask(signal.SIG_SETMASK, ())  # workers of Ray hand on what they block
+    signal.pthread_sigmask(signal.SIG_SETMASK, ())  # Ray workers pass their blocked signals on
     spec = EpisodeSpec.from_dict(json.loads(Path(told).read_text(encoding="utf-8")))
     try:
         report, tries = run(spec)
@@ -74,7 +74,7 @@ def run(spec: EpisodeSpec) -> tuple[Report, int]:
     """Run it in this process; also how often its nodes tried again.
 
     Raises:
-        Refused: the files or the code are not those that the spec names.
+        Refused: the files or the code differ from those that the spec names.
         FaultError: the tree, the robot or the world cannot have the fault.
         TreeError, LaunchError, WorldError and the like: it cannot begin.
     """
@@ -92,7 +92,7 @@ def run(spec: EpisodeSpec) -> tuple[Report, int]:
     prepared = prepare(spec.tree, options)
     _check(spec, prepared.document, prepared.registry)
     if spec.record is not None:
-        shutil.rmtree(spec.record, ignore_errors=True)  # of an attempt that was interrupted
+        shutil.rmtree(spec.record, ignore_errors=True)  # left by an interrupted attempt
     executors: list[Executor] = []
 
     def watch(executor: Executor) -> list[Observer]:

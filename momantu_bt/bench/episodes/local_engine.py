@@ -9,7 +9,7 @@ from momantu_bt.bench.episodes.process import EpisodeProcess
 from momantu_bt.bench.rows.spec import EpisodeSpec, Row
 
 PAUSE = 0.05
-"""Seconds between two looks at the processes."""
+"""Seconds between two checks of the processes."""
 
 
 class LocalEngine:

@@ -20,8 +20,8 @@ _PROJECT = "pyproject.toml"
 class Parcel:
     """A tree file, all that it includes, and the file of faults beside it.
 
-    main: the tree's own file. texts: of all files, by their paths below one folder, with `/`.
-    shown: what they are called where they come from.
+    main: the tree's own file. texts: the text of each file, by its path below one folder, with `/`.
+    shown: the names of the files on the machine that they come from.
     """
 
     main: str

@@ -29,13 +29,13 @@ from momantu_bt.bench.rows.spec import (
 )
 
 _WITHOUT_ROW = {os.EX_UNAVAILABLE: IMPOSSIBLE, os.EX_TEMPFAIL: REFUSED}
-"""How a process ended that left no row, by its exit code; what it printed says why."""
+"""Exit code -> how a process without a row ended; its printed output says why."""
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "LP_NUM_THREADS": "1"}
-"""Numerical libraries and the software renderer, each with one thread: episodes share the cores."""
+"""Give numerical libraries and the software renderer one thread each: episodes share the cores."""
 _TRACEBACKS = re.compile(r"^Timeout \(\d+:\d\d:\d\d", re.MULTILINE)
-"""How faulthandler begins when the run's own watchdog has it end the process."""
+"""The start of faulthandler's output when the run's own watchdog makes it end the process."""
 MOST_OUTPUT = 4000
-"""Characters of what a process said that are kept when it left no row."""
+"""Keep this many characters of a process's output when it left no row."""
 
 
 class EpisodeProcess:
@@ -82,7 +82,7 @@ class EpisodeProcess:
                 self._overdue = True
                 self._signal()
             return None
-        self._signal()  # what it started and left behind
+        self._signal()  # ends the children that it left behind
         code = self._process.returncode = os.waitstatus_to_exitcode(status)
         row = self._row(code)
         row["memory_mb"] = round(usage.ru_maxrss / 1024.0, 1)

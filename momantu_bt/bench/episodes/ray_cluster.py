@@ -19,16 +19,16 @@ from typing import Any
 from momantu_bt.bench.episodes.engine import EngineError
 
 AUTO = "auto"
-"""As an address: the cluster that `ray start` began on this machine."""
+"""The address of the cluster that `ray start` began on this machine."""
 _LOOPBACK = {"RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER": "0"}
 """Ray's own setting for machines with firewalls: it listens on the loopback interface alone."""
 _NOT_NICE = {"RAY_worker_niceness": "0"}
-"""Workers would give way to all other programs, and episodes with them."""
+"""Without it, workers and their episodes would run at a lower priority than all other programs."""
 _NO_STATISTICS = {"RAY_USAGE_STATS_ENABLED": "0"}
 _STORE = 256 * 1024**2
 """Bytes of Ray's object store on this machine: rows and the records of a few episodes."""
 _REACHABLE = 5.0
-"""Seconds within which a cluster answers."""
+"""Seconds within which a cluster must answer."""
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
@@ -36,8 +36,8 @@ _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 def cluster(address: str | None, jobs: int) -> Iterator[Any]:
     """A connection to Ray; at the end it disconnects, and ends what it has started.
 
-    address: None for a cluster of this machine alone, with `jobs` workers, that nobody else can
-    use; `"auto"` or HOST:PORT for one that runs.
+    address: None starts a private cluster on this machine alone, with `jobs` workers; `"auto"` or
+    HOST:PORT connects to a running one.
 
     Raises:
         EngineError: Ray is not installed, or there is no such cluster.

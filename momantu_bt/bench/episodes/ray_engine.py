@@ -18,16 +18,16 @@ from momantu_bt.bench.rows.spec import CRASHED, REFUSED, EpisodeSpec, Row
 from momantu_bt.formats.files import OutputError
 
 MOST_DEATHS = 3
-"""Workers that may die under one episode; then it has crashed."""
+"""When this many workers have died while running one episode, it counts as crashed."""
 _PAUSE = 0.5
-"""Seconds after which it is looked whether there are more machines."""
+"""Seconds between two checks for more machines."""
 _GRACE = 10.0
 """Seconds that workers have to end their episodes when the bench ends."""
 
 
 @dataclass(slots=True)
 class _Task:
-    """An episode that a worker has. deaths: why those before it did not bring it to its end."""
+    """An episode that a worker runs. deaths: why earlier workers did not finish it."""
 
     spec: EpisodeSpec
     begun: float = field(default_factory=time.monotonic)
@@ -38,8 +38,8 @@ class RayEngine:
     """Implements `Engine`: one task for each episode, which starts its process where it is.
 
     jobs: episodes at a time; None for as many as there are processors. address: as `cluster`
-    takes it. A worker or a machine that dies costs only time: its episode is begun again
-    elsewhere. The one that takes down every worker has a row with `ended` "crashed".
+    takes it. If a worker or a machine dies, its episode starts again elsewhere. An episode that
+    takes down every worker gets a row with `ended` "crashed".
     """
 
     def __init__(self, jobs: int | None, address: str | None = None) -> None:
@@ -58,7 +58,7 @@ class RayEngine:
         return tuple(task.spec for task in self._tasks.values())
 
     def run(self, specs: Iterable[EpisodeSpec]) -> Generator[Row, None, None]:
-        """Rows as episodes end; when the iterator is closed nothing runs on.
+        """Yield rows as episodes end; closing the iterator ends all that runs.
 
         Raises:
             EngineError: Ray is not installed, or the cluster cannot be reached.

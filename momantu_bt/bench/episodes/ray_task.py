@@ -25,9 +25,9 @@ def order(spec: EpisodeSpec, parcel: Parcel) -> dict[str, Any]:
 def errand() -> Callable[[dict[str, Any]], dict[str, Any]]:
     """The function that Ray takes to its workers.
 
-    Being local, it travels as code and not by name: so it can say in a sentence that this package
-    is not there, or is another version. It answers with `row` and `record`, the files of the
-    episode's record by name; or with `refused`, why it cannot run there.
+    It is a local function, so Ray sends its code and not its name. It can therefore report that
+    the worker lacks this package or has another version. It returns `row` and `record` (the files
+    of the episode's record by name), or `refused` (why it cannot run there).
     """
 
     def run(order: dict[str, Any]) -> dict[str, Any]:

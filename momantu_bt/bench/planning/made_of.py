@@ -1,7 +1,7 @@
 """The inputs of an episode (versions, tree files, code, values) and the key made of them.
 
-A digest of the code is among it, since the version of a package that is being worked on stays the
-same from one edit to the next.
+The inputs include a digest of the code, because edits to a package under development do not change
+its version.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ _BESIDE = {
         *("trees", "problems", "constraints.txt", "pytest_plugin.py"),
     )
 }
-"""Parts of a package that no episode depends on; a tree's own files count by themselves."""
+"""Parts of a package that no episode depends on; a tree's own files are counted separately."""
 
 
 def made_of(
@@ -56,10 +56,10 @@ def made_of(
     max_time: float = 600.0,
     referee: bool = True,
 ) -> dict[str, str]:
-    """All that decides an episode but its seed and its fault, by names that people understand.
+    """All that decides an episode except its seed and its fault, by readable names.
 
-    Files count by their names relative to the main one and by their texts, so that another
-    machine finds the same.
+    Files count by their text and by their name relative to the main file, so that another
+    machine gets the same result.
     """
     world = world_of(document, world) or WITHOUT_WORLD
     if robot is None and world != WITHOUT_WORLD:

@@ -14,7 +14,7 @@ from momantu_bt.bench.rows.store import RESULTS, StoreError, read_rows
 
 DECIDED: tuple[str, ...] = ("ended", "status", "success", "unmet", "fingerprint", "sim_time_s")
 DECIDED += ("tries", "incidents", "claims", "faults", "outcome")
-"""Fields that an episode's key decides. The others tell of the machine: its speed, its memory."""
+"""Fields that an episode's key decides. Others describe the machine: its speed, its memory."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,9 +37,9 @@ class Conflict:
 class Merged:
     """Several folders as one.
 
-    wanted: all that any of them was to run. rows: by key, each once, in the order of `wanted`;
-    those of conflicts are not among them, since nobody knows which is right. doubles: rows that
-    were in a folder before in another one, and agreed. others: rows of something else.
+    wanted: all episodes that any folder planned. rows: by key, each once, in the order of `wanted`,
+    without the rows in conflict, since nobody knows which is right. doubles: rows that an earlier
+    folder also has, with equal results. others: rows of something else.
     """
 
     wanted: Wanted

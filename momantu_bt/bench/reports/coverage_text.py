@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from momantu_bt.bench.statistics.coverage import GUARD, HANDLER, NODE, Point
 
 MARK = "!"
-"""Before a line with something that never happened."""
+"""Marks a line with something that never happened."""
 _WORDS = {
     NODE: "nodes ran",
     HANDLER: "handlers answered",

@@ -20,7 +20,7 @@ _NOT_HAPPENED = (Outcome.NOT_MET, Outcome.IMPOSSIBLE)
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """One fault. seeds: by outcome. why: why it cannot happen, "" if it can."""
+    """One fault. seeds: by outcome. why: the reason why it cannot happen, "" if it can."""
 
     demand: Demand
     seeds: Mapping[Outcome, Sequence[int]]

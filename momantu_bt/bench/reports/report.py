@@ -12,7 +12,7 @@ from momantu_bt.bench.statistics.summary import Summary
 from momantu_bt.formats.files import write_whole
 
 _TOO_LONG = ("nodes", "made_of")
-"""What rows hold that a report leaves to `results.jsonl`, or says once."""
+"""Fields of rows that a report leaves to `results.jsonl`, or gives only once."""
 
 
 def report(rows: Sequence[Row], more: Mapping[str, Any]) -> dict[str, Any]:

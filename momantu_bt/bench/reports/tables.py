@@ -22,7 +22,7 @@ _CLAIM_COUNTS = {
     "judged_failures": "judged",
     "false_failures": "false",
 }
-"""Counts of a report's claims, and what they are called in the table."""
+"""Counts of a report's claims, and their names in the table."""
 
 
 def row_text(row: Row) -> str:

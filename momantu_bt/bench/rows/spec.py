@@ -11,8 +11,8 @@ Row: TypeAlias = dict[str, Any]
 """One finished episode, a line of `results.jsonl`; see `docs/bench.md` for its fields."""
 
 REPORT, HUNG, KILLED, CRASHED = "report", "hung", "killed", "crashed"
-"""How an episode's process ended: it left its row; a watchdog ended it, the one outside by a signal
-or the run's own with exit code 1; another signal did; it exited without a row."""
+"""How an episode's process ended: it left its row; a watchdog ended it (the outer one by a signal,
+the run's own with exit code 1); another signal ended it; it exited without a row."""
 IMPOSSIBLE = "impossible"
 """Its fault cannot happen in this tree, robot or world."""
 REFUSED = "refused"
@@ -23,11 +23,11 @@ REFUSED = "refused"
 class EpisodeSpec:
     """The inputs of one episode, and where its record goes.
 
-    key: names the episode wherever it runs. tree: path of its file. world, robot: as asked for.
+    key: names the episode on every machine. tree: path of its file. world, robot: as requested.
     values: keys of the root's board, raw as in a file. max_time: simulated seconds. referee:
     False takes it out, and what the tree says counts. fault: as written, None without one.
-    record: a folder to make, None for none. limit: seconds of wall time after which the process
-    is ended from outside. made_of: whatever else its outcome depends on, by name (versions,
+    record: a folder to make; None: no record. limit: seconds of wall time after which the watchdog
+    ends the process from outside. made_of: all else that decides the outcome, by name (versions,
     digests of files and code).
     """
 

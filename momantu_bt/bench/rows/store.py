@@ -1,7 +1,7 @@
 """The rows of a bench on disk: a folder with an append-only `results.jsonl`.
 
-Each row is one write and is on the disk before the next episode counts as done. A line that was
-cut by a crash is dropped when the folder is opened the next time; all others stay.
+Each row is one write and is on the disk before the next episode counts as done. If a crash cuts a
+line, the next opening of the folder drops that line and keeps all others.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ class Store:
         return self._rows
 
     def add(self, row: Row) -> None:
-        """Add a row; once this returns, no crash takes it away.
+        """Add a row; once this returns, the row survives a crash.
 
         Raises:
             OutputError: the disk is full; nothing of the row stays.
@@ -102,7 +102,7 @@ class Store:
 
 
 def read_rows(folder: Path) -> list[Row]:
-    """All whole rows of a folder of results, oldest first; empty before there is a file.
+    """All whole rows of a folder of results, oldest first; empty if there is no file yet.
 
     Raises:
         StoreError: the file cannot be read, or a whole line in it is not a row.

@@ -19,9 +19,9 @@ NODE, HANDLER, GUARD = "node", "handler", "guard"
 class Point:
     """One thing in a tree file that can happen or not.
 
-    kind: NODE, HANDLER (an entry under `catch`) or GUARD (`skip_if` and the like). text: what
-    the file calls it. count: how often the node started, the handler answered, the guard held.
-    asked: of a guard, how often it was asked.
+    kind: NODE, HANDLER (an entry under `catch`) or GUARD (`skip_if` and the like). text: its name
+    in the file. count: how often the node started, the handler answered or the guard held.
+    asked: for a guard, how often it was evaluated.
     """
 
     kind: str
@@ -63,7 +63,7 @@ class _Counted:
 def coverage(document: Document, rows: Iterable[Row]) -> list[Point]:
     """All points of the file and of those it includes, with counts over rows of this document.
 
-    Nodes that no tree reaches from the main one have count 0, as those that never ran.
+    Nodes that the main tree never reaches have count 0, like nodes that never ran.
     """
     counted = {
         id(node): _counted(node) for tree in document.trees.values() for node in tree.root.walk()

@@ -15,7 +15,8 @@ Z = 1.959963984540054
 def wilson(successes: int, episodes: int) -> Interval:
     """95 % interval of a success rate: Wilson, J. Am. Stat. Assoc. 22 (1927) 209.
 
-    All rates p with |successes/episodes - p| <= Z sqrt(p (1 - p) / episodes); 0 to 1 for none.
+    All rates p with |successes/episodes - p| <= Z sqrt(p (1 - p) / episodes).
+    Without episodes, 0 to 1.
     """
     if episodes == 0:
         return 0.0, 1.0

@@ -14,7 +14,7 @@ from momantu_bt.formats.seeds import seeds_text
 
 @dataclass(frozen=True, slots=True)
 class Paired:
-    """Seeds by who succeeded. slower: s, A's simulated time minus B's where both succeeded."""
+    """Seeds by which tree succeeded. slower: A's simulated time minus B's if both did, s."""
 
     both: tuple[int, ...]
     only_a: tuple[int, ...]

@@ -38,9 +38,9 @@ class Spread:
 class Summary:
     """Figures of some rows.
 
-    interval: Wilson's of the success rate. sim_time_s: of successes. speed: simulated seconds per
-    second of wall time. tries: how often nodes tried again, over all episodes; retried: in how
-    many episodes any did. claims: per skill, the auditor's counts. ended: how the processes did.
+    interval: Wilson's, of the success rate. sim_time_s: of successes. speed: simulated seconds per
+    second of wall time. tries: retries of nodes over all episodes. retried: number of episodes
+    with a retry. claims: the auditor's counts per skill. ended: how the processes ended.
     """
 
     episodes: int

@@ -68,7 +68,7 @@ def plan_of(tree: str, seeds: Sequence[int], how: HowToRun) -> tuple[Plan, Docum
     document = load(place, registry, values=how.values, **told).document
     check_world(document, how.world, skills_in(document), registry)
     if WORLDS.is_path(document.world or ""):
-        # an episode elsewhere has the tree in another folder
+        # on another machine, an episode has the tree in another folder
         told["world"] = told["world"] or WORLDS.absolute(world_of(document, None))
     told |= {"max_time": how.max_time, "referee": how.referee}
     made = made_of(document, registry, values=how.values, **told)

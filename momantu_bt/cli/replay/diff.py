@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 MOST_LINES = 20
-"""Of one text's diff, and of the nodes whose counts differ; `--json` has them all."""
+"""Lines shown of one text's diff, and of the nodes whose counts differ; `--json` has them all."""
 _WIDEST = 160
 
 

@@ -18,13 +18,13 @@ from momantu_bt.replay.moment_text import board_lines, failures_of
 from momantu_bt.replay.stepper import KEYS, Stepper
 
 PICTURE_EVERY = 0.05
-"""Seconds of wall time between two pictures while it plays."""
+"""Seconds of wall time between two redraws while the record plays."""
 IDLE = 0.5
-"""The same while nothing happens: for the window's size."""
+"""The same while nothing happens, to notice a new window size."""
 FAILED = 4
-"""Lines of failures at most."""
+"""Largest number of lines of failures."""
 SAID = 4
-"""Lines of what was said last, below the tree."""
+"""Lines of the latest messages, below the tree."""
 
 
 def show(stepper: Stepper, told: list[tuple[int, str]], console: Console) -> None:

@@ -16,9 +16,9 @@ from momantu_bt.record.text.lines import tree_lines
 from momantu_bt.world import TreeLine
 
 REFRESH = 0.1
-"""Seconds of wall time between two pictures: enough for the eye, cheap for the run."""
+"""Seconds of wall time between two redraws: smooth to look at, and cheap for the run."""
 LAST = 6
-"""Lines of what happened last, below the tree."""
+"""Lines of the latest events, below the tree."""
 
 _MARKS = {
     "RUNNING": ("*", "bold cyan"),

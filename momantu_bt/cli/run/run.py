@@ -138,7 +138,7 @@ class NotStarted(MomantuError):
 class _Shown:
     """The output for a person, during and after the run.
 
-    view_port: of the view in a browser; None without one. terminal: where somebody answers.
+    view_port: port of the view in a browser; None: no view. terminal: where a person answers.
     breaks: nodes to stop before.
     """
 

@@ -15,11 +15,11 @@ import typer
 from momantu_bt.engine.person import Interrupted, Question
 
 LONGEST = 4096
-"""Bytes of one line: what a terminal takes in one."""
+"""Most bytes of one line that a terminal accepts."""
 
 
 class Display(Protocol):
-    """Whatever draws on the terminal meanwhile."""
+    """Anything that draws on the terminal at the same time."""
 
     def paused(self) -> AbstractContextManager[None]:
         """While it is entered, nothing is drawn."""
@@ -36,7 +36,7 @@ class Terminal:
         """Ask at the keyboard; None at the end of the input (Ctrl-D).
 
         Raises:
-            Interrupted: Ctrl-C, which then interrupts the run as elsewhere.
+            Interrupted: Ctrl-C; it then interrupts the run as usual.
         """
         with self.drawing():
             if complaint:
@@ -61,7 +61,7 @@ class Terminal:
         """One line; None at the end of the input.
 
         Raises:
-            Interrupted: a signal came; who handles it elsewhere has been told.
+            Interrupted: a signal came; its usual handler has been told.
         """
         keyboard = sys.stdin.fileno()
         with _signals() as signals:

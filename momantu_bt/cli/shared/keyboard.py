@@ -33,13 +33,13 @@ _SEQUENCES = {
     "\x08": "backspace",
     "\x04": "q",
 }
-"""What terminals send for keys that are not characters; the end of the input (Ctrl-D) leaves."""
+"""Sequences that terminals send for special keys; the end of the input (Ctrl-D) means leave."""
 _KEY = re.compile(r"\x1b\[[0-9;]*[A-Za-z~]|\x1bO[A-Z]|.", re.DOTALL)
 _MOST = 1024
 
 
 class Keyboard:
-    """While it is entered, the terminal gives single keys. Standard input must be one."""
+    """A context in which the terminal gives single keys. Standard input must be a terminal."""
 
     def __init__(self) -> None:
         self._file = sys.stdin.fileno()

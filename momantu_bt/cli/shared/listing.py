@@ -15,14 +15,14 @@ from momantu_bt.plugins import Group
 def listing(group: Group[Any], about: Callable[[Any], str], as_json: bool) -> None:
     """Print every plug-in of an entry-point group with what `about` returns for it.
 
-    One that is broken is listed with the reason.
+    List a broken plug-in with the reason.
     """
     rows: list[tuple[str, str]] = []
     broken: set[str] = set()
     for name in group:
         try:
             rows.append((name, about(group.load(name))))
-        except Exception as error:  # other people's code: whatever it raises is its reason
+        except Exception as error:  # a plug-in may raise anything; list it as the reason
             rows.append((name, f"broken: {error}"))
             broken.add(name)
     if as_json:

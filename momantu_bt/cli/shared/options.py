@@ -38,6 +38,6 @@ Kept: TypeAlias = Annotated[
 ]
 
 OUT = Path("runs/bench")
-"""Where results are kept unless something else is said, in a folder for each tree."""
+"""The default folder for results, with a folder for each tree."""
 RECORD = ("failures", "all", "none")
 """Values of `--record`."""

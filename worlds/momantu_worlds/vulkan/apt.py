@@ -1,7 +1,7 @@
 """A private apt state: downloads from the machine's package sources without root.
 
-Everything is asked of the machine (where its packages come from, how it reaches them, which keys
-it trusts); lists, cache and state live in a scratch folder, and the system is only read.
+The machine's own settings say where its packages come from, how it reaches them and which keys it
+trusts. Lists, cache and state are in a scratch folder; the system is only read.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 APT_SECONDS = 900.0
-"""One apt command at most; a mirror that takes longer is useless."""
+"""Longest time of one apt command; a slower mirror is useless."""
 
 _KEYRINGS = "/usr/share/keyrings"
 _STATUS = "/var/lib/dpkg/status"
@@ -82,7 +82,7 @@ class PrivateApt:
             release: prefer this suite's versions, such as `bookworm-backports`; None: the usual.
 
         Raises:
-            AptError: apt refuses; its words.
+            AptError: apt refuses; the message has apt's words.
         """
         self._run("update")
         target = [] if release is None else ["-t", release]

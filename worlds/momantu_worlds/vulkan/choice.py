@@ -32,7 +32,7 @@ _VARIABLES = (
     "XDG_DATA_DIRS",
 )
 _KEPT = 8
-"""Remembered choices: one per virtual environment and state of the machine, oldest go first."""
+"""Most remembered choices, one per virtual environment and machine state; oldest go first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +73,7 @@ def remembered(state: str) -> Choice | None:
 
 
 def choose(state: str) -> Choice:
-    """Probe the ways from the least intrusive on, and remember the first that renders.
+    """Probe the ways, the least intrusive first, and remember the first that renders.
 
     Raises:
         VulkanMissingError: none renders.

@@ -33,7 +33,7 @@ from momantu_worlds.vulkan.private import MANIFEST
 WINDOW_PACKAGE = "libx11-6"
 _WINDOW_LIBRARY = "libX11.so.6"
 _RUNTIME = ("libc.so", "libm.so", "libdl.so", "libpthread.so", "librt.so", "ld-linux", "libstdc++")
-"""Never taken along: a process has one C and C++ runtime, the machine's."""
+"""Never unpacked: a process has one C and C++ runtime, the machine's."""
 _RUNTIME_ALSO = ("libgcc_s.so", "libresolv.so")
 
 

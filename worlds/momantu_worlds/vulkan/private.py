@@ -52,11 +52,11 @@ def installed_driver() -> PrivateDriver | None:
 def preload(libraries: tuple[Path, ...]) -> None:
     """Load shared libraries so that later ones find them by name, without LD_LIBRARY_PATH.
 
-    Their order is unknown: those that cannot be loaded yet are tried again as long as the last
+    Their order is unknown. Those that cannot be loaded yet are tried again, as long as the last
     round loaded at least one.
 
     Raises:
-        OSError: what is left cannot be loaded; the loader's own words.
+        OSError: the remaining libraries cannot be loaded; the message has the loader's own words.
     """
     waiting = [str(path) for path in libraries if str(path) not in _preloaded]
     while waiting:

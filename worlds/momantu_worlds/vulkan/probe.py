@@ -9,11 +9,11 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 PROBE_SECONDS = 120.0
-"""A cold import of SAPIEN from a slow disk takes seconds; a hang must end some day."""
+"""Time limit: a cold import of SAPIEN from a slow disk takes seconds, and a hang must end."""
 
 
 class Way(StrEnum):
-    """Where a process takes window libraries and driver from."""
+    """The source of a process's window libraries and driver."""
 
     SYSTEM = "system"
     """Both from the machine."""

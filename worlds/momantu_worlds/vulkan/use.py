@@ -20,7 +20,7 @@ def apply(way: Way) -> None:
         FileNotFoundError: the way needs the private driver and there is none.
         OSError: a library of the private driver cannot be loaded.
     """
-    # One rasteriser thread: two runs side by side are faster, and none disturbs the other's time.
+    # One rasteriser thread: two runs side by side are faster, and do not slow each other down.
     os.environ.setdefault(SOFTWARE_THREADS_VARIABLE, "1")
     # SAPIEN imports Pinocchio where it is installed, and warns where that lacks its OpenMP runtime.
     ensure_shared_library(OPENMP_RUNTIME, carriers=("torch",))

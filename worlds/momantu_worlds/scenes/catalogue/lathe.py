@@ -16,7 +16,7 @@ Profile: TypeAlias = Sequence[tuple[float, float]]
 """(radius, height) points in m, from bottom to top along the outside, then down the inside."""
 
 SEGMENTS = 28
-"""Faces around; at 35 mm radius each is 8 mm wide, below what the depth camera resolves."""
+"""Faces around; at 35 mm radius each is 8 mm wide, too small for the depth camera to resolve."""
 
 FLAT = 0.0015
 """m; largest distance of a flat side from the round surface that it approximates."""
@@ -25,8 +25,8 @@ FLAT = 0.0015
 def lathe(profile: Profile, segments: int = SEGMENTS) -> Mesh:
     """The surface that a profile sweeps around z.
 
-    Each band has vertices of its own, so that edges of the profile stay sharp. A point on the
-    axis has radius 0; bands that have no extent are left out.
+    Each band has its own vertices, so that edges of the profile stay sharp. A point on the axis has
+    radius 0; bands without extent are left out.
     """
     angles = np.arange(segments) * (2 * math.pi / segments)
     ring = np.stack([np.cos(angles), np.sin(angles), np.zeros(segments)], axis=1)

@@ -1,7 +1,7 @@
 """Loose objects for tables: can, bottle, box, mug, bowl. Each stands on z = 0 around its origin.
 
-What is looked at is a lathe surface; what collides are cylinders, boxes and convex pieces of the
-same shape, hollow where the thing is hollow, nowhere 2 mm from what is seen.
+The visible shape is a lathe surface. The colliding shape consists of cylinders, boxes and convex
+pieces, is hollow where the object is, and lies within 2 mm of the visible one.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ METAL: Color = (0.72, 0.73, 0.75)
 WALL = 0.005
 """m; thickness of a mug's or bowl's wall."""
 BASE = 0.011
-"""m; thickness of a hollow thing's bottom: a solid disc alone touches the table, so that resting
-costs the physics one pair of shapes; the wall begins above the reach of contacts."""
+"""m; thickness of a hollow object's bottom. Only this solid disc touches the table, so a resting
+object costs the physics one pair of shapes; the wall begins above the reach of contacts."""
 CHAMFER = 0.0021
-"""m; how far a can's ends are drawn in at most: what collides is the whole cylinder."""
+"""m; most that a can's ends are drawn in, as the whole cylinder collides."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,7 +132,7 @@ def _mug(thing: Thing, look: Look) -> tuple[Part, ...]:
     r, h = thing.size[0] / 2, thing.height
     hole, floor, out = r - WALL, BASE, _handle(thing.height)
     bar, low, high = 0.010, 0.25 * h, 0.80 * h
-    # the bars reach into the wall, so that nothing shows between
+    # the bars reach into the wall, so that no gap is visible
     middle = r + (out - bar) / 2
     handle = (
         block((out, bar, bar), (middle, 0, low), look.color),

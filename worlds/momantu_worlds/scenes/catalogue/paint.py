@@ -1,6 +1,6 @@
 """The paint of loose objects: bands around them, labels on one side, painted parts.
 
-Paint is looked at and never touched: a label is half a millimetre thick.
+Paint is visible but never collides: a label is half a millimetre thick.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Loose objects of random sizes, weights and paint.
 
-Two streams of chance: one draws what a thing is, the other how it is painted, so that another
-paint never changes what physics does.
+Two random streams: one draws the object, the other its paint, so that different paint never
+changes the physics.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ Size: TypeAlias = tuple[float, float, float]
 Span: TypeAlias = tuple[float, float]
 
 GRASPABLE = 0.080
-"""m; what is no wider than this across its narrower side fits usual grippers, with room beside."""
+"""m; an object whose narrower side is at most this wide fits usual grippers with room to spare."""
 COLORS: tuple[Color, ...] = (
     (0.16, 0.42, 0.62),
     (0.20, 0.50, 0.30),
@@ -45,7 +45,7 @@ LACQUERS: tuple[Color, ...] = (METAL, (0.80, 0.68, 0.36), (0.15, 0.15, 0.16))
 
 @dataclass(frozen=True, slots=True)
 class Make:
-    """What people expect of a round kind. radius and height: m. mass: kg, of one of middle size."""
+    """Usual values of a round kind. radius and height: m. mass: of a medium-sized one, kg."""
 
     radius: Span
     height: Span
@@ -68,7 +68,7 @@ HOLLOW: frozenset[ObjectKind] = frozenset({"mug", "bowl"})
 PACKET: tuple[Span, Span, Span] = ((0.05, 0.1), (0.06, 0.16), (0.06, 0.2))
 """m; edges of packets of food: depth, width, height."""
 PACKET_DENSITY, PACKET_CARTON = 250.0, 0.05
-"""kg/m3 and kg: dry food is loose, and its carton weighs something by itself."""
+"""kg/m3 of the food and kg of its carton: dry food is loose, and the carton has weight too."""
 
 
 def draw_thing(
@@ -129,7 +129,7 @@ def draw_look(kind: ObjectKind, color: Color, paint: np.random.Generator) -> Loo
 
 
 def _wrapped(bare: Look, side: Span, one: Color, other: Color, paint: np.random.Generator) -> Look:
-    """Bare, or a wrapper, stripes, an edge of another colour, or a label on one side.
+    """No paint, a wrapper, stripes, an edge of another colour, or a label on one side.
 
     side: shares of the height between which there is room for paint.
     """

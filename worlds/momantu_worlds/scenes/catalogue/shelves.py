@@ -18,9 +18,9 @@ POST = 0.05
 """m; thickness of a rack's posts."""
 SHELF: Color = (0.62, 0.52, 0.42)
 RACK: Color = (0.20, 0.34, 0.56)
-"""Of a rack's posts."""
+"""Colour of a rack's posts."""
 _DECK: Color = (0.73, 0.64, 0.50)
-"""Of a rack's boards: chipboard."""
+"""Colour of a rack's boards: chipboard."""
 
 
 def shelf(size: Size3, color: Color) -> tuple[Part, ...]:

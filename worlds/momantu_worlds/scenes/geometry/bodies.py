@@ -104,8 +104,8 @@ class Body:
 
     name: unique in the episode. category: "can", "bottle", "table", "wall" … static: it never
     moves. mass: kg, ignored when static; its density is uniform over the colliding parts.
-    friction: coefficient, static and dynamic alike. top: on which things stand; without it, the
-    upper faces of its boxes are.
+    friction: coefficient, static and dynamic alike. top: the surface on which objects stand; None:
+    the upper faces of its boxes.
     """
 
     name: str
@@ -138,7 +138,7 @@ class PointLight:
 class Goal:
     """What the referee demands: `item` stands on `support` beside `marker` (names of bodies).
 
-    marker: None where it does not matter beside what. max_tilt: rad from upright. max_distance: m
+    marker: None: it need not stand beside anything. max_tilt: rad from upright. max_distance: m
     between item and marker, along the floor.
     still_for: s without moving. min_gripper_distance: m from the item. max_others_tilt: rad and
     max_others_shift: m that any other loose body may have moved. max_force: N of any contact
@@ -169,8 +169,8 @@ class Gap:
 class Episode:
     """One episode. All poses are in the map; the floor is z = 0.
 
-    start: where the robot's base truly stands at first. ambient: light from everywhere.
-    site: what the robot is told. goal: what the referee wants. doorways: by name.
+    start: the true pose of the robot's base at the start. ambient: light from all directions.
+    site: what the robot is told. goal: what the referee demands. doorways: by name.
     """
 
     name: str

@@ -39,8 +39,8 @@ class Rectangle:
     def distance(self, points: Array) -> Array:
         """Distance of points (..., 2) from the rectangle, 0 inside, m.
 
-        In the rectangle's own frame, for whole grids of cells at once: cells that lie exactly at a
-        distance, as they often do on a grid, must count alike wherever the rectangle stands.
+        It computes in the rectangle's own frame, for whole grids of cells at once. On a grid, cells
+        often lie exactly at a distance; they must count alike wherever the rectangle stands.
         """
         c, s = math.cos(self.pose.yaw), math.sin(self.pose.yaw)
         dx, dy = points[..., 0] - self.pose.x, points[..., 1] - self.pose.y
@@ -74,9 +74,9 @@ def convex_outline(points: Array) -> Array:
 
 
 def slab_outline(points: Array, low: float, high: float) -> Array:
-    """Corners (k, 2), from above, of what the convex hull of points (n, 3) has between two heights.
+    """Corners (k, 2), from above, of the convex hull of points (n, 3) between two heights.
 
-    The hull reaches in between them.
+    The hull must have a part between these heights.
     """
     z = points[:, 2]
     found = [points[(z >= low) & (z <= high), :2]]

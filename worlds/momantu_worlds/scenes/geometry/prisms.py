@@ -59,9 +59,9 @@ def prism_around(points: Array, yaw: float) -> Prism:
 def tightest_prism(points: Array) -> Prism:
     """The prism around points (n, 3) of the map over the smallest rectangle of all.
 
-    One of its sides lies along two of the points (Freeman and Shapira, 1975). Among rectangles that
-    are equally small, as around a prism, the least turned one counts; Shapely's oriented envelope
-    takes another, which would change the episodes of worlds with bodies.
+    One of its sides lies along two of the points (Freeman and Shapira, 1975). If several rectangles
+    are equally small, as around a prism, the result is the least turned one. Shapely's oriented
+    envelope takes another, which would change the episodes of worlds with bodies.
     """
     flat = np.unique(np.round(points[:, :2], 5), axis=0)
     first, second = np.triu_indices(len(flat), 1)

@@ -1,7 +1,7 @@
 """Bodies in the world: their extent, and what is inside, below and beside them.
 
-Parts that do not collide are air here. The box around a small hull stands for it: those of hollow
-objects are thin.
+Parts that do not collide are ignored here. A small hull is replaced by the box around it: the hulls
+of hollow objects are thin.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ with lazily():
     import trimesh
 
 CORNERS = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) / 2
-"""Of a box with edges of 1."""
+"""Corners of a box with edges of 1."""
 SIDES = 32
-"""Of the prism that stands for a cylinder."""
+"""Number of sides of the prism that replaces a cylinder."""
 BALL = np.array(
     [
         (math.cos(turn) * math.cos(rise), math.sin(turn) * math.cos(rise), math.sin(rise))

@@ -24,8 +24,8 @@ ROUNDING = 1e-9
 class Column:
     """One part as a column: the floor under it, and the heights between which it lies, m.
 
-    base: a rectangle, of which only the round disc within counts when `round`; for a part that
-    is neither, `points` (n, 3) in the map have it as their convex hull.
+    base: a rectangle; if `round`, only the disc inside it counts. For any other shape, the part is
+    the convex hull of `points` (n, 3) in the map.
     """
 
     base: Rectangle

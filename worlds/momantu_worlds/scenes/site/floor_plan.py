@@ -35,8 +35,8 @@ def draw_plans(
 ) -> tuple[MapPicture, MapPicture]:
     """The map and the overhang layer of a world.
 
-    band: heights above the floor that the laser sees, m; equal for a plane. robot_height: what is
-    higher is in nobody's way, m.
+    band: heights above the floor that the laser sees, m; both are equal for a plane. robot_height:
+    what is higher does not block the robot, m.
 
     Raises:
         WorldError: the plan would be too large, or a mesh file cannot be read.

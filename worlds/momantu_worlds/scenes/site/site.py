@@ -20,9 +20,9 @@ SIGMAS = 2.0
 LEAST = 0.10
 """m above a surface; lower solids stand on it, higher ones hang over it."""
 MOST = 1.5
-"""m above a surface that an arm which works on it may reach."""
+"""m above a surface; an arm that works on the surface may reach this high."""
 SAME = 0.01
-"""m between the tops of two that are one."""
+"""m; two tops are the same if their heights and their centres differ by less than this."""
 
 
 def site_of(world: WorldFile, start: Pose2D) -> Site:
