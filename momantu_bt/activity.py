@@ -1,7 +1,7 @@
 """What a skill does, in a few words that faults use to choose their usual phase.
 
-A skill says what it does (`Skill.activities`), and a kind of fault which activities it disturbs
-(`FaultKind.begins`). So a fault begins at the right moment with skills that it does not know.
+A skill names its activities (`Skill.activities`). A kind of fault names the activities that it
+disturbs (`FaultKind.begins`). So a fault begins at the right moment with skills it does not know.
 """
 
 from __future__ import annotations

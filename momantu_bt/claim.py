@@ -4,8 +4,8 @@ A skill that succeeds says "I hold it", "it stands there". `Skill.claim` gives t
 value; a world that knows the truth judges it at the instant at which the skill ended. Neither the
 skill nor the tree ever learns the answer: it is counted for people.
 
-Poses in odom are as the robot believes them; a judge brings them into the world through the base's
-true pose and through odometry of the same instant, so that drift of odometry is nobody's lie.
+Poses in odom are what the robot believes. A judge converts them to the world with the base's true
+pose and the odometry of the same instant, so drift of odometry does not make a claim false.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from momantu_bt.messages import ObjectClass
 class ObjectAt:
     """An object of this class stands with its box's centre within `tolerance` m of the pose.
 
-    asked: its category, and those of its sizes that were asked for.
+    asked: its category, and the sizes that were asked for.
     """
 
     asked: ObjectClass
@@ -39,7 +39,7 @@ class ObjectOn:
 
 @dataclass(frozen=True, slots=True)
 class TagAt:
-    """The AprilTag of that id is at `odom_from_tag`, z out of it, within m and rad."""
+    """The AprilTag of that id is at `odom_from_tag`, its z out of the tag, within m and rad."""
 
     tag_id: int
     odom_from_tag: Transform
@@ -67,8 +67,8 @@ class PlaneAt:
 class RoomAt:
     """A round base of `radius` m has room on a top at the point (x, y, z) in odom.
 
-    It would stand whole on the top and beside whatever stands there. within: how far from the
-    point, along the floor, the room may be, m. tolerance: of the top's height, m.
+    The whole base would stand on the top and touch nothing that stands there. within: greatest
+    distance of the room from the point, along the floor, m. tolerance: of the top's height, m.
     """
 
     odom_point: tuple[float, float, float]
@@ -158,7 +158,7 @@ Sentence: TypeAlias = (
 """One thing that is true or not."""
 
 Claim: TypeAlias = Sentence | tuple[Sentence, ...]
-"""A sentence, or several that are all claimed."""
+"""One sentence, or several that are all true if the claim is."""
 
 
 @runtime_checkable

@@ -34,7 +34,7 @@ class ObjectDetector(Protocol):
 
     @property
     def accepted(self) -> float:
-        """Score from which on an object is the requested one."""
+        """Least score at which an object is the requested one."""
         ...
 
     @property
@@ -48,7 +48,7 @@ class ObjectDetector(Protocol):
         """Everything that stands on the surface between the heights `low` and `high` (m, odom).
 
         Best score first; a score says how well an object matches `asked`. Poses are in odom, with
-        the stamp of a view. None when no view shows such a surface.
+        the stamp of a view. None if no view shows such a surface.
         """
         ...
 

@@ -1,7 +1,7 @@
 """Exit codes, and the base class of all errors that a user sees.
 
-The command line prints such an error without a stack trace and ends with its exit code; only `main`
-does so. Anything else that is raised is a mistake in the program: exit code INTERNAL.
+Only `main` catches such an error: it prints the error without a stack trace and ends with its exit
+code. Any other exception is a mistake in the program: exit code INTERNAL.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class ExitCode(IntEnum):
 class MomantuError(Exception):
     """Something that a person has to mend: the message says where, what was expected, what to do.
 
-    exit_code: what the command line ends with when this error reaches it.
+    exit_code: the exit code of the command line if this error reaches it.
     hint: one more line, printed below the message.
     """
 
@@ -41,7 +41,7 @@ class MomantuError(Exception):
         self.hint = hint
 
     def printed(self) -> str:
-        """The printed text: the message, and the hint in a line of its own."""
+        """The printed text: the message, and the hint on a separate line."""
         message = f"momantu-bt: {self}"
         return message if self.hint is None else f"{message}\n{self.hint}"
 

@@ -1,8 +1,8 @@
 """Injected faults: what a fault is, and the protocol of worlds that implement some.
 
 A fault is written `COMPONENT.MODE[@PHASE][:name=value,…]`, such as `camera.dead@12 s:for=5 s`.
-Those of sensors and actuators happen at the robot's boundary and those of skills in the engine,
-whatever the robot and the world. Those of the surroundings are made by the world.
+Faults of sensors and actuators happen at the robot's boundary, and faults of skills in the engine,
+with any robot and any world. The world makes the faults of the surroundings.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ class Fault:
     """One fault of one run.
 
     component, mode: what breaks and how. phase: when it begins, as written; None for the usual
-    one of its kind. parameters: all of them, in SI units, defaults filled in.
+    phase of its kind. parameters: all of them, in SI units, with defaults filled in.
     """
 
     component: str
@@ -37,14 +37,14 @@ class Fault:
 
 
 class Effect(Protocol):
-    """A fault that is ready to happen. `begin` comes first; what has begun is not begun again."""
+    """A fault ready to happen. `begin` comes first; it is not called again once it succeeds."""
 
     def begin(self) -> None:
         """Break it now; the world stands between two ticks.
 
         Raises:
-            FaultError: it cannot happen at this instant, such as moving an object that is held;
-                nothing was changed, and it may be tried again a tick later.
+            FaultError: the fault cannot happen now (it would move an object that is held, say).
+                Nothing has changed, and `begin` may be called again a tick later.
         """
         ...
 

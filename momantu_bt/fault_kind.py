@@ -17,7 +17,7 @@ from momantu_bt.skill import Port
 from momantu_bt.symptom import Symptom
 
 FOR = "for"
-"""The parameter that says how long a fault lasts, s; infinity: for good."""
+"""The parameter for how long a fault lasts, s; infinity: it never ends."""
 
 
 class Where(StrEnum):
@@ -38,7 +38,7 @@ class Where(StrEnum):
 class Trigger:
     """When a fault usually begins: while the first skill of a tree that does something runs.
 
-    after: instead this many seconds after it ended in SUCCESS.
+    after: if given, the fault begins this many seconds after that skill ended in SUCCESS instead.
     """
 
     activity: Activity
@@ -53,7 +53,7 @@ class Trigger:
 
 @dataclass(frozen=True, slots=True)
 class Variant:
-    """The same fault with other parameters, where that makes another row of the matrix.
+    """The same fault with other parameters, as another row of the matrix.
 
     parameters: as they are written, such as `for=inf`.
     """
@@ -66,12 +66,12 @@ class Variant:
 class FaultKind:
     """One kind of fault.
 
-    begins: its usual triggers; the first that the tree has is taken, else it begins at the start.
+    begins: its usual triggers; the first that the tree has counts. If it has none, the start does.
     notice: seconds within which a robot must notice it.
-    symptoms: what skills may notice of it. codes: those of the engine that are a true reason to
-    give up because of it; codes of skills follow from the symptoms.
+    symptoms: what skills may notice of it. codes: failure codes of the engine that are a true
+    reason to give up because of it; the codes of skills follow from the symptoms.
     actuator: which one it breaks, as skills name it in `uses`; "" for none.
-    ends_process: nothing of the run is left to give a reason.
+    ends_process: it ends the process, so the run cannot give a reason.
     """
 
     component: str

@@ -15,7 +15,7 @@ from momantu_bt.formats.seeds import seeds_text
 class Finding(Problem):
     """A problem of what a file describes, rather than of how it is written.
 
-    seeds: the episodes in which it is so; empty where seeds do not matter.
+    seeds: the episodes with this problem; empty if seeds do not matter.
     """
 
     seeds: tuple[int, ...] = ()
@@ -45,8 +45,8 @@ class Finding(Problem):
 class FindingAtKeys:
     """A finding before its line is known: the keys of a description file lead to what is wrong.
 
-    Of one episode: code, keys and about tell findings apart. The same in several episodes is one
-    finding, which keeps the words of the episode with the greatest `amount`.
+    Within one episode, two findings differ in code, keys or about. If several episodes have the
+    same finding, it counts once, in the words of the episode with the greatest `amount`.
     """
 
     severity: Severity
@@ -58,7 +58,7 @@ class FindingAtKeys:
     amount: float = 0.0
 
     def at(self, place: Place, seeds: Iterable[int] = ()) -> Finding:
-        """The finding at its place. seeds: of the episodes in which it is so."""
+        """The finding at its place. seeds: the episodes with this problem."""
         return Finding(self.code, self.message, place, self.hint, self.severity, tuple(seeds))
 
 

@@ -1,7 +1,7 @@
 """Imports at the top of a file whose modules are loaded when they are first used.
 
 Listing and checking trees must not wait for OpenCV or a simulator. A file that needs such a module
-only when it works says so where imports belong:
+only later, to do its work, imports it like this at the top:
 
     with lazily():
         import cv2
@@ -9,8 +9,8 @@ only when it works says so where imports belong:
 
 Inside the block write `import module` or `from package import module`, never `from module import
 name`: asking a module for a name loads it. Type checkers, editors and import contracts see ordinary
-imports. A library that is not installed is told where it is first used, so that an installation
-without it can list and check.
+imports. The error for a library that is not installed comes at its first use, so an installation
+without it can still list and check trees.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class _Missing(ModuleType):
 
 
 class _MissingFinder(MetaPathFinder, Loader):
-    """Finds nothing of libraries that are not installed, and makes modules that say so."""
+    """Finds libraries that are not installed, and makes modules that raise when used."""
 
     def __init__(self) -> None:
         self.open = True
@@ -69,7 +69,7 @@ class _MissingFinder(MetaPathFinder, Loader):
         """The spec of a library that no finder knows, or of a module in it."""
         parent = fullname.rpartition(".")[0]
         if parent and parent not in self.names:
-            return None  # the library is there and lacks this module: a mistake, told at once
+            return None  # the installed library lacks this module: a mistake, so raise now
         self.names.add(fullname)
         return ModuleSpec(fullname, self, is_package=True)
 
@@ -78,7 +78,7 @@ class _MissingFinder(MetaPathFinder, Loader):
         module.__class__ = _Missing
 
     def close(self) -> None:
-        """Leave no trace where others look for what is installed."""
+        """Remove every trace, as others look here for what is installed."""
         self.open = False
         for name in self.names:
             sys.modules.pop(name, None)
@@ -105,7 +105,7 @@ class _PendingLoader(Loader):
         sys.meta_path[:] = [f for f in sys.meta_path if f not in first and f not in last]
         try:
             self._loader.exec_module(module)
-        except BaseException:  # the next use tries again and tells the same
+        except BaseException:  # the next use tries again and raises the same error
             module.__spec__.loader = self
             module.__class__ = _Pending
             raise
@@ -132,7 +132,8 @@ def lazily() -> Iterator[None]:
     """Put off running the modules that are imported inside the block until they are used.
 
     An error inside a module, and ModuleNotFoundError of a library that is not installed, are
-    raised where the module is first used. A module that an installed library lacks is told at once.
+    raised where the module is first used. If an
+    installed library lacks a module, the error is raised at once.
     """
     finder, missing = _LazyFinder(), _MissingFinder()
     sys.meta_path.insert(0, finder)

@@ -1,8 +1,8 @@
 """Finding what is installed by entry points: skills, services, robots, worlds, verbs.
 
-A plug-in is checked when it is loaded. One that is broken, or whose name two packages give, is
-told by `load`; all the others go on working. What a plug-in of a kind has to be is known where the
-kind is: each has a `Group` there.
+A plug-in is checked when it is loaded. `load` refuses one that is broken, or whose name two
+packages give; all others still work. Each kind of plug-in has a `Group`, in the module of that
+kind, which says what such a plug-in must be.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ from momantu_bt.formats.names import nearest
 PREFIX = "momantu_bt."
 """How the names of all groups begin."""
 ENDINGS = (".yaml", ".yml", ".urdf", ".xacro")
-"""A name that ends so, or has a slash in it, is a path, where plug-ins are read from files."""
+"""In a group that reads files, a name with a slash or with one of these endings is a path."""
 
 T = TypeVar("T")
 _Found: TypeAlias = Mapping[str, tuple[EntryPoint, ...]]
 Objection: TypeAlias = Callable[[str, Any], str | None]
-"""Says of a plug-in, by its name and itself, why it cannot be used; None when it can."""
+"""Takes a plug-in's name and the plug-in; says why it cannot be used, or None if it can."""
 
 
 class PluginError(MomantuError):
@@ -42,8 +42,8 @@ class PluginClash(PluginError):
 class Files(Generic[T]):
     """Reads plug-ins of a group from files, in addition to the installed ones.
 
-    usual: the file's name in a folder that stands for it. read: gives the plug-in that a file
-    describes, and raises PluginError for a kind of file that is not read.
+    usual: the file to read if a path names a folder. read: returns the plug-in that a file
+    describes; raises PluginError for a kind of file that it cannot read.
     """
 
     usual: str
@@ -53,11 +53,11 @@ class Files(Generic[T]):
 class Group(Mapping[str, T]):
     """The plug-ins of one entry-point group, by name; each is imported at its first use.
 
-    Where the group has `files`, a path stands in the place of a name. `group[name]` raises KeyError
-    when there is none and PluginError when it is broken; `load` tells both in words.
+    If the group has `files`, a path may replace a name. `group[name]` raises KeyError for an
+    unknown name and PluginError for a broken plug-in; `load` explains both in words.
 
-    name: of the entry point group. what: one of its plug-ins, as a person would say it.
-    objection: what a plug-in has to be.
+    name: of the entry point group. what: what a person calls one of its plug-ins.
+    objection: says why a plug-in cannot be used.
     """
 
     def __init__(
@@ -89,7 +89,7 @@ class Group(Mapping[str, T]):
     def installed(self) -> Mapping[str, EntryPoint]:
         """Entry points by name, in the order of their names; nothing is imported.
 
-        Of a name that two packages give different things it holds the first; `load` refuses it.
+        If two packages give one name different things, this holds the first; `load` refuses it.
         """
         return _first(entry_points, self.name)
 
@@ -97,8 +97,8 @@ class Group(Mapping[str, T]):
         """Import one plug-in by name and check it, or read the file at a path.
 
         Raises:
-            PluginError: there is none of that name (with the nearest ones), it cannot be imported,
-                or it is not what a plug-in of this group has to be; or there is no such file.
+            PluginError: no plug-in has that name (the message lists the nearest), it cannot be
+                imported, it is not what this group needs, or the file does not exist.
             PluginClash: two packages give this name different things.
             DescriptionError: the file is wrong.
         """

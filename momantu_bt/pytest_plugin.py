@@ -49,8 +49,9 @@ def run_tree(tmp_path: Path) -> Iterator[RunTree]:
     """`run_tree(tree, …)` runs a tree in a scripted world and returns its Report.
 
     tree: the text of a tree, YAML or XML (it has several lines), a path, or a bundled tree's
-    name. skills, services: by name, beside the installed ones and before them. robot: it stands
-    in the room of `ExampleWorld`, unless `site` is given; or give `world`, which has both.
+    name. skills, services: by name, in addition to the installed ones; they take precedence.
+    robot: it stands in the room of `ExampleWorld`, unless `site` is given; or give `world`,
+    which has both.
     values: keys of the root's board. max_time: simulated seconds.
     Raises TreeError when the tree is wrong.
     """
@@ -94,7 +95,7 @@ def run_tree(tmp_path: Path) -> Iterator[RunTree]:
 
 
 def _before(mine: Mapping[str, Any] | None, installed: Mapping[str, Any]) -> Mapping[str, Any]:
-    # ChainMap writes to its first mapping only, though it asks for more
+    # ChainMap only writes to its first mapping, though its type asks that all can be written
     return ChainMap(dict(mine or {}), installed)  # type: ignore[arg-type]
 
 

@@ -54,9 +54,9 @@ class JointLimit(Part):
     """Limits of one joint: rad or m, per second, per second squared."""
 
     lower: JointPosition | None = None
-    """Least position; none: it turns for ever."""
+    """Least position; if not given, the joint turns without end."""
     upper: JointPosition | None = None
-    """Greatest position; none: it turns for ever."""
+    """Greatest position; if not given, the joint turns without end."""
     velocity: JointSpeed
     """Greatest speed."""
     acceleration: JointAcceleration
@@ -70,7 +70,7 @@ class CameraSensor(Part):
     frame: str
     """Its optical frame: z forward, x right, y down."""
     carrier: str | None = None
-    """The actuator that moves it; none: it is fixed to the base."""
+    """The actuator that moves it; if not given, it is fixed to the base."""
     width: Count = 640
     """Columns of its picture."""
     height: Count = 480
@@ -82,7 +82,7 @@ class CameraSensor(Part):
     max_depth: Size
     """Farthest depth that it measures."""
     depth_noise: Annotated[float, Field(ge=0)] | None = None
-    """1/m; sigma of depth z is this times z squared. None: what is usual for such cameras."""
+    """1/m; sigma of depth z is this times z squared. Not given: usual for such cameras."""
 
 
 class LaserSensor(Part):
@@ -90,19 +90,19 @@ class LaserSensor(Part):
 
     kind: Literal["laser"] = "laser"
     frame: str
-    """Beams lie in its x-y plane. Of a laser with a source: horizontal, fixed to the base."""
+    """Beams lie in its x-y plane. With a source, the frame is horizontal and fixed to the base."""
     angle_min: Angle
     """Direction of the first beam."""
     angle_max: Angle
     """Direction of the last beam."""
     beams: Annotated[int, Field(ge=2, le=100_000)]
-    """How many beams, or sectors of a laser with a source."""
+    """Number of beams; with a source, number of sectors."""
     range_min: Range
     """Nearest distance that it measures."""
     range_max: Size
     """Farthest distance that it measures."""
     source: str | None = None
-    """The lidar that the scan is made from; none: a scanner of its own."""
+    """The lidar that the scan is made from; if not given, the laser is a scanner itself."""
     band: tuple[Length, Length] | None = None
     """With a source: lowest and highest point above the floor that counts."""
 
@@ -185,7 +185,7 @@ class EndEffector(Part):
     touch_links: tuple[str, ...]
     """Links that may touch what is grasped."""
     opening: dict[str, Opening] = {}
-    """Where each finger joint stands at which width. Not given: n joints go 0..max_width/n."""
+    """Position of each finger joint by width. If not given, n joints go from 0 to max_width/n."""
 
     @model_validator(mode="after")
     def _monotone(self) -> Self:
@@ -211,7 +211,7 @@ class EndEffector(Part):
         }
 
     def width(self, positions: Mapping[str, float]) -> float:
-        """The opening at these positions of the finger joints: the mean of what each says, m.
+        """The opening at these positions of the finger joints: the mean over the joints, m.
 
         Raises:
             KeyError: a finger joint is missing in `positions`.
@@ -252,11 +252,11 @@ class Working(Part):
     """Distances at which the robot works, from the centre of its base."""
 
     stand_off: Size
-    """Nearest to a surface's edge that the robot stands."""
+    """Least distance to a surface's edge at which the robot stands."""
     look_off: Size
-    """To a surface's edge from where the robot looks at it."""
+    """Distance to a surface's edge from which the robot looks at the surface."""
     reach: tuple[Size, Size, Size]
-    """Nearest, best and farthest distance of what is to be reached."""
+    """Nearest, best and farthest distance of an object to reach."""
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:

@@ -30,13 +30,13 @@ class PlanarDrive(Part):
     joints: BaseJoints
     """The joints that carry it."""
     force: Force
-    """The most that its wheels push with, N."""
+    """Greatest force of its wheels, N."""
     torque: Strength
-    """The most that they turn with, Nm."""
+    """Greatest torque of its wheels, Nm."""
 
 
 class JointGains(Part):
-    """Gains of a joint's position drive; what is not given is the simulator's usual value."""
+    """Gains of a joint's position drive; default: the simulator's usual value."""
 
     stiffness: Gain | None = None
     """Nm/rad or N/m."""
@@ -51,14 +51,14 @@ class JointGains(Part):
 class Linkage(Part):
     """A finger joint without a motor of its own.
 
-    It takes the travel of another joint's motor that is left when that joint is stopped, as in
-    hands whose fingers wrap around what they grasp.
+    Another joint's motor moves it: when that joint is stopped, this joint takes the rest of the
+    motor's travel, as in hands whose fingers wrap around what they grasp.
     """
 
     motor: str
     """The finger joint whose motor moves it."""
     ratio: Strength
-    """How far it turns per travel of the motor that the other joint does not take."""
+    """Its turn per travel of the motor, for travel that the other joint does not take."""
     share: Strength
     """Its torque, as a share of the other joint's."""
     preload: Annotated[Angle, Field(ge=0)] = 0.0

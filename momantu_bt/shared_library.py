@@ -13,13 +13,13 @@ _loaded: dict[str, ctypes.CDLL] = {}
 def ensure_shared_library(name: str, carriers: Iterable[str]) -> None:
     """Load a shared library, before the first import of a package that needs it.
 
-    The machine's own is taken where there is one, else the one that a carrier brings along. A
-    library loaded under this name is found by those that need it. Where there is neither, nothing
-    happens: the import that needs it says what is missing.
+    The machine's own library comes first, then that of a carrier. Once it is loaded under this
+    name, packages that need it find it. If neither exists, nothing happens: the import that needs
+    the library says what is missing.
 
     Args:
         name: the library's own name, such as `libfoo.so.1`.
-        carriers: packages that may be installed and bring it in their folder `lib`.
+        carriers: packages that hold it in their folder `lib`; they need not be installed.
     """
     if name in _loaded:
         return

@@ -1,7 +1,7 @@
 """Symptoms: the words that link a skill's failure codes with the faults that explain them.
 
-A skill says of each of its failure codes what it is a symptom of (`Skill.symptoms`), and a kind of
-fault which symptoms it has (`FaultKind.symptoms`). A code is a true reason to give up because of
+A skill names the symptoms of each of its failure codes (`Skill.symptoms`). A kind of fault names
+its symptoms too (`FaultKind.symptoms`). A code is a true reason to give up because of
 a fault when the two share a symptom. So a new skill works with every fault, and a new fault with
 every skill.
 """

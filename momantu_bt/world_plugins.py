@@ -23,7 +23,7 @@ def _world(name: str, plugin: Any) -> str | None:
 
 
 def _has(plugin: Any, part: str) -> bool:
-    """Whether it has an attribute, without asking for its value: that may read a file."""
+    """Whether a plug-in has an attribute; does not get its value, as that may read a file."""
     try:
         getattr_static(plugin, part)
     except AttributeError:

@@ -1,8 +1,9 @@
 """Diagnoses for `momantu-bt doctor`: one value for each check, also from plug-ins.
 
-A plug-in takes part by a function `diagnose() -> Iterable[Diagnosis]`: an attribute of what its
-entry point names, or a function of the module or of the package that declares it. One function
-reached in several ways is called once. It may take seconds and may import heavy libraries.
+A plug-in takes part with a function `diagnose() -> Iterable[Diagnosis]`. It is an attribute of the
+object that the entry point names, or a function of the module or package that declares that
+object. A function that is found in several ways is called once. It may take seconds and may import
+heavy libraries.
 """
 
 from __future__ import annotations
@@ -14,11 +15,11 @@ from typing import Any
 
 @dataclass(frozen=True, slots=True)
 class Diagnosis:
-    """One thing that was looked at.
+    """The result of one check.
 
-    name: what, in a word or two. ok: nothing is wrong. detail: what was found, one sentence.
-    cure: what a person does when it is wrong, as a sentence or a command; empty when it is right.
-    mend: does the cure, for `doctor --fix`; raises OSError or RuntimeError when it cannot.
+    name: what was checked, in a word or two. ok: nothing is wrong. detail: what was found, one
+    sentence. cure: how a person mends it, as a sentence or a command; empty if nothing is wrong.
+    mend: does the cure, for `doctor --fix`; raises OSError or RuntimeError if it cannot.
     """
 
     name: str

@@ -9,7 +9,7 @@ import sys
 from collections.abc import Iterable
 
 IMPORT_SECONDS = 120.0
-"""All imports of one call together; from a cold disk they take many seconds."""
+"""Time for all imports of one call together; from a cold disk they take many seconds."""
 
 _PROGRAM = """
 import importlib, sys
@@ -36,7 +36,7 @@ def import_cure(name: str, reason: str) -> str:
 
 
 def import_errors(names: Iterable[str]) -> dict[str, str]:
-    """Import modules one after another; the reasons of those that are there and cannot be."""
+    """Import modules one by one; returns why, for each that exists but cannot be imported."""
     waiting = [name for name in names if importlib.util.find_spec(name) is not None]
     errors: dict[str, str] = {}
     while waiting:
@@ -46,7 +46,7 @@ def import_errors(names: Iterable[str]) -> dict[str, str]:
                 errors[name] = error
         waiting = [name for name in waiting if name not in done]
         if waiting:
-            # It ended in the middle of this one; go on behind it.
+            # The process ended during this import; go on with the next one.
             errors[waiting.pop(0)] = reason
     return errors
 

@@ -14,7 +14,7 @@ from momantu_bt.formats.cache import CACHE_VARIABLE, cache_folder
 OLDEST, NEWEST = (3, 11), (3, 12)
 """Python versions that every dependency has wheels for."""
 MEMORY_NEEDED = 1.5e9
-"""Bytes; the most that one run is meant to take."""
+"""The most memory that one run should take, bytes."""
 
 _CGROUP_FILES = (
     ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current"),
@@ -26,7 +26,7 @@ _CGROUP_FILES = (
 
 
 def machine(output: Path) -> Iterator[Diagnosis]:
-    """Diagnoses of the machine; `output` is the folder that reports and videos shall go to."""
+    """Diagnoses of the machine; `output` is the folder for reports and videos."""
     yield python_version(sys.version_info[:2])
     yield memory(available_memory())
     yield writable("output folder", output, "name another folder: `momantu-bt doctor --output DIR`")
@@ -34,7 +34,7 @@ def machine(output: Path) -> Iterator[Diagnosis]:
 
 
 def python_version(version: tuple[int, ...]) -> Diagnosis:
-    """Is this Python one that all dependencies support."""
+    """Whether all dependencies support this Python."""
     ok = OLDEST <= version[:2] <= NEWEST
     cure = "" if ok else "make the virtual environment with Python 3.11 or 3.12"
     return Diagnosis("Python", ok, f"{platform.python_version()} at {sys.executable}", cure)
@@ -50,7 +50,7 @@ def memory(available: float | None) -> Diagnosis:
 
 
 def available_memory() -> float | None:
-    """Bytes that a new process can have: free memory, or what the container's limit leaves."""
+    """Bytes for a new process: free memory, or what remains below the container's limit."""
     amounts: list[float] = []
     try:
         lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()
@@ -66,7 +66,7 @@ def available_memory() -> float | None:
 
 
 def writable(name: str, folder: Path, cure: str) -> Diagnosis:
-    """Can a file be written in `folder`, or in the nearest folder above it that exists."""
+    """Whether a file can be written in `folder`, or in the nearest existing folder above it."""
     folder = folder.absolute()
     nearest = next(path for path in (folder, *folder.parents) if path.exists())
     try:

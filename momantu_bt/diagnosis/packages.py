@@ -63,7 +63,7 @@ def judge(
     having: dict[str, str | None],
     tested: dict[str, str],
 ) -> Diagnosis:
-    """Compare the required versions with the installed ones; a wholly missing extra is fine."""
+    """Compare the required versions with the installed ones; an extra may be missing as a whole."""
     missing = [one.name for one in wanted if having[one.name] is None]
     wrong = [
         f"{one.name} {found} (wanted {one.bounds})"
@@ -88,7 +88,7 @@ def judge(
 
 
 def requirements(lines: list[str]) -> list[Requirement]:
-    """Read `Requires-Dist` lines; the distribution's own extras among themselves are left out."""
+    """Read `Requires-Dist` lines; leave out extras that ask for extras of the distribution."""
     found: list[Requirement] = []
     for line in lines:
         match = _REQUIREMENT.match(line)

@@ -47,7 +47,7 @@ def asked(name: str, hook: Hook) -> Iterator[Diagnosis]:
 
 
 def _hook(plugin: Any, entry: EntryPoint) -> Hook | None:
-    """`diagnose` of the plug-in, of its module, or of its package: the first that is there."""
+    """`diagnose` of the plug-in, of its module, or of its package: the first that exists."""
     module = entry.module
     for owner in (plugin, sys.modules.get(module), sys.modules.get(module.partition(".")[0])):
         hook: Hook | None = getattr(owner, "diagnose", None)

@@ -21,10 +21,10 @@ NEVER = ""
 
 @dataclass(slots=True)
 class Staged:
-    """One fault of a run: when it is to begin, and what then happens.
+    """One fault of a run: when it begins, and what then happens.
 
-    effect: None for what is so from the start on (a site that tells something wrong).
-    began, ended: s, None as long as it has not.
+    effect: None for a fault that is there from the start (a site with wrong information).
+    began, ended: s; None until then.
     """
 
     fault: Fault
@@ -36,12 +36,12 @@ class Staged:
 
     @property
     def lasts(self) -> float:
-        """Seconds from its begin to its end."""
+        """Seconds from its beginning to its end."""
         return float(self.fault.parameters.get(FOR, inf))
 
 
 class Director:
-    """Acts after each tick, when observers have seen it and before the world steps on."""
+    """Acts after each tick, between the observers and the next step of the world."""
 
     def __init__(
         self, staged: Iterable[Staged], nodes: Sequence[TreeNode], remark: Callable[[str], None]
@@ -51,9 +51,9 @@ class Director:
         self._remark = remark
 
     def act(self, context: RunContext, settling: bool = False) -> None:
-        """Begin what is due, and end what has lasted long enough.
+        """Begin the faults that are due, and end those that have lasted long enough.
 
-        settling: the tree has ended, and nothing begins any more.
+        settling: the tree has ended, so no more faults begin.
         """
         for staged in self._staged:
             if staged.began is None:

@@ -20,7 +20,7 @@ RECOVERED, ENDED = "recovered", "process ended"
 class Row:
     """The requirements on a run with one fault.
 
-    fault: as it is written. recoverable: a robot can do its work all the same.
+    fault: as it is written. recoverable: a robot can still do its work.
     """
 
     fault: str
@@ -29,7 +29,7 @@ class Row:
 
     @property
     def notice(self) -> float:
-        """Seconds after its begin within which it must be noticed."""
+        """Seconds within which the fault must be noticed, from its beginning."""
         return self.kind.notice
 
     @property
@@ -46,17 +46,17 @@ class Row:
 
 
 def rows() -> tuple[Row, ...]:
-    """All rows: each kind as it usually is, and its variants."""
+    """All rows: each kind with its defaults, and its variants."""
     return tuple(row for kind in kinds().values() for row in _rows_of(kind))
 
 
 def rows_like(patterns: str, own: Iterable[str] = ()) -> tuple[Row, ...]:
-    """The rows that `all`, or patterns such as `camera.*,skill.hang` parted by commas, mean.
+    """The rows for `all`, or for patterns with commas between, such as `camera.*,skill.hang`.
 
-    own: rows of one tree, as they are written, which come last.
+    own: rows of one tree, as they are written; they come last.
 
     Raises:
-        FaultError: a pattern that no kind of fault fits.
+        FaultError: a pattern fits no kind of fault.
     """
     wanted = [text.strip() for text in patterns.split(",")]
     having = kinds()
@@ -73,7 +73,7 @@ def rows_like(patterns: str, own: Iterable[str] = ()) -> tuple[Row, ...]:
 
 
 def row_of(fault: Fault) -> Row:
-    """The row that a fault belongs to: its variant's where the parameters are the variant's."""
+    """The row of a fault: that of a variant if the fault has the variant's parameters."""
     kind = kinds()[fault.name]
     for variant in kind.variants:
         given = parse_fault(f"{kind.name}:{variant.parameters}").parameters

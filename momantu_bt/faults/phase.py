@@ -1,8 +1,9 @@
 """When a fault begins, as it is written.
 
-`start`; a time, `12 s`; names such as `Serve/dock`, for the first tick at which a node called dock
-is RUNNING inside of one called Serve; `after-dock`, for the tick after one ended in SUCCESS;
-behind it `#2` for the second such time and `+3 s` for that much later.
+A phase is one of these: `start`; a time, `12 s`; names such as `Serve/dock`, for the first tick at
+which a node called dock is RUNNING inside one called Serve; `after-dock`, for the tick after a node
+called dock ended in SUCCESS. Behind names, `#2` means the second such time and `+3 s` means 3 s
+later.
 """
 
 from __future__ import annotations
@@ -22,8 +23,9 @@ _TAIL = re.compile(r"(?P<names>.*?)(?:#(?P<count>[^#+]*))?(?:\+(?P<delay>[^#+]*)
 class Phase:
     """When something begins.
 
-    names: of nodes, the outermost first; none: by the clock alone. after: with the end in SUCCESS
-    rather than with RUNNING. count: which such time, from 1. delay: s after it, or of the clock.
+    names: of nodes, the outermost first; empty: the clock alone decides. after: begins with the end
+    in SUCCESS rather than with RUNNING. count: which such time, from 1. delay: s after that time;
+    without names, s of the clock.
     """
 
     names: tuple[str, ...] = ()
@@ -36,7 +38,7 @@ def parse_phase(text: str) -> Phase:
     """Parse a phase.
 
     Raises:
-        ValueError: nothing; the message says what is valid.
+        ValueError: the text is no phase; the message says what is valid.
     """
     match = _TAIL.fullmatch(text.strip())
     assert match is not None
@@ -65,7 +67,7 @@ def _counted(text: str | None) -> int:
 
 
 def _seconds(text: str) -> float | None:
-    """A time of 0 s or more; None when it is not a time."""
+    """A time of 0 s or more; None if the text is not a time."""
     try:
         found = in_unit(text, "s")
     except UnitError as error:

@@ -28,8 +28,8 @@ def usual_phase(
 ) -> str:
     """The first of a kind's phases that the run can reach; else the start.
 
-    skills: those that the run can reach, in the order of the file. told: the phase that the
-    tree's own file of faults gives, which comes first.
+    skills: those that the run can reach, in the order of the file. told: the phase in the
+    tree's own file of faults; it comes first.
     """
     own: tuple[str, ...] = () if told is None else (told,)
     for text in (*own, *usual_phases(kind.begins, skills)):
@@ -42,7 +42,7 @@ def check_phase(text: str, document: Document, substitution: Substitution) -> Ph
     """A phase of a fault of this tree.
 
     Raises:
-        FaultError: its names occur nowhere; the message says which, and what would be valid.
+        FaultError: the tree has no such names; the message says which, and what would be valid.
     """
     phase = parse_phase(text)
     if _fits(phase, document, substitution):
@@ -75,7 +75,7 @@ def _fits(phase: Phase, document: Document, substitution: Substitution) -> bool:
         return True
     if not outer or phase.after:
         return False
-    # the last name may be what a skill notes while it runs, which no file tells
+    # the last name may be a note of a running skill, which is in no file
     *outer, skill = outer
     return any(
         wears(node, skill, document)
@@ -93,7 +93,7 @@ def _is_skill(node: Node) -> bool:
 
 
 def _inside(outer: list[str], document: Document, substitution: Substitution) -> Iterator[Node]:
-    """Nodes that can run inside of nodes of these names, the outermost first."""
+    """Nodes that can run inside nodes with these names, the outermost first."""
     entered: set[tuple[str, int]] = {(document.main, 0)}
     stack: list[tuple[Node, int]] = [(document.trees[document.main].root, 0)]
     while stack:

@@ -26,7 +26,7 @@ _SIGN = re.compile(r"[@:]")
 class FaultSyntaxError(FaultError):
     """A text is not a fault; the message shows it with a caret under what is wrong.
 
-    begin, end: the wrong part of the text. reason: why, and what would be valid.
+    begin, end: the wrong part of the text. reason: why it is wrong, and what would be valid.
     """
 
     def __init__(self, text: str, begin: int, end: int, reason: str) -> None:
@@ -39,10 +39,10 @@ class FaultSyntaxError(FaultError):
 
 
 def parse_fault(text: str) -> Fault:
-    """A fault as it is written, its defaults filled in.
+    """Read a written fault, and fill in its defaults.
 
     Raises:
-        FaultSyntaxError: it is not a fault; the message shows where it is wrong and what is valid.
+        FaultSyntaxError: this is not a fault; the message shows what is wrong and what is valid.
     """
     sign = _SIGN.search(text)
     end = len(text) if sign is None else sign.start()

@@ -56,7 +56,7 @@ def plan(
     skills: those that the run can reach.
 
     Raises:
-        FaultError: the tree or the run has nothing of the kind; the message says what it has.
+        FaultError: the tree or the run lacks what a fault needs; the message says what it has.
         TreeError, TreeNotFound: the file of faults beside the tree is wrong.
     """
     planned = []
@@ -77,10 +77,10 @@ def plan(
 
 
 class Stage:
-    """The robot, the site and the skills of one run, as its faults may break them.
+    """The robot, the site and the skills of one run, ready for its faults.
 
-    world: None in a run without one, which has neither robot nor site. What is made for faults
-    is freed with `stack`.
+    world: None in a run without a world, which has neither robot nor site. `stack` frees whatever
+    the faults needed.
 
     Raises:
         FaultError: the world or the robot cannot have a fault.
@@ -158,4 +158,4 @@ class Killed:
         os.kill(os.getpid(), signal.SIGKILL)
 
     def end(self) -> None:
-        """Nothing is left to mend."""
+        """Do nothing: the process is gone."""

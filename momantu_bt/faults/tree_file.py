@@ -42,7 +42,7 @@ from momantu_bt.tree.substitute.substitution import Substitution
 class TreeFaults:
     """The fault rows and phases of one tree.
 
-    begins: a phase by a fault's name. rows: faults as they are written, for a bench of all.
+    begins: phases by the fault's name. rows: faults as they are written, for a bench of all faults.
     """
 
     begins: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
@@ -53,7 +53,7 @@ def tree_faults(document: Document) -> TreeFaults:
     """The file of faults beside the document's main file; empty if there is none.
 
     Raises:
-        TreeError: the file has errors; all of them are in it.
+        TreeError: the file has errors; the exception holds all of them.
         TreeNotFound: the file cannot be opened.
     """
     source, problems, found = faults_source(document), Problems(), TreeFaults()
@@ -68,7 +68,7 @@ def tree_faults(document: Document) -> TreeFaults:
 
 
 def faults_source(document: Document) -> Mapping[str, str]:
-    """The text of the file beside a document's main file, by its name; empty without one.
+    """The file of faults beside a document's main file: its text by its name; empty if none.
 
     Raises:
         TreeNotFound, TreeError: the file cannot be opened, or is not UTF-8.

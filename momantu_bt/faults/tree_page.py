@@ -22,7 +22,7 @@ HEAD = ("fault", "begins", "recover?", "notice within", "true reasons")
 
 @dataclass(frozen=True, slots=True)
 class TreeRow:
-    """A row of the matrix in one tree. begins: its phase; "" where it cannot happen.
+    """A row of the matrix in one tree. begins: its phase; "" if it cannot happen.
 
     why: why it cannot happen in this tree.
     """

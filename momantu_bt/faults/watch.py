@@ -31,7 +31,7 @@ class PhaseWatch:
         self._running: dict[int, int] = {}
 
     def begun(self, context: RunContext) -> bool:
-        """Whether it has begun by this tick; True for ever after."""
+        """Whether the phase has begun by this tick; once True, always True."""
         if self._due is None:
             self._count(context)
         return self._due is not None and context.now >= self._due - CLOCK_SLACK
@@ -46,9 +46,9 @@ class PhaseWatch:
                 return
 
     def _started(self) -> list[TreeNode]:
-        """Nodes that are RUNNING, or note the phase's last name, and were not, or not so, before.
+        """Nodes that are newly RUNNING, or newly have the phase's last name as their note.
 
-        A node that ended and started anew within a tick counts anew.
+        A node that ended and started again within a tick counts again.
         """
         running: dict[int, int] = {}
         came = []
@@ -62,7 +62,7 @@ class PhaseWatch:
         return came
 
     def _succeeded(self, context: RunContext) -> list[TreeNode]:
-        """Nodes that ended in SUCCESS in this tick; the journal has no second of two equal ends."""
+        """Nodes that ended in SUCCESS in this tick; of two equal ends the journal has only one."""
         ended = {change.node.index for change in context.changes if change.status is SUCCESS}
         return [
             node
@@ -74,7 +74,7 @@ class PhaseWatch:
 def _matching(
     names: Sequence[str], nodes: Sequence[TreeNode], document: Document
 ) -> list[TreeNode]:
-    """Nodes of the last name inside of nodes of the others, the outermost first."""
+    """Nodes with the last name inside nodes with the other names, the outermost first."""
     if not names:
         return []
     *outer, last = names

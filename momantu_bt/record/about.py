@@ -15,12 +15,12 @@ from momantu_bt.tree.model import Document
 from momantu_bt.world import WorldTexts
 
 FORMAT = 1
-"""Counts up when records change so that older readers would be wrong."""
+"""The format of records; goes up by one when older readers would misread a record."""
 SITE = "site.json"
 
 
 def run_data(document: Document, options: Mapping[str, Any], run: Executor) -> dict[str, Any]:
-    """`/run`. options: what was chosen for the run, beside its seed and its files."""
+    """`/run`. options: the other choices for the run, besides its seed and its files."""
     world = run.world
     return {
         "format": FORMAT,
@@ -39,9 +39,9 @@ def run_data(document: Document, options: Mapping[str, Any], run: Executor) -> d
 def files_of(
     document: Document, substitution: Mapping[str, str], run: Executor
 ) -> Iterator[dict[str, str]]:
-    """`/files`, one by one: the tree's with what it includes, then all others.
+    """`/files`, one by one: the tree and its included files, then all others.
 
-    substitution: texts of files that say what nodes do instead of themselves, by name.
+    substitution: texts, by name, of files that replace what nodes do.
     """
     given = {place.file for place in document.value_places.values()} - {document.file}
     for name, text in document.source.items():

@@ -26,9 +26,9 @@ from momantu_bt.record.codec_types import find_type, type_name
 from momantu_bt.skill import MISSING
 
 MAX_DEPTH = 60
-"""Deepest nesting of values; a value that is deeper is written as text."""
+"""Deepest nesting of values; `to_json` writes a deeper value as text."""
 FEW = 16
-"""Arrays with at most so many elements are written as readable numbers; longer ones in base64."""
+"""Arrays with at most this many elements are written as readable numbers, longer ones in base64."""
 _ADDRESS = re.compile(r" at 0x[0-9a-fA-F]+")
 
 dumps: Callable[[Any], str] = json.JSONEncoder(separators=(",", ":"), allow_nan=False).encode
@@ -176,7 +176,7 @@ _WRITERS: tuple[tuple[Any, Callable[[Any, int], dict[str, Any]]], ...] = (
     (bytes, lambda value, depth: {"$bytes": base64.b64encode(value).decode("ascii")}),
     (PurePath, lambda value, depth: {"$path": str(value)}),
 )
-"""What is written how, the first that fits; types that are themselves in JSON have been seen to."""
+"""The writer for each type; the first that fits is used. Types that JSON has never get here."""
 
 
 def _from_json(data: Any, depth: int) -> Any:

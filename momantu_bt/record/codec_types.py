@@ -17,10 +17,10 @@ def type_name(kind: type) -> str:
 
 
 def find_type(name: str) -> type | None:
-    """The type of a name; None where it cannot be had here.
+    """The type of a name; None if it cannot be found here.
 
-    A module is imported only when it is loaded already or belongs to a package that gives
-    plug-ins: reading a record runs no other code.
+    Only modules that are already loaded, or that belong to a package with plug-ins, are used:
+    reading a record runs no other code.
     """
     module_name, _, path = name.partition(":")
     package = module_name.partition(".")[0]

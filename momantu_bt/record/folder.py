@@ -11,10 +11,10 @@ REPORT = "report.json"
 
 
 def prepare_folder(folder: Path) -> None:
-    """Make the folder of a record, and in it an empty log that keeps others out.
+    """Make the folder of a record, with an empty log so that no other run takes it.
 
     Raises:
-        OutputError: it cannot be made, cannot be written, or holds a record already.
+        OutputError: the folder cannot be made or written, or holds a record already.
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)

@@ -12,7 +12,7 @@ from momantu_bt.failure import FailureValue
 
 
 class Step(NamedTuple):
-    """One step of one skill. outputs: the values, by port, that are new since its last step."""
+    """One step of one skill. outputs: by port, the values that changed since its last step."""
 
     leaf: SkillNode
     status: Status
@@ -24,7 +24,7 @@ class Step(NamedTuple):
 class OutsideLog:
     """Keeps steps of skills and answers to questions until `clear`.
 
-    reads: each answer with its key; `Refused` where it was a failure.
+    reads: each answer with its key; `Refused` stands for a failure.
     """
 
     def __init__(self, events: Events) -> None:
@@ -35,7 +35,7 @@ class OutsideLog:
         events.subscribe(Answered, self.reads.append)
 
     def clear(self) -> None:
-        """A new tick begins."""
+        """Forget the steps and answers, as a new tick begins."""
         self.steps.clear()
         self.reads.clear()
 

@@ -44,7 +44,7 @@ class RecordError(MomantuError):
 
 
 def read_record(folder: Path) -> Recording:
-    """Read the record in a folder (or the `run.mcap` in it). A cut-off one is read up to there.
+    """Read the record in a folder (or the `run.mcap` in it), a cut-off one as far as it goes.
 
     Raises:
         RecordError: there is no record, it has no beginning, or another version wrote it.
@@ -105,7 +105,7 @@ def _messages(path: Path) -> tuple[dict[str, list[tuple[float, bytes]]], bool]:
 def _records(file: BinaryIO) -> Iterator[tuple[str, float, bytes]]:
     """Topic, seconds and text of each whole message.
 
-    A message that was cut short is as long as what is left of the file, so its end is looked at.
+    A message that was cut short only has the rest of the file, so the end is checked.
     """
     size = file.seek(0, 2)
     file.seek(0)
@@ -129,7 +129,7 @@ def _node(data: Mapping[str, Any]) -> NodeInfo:
 
 
 class _Ticks:
-    """Messages of `/tick` as values; what was named again is the object that it was."""
+    """Messages of `/tick` as values; a name for an earlier value gives the same object again."""
 
     def __init__(self) -> None:
         self._reads: dict[str, Any] = {}

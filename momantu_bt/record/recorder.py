@@ -36,7 +36,7 @@ from momantu_bt.record.report import Report
 from momantu_bt.tree.model import Document
 
 MOST_TICKS, MOST_SECONDS = 10, 0.1
-"""Most unchanged ticks, and most wall time in s, that a crash may lose."""
+"""A crash loses at most this many unchanged ticks, or this much wall time (s)."""
 
 
 class Recorder:
@@ -82,7 +82,7 @@ class Recorder:
         self._guarded(self._write, run)
 
     def finish(self, report: Report) -> None:
-        """Write the report, into the log and as a file of its own."""
+        """Write the report into the log, and as a separate file."""
         text = json.dumps(report.as_dict(), default=str)
         self._guarded(self._end, text)
         try:

@@ -14,7 +14,7 @@ from momantu_bt.failure import FailureValue
 
 @dataclass(frozen=True, slots=True)
 class NodeInfo:
-    """One node of the tree. type: the built-in's name, the skill's or the subtree's.
+    """One node of the tree. type: the name of the built-in, the skill or the subtree.
 
     index: its number in file order. parent: the number of its parent. label: the node in one line,
     as in the file. role: how displays show it.

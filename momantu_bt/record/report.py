@@ -57,9 +57,9 @@ class FalseClaim:
 class SkillClaims:
     """The claims of one skill, compared with ground truth.
 
-    runs: how often it ended. judged_successes, judged_failures: number of results with a claim that
-    the world could judge. false_successes: successes that were not true. false_failures: false
-    alarms. lies: both kinds of false results, ordered by time.
+    runs: how often the skill ended. judged_successes, judged_failures: number of results with a
+    claim that the world could judge. false_successes: successes that were not true.
+    false_failures: false alarms. lies: both kinds of false results, ordered by time.
     """
 
     runs: int = 0
@@ -89,7 +89,8 @@ class Report:
     """How a run ended.
 
     status: SUCCESS or FAILURE of the tree, INTERRUPTED, or ERROR. success: the referee's verdict;
-    None without a referee. unmet, measures: from the verdict. failure: the tree's, with its causes.
+    None without a referee. unmet, measures: from the verdict. failure: why the tree failed, with
+    the causes.
     sim_time_s: the world's clock at the tree's end. wall_time_s: from the first tick to the last.
     start_time_s: wall time before the first tick. ticks: number of ticks of the tree. blackboard:
     the root's values at the end. error: traceback of an internal error. incidents: dangerous events
@@ -167,7 +168,7 @@ class Report:
 
 
 def finite(value: Any) -> Any:
-    """Replace infinities and NaN by texts, as JSON has neither."""
+    """Replace infinities and NaN by texts, because JSON has neither."""
     if isinstance(value, float) and not math.isfinite(value):
         return str(value)
     if isinstance(value, dict):

@@ -19,10 +19,10 @@ _NODE = ("name", "type", "place", "ticks", "runs", "failures", "seconds")
 
 
 def check_sound(recording: Recording) -> None:
-    """Look at what readers follow: the tree's shape, numbers of nodes, names of statuses, fields.
+    """Check what readers rely on: the tree's shape, numbers of nodes, names of statuses, fields.
 
     Raises:
-        ValueError: something leads nowhere or is missing; the message says what.
+        ValueError: a reference is wrong or something is missing; the message says what.
     """
     _check_fields("the run", recording.about, _ABOUT)
     if recording.report is not None:

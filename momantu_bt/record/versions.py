@@ -37,7 +37,7 @@ def versions() -> dict[str, str]:
 
 @cache
 def _version(distribution: str) -> str:
-    """A record and a report both ask; looking it up is slow."""
+    """Version of a distribution; cached, because the look-up is slow and is done twice a run."""
     try:
         return metadata.version(distribution)
     except metadata.PackageNotFoundError:

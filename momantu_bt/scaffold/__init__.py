@@ -19,7 +19,7 @@ FILES = {
     "src/${package}/${name}.py": "skill.py",
     "tests/test_${name}.py": "test_skill.py",
 }
-"""Files of the package, and the templates beside this module that they are made from."""
+"""Files of the package, and their templates beside this module."""
 
 _IMPORTED = ("Failure", "In", "Out", "Robot", "Run", "Skill")
 """Names that the skill's module imports."""

@@ -15,14 +15,14 @@ from momantu_bt.formats.names import valid_names
 from momantu_bt.world import Site, seeded
 
 NEAR = 5.0
-"""m from the start within which the piece of wall is missing, where there are walls."""
+"""The missing piece of wall is within this distance of the start, m, if walls are there."""
 
 
 def wrong_site(site: Site, fault: Fault, seed: int, folder: Path) -> Site:
-    """The site as the fault makes it. folder: where changed maps may be written.
+    """The site with the fault in it. folder: changed maps may be written there.
 
     Raises:
-        FaultError: the site has nothing of the kind.
+        FaultError: the site has nothing that this fault can break.
     """
     if fault.name == "table.height":
         return _other_heights(site, fault)
@@ -69,7 +69,7 @@ def _other_map(site: Site, fault: Fault, seed: int, folder: Path) -> Site:
 def _without_wall(
     plan: MapPicture, site: Site, length: float, random: np.random.Generator
 ) -> MapPicture:
-    """The plan with a square of `length` m free that lies around a piece of wall."""
+    """The plan with a free square, `length` m wide, around a piece of wall."""
     walls = np.argwhere(plan.occupied())
     if not len(walls):
         raise FaultError("map.wrong: there is no wall on the floor plan")
@@ -86,7 +86,7 @@ def _without_wall(
 
 
 def _written(plan: MapPicture, file: Path, folder: Path, shift: tuple[float, float]) -> Path:
-    """A plan in a folder, under its file's name and shifted by m along x and y."""
+    """Write a plan into a folder, under its file's name; shift: along x and y, m."""
     origin = plan.origin[0] + shift[0], plan.origin[1] + shift[1]
     write_map(folder / file.name, replace(plan, origin=origin))
     return folder / file.name

@@ -23,12 +23,12 @@ FAULTS: Group[tuple[FaultKind, ...]] = Group("momantu_bt.faults", "list of fault
 
 
 def kinds() -> Mapping[str, FaultKind]:
-    """By `component.mode`: those at the robot first, then in the order of `Where`.
+    """All kinds by `component.mode`, in the order of `Where`: those at the robot come first.
 
     A plug-in that cannot be loaded is left out; `momantu-bt doctor` says why.
 
     Raises:
-        PluginClash: two plug-ins have a fault of one name.
+        PluginClash: two plug-ins have a fault with the same name.
     """
     return _kinds(tuple(FAULTS.installed().values()))
 

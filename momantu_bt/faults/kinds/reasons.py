@@ -26,10 +26,11 @@ def _codes(kind: FaultKind, skill: type[Skill]) -> frozenset[str]:
 
 
 def _may_hit(kind: FaultKind, skill: type[Skill]) -> bool:
-    """Whether a fault may make a skill fail that says nothing of its failures.
+    """Whether a fault may make a skill fail that declares no symptoms for its failures.
 
-    An actuator's fault hits who uses it. What a skill senses and is told it does not declare, so
-    that a fault of those may hit it in any case; one of the software only where it has symptoms.
+    An actuator's fault hits the skills that use the actuator. Skills do not declare what they sense
+    and are told, so a fault of those may hit any skill. A fault of the software may hit any skill
+    if the fault has symptoms.
     """
     if kind.actuator:
         return kind.actuator in skill.uses

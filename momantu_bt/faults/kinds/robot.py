@@ -34,13 +34,13 @@ ARM_MOVES = (Trigger(Activity.MOVE_ARM), Trigger(Activity.SET_DOWN))
 SENSOR = (SENSOR_DEAD,)
 UNSEEN = frozenset({Symptom.NOT_SEEN})
 MISJUDGED = frozenset({Symptom.NOT_SEEN, Symptom.NOT_HELD})
-"""Of what stands somewhere else than where it is seen, or is not seen at all."""
+"""Symptoms of an object that is not where it is seen, or is not seen at all."""
 OFF_TARGET = frozenset(
     {Symptom.ARM_OFF_COURSE, Symptom.NO_GRASP, Symptom.NO_CONTACT, Symptom.TOPPLED}
 )
-"""Of a hand that comes beside the place where it should."""
+"""Symptoms of a hand that misses the place it should reach."""
 ASTRAY = frozenset({Symptom.NOT_LOCALIZED, Symptom.WAY_BLOCKED})
-"""Of a base that is elsewhere than the robot believes."""
+"""Symptoms of a base that is not where the robot believes."""
 _FOR_GOOD = (Variant("for=inf", recoverable=False),)
 
 _kind = partial(fault_kind, place=Where.ROBOT)

@@ -32,7 +32,7 @@ def usual_phases(triggers: Iterable[Trigger], skills: Mapping[str, type[Skill]])
 def activities_of(skill: type[Skill]) -> Mapping[Activity, str]:
     """A skill's activities, as it declares them, or else from its `uses` and its outputs.
 
-    The value stands behind the skill's name where a phase is written.
+    A written phase has the value behind the skill's name.
     """
     found = dict(_seeming(skill) if skill.activities is None else skill.activities)
     found[Activity.ANY] = ""

@@ -14,19 +14,19 @@ class Channel(Protocol):
     """One part of a record, such as the robot's pose."""
 
     def write(self, run: Executor, file: McapFile) -> None:
-        """Write what is new after a tick; nothing when nothing is due."""
+        """Write what is new after a tick, if anything is due."""
         ...
 
 
 class Due:
-    """Says at a rate of the world's clock that it is time."""
+    """Says when it is time, at a rate in the world's clock."""
 
     def __init__(self, rate: float) -> None:
         self._period = 1.0 / rate
         self._next = 0.0
 
     def __call__(self, now: float) -> bool:
-        """Whether it is time; then not again for a period."""
+        """Whether it is time; after True, not again for a period."""
         if now < self._next - _SLACK:
             return False
         self._next = now + self._period
@@ -34,11 +34,11 @@ class Due:
 
 
 def stamp_of(now: float) -> int:
-    """Seconds as MCAP has them, ns."""
+    """Seconds as a stamp of MCAP, ns."""
     return round(now * 1e9)
 
 
 def time_text(now: float) -> str:
-    """Seconds as viewers have them, as JSON."""
+    """Seconds as JSON, in the form for viewers."""
     whole, part = divmod(round(now * 1e9), 1_000_000_000)
     return f'{{"sec":{whole},"nsec":{part}}}'

@@ -13,7 +13,7 @@ from momantu_bt.record.channels.channel import time_text
 from momantu_bt.record.channels.poses import pose_text
 
 FREE_BYTE, OCCUPIED_BYTE, UNKNOWN_BYTE = 0, 100, 255
-"""What a byte of a viewer's grid says."""
+"""The meanings of a byte in a viewer's grid."""
 _BYTES = np.zeros(3, np.uint8)
 _BYTES[[FREE, OCCUPIED, UNKNOWN]] = FREE_BYTE, OCCUPIED_BYTE, UNKNOWN_BYTE
 _UINT8 = 1

@@ -15,7 +15,7 @@ _INFO, _WARNING = 2, 3
 
 
 class LogLines:
-    """Writes each new failure of a leaf, and each remark. remarks: texts, emptied when written."""
+    """Writes each new failure of a leaf, and each remark. remarks: `write` empties it."""
 
     def __init__(self, file: McapFile, remarks: list[str]) -> None:
         self._channel = file.channel("/log", "foxglove.Log", LOG)

@@ -17,9 +17,9 @@ from momantu_bt.record.mcap.viewer_schemas import SCENE
 from momantu_bt.service import HeldObject, KnowsHeld, offers
 
 HELD = "held"
-"""Identifier of what is between the fingers; the others are called as their cell of the board."""
+"""Identifier of the held object; the others have the name of their cell of the board."""
 RATE = 5.0
-"""Hz at which it is asked what is held."""
+"""Rate at which services are asked for the held object, Hz."""
 _SEEN = '{"r":0.2,"g":0.6,"b":0.9,"a":0.7}'
 _IN_HAND = '{"r":0.9,"g":0.6,"b":0.1,"a":0.9}'
 _UNUSED = (
@@ -37,7 +37,7 @@ class Objects:
         self._held: HeldObject | None = None
 
     def write(self, run: Executor, file: McapFile) -> None:
-        """The objects that appeared or disappeared since the last tick."""
+        """Write the objects that appeared or disappeared since the last tick."""
         due = self._due(run.context.now)
         if not due and not run.context.writes:
             return
@@ -72,7 +72,7 @@ def _believed(run: Executor) -> HeldObject | None:
 
 
 def _objects(value: Any) -> list[DetectedObject]:
-    """Those in a value that viewers can draw: they know no NaN."""
+    """The objects in a value that viewers can draw; they cannot draw NaN."""
     things = value if type(value) is tuple else (value,)
     return [thing for thing in things if type(thing) is DetectedObject and _drawable(thing)]
 

@@ -20,14 +20,14 @@ from momantu_bt.record.mcap.viewer_schemas import POSE_IN_FRAME, TRANSFORMS
 BASE_RATE = 5.0
 LINK_RATE = 2.0
 STILL_RATE = 1.0
-"""Hz of the world's clock: of the base, of the links below it, and of a base that stands."""
+"""Rates in Hz of the world's clock: a moving base, the links below it, a base that stands."""
 _TURNING = ("revolute", "continuous")
 _MOVED = 1e-4
-"""rad or m by which a joint must have moved for its link to be written again."""
+"""A link is written again once its joint has moved by this, rad or m."""
 
 
 class Poses:
-    """Writes the base at BASE_RATE, and each link that has moved at LINK_RATE."""
+    """Writes the base at BASE_RATE and, at LINK_RATE, each link that has moved."""
 
     def __init__(self, file: McapFile, body: Body) -> None:
         self._transforms = file.channel("/tf", "foxglove.FrameTransforms", TRANSFORMS)
@@ -39,7 +39,7 @@ class Poses:
         self._links = [_Link(joint) for joint in body.frames.kinematics.joints()]
 
     def write(self, run: Executor, file: McapFile) -> None:
-        """The base and the links, where they are due and have moved."""
+        """Write the base and the links that are due and have moved."""
         body, state, now = run.context.body, run.state, run.context.now
         if body is None or state is None or not self._base_due(now):
             return
@@ -54,9 +54,9 @@ class Poses:
     def _base_moved(
         self, body: Body, state: RobotState, now: float, time: str, file: McapFile
     ) -> list[str]:
-        """The transforms down to the base, with `/pose`; none while it stands, but each second.
+        """The transforms down to the base, with `/pose`; while the base stands, only each second.
 
-        Viewers know no NaN.
+        Viewers cannot read NaN.
         """
         odom_from_base, map_from_odom = state.odom_from_base, body.frames.map_from_odom
         where = (_numbers(odom_from_base), _numbers(map_from_odom))
@@ -75,7 +75,7 @@ class Poses:
         return transforms
 
     def _moved(self, state: RobotState, time: str) -> list[str]:
-        """Links that have moved, the first time all; others than measured joints never move."""
+        """Links that have moved; all links at the first call. Only measured joints can move."""
         positions = dict(zip(state.names, state.positions.tolist(), strict=True))
         texts = [link.text(time, positions.get(link.joint.name, 0.0)) for link in self._links]
         self._links = [link for link in self._links if link.joint.name in positions]
@@ -96,7 +96,7 @@ class _Link:
         self._written: float | None = None
 
     def text(self, time: str, position: float) -> str | None:
-        """The transform as JSON; None where it has not moved since it was written."""
+        """The transform as JSON; None if the joint has not moved since the last one."""
         if self._written is not None and abs(position - self._written) < _MOVED:
             return None
         if not math.isfinite(position):
@@ -157,6 +157,6 @@ def _transform(time: str, parent: str, child: str, parent_from_child: Transform)
 
 
 def pose_text(pose: Transform) -> str:
-    """A pose as viewers have it, as JSON; 0.01 mm is as exact as a picture needs."""
+    """A pose as JSON in the form for viewers, rounded to 0.01 mm; a picture needs no more."""
     rotation = _rotation_text(pose.quaternion.tolist())
     return f'{{"position":{_position_text(pose)},"orientation":{rotation}}}'

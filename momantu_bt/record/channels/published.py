@@ -25,7 +25,7 @@ class Published:
         self._silent: set[str] = set()
 
     def write(self, run: Executor, file: McapFile) -> None:
-        """The values that differ from those written last."""
+        """Write the values that have changed since they were last written."""
         if run.settling or not self._due(run.context.now):
             return
         for name, service in run.services.running.items():

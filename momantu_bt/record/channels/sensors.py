@@ -28,13 +28,13 @@ EVERY = 1.0
 """Simulated seconds between two kept readings of one sensor."""
 _SLACK = 1e-6
 WIDTH = 320
-"""Pixels that a kept picture is at most wide."""
+"""Greatest width of a kept picture, pixels."""
 QUALITY = 70
 _NOWHERE = pose_text(Transform())
 
 
 class Sensors:
-    """Writes readings with their stamps: of each sensor that was read, one each EVERY seconds."""
+    """Writes readings with their stamps: one each EVERY seconds for each sensor that was read."""
 
     def __init__(self, events: Events) -> None:
         self._due: dict[str, float] = {}
@@ -50,12 +50,12 @@ class Sensors:
             self._taken[sensor] = reading
 
     def taken(self) -> dict[str, CameraImage | LaserScan]:
-        """Readings by sensor since it was last asked."""
+        """Readings by sensor since the last call."""
         taken, self._taken = self._taken, {}
         return taken
 
     def write(self, run: Executor, file: McapFile) -> None:
-        """Every reading that was taken in this tick."""
+        """Write every reading that was taken in this tick."""
         stamp = stamp_of(run.context.now)
         for name, reading in self.taken().items():
             if isinstance(reading, CameraImage):
@@ -86,7 +86,7 @@ def _image_text(image: CameraImage) -> str:
 
 
 def _scan_text(scan: LaserScan) -> str:
-    """Ranges to the millimetre; where nothing was hit, the greatest range."""
+    """Ranges to the millimetre; a beam that hit nothing has the greatest range."""
     ranges = np.nan_to_num(scan.ranges, nan=0.0, posinf=scan.range_max, neginf=0.0)
     numbers = ",".join([f"{r:g}" for r in np.round(ranges, 3).tolist()])
     end = scan.angle_min + scan.angle_increment * (len(ranges) - 1)

@@ -20,9 +20,9 @@ from momantu_bt.record.mcap.schemas import TICK
 from momantu_bt.record.outside_log import OutsideLog, Step
 
 AGAIN = '{"$again":true}'
-"""In the place of a value that is the same object as the last one of its name."""
+"""Stands for a value that is the same object as the last one under its name."""
 _MOST_TEXTS = 10_000
-"""Changes and steps that are kept as text; there may be more, for a note may hold a count."""
+"""Greatest number of changes and steps kept as text; a note with a count would add ever more."""
 
 
 class Ticks:
@@ -42,7 +42,7 @@ class Ticks:
         self._quoted: dict[str, str] = {}
 
     def write(self, run: Executor, file: McapFile) -> None:
-        """One tick. Before the first it is tick 0, with the values that the run begins with."""
+        """Write one tick. Before the first, write tick 0 with the initial values of the run."""
         context = run.context
         parts = [f'{{"number":{context.tick},"now":{context.now!r}']
         if context.changes:
@@ -70,7 +70,7 @@ class Ticks:
         file.add(self._channel, stamp_of(context.now), ",".join(parts) + "}")
 
     def _change(self, change: Change) -> str:
-        """The same few changes come again and again."""
+        """A change as JSON, kept because the same few changes recur."""
         node, status, note, failure = change
         if failure is not None:
             text = self._failure(node.index, failure)
@@ -83,7 +83,7 @@ class Ticks:
         return known
 
     def _failure(self, index: int, failure: FailureValue) -> str:
-        """A failure as JSON; of one that a node has had last, that node's index."""
+        """A failure as JSON; if it is a node's newest failure already, the index of that node."""
         of = self._failed.get(id(failure))
         if of is not None:
             return f'{{"$again":{of}}}'
@@ -111,7 +111,7 @@ class Ticks:
         return f"[{dumps(name)},{dumps(to_json(value))}]"
 
     def _step(self, step: Step) -> str:
-        """Most steps only go on in the phase of the one before."""
+        """A step as JSON; most steps stay in the phase of the one before."""
         index = step.leaf.index
         if step.failure is not None or step.outputs:
             failure = "null" if step.failure is None else dumps(to_json(step.failure))
@@ -126,7 +126,7 @@ class Ticks:
         return known
 
     def _issued(self, issued: Issued) -> str:
-        """A trajectory that is commanded again is named, not written out again."""
+        """A goal as JSON; a trajectory that is commanded again is only named."""
         name, goal = issued.actuator, issued.goal
         quoted = self._quoted.get(name)
         if quoted is None:

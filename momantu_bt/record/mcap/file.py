@@ -1,7 +1,7 @@
 """A run's MCAP file while it is written: safe against a crash after each tick.
 
-Messages are JSON. They stand in the file one by one, not in chunks, and each tick's go to the
-operating system in one piece: whatever then ends the process, they can be read.
+Messages are JSON. The file holds them one by one, not in chunks. The messages of a tick go to the
+operating system in one piece, so they can be read whatever ends the process afterwards.
 """
 
 from __future__ import annotations
@@ -31,11 +31,11 @@ from momantu_bt.record.mcap.records import (
 
 _MESSAGE = struct.Struct("<BQHIQQ").pack
 _MESSAGE_CODE, _MESSAGE_HEAD = 0x05, 2 + 4 + 8 + 8
-"""Opcode; bytes of channel, sequence, log time and publish time before the data."""
+"""The opcode, and the bytes before the data: channel, sequence, log time and publish time."""
 
 
 class McapFile:
-    """Channels by topic, and messages on them. All may raise OSError; then `abandon` it."""
+    """Channels by topic, and their messages. All methods may raise OSError: then `abandon` it."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -49,7 +49,7 @@ class McapFile:
         self._last = 0
 
     def channel(self, topic: str, name: str, schema: Mapping[str, Any]) -> int:
-        """The number of a topic's channel, which is made, with its schema, at the first use."""
+        """The number of a topic's channel; the first use makes it and its schema."""
         known = self._channels.get(topic)
         if known is None:
             number, form = len(self._channels) + 1, self._schema(name, schema)
@@ -67,7 +67,7 @@ class McapFile:
         return known[0]
 
     def add(self, channel: int, stamp: int, text: str) -> None:
-        """One message. stamp: ns of the world's clock. text: JSON in ASCII."""
+        """Add one message. stamp: ns of the world's clock. text: JSON in ASCII."""
         data = text.encode("ascii")
         self._sequence += 1
         length = _MESSAGE_HEAD + len(data)
@@ -110,7 +110,7 @@ class McapFile:
             self._raw.close()
 
     def abandon(self) -> None:
-        """Give up after an error; what is whole stays readable."""
+        """Give up after an error; whole messages stay readable."""
         with suppress(OSError):
             self.flush()
         with suppress(OSError):
@@ -120,5 +120,5 @@ class McapFile:
 
     @property
     def removed(self) -> bool:
-        """Whether the file has been deleted meanwhile."""
+        """Whether somebody has deleted the file."""
         return not self.path.exists()

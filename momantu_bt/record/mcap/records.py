@@ -1,7 +1,7 @@
 """Records of an MCAP file as bytes, after https://mcap.dev/spec; all but messages.
 
-The `mcap` package reads the files. It is not used to write them: importing its records and taking
-each message through them costs a quarter of what a whole record may cost.
+The `mcap` package reads the files but does not write them: to import its records and to pass each
+message through them takes a quarter of the time that a whole record may take.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ def channel_record(number: int, schema: int, topic: str) -> bytes:
 
 
 def statistics_record(counts: Mapping[int, int], schemas: int, last: int) -> bytes:
-    """counts: messages by channel; last: the latest log time, ns. The first is 0."""
+    """counts: messages by channel; last: the latest log time, ns. The first time is 0."""
     numbers = (sum(counts.values()), schemas, len(counts), 0, 0, 0, 0, last)
     pairs = b"".join(struct.pack("<HQ", *pair) for pair in counts.items())
     body = struct.pack("<QHIIIIQQ", *numbers) + struct.pack("<I", len(pairs)) + pairs
@@ -42,17 +42,17 @@ def statistics_record(counts: Mapping[int, int], schemas: int, last: int) -> byt
 
 
 def offset_record(code: int, start: int, length: int) -> bytes:
-    """The position of an opcode's records in the summary."""
+    """Where the summary holds the records of an opcode."""
     return _record(OFFSET, struct.pack("<BQQ", code, start, length))
 
 
 def data_end_record() -> bytes:
-    """The end of the messages; 0 stands for no checksum."""
+    """The end of the messages; a checksum of 0 means none."""
     return _record(DATA_END, struct.pack("<I", 0))
 
 
 def footer_record(summary: int, offsets: int) -> bytes:
-    """The beginnings of the summary and of its offsets; 0 means no checksum."""
+    """Where the summary and its offsets begin; a checksum of 0 means none."""
     return _record(FOOTER, struct.pack("<QQI", summary, offsets, 0))
 
 

@@ -32,7 +32,7 @@ def array(items: Schema) -> Schema:
 
 
 def row(*columns: Schema) -> Schema:
-    """An array of as many columns, one schema each (draft 7: viewers know no newer one)."""
+    """An array with one schema for each column, in draft 7: viewers know no newer one."""
     return {
         "type": "array",
         "items": list(columns),
@@ -102,7 +102,7 @@ TICK = record(
         "settling": {"const": True},
     },
 )
-"""`/tick`, each tick, with what there is of: changes [node, status, note, failure], writes [cell,
+"""`/tick`, each tick. Every part is optional: changes [node, status, note, failure], writes [cell,
 value], reads [key, value], steps of skills [node, status, phase, failure, outputs], issued
 [actuator, goal], notes of running nodes [node, note], new lines of nodes [node, label]."""
 

@@ -1,6 +1,6 @@
 """JSON Schemas of messages that viewers know by their names, as far as a record uses them.
 
-Fields and meanings are those of https://docs.foxglove.dev/docs/visualization/message-schemas.
+Fields and meanings follow https://docs.foxglove.dev/docs/visualization/message-schemas.
 """
 
 from __future__ import annotations

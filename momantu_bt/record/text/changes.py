@@ -97,7 +97,7 @@ class ChangeLines:
 
 
 def _parents_first(changes: Iterable[StatusChange]) -> Iterator[StatusChange]:
-    """Nodes that start in one tick in the order of the file, though the innermost is first."""
+    """Put nodes that start in one tick in file order; they arrive with the innermost first."""
     for starting, group in groupby(changes, key=lambda change: change[1] is RUNNING):
         together = list(group)
         yield from sorted(together, key=lambda change: change[0].index) if starting else together

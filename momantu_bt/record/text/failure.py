@@ -12,7 +12,7 @@ from momantu_bt.failure import FailureValue
 
 
 def failure_line(failure: FailureValue) -> str:
-    """Code and sentence, then each node it came through; a cause of another code says its own."""
+    """Code and sentence, then each node it came through; another code in a cause is shown."""
     words: list[str] = [str(failure)]
     code, file = failure.code, ""
     for link in failure.chain():

@@ -51,10 +51,10 @@ class Shown(Protocol):
 
 
 def tree_lines(root: Shown) -> list[TreeLine]:
-    """The root and, of each node that is running or has failed, what is below it.
+    """The root, and what is below each node that is running or has failed.
 
-    What has succeeded or has not begun is one line, so that the picture stays small. A tree
-    shares the line of the node that runs it, a decorator the line of its child.
+    A node that has succeeded or has not begun takes one line, so that the picture stays small. A
+    tree shares the line of the node that runs it. A decorator shares the line of its child.
     """
     lines: list[TreeLine] = []
 
@@ -78,7 +78,7 @@ def tree_lines(root: Shown) -> list[TreeLine]:
 
 
 def is_frame(role: Role, above: Role) -> bool:
-    """Whether a node is only what a list of steps, or all of a subtree, is written in.
+    """Whether a node only holds a list of steps, or all of a subtree.
 
     above: the role of its parent.
     """

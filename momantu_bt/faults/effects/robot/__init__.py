@@ -41,10 +41,10 @@ LAYERS: Mapping[str, LayerType] = MappingProxyType(
 
 
 def layer(robot: Robot, fault: Fault, seed: int) -> Layer:
-    """The robot with a fault that has not begun.
+    """The robot in a layer whose fault has not begun.
 
     Raises:
-        FaultError: the robot lacks what is to break.
+        FaultError: the robot lacks the part that the fault breaks.
     """
     try:
         return LAYERS[fault.name](robot, fault, seed)

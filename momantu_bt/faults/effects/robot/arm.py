@@ -32,7 +32,7 @@ class Stuck(StuckLayer):
 class Slow(GoalLayer):
     """`arm.slow`: trajectories are stretched in time.
 
-    Positions without times are passed on: how fast the driver goes there is its own business.
+    Positions without times are passed on unchanged: the driver chooses their speed.
     """
 
     def find(self) -> str:
@@ -55,8 +55,8 @@ class Slow(GoalLayer):
 class Offset(GoalLayer):
     """`arm.offset`: a joint reports `by` too much, and is sent `by` too low for it.
 
-    So the robot believes that all is well, and the true arm is elsewhere. KeyError where the arm
-    has no such joint.
+    So the robot sees no error, but the true arm is elsewhere. Raises KeyError if the arm has no
+    such joint.
     """
 
     def __init__(self, inner: Robot, fault: Fault, seed: int) -> None:
@@ -75,7 +75,7 @@ class Offset(GoalLayer):
         self._inner = None
 
     def state(self) -> RobotState:
-        """The state with the joint where it says that it is."""
+        """The state with the joint's false position."""
         now = self.inner.state()
         if not self.active:
             return now
@@ -86,7 +86,7 @@ class Offset(GoalLayer):
         return self._told
 
     def changed(self, goal: ActuatorGoal) -> ActuatorGoal:
-        """The goal to command to the joint itself, within its limits."""
+        """The goal that the joint really gets, within its limits."""
         if not isinstance(goal, JointTrajectory | JointPositions) or self.joint not in goal.names:
             return goal
         column = goal.names.index(self.joint)

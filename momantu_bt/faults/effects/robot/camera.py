@@ -28,7 +28,7 @@ class Dark(SensorLayer):
 
 
 class Biased(SensorLayer):
-    """`camera.biased`: depth times a factor, plus an offset; what was not measured stays so."""
+    """`camera.biased`: depth times a factor, plus an offset; unmeasured pixels stay unmeasured."""
 
     sensor = CameraSensor
 
@@ -43,7 +43,7 @@ class Biased(SensorLayer):
 class Noisier(SensorLayer):
     """`camera.noisier`: normal noise, its sigma in depth growing with the square of the distance.
 
-    Drawn from the seed, the sensor and the stamp.
+    The seed, the sensor and the stamp determine the noise.
     """
 
     sensor = CameraSensor
@@ -65,12 +65,12 @@ class Noisier(SensorLayer):
 
 
 class Shifted(SensorLayer):
-    """`camera.shifted`: the picture of a camera that is turned, but says that it is not.
+    """`camera.shifted`: the picture of a turned camera that reports its old direction.
 
     The axis lies in the picture's plane, so that every turn moves what is seen. For a pure
     rotation each ray of the turned camera is a ray of the straight one (the infinite homography
-    K R K^-1, Hartley and Zisserman, Multiple View Geometry, 2nd edition, section 8.4), so nothing
-    has to be guessed but what lies beyond the picture's edge, which stays black and unmeasured.
+    K R K^-1, Hartley and Zisserman, Multiple View Geometry, 2nd edition, section 8.4), so only
+    what lies beyond the picture's edge is unknown; it stays black and unmeasured.
     """
 
     sensor = CameraSensor
@@ -93,7 +93,7 @@ def _turned(
 ) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.bool_], NDArray[np.float32]]:
     """The position of each pixel of the turned camera in the straight camera's picture.
 
-    Returns rows and columns (h, w), whether they lie in it, and turned over straight depth there.
+    Returns rows and columns (h, w), whether they lie in it, and the ratio turned / straight depth.
     """
     K: Array = np.array(intrinsics).reshape(3, 3)
     axis = (math.cos(heading), math.sin(heading), 0.0)

@@ -9,13 +9,13 @@ from momantu_bt.messages import ActuatorGoal, GripperCommand
 from momantu_bt.robot import Robot
 
 PRESSING = 1.0
-"""N of closing effort above which the fingers hold something, or each other."""
+"""Above this closing effort, N, the fingers hold something, or press on each other."""
 OPENING = 1e-3
-"""m beyond the present opening that make a goal one to open."""
+"""A goal means to open if it is wider than the present opening by this, m."""
 
 
 class Weak(GoalLayer):
-    """`gripper.weak`: a share of the force; what holds something goes on with what it has."""
+    """`gripper.weak`: a share of the force; a gripper that holds something keeps its force."""
 
     def find(self) -> str:
         """The gripper."""
@@ -63,7 +63,7 @@ class Slips(GoalLayer):
         self.inner.command(self.actuator, self._weakened(last))
 
     def command(self, actuator: str, goal: ActuatorGoal) -> None:
-        """Give it to the robot; opening ends the fault."""
+        """Pass the goal to the robot; a goal to open ends the fault."""
         if actuator == self.actuator and isinstance(goal, GripperCommand):
             if goal.width > self.inner.state().gripper_width + OPENING:
                 self.active = False
@@ -71,7 +71,7 @@ class Slips(GoalLayer):
         super().command(actuator, goal)
 
     def changed(self, goal: ActuatorGoal) -> ActuatorGoal:
-        """The same opening with what force is left."""
+        """The same opening with the remaining force."""
         return self._weakened(goal) if isinstance(goal, GripperCommand) else goal
 
     def _weakened(self, goal: GripperCommand) -> GripperCommand:

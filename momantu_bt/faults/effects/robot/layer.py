@@ -10,7 +10,7 @@ from momantu_bt.robot import Robot, RobotDescription, SensorReading
 class Layer:
     """Implements `Robot` and `Effect`. Subclasses change what passes while they are active.
 
-    A KeyError of the constructor says what the robot lacks.
+    The constructor raises KeyError if the robot lacks something; the error says what.
     """
 
     def __init__(self, inner: Robot, fault: Fault, seed: int) -> None:
@@ -37,7 +37,7 @@ class Layer:
         return self.inner.description
 
     def state(self) -> RobotState:
-        """Joints and odometry of now."""
+        """The current joints and odometry."""
         return self.inner.state()
 
     def read(self, sensor: str) -> SensorReading:
@@ -56,8 +56,8 @@ class Layer:
 class GoalLayer(Layer):
     """A layer that changes the goals of one actuator.
 
-    A trajectory keeps the form in which it was first given: commanding the same object again
-    keeps it going, and another one would have to start where the joints are.
+    A trajectory keeps the form in which it was first given: the same object, commanded again,
+    continues, but another object would have to start where the joints are.
     """
 
     def __init__(self, inner: Robot, fault: Fault, seed: int) -> None:
@@ -86,7 +86,7 @@ class GoalLayer(Layer):
 
 
 class StuckLayer(Layer):
-    """A layer that keeps one actuator from moving: commands are swallowed."""
+    """A layer that keeps one actuator from moving: it drops the commands."""
 
     def __init__(self, inner: Robot, fault: Fault, seed: int) -> None:
         super().__init__(inner, fault, seed)
@@ -102,6 +102,6 @@ class StuckLayer(Layer):
         self.inner.stop(self.actuator)
 
     def command(self, actuator: str, goal: ActuatorGoal) -> None:
-        """Give it to the robot, unless it is for what is stuck."""
+        """Pass the goal to the robot, unless it is for the stuck actuator."""
         if not self.active or actuator != self.actuator:
             self.inner.command(actuator, goal)

@@ -1,6 +1,6 @@
 """Faulty odometry: it counts motion that the base does not make.
 
-Odometry never jumps: what went wrong while the fault lasted stays in it.
+Odometry never jumps: an error from the time of the fault stays in it.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from momantu_bt.messages import RobotState
 from momantu_bt.robot import Robot
 
 STANDING = 1e-6
-"""m or rad between two states below which the base stands."""
+"""The base stands if it moves less than this between two states, m or rad."""
 
 
 class OdometryLayer(Layer):
@@ -27,12 +27,12 @@ class OdometryLayer(Layer):
         self._told: RobotState | None = None
 
     def begin(self) -> None:
-        """Count wrongly from here on."""
+        """Start to count wrongly."""
         self.state()
         super().begin()
 
     def end(self) -> None:
-        """Count rightly again, from where it believes to be."""
+        """Count rightly again, from the pose reported last."""
         self.state()
         super().end()
 
@@ -60,11 +60,11 @@ class OdometryLayer(Layer):
         return replace(now, odom_from_base=told.transform(), linear=linear, angular=angular)
 
     def moved(self, moved: Pose2D, seconds: float, moving: bool) -> Pose2D:
-        """The motion that is reported of one between two states, in the base's frame before it."""
+        """The motion to report for a true one between two states, in the base's frame before it."""
         raise NotImplementedError(f"{type(self).__name__} has no moved()")
 
     def speeds(self, now: RobotState, moving: bool) -> tuple[float, float]:
-        """The speeds that go with it, m/s and rad/s."""
+        """The speeds to report with that motion, m/s and rad/s."""
         raise NotImplementedError(f"{type(self).__name__} has no speeds()")
 
 

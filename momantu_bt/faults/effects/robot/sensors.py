@@ -15,7 +15,7 @@ from momantu_bt.robot import CameraSensor, LaserSensor, Robot, SensorReading
 
 
 class SensorLayer(Layer):
-    """A layer around all sensors of one kind; KeyError where the robot has none."""
+    """A layer around all sensors of one kind; raises KeyError if the robot has none."""
 
     sensor: ClassVar[type[Any]]
 
@@ -29,7 +29,7 @@ class SensorLayer(Layer):
         self._newest: dict[str, tuple[SensorReading, SensorReading]] = {}
 
     def read(self, sensor: str) -> SensorReading:
-        """The reading, altered; two reads of one instant give the same one."""
+        """The altered reading; two reads at the same instant give the same reading."""
         if not self.active or sensor not in self.names:
             return self.inner.read(sensor)
         reading = self.inner.read(sensor)
@@ -45,7 +45,7 @@ class SensorLayer(Layer):
 
 class _Dead(SensorLayer):
     def read(self, sensor: str) -> SensorReading:
-        """Nothing.
+        """Give no reading.
 
         Raises:
             Failure: SENSOR_DEAD.
@@ -105,7 +105,7 @@ class StuckLaser(_Repeating):
 
 
 class BlockedLaser(SensorLayer):
-    """`laser.blocked`: the beams of a sector give the least range."""
+    """`laser.blocked`: the beams of a sector report the least range."""
 
     sensor = LaserSensor
 

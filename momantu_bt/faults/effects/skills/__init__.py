@@ -23,5 +23,5 @@ MODES: Mapping[str, type[SkillFault]] = MappingProxyType(
 
 
 def skill_fault(fault: Fault) -> SkillFault:
-    """The effect of a fault, which `wrapped` lets into a tree's skills."""
+    """The effect of a fault; its method `wrapped` puts it into a tree's skills."""
     return MODES[fault.name](fault)

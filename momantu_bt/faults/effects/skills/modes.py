@@ -16,34 +16,34 @@ from momantu_bt.geometry import Transform
 from momantu_bt.skill import Compute, Skill
 
 _MUTEX = 128
-"""Bytes, more than any libc's mutex has; all zero is an open one."""
+"""Size in bytes, larger than the mutex of any libc; a mutex of zeros is open."""
 
 
 class Raises(SkillFault):
     """`skill.exception`."""
 
     def before(self, skill: Skill) -> None:
-        """Raise what no skill declares."""
+        """Raise an error that no skill declares."""
         raise RuntimeError(f"{self.fault.name} was asked for")
 
 
 class Hangs(SkillFault):
-    """`skill.hang`: an endless loop, which a signal's handler can leave."""
+    """`skill.hang`: an endless loop, which the handler of a signal can end."""
 
     def before(self, skill: Skill) -> None:
-        """Run in circles."""
+        """Loop for ever."""
         while True:
             pass
 
 
 class HangsInNativeCode(SkillFault):
-    """`skill.hang_native`: a lock that is taken twice, with the interpreter's lock held.
+    """`skill.hang_native`: takes a lock twice while it holds the interpreter's lock.
 
-    No handler of a signal ever runs, and no other thread of the interpreter.
+    Then no handler of a signal and no other thread of the interpreter ever runs.
     """
 
     def before(self, skill: Skill) -> None:
-        """Never come back."""
+        """Never return."""
         lock = ctypes.PyDLL(None).pthread_mutex_lock
         mutex = ctypes.create_string_buffer(_MUTEX)
         while True:
@@ -54,20 +54,20 @@ class NotANumber(SkillFault):
     """`skill.nan`."""
 
     def after(self, skill: Skill) -> None:
-        """Make each number that it gives NaN."""
+        """Replace each number in its outputs by NaN."""
         for name, value in _outputs(skill):
             skill.port_values[name] = without_numbers(value)
 
 
 class Nonsense:
-    """Of no type that a skill declares."""
+    """A type that no skill declares."""
 
 
 class WrongType(SkillFault):
     """`skill.wrong_type`."""
 
     def after(self, skill: Skill) -> None:
-        """Give something else at each output."""
+        """Give a value of the wrong type at each output."""
         for name, _ in _outputs(skill):
             skill.port_values[name] = Nonsense()
 
@@ -76,7 +76,7 @@ class Slow(SkillFault):
     """`skill.slow`: works longer in each step, and each step takes more ticks."""
 
     def before(self, skill: Skill) -> None:
-        """Work for nothing."""
+        """Use up time without any result."""
         until = time.perf_counter() + float(self.fault.parameters["wall"])
         while time.perf_counter() < until:
             pass
@@ -97,9 +97,9 @@ def _outputs(skill: Skill) -> Iterator[tuple[str, object]]:
 
 
 def without_numbers(value: Any) -> Any:
-    """The same value, each float in it NaN; whole numbers have no NaN and stay.
+    """The same value with NaN for each float; whole numbers stay, as they have no NaN.
 
-    A transform keeps its turn: one of no length is refused where it is made.
+    A transform keeps its rotation: its constructor refuses a rotation without length.
     """
     if isinstance(value, float):
         return math.nan

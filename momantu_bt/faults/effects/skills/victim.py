@@ -13,15 +13,15 @@ from momantu_bt.robot import Robot
 from momantu_bt.skill import Compute, Run, Skill
 
 UNBOUNDED = 10**9
-"""Starts that a fault without a count may hit."""
+"""How many starts a fault without a count may hit."""
 
 
 class SkillFault:
     """Implements `Effect`. Skills whose class went through `wrapped` can be hit.
 
-    It hits the skill that runs when it begins: within the node that made it begin, else anywhere,
-    else the next one that makes a step. Then, as often as it may, further starts of the same
-    skill. Subclasses say what happens to it.
+    The fault hits the skill that runs when the fault begins: first choice is a skill within the
+    node that made it begin, then any running skill, then the next skill that makes a step. After
+    that it hits further starts of the same skill, up to its count. Subclasses say what happens.
     """
 
     def __init__(self, fault: Fault) -> None:
@@ -32,7 +32,7 @@ class SkillFault:
         self._victim: Skill | None = None
 
     def aim(self, node: TreeNode | None, nodes: Sequence[TreeNode]) -> None:
-        """Say whom it is to hit. node: the one that made it begin; nodes: the whole tree."""
+        """Choose the skill to hit. node: the one that made it begin; nodes: the whole tree."""
         within = () if node is None else (node, *node.below)
         for leaf in (*within, *nodes):
             if isinstance(leaf, SkillLeaf) and isinstance(leaf.session, Session):
@@ -41,15 +41,15 @@ class SkillFault:
                 return
 
     def begin(self) -> None:
-        """Hit from now on."""
+        """Start to hit."""
         self._active = True
 
     def end(self) -> None:
-        """Hit no more."""
+        """Stop hitting."""
         self._active = False
 
     def hits(self, skill: Skill) -> bool:
-        """Whether the skill is one that it hits now."""
+        """Whether the fault hits this skill now."""
         if not self._active:
             return False
         if skill is self._victim:
@@ -61,7 +61,7 @@ class SkillFault:
         return True
 
     def wrapped(self, kind: type[Skill]) -> type[Skill]:
-        """The same skill, but for what happens to it."""
+        """The same skill with the effect built in."""
 
         def run(skill: Skill, robot: Robot) -> Run:
             return self._run(skill, kind.run(skill, robot))
