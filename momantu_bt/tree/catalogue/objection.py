@@ -1,4 +1,4 @@
-"""The rules for nodes of other packages."""
+"""The rules that a plug-in node must keep; checked when it is loaded."""
 
 from __future__ import annotations
 
