@@ -132,8 +132,8 @@ def lazily() -> Iterator[None]:
     """Put off running the modules that are imported inside the block until they are used.
 
     An error inside a module, and ModuleNotFoundError of a library that is not installed, are
-    raised where the module is first used. If an
-    installed library lacks a module, the error is raised at once.
+    raised where the module is first used. If an installed library lacks a module, the error is
+    raised at once.
     """
     finder, missing = _LazyFinder(), _MissingFinder()
     sys.meta_path.insert(0, finder)

@@ -10,7 +10,7 @@ from importlib import import_module
 from importlib.metadata import EntryPoint
 from typing import Any, ClassVar, Protocol, TypeAlias, TypeVar
 
-from momantu_bt.plugins import Group, PluginError
+from momantu_bt.plugins import Group, PluginError, installed_names
 from momantu_bt.tree.catalogue.built_in import ADAPTERS, BUILT_IN
 from momantu_bt.tree.catalogue.guarded import guarded
 from momantu_bt.tree.catalogue.objection import node_objection, type_of
@@ -29,7 +29,14 @@ class NodeClass(Protocol):
 
 
 def _objection(name: str, plugin: object) -> str | None:
-    return node_objection(name, plugin, _spellings())
+    return _named_like_a_skill(name) or node_objection(name, plugin, _spellings())
+
+
+def _named_like_a_skill(name: str) -> str | None:
+    """Why a node cannot have the name of an installed skill, or None. No skill is imported."""
+    if name not in installed_names("momantu_bt.skills"):
+        return None
+    return f"{name!r} is an installed skill; give the entry point and the spec another name"
 
 
 PLUGINS: Group[type[NodeClass]] = Group("momantu_bt.nodes", "node", _objection)
@@ -40,7 +47,7 @@ def _behaviour_objection(name: str, plugin: object) -> str | None:
     if name in PLUGINS:
         return f"{name!r} is the node of another package; give the entry point another name"
     found: str | None = _bridge().behaviour_objection(name, plugin, _spellings())
-    return found
+    return _named_like_a_skill(name) or found
 
 
 DOCTOR = "run momantu-bt doctor"

@@ -19,9 +19,11 @@ from momantu_bt.cli import main
 from momantu_bt.engine.build import build
 from momantu_bt.engine.context import RunContext
 from momantu_bt.py_trees_bridge.view import view
+from momantu_bt.skill import Skill
 from momantu_bt.testing import ManualClock
 from momantu_bt.tree.catalogue import NODES, SPELLED
 from momantu_bt.tree.load import load
+from momantu_bt.tree.plugins import SKILLS
 from momantu_bt.tree.registry import Registry
 
 PAGE = Path(__file__).resolve().parents[3] / "docs" / "writing_a_node.md"
@@ -196,6 +198,15 @@ def test_a_node_does_not_replace_a_built_in_one(package, monkeypatch, capsys):
     assert SPELLED["retry"].type == "RetryUntilSuccessful"
     main(["doctor"])
     assert "'retry' is a built-in node" in "".join(capsys.readouterr())
+
+
+def test_a_node_does_not_take_the_name_of_a_skill(package, monkeypatch, capsys):
+    skill = next(iter(SKILLS))
+    install(monkeypatch, EntryPoint(skill, "pace_nodes.pace:Race", GROUP))
+    assert skill not in SPELLED
+    assert issubclass(SKILLS.load(skill), Skill)
+    main(["doctor"])
+    assert f"{skill!r} is an installed skill" in "".join(capsys.readouterr()).replace("\n", " ")
 
 
 CALM = """from momantu_bt.nodes import Decorator, SUCCESS, TreeNode, control, decorator, leaf
