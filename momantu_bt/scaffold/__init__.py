@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import importlib.util
+import keyword
+import re
 import shutil
 import tempfile
+import unicodedata
 from pathlib import Path
 from string import Template
 
@@ -16,14 +19,18 @@ FILES = {
     "pyproject.toml": "pyproject.toml",
     "README.md": "README.md",
     "src/${package}/__init__.py": "init.py",
-    "src/${package}/${name}.py": "skill.py",
-    "tests/test_${name}.py": "test_skill.py",
+    "src/${package}/${module}.py": "skill.py",
+    "tests/test_${module}.py": "test_skill.py",
 }
 """Files of the package, and their templates beside this module."""
 
 _IMPORTED = ("Failure", "In", "Out", "Robot", "Run", "Skill")
 """Names that the skill's module imports."""
 _HERE = Path(__file__).parent
+_BARE = re.compile(r"[A-Za-z0-9_-]+")
+"""A key that TOML takes without quotes."""
+_HUMP = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
+"""Where a word begins inside a name such as `FollowPath`."""
 
 
 class CannotCreate(MomantuError):
@@ -36,8 +43,7 @@ def new_skill(name: str, into: Path) -> Path:
     Raises:
         CannotCreate: the name is not allowed for a skill or is taken, or the folder cannot be made.
     """
-    words = {"name": name, "package": f"{name}_skill", "title": _title(name)}
-    words["distribution"] = words["package"].replace("_", "-")
+    words = _words(name)
     _check_name(name, words["package"])
     target = into / name
     if target.exists():
@@ -76,7 +82,32 @@ def _fill(folder: Path, words: dict[str, str]) -> None:
         file.write_text(Template(text).substitute(words), encoding="utf-8")
 
 
-def _title(name: str) -> str:
-    """`turn_round` as the name of a class."""
-    title = "".join(part.capitalize() for part in name.split("_"))
-    return f"{title}Skill" if title in _IMPORTED else title
+def _words(name: str) -> dict[str, str]:
+    """What the names in the templates stand for."""
+    module = module_name(name)
+    package = f"{module.rstrip('_')}_skill"
+    return {
+        "name": name,
+        "entry": name if _BARE.fullmatch(name) else f'"{name}"',
+        "module": module,
+        "package": package,
+        "distribution": re.sub("_+", "-", package).strip("-"),
+        "title": class_name(name),
+    }
+
+
+def module_name(name: str) -> str:
+    """The name of a Python module for a plug-in of any name: `follow_path` for `FollowPath`."""
+    plain = unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode()
+    snake = re.sub(r"\W+", "_", _HUMP.sub("_", plain)).lower()
+    if not snake.strip("_") or snake[0].isdigit():
+        return f"skill_{snake}".rstrip("_")
+    return f"{snake}_" if keyword.iskeyword(snake) else snake
+
+
+def class_name(name: str) -> str:
+    """The name of a skill's class: `TurnRound` for `turn_round`, `FollowPath` for itself."""
+    title = name
+    if not (name.isidentifier() and name[0].isupper()):
+        title = "".join(part.capitalize() for part in module_name(name).split("_"))
+    return f"{title}Skill" if title in _IMPORTED or keyword.iskeyword(title) else title

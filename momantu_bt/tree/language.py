@@ -16,11 +16,19 @@ TREE_NAME = re.compile(r"[^\W\d][\w.-]*(?: [\w.-]+)*")
 """Valid names of trees; as in BehaviorTree.CPP they may have more than letters."""
 TREE_NAME_HINT = "letters, digits, `_`, `-`, `.` and single spaces, a letter first"
 
+_STARTS = (
+    "A-Z_a-z\u00c0-\u00d6\u00d8-\u00f6\u00f8-\u02ff\u0370-\u037d\u037f-\u1fff\u200c-\u200d"
+    "\u2070-\u218f\u2c00-\u2fef\u3001-\ud7ff\uf900-\ufdcf\ufdf0-\ufffd\U00010000-\U000effff"
+)
+NODE_NAME = re.compile(rf"[{_STARTS}][{_STARTS}0-9.\u00b7\u0300-\u036f\u203f-\u2040-]*")
+"""Valid names of plug-ins that are nodes of trees: those of XML elements, without a colon."""
+NODE_NAME_HINT = "letters, digits, `_`, `-` and `.`, a letter or `_` first, as in XML"
+
 AGAIN = "again"
 """The handler that tries again without running a node."""
 ANY = "any"
 """The code of a handler for all other codes."""
-_HANDLER_CODE = re.compile(rf"(?:\w+\.)?{CODE.pattern}|{ANY}")
+_HANDLER_CODE = re.compile(rf"(?:{NODE_NAME.pattern}\.)?{CODE.pattern}|{ANY}")
 
 FAILURE_KEY = "failure"
 """The key from which a handler reads the failure."""

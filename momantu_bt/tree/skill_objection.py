@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import keyword
-import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -13,26 +11,21 @@ from momantu_bt.skill import Port, Skill
 from momantu_bt.symptom import Symptom
 from momantu_bt.tree.catalogue import MODIFIERS, NODES, SPELLED
 from momantu_bt.tree.catalogue.built_in import BUILT_IN
-from momantu_bt.tree.catalogue.words import WORDS_OF_TREES
+from momantu_bt.tree.catalogue.objection import unusable_name
 from momantu_bt.values.kinds import is_type
 
 _DECLARED = tuple(each for each in Activity if each not in (Activity.ANY, Activity.ANSWER))
-_NAME = re.compile(r"[a-z][a-z0-9_]*")
 
 
 def bad_skill_name(name: str) -> str | None:
     """Why a skill cannot have this name; None if it can."""
-    if not _NAME.fullmatch(name):
-        return f"{name!r} is not a name for a skill: lower-case letters, digits and underscores"
     taken = SPELLED.get(name) or NODES.get(name)
     if taken is not None:
         whose = "a built-in node" if taken.type in BUILT_IN else "the node of another package"
         return f"{name!r} is {whose}; give the entry point another name"
     if name in MODIFIERS:
         return f"{name!r} is a modifier of nodes; give the entry point another name"
-    if name in WORDS_OF_TREES or keyword.iskeyword(name):
-        return f"{name!r} is a word of tree files or of Python; give the entry point another name"
-    return None
+    return unusable_name(name, "a skill")
 
 
 def skill_objection(name: str, plugin: Any) -> str | None:

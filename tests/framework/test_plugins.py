@@ -149,7 +149,11 @@ def test_other_plugins_are_checked_too(
         group.load("a")
 
 
-@pytest.mark.parametrize("name", [*SPELLED, *NODES, *MODIFIERS, "again", "Two Words", "2x", "if"])
+NO_NAMES = ["again", "Two Words", "2x", "if", "nav:Go", "a/b", "", "-a", "true", "SubTree"]
+NAMES = ["FollowPath", "follow-path", "Follow.Path", "class", "_go", "Übergabe"]
+
+
+@pytest.mark.parametrize("name", [*SPELLED, *NODES, *MODIFIERS, *NO_NAMES])
 def test_a_name_that_means_something_else_is_refused(name: str) -> None:
     assert bad_skill_name(name)
 
@@ -161,6 +165,43 @@ def test_installed_names_are_good(name: str) -> None:
 
 
 TREE = "momantu_bt: 1\ntrees:\n  Main:\n"
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_skill_of_any_name_stands_in_trees_of_both_spellings(
+    entries: list[EntryPoint], module, tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str
+) -> None:
+    entries.append(entry(name, f"{module(GOOD)}:Good"))
+    first, xml, back = tmp_path / "a.yaml", tmp_path / "b.xml", tmp_path / "c.yaml"
+    lines = [f"- {name}", f"- {name}: 2", f"- {name}: {{angle: 3}}"]
+    lines.append(f"- recover: {{attempts: 2, try: {name}, catch: {{{name}.TOO_FAR: again}}}}")
+    first.write_text(TREE + "".join(f"    {line}\n" for line in lines), encoding="utf-8")
+    assert main(["convert", str(first), "-o", str(xml)]) == 0
+    assert main(["convert", str(xml), "-o", str(back)]) == 0
+    assert main(["check", *map(str, (first, xml, back))]) == 0, capsys.readouterr().err
+    assert main(["show", str(first), str(back)]) == 0
+    xml.write_text(xml.read_text().replace('angle="3"', 'angel="3"'), encoding="utf-8")
+    assert main(["check", str(xml)]) == 2
+    assert f"{name} has no port 'angel'" in capsys.readouterr().err
+    for verb in (["show", str(first)], ["skills", "show", name], ["skills", "schema"]):
+        assert main(verb) == 0
+        told = capsys.readouterr().out
+        assert name in told or json.dumps(name) in told
+
+
+def test_a_tree_with_the_name_of_a_skill_is_refused(
+    entries: list[EntryPoint], module, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    entries.append(entry("FollowPath", f"{module(GOOD)}:Good"))
+    inside = '<BehaviorTree ID="FollowPath"><Sleep msec="1"/></BehaviorTree>'
+    tree = f'<root BTCPP_format="4">{inside}</root>'
+    yaml = "momantu_bt: 1\ntrees:\n  FollowPath:\n    - wait: 1 s\n"
+    for file, text in ((tmp_path / "a.xml", tree), (tmp_path / "a.yaml", yaml)):
+        file.write_text(text, encoding="utf-8")
+        assert main(["check", str(file)]) == 2
+        told = capsys.readouterr().err
+        assert "'FollowPath' is the name of an installed skill" in told
+        assert "rename the tree" in told
 
 
 def test_one_broken_skill_and_one_clash_leave_the_rest_alone(

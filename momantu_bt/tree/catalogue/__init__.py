@@ -20,6 +20,7 @@ from momantu_bt.tree.catalogue.spec import Dialect, Kind, NodeSpec
 from momantu_bt.tree.catalogue.words import (
     AUTOREMAP,
     CONDITIONS,
+    EXPLICIT,
     FORCED,
     NODE_KEYS,
     POST_SCRIPTS,
@@ -31,6 +32,7 @@ from momantu_bt.tree.catalogue.words import (
 __all__ = [
     "AUTOREMAP",
     "CONDITIONS",
+    "EXPLICIT",
     "FORCED",
     "MODIFIERS",
     "NODES",

@@ -29,14 +29,28 @@ class NodeClass(Protocol):
 
 
 def _objection(name: str, plugin: object) -> str | None:
-    return _named_like_a_skill(name) or node_objection(name, plugin, _spellings())
+    return (
+        _named_like_a_skill(name)
+        or _named_like_a_node(name, type_of(name))
+        or node_objection(name, plugin, _spellings())
+    )
 
 
 def _named_like_a_skill(name: str) -> str | None:
     """Why a node cannot have the name of an installed skill, or None. No skill is imported."""
-    if name not in installed_names("momantu_bt.skills"):
+    skills = installed_names("momantu_bt.skills")
+    taken = next((each for each in (name, type_of(name)) if each in skills), None)
+    if taken is None:
         return None
-    return f"{name!r} is an installed skill; give the entry point and the spec another name"
+    return f"{taken!r} is an installed skill; give the entry point and the spec another name"
+
+
+def _named_like_a_node(name: str, tag: str) -> str | None:
+    """Why a plug-in cannot have this tag in XML, or None: another node has it already."""
+    others = {type_of(each): each for each in PLUGINS.installed() if each != name}
+    if tag not in others:
+        return None
+    return f"{others[tag]!r} is a node that XML calls {tag} too; give the entry point another name"
 
 
 PLUGINS: Group[type[NodeClass]] = Group("momantu_bt.nodes", "node", _objection)
@@ -47,7 +61,7 @@ def _behaviour_objection(name: str, plugin: object) -> str | None:
     if name in PLUGINS:
         return f"{name!r} is the node of another package; give the entry point another name"
     found: str | None = _bridge().behaviour_objection(name, plugin, _spellings())
-    return _named_like_a_skill(name) or found
+    return _named_like_a_skill(name) or _named_like_a_node(name, name) or found
 
 
 DOCTOR = "run momantu-bt doctor"

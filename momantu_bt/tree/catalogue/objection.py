@@ -2,26 +2,28 @@
 
 from __future__ import annotations
 
-import keyword
 import re
 from collections.abc import Collection
 
+from momantu_bt.formats.yaml.core import resolve
 from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue.built_in import BUILT_IN
 from momantu_bt.tree.catalogue.guarded import FUNCTIONS
 from momantu_bt.tree.catalogue.spec import Kind, NodeSpec
 from momantu_bt.tree.catalogue.words import (
     CONDITIONS,
+    EXPLICIT,
     FORCED,
     NODE_KEYS,
     SUBTREE,
     WORDS_OF_TREES,
 )
+from momantu_bt.tree.language import NODE_NAME, NODE_NAME_HINT
 from momantu_bt.values.kinds import is_type
 
-_NAME = re.compile(r"[a-z][a-z0-9_]*")
-_RESERVED = (*WORDS_OF_TREES, *CONDITIONS, *NODE_KEYS, *FORCED, "force", "switch", "cases")
-_LATER = "give the entry point and the spec another name"
+_SNAKE = re.compile(r"[a-z][a-z0-9_]*")
+_RESERVED = (*WORDS_OF_TREES, *CONDITIONS, *NODE_KEYS, *EXPLICIT, SUBTREE, "force", "switch")
+_LATER = "give the entry point another name"
 
 
 def node_objection(name: str, plugin: object, built_in: Collection[str]) -> str | None:
@@ -47,19 +49,31 @@ def node_objection(name: str, plugin: object, built_in: Collection[str]) -> str 
 
 
 def type_of(name: str) -> str:
-    """The canonical type for a YAML name: `EveryNth` for `every_nth`."""
+    """The canonical type for a YAML name: `EveryNth` for `every_nth` and for `EveryNth`."""
+    if not _SNAKE.fullmatch(name):
+        return name
     return "".join(word.capitalize() for word in name.split("_"))
+
+
+def unusable_name(name: str, what: str) -> str | None:
+    """Why no plug-in that is a node of trees can have this name; None if it can.
+
+    what: "a skill" or "a node".
+    """
+    if not NODE_NAME.fullmatch(name):
+        return f"{name!r} is not a name for {what}: {NODE_NAME_HINT}"
+    if name in _RESERVED or not isinstance(resolve(name), str):
+        return f"{name!r} is a word of tree files; {_LATER}"
+    return None
 
 
 def bad_name(name: str, built_in: Collection[str]) -> str | None:
     """Why a node cannot have this name; None if it can."""
-    if not _NAME.fullmatch(name):
-        return f"{name!r} is not a name for a node: lower-case letters, digits and underscores"
     if name in built_in or type_of(name) in BUILT_IN or type_of(name) == SUBTREE:
         return f"{name!r} is a built-in node; {_LATER}"
-    if name in _RESERVED or keyword.iskeyword(name):
-        return f"{name!r} is a word of tree files or of Python; {_LATER}"
-    return None
+    if name in FORCED or name == "cases":
+        return f"{name!r} is a word of tree files; {_LATER}"
+    return unusable_name(name, "a node")
 
 
 def _bad_spelling(name: str, spec: NodeSpec) -> str | None:

@@ -7,6 +7,9 @@ from collections.abc import Mapping
 SUBTREE = "SubTree"
 """Canonical type of a node that runs another tree of the document; `Node.target` names it."""
 
+EXPLICIT = ("Action", "Condition", "Control", "Decorator")
+"""Tags in XML whose attribute ID is the node's type, and the kinds of nodes in a palette."""
+
 AUTOREMAP = "_autoremap"
 """Port of a SubTree: whether all other keys inside are the outside keys of the same name."""
 

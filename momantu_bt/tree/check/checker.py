@@ -107,8 +107,9 @@ def _start(document: Document) -> Place:
 
 def _check_tree_name(context: Context, tree: Tree) -> None:
     if tree.name in context.registry.skills:
-        message = f"{tree.name!r} is the name of a skill"
-        context.problems.error("bad-name", tree.place, message, "give the tree another name")
+        message = f"{tree.name!r} is the name of an installed skill"
+        hint = f"rename the tree, and each node that runs it; a node {tree.name} could mean both"
+        context.problems.error("bad-name", tree.place, message, hint)
 
 
 def _root_keys(context: Context) -> Mapping[str, Key | None]:

@@ -219,7 +219,7 @@ def _catch(skills: Mapping[str, type[Skill]]) -> Schema:
         for code, sentence in skill.failures.items():
             said[code] = f"{said[code]}; {name}" if code in said else f"{sentence} ({name})"
     codes = {code: {"description": text, **answer} for code, text in sorted(said.items())}
-    one = rf"(\w+\.)?{CODE.pattern}|{ANY}"
+    one = rf"([^\s|]+\.)?{CODE.pattern}|{ANY}"
     return {
         "type": "object",
         "properties": {**codes, ANY: {"description": "every other code", **answer}},

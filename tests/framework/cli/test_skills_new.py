@@ -20,13 +20,16 @@ from momantu_bt.tree.plugins import SKILLS
 Out = pytest.CaptureFixture[str]
 
 
-def test_the_package_names_its_skill_and_its_tests_pass(tmp_path: Path, capsys: Out) -> None:
-    assert main(["skills", "new", "turn_round", "--into", str(tmp_path)]) == 0
-    folder = tmp_path / "turn_round"
+@pytest.mark.parametrize("name", ["turn_round", "TurnRound"])
+def test_the_package_names_its_skill_and_its_tests_pass(
+    tmp_path: Path, capsys: Out, name: str
+) -> None:
+    assert main(["skills", "new", name, "--into", str(tmp_path)]) == 0
+    folder = tmp_path / name
     assert str(folder) in capsys.readouterr().out
     project = tomllib.loads((folder / "pyproject.toml").read_text(encoding="utf-8"))
     entry = project["project"]["entry-points"]["momantu_bt.skills"]
-    assert entry == {"turn_round": "turn_round_skill.turn_round:TurnRound"}
+    assert entry == {name: "turn_round_skill.turn_round:TurnRound"}
     assert all("$name" not in file.read_text() for file in folder.rglob("*.*") if file.is_file())
     ran = subprocess.run(
         [sys.executable, "-m", "pytest", "-q", "-p", "momantu_bt.pytest_plugin"],
@@ -37,7 +40,10 @@ def test_the_package_names_its_skill_and_its_tests_pass(tmp_path: Path, capsys: 
     assert " passed" in ran.stdout
 
 
-@pytest.mark.parametrize("name", ["turn", "skill", "failure", "robot", "out", "a2"])
+NAMES = ["turn", "skill", "failure", "robot", "out", "a2", "FollowPath", "Robot", "class", "None"]
+
+
+@pytest.mark.parametrize("name", [*NAMES, "turn-round", "Über.weg", "日本", "_x", "TCPMove2D"])
 def test_what_it_makes_is_a_good_plug_in(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
 ) -> None:
@@ -51,21 +57,22 @@ def test_what_it_makes_is_a_good_plug_in(
     try:
         assert issubclass(SKILLS.load(name), Skill)
     finally:
-        for module in [each for each in sys.modules if each.startswith(f"{name}_skill")]:
+        package = value.partition(".")[0]
+        for module in [each for each in sys.modules if each.startswith(package)]:
             del sys.modules[module]
 
 
 @pytest.mark.parametrize(
     ("name", "reason"),
     [
-        ("Turn", "lower-case letters"),
-        ("turn-round", "lower-case letters"),
-        ("../turn", "lower-case letters"),
-        ("", "lower-case letters"),
+        ("../turn", "as in XML"),
+        ("turn round", "as in XML"),
+        ("", "as in XML"),
+        ("Sequence", "a built-in node"),
         ("sequence", "a built-in node"),
         ("retry", "a built-in node"),
         ("catch", "a word of tree files"),
-        ("class", "a word of tree files or of Python"),
+        ("null", "a word of tree files"),
         ("pick", "installed already"),
     ],
 )

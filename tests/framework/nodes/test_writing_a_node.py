@@ -200,6 +200,28 @@ def test_a_node_does_not_replace_a_built_in_one(package, monkeypatch, capsys):
     assert "'retry' is a built-in node" in "".join(capsys.readouterr())
 
 
+def test_a_node_may_have_any_name_and_one_node_has_a_tag(package, monkeypatch, capsys):
+    Path("src/pace_nodes/named.py").write_text(
+        "from momantu_bt.nodes import leaf, SUCCESS, TreeNode\n"
+        "class Any(TreeNode):\n"
+        "    spec = leaf('Go-There', 'Go-There', 'Succeeds.')\n"
+        "    def step(self): return SUCCESS\n"
+        "class Same(Any):\n"
+        "    spec = leaf('Cooldown', 'Cooldown', 'Succeeds.')\n",
+        encoding="utf-8",
+    )
+    named = "pace_nodes.named:"
+    install(monkeypatch, EntryPoint("Go-There", f"{named}Any", GROUP))
+    Path("a.yaml").write_text("momantu_bt: 1\ntrees: {Main: [Go-There]}\n", encoding="utf-8")
+    assert main(["run", "a.yaml", "--world", "none"]) == 0
+    assert main(["convert", "a.yaml"]) == 0
+    assert "<Go-There/>" in capsys.readouterr().out
+    install(monkeypatch, EntryPoint("Cooldown", f"{named}Same", GROUP))
+    Path("b.yaml").write_text("momantu_bt: 1\ntrees: {Main: [Cooldown]}\n", encoding="utf-8")
+    assert main(["check", "b.yaml"]) == 2
+    assert "'cooldown' is a node that XML calls Cooldown too" in capsys.readouterr().err
+
+
 def test_a_node_does_not_take_the_name_of_a_skill(package, monkeypatch, capsys):
     skill = next(iter(SKILLS))
     install(monkeypatch, EntryPoint(skill, "pace_nodes.pace:Race", GROUP))

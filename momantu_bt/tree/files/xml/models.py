@@ -7,10 +7,9 @@ from dataclasses import dataclass, field
 
 from momantu_bt.formats.names import nearest, valid_names
 from momantu_bt.formats.xml.elements import Attribute, Element
-from momantu_bt.tree.catalogue import SUBTREE
+from momantu_bt.tree.catalogue import EXPLICIT, SUBTREE
 from momantu_bt.tree.files.port_values import KEY
 from momantu_bt.tree.files.syntax import OURS
-from momantu_bt.tree.files.xml.ports import EXPLICIT
 from momantu_bt.tree.files.xml.values import WireError, attribute_value, flow_value
 from momantu_bt.tree.model import (
     Literal,

@@ -13,10 +13,18 @@ from momantu_bt.formats.names import nearest, valid_names
 from momantu_bt.formats.xml.elements import Element
 from momantu_bt.plugins import PluginError
 from momantu_bt.skill import Port
-from momantu_bt.tree.catalogue import NODES, SUBTREE, Dialect, NodeSpec, is_ours, of_dialect
+from momantu_bt.tree.catalogue import (
+    EXPLICIT,
+    NODES,
+    SUBTREE,
+    Dialect,
+    NodeSpec,
+    is_ours,
+    of_dialect,
+)
 from momantu_bt.tree.files.queue import Put, into_handler
 from momantu_bt.tree.files.syntax import OURS
-from momantu_bt.tree.files.xml.ports import CATCH, EXPLICIT, PREFIX, PortReader
+from momantu_bt.tree.files.xml.ports import CATCH, PREFIX, PortReader
 from momantu_bt.tree.language import ANY, handler_codes
 from momantu_bt.tree.model import BROKEN, Handler, Node, PortDeclaration
 from momantu_bt.tree.problems import Problems

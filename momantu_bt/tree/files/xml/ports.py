@@ -10,7 +10,14 @@ from momantu_bt.formats.places import Place
 from momantu_bt.formats.units import UnitError, in_unit
 from momantu_bt.formats.xml.elements import Attribute, Element
 from momantu_bt.skill import Port
-from momantu_bt.tree.catalogue import AUTOREMAP, MODIFIERS, SUBTREE, XML_CONDITIONS, NodeSpec
+from momantu_bt.tree.catalogue import (
+    AUTOREMAP,
+    EXPLICIT,
+    MODIFIERS,
+    SUBTREE,
+    XML_CONDITIONS,
+    NodeSpec,
+)
 from momantu_bt.tree.files.port_values import KEY
 from momantu_bt.tree.files.syntax import OURS
 from momantu_bt.tree.files.xml.values import WireError, attribute_value, flow_value
@@ -29,8 +36,6 @@ from momantu_bt.tree.script import ScriptSyntaxError, parse
 from momantu_bt.values.kinds import ScriptText, ValueType
 from momantu_bt.values.types import parse_type
 
-EXPLICIT = ("Action", "Condition", "Control", "Decorator")
-"""Tags whose attribute ID is the node's type."""
 PREFIX = "momantu:"
 """Of our own nodes in an ID."""
 CATCH = "Catch"

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from itertools import zip_longest
 from typing import TypeAlias
 
-from momantu_bt.tree.catalogue import NODES, SUBTREE, is_ours
+from momantu_bt.tree.catalogue import EXPLICIT, NODES, SUBTREE, is_ours
 from momantu_bt.tree.files.scalars import CannotWrite, literal, port_text
 from momantu_bt.tree.files.syntax import OURS
 from momantu_bt.tree.files.xml.attributes import AttributeWriter, is_name, plain
 from momantu_bt.tree.files.xml.header import FORMAT
 from momantu_bt.tree.files.xml.models import PORTS, our_type
 from momantu_bt.tree.files.xml.nodes import ONCE, PORT
-from momantu_bt.tree.files.xml.ports import CATCH, EXPLICIT, PREFIX
+from momantu_bt.tree.files.xml.ports import CATCH, PREFIX
 from momantu_bt.tree.files.xml.text import above, attribute, beside, escaped
 from momantu_bt.tree.language import VERSION
 from momantu_bt.tree.model import Document, Handler, Literal, Node, NodeModel, PortDeclaration, Tree
