@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from momantu_bt.formats.places import Place
-from momantu_bt.tree.check.checker import ROBOT_KEY
 from momantu_bt.tree.check.keys.reads import references
+from momantu_bt.tree.check.root_keys import ROBOT_KEY
 from momantu_bt.tree.check.signatures import Context
 from momantu_bt.tree.language import FAILURE_KEY
 from momantu_bt.tree.model import Document, Literal, Node, Reference, Scope, Tree

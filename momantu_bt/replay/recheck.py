@@ -20,7 +20,7 @@ from momantu_bt.record.recording import ChangeRecord, Recording, TickRecord
 from momantu_bt.replay.difference import NOTHING, Difference, first_difference, node_words
 from momantu_bt.replay.outside import NotRecorded, RecordedOutside
 from momantu_bt.replay.rebuild import Rebuilt, rebuild
-from momantu_bt.tree.check.checker import ROBOT_KEY
+from momantu_bt.tree.check.root_keys import ROBOT_KEY
 from momantu_bt.tree.registry import Registry
 from momantu_bt.values.convert import natural
 

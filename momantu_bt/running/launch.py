@@ -18,23 +18,23 @@ from momantu_bt.engine.executor import Executor, Observer
 from momantu_bt.engine.interrupts import Interrupts
 from momantu_bt.engine.skills.actuators import Actuators
 from momantu_bt.engine.skills.body import Body
-from momantu_bt.engine.skills.services import Services, in_order
+from momantu_bt.engine.skills.services import Services
 from momantu_bt.engine.watchdog import Watchdog
 from momantu_bt.errors import MomantuError
 from momantu_bt.faults.stage import Planned, Stage, plan
-from momantu_bt.formats.names import valid_names
 from momantu_bt.frames import FrameBuffer
 from momantu_bt.record.recorder import Recorder
 from momantu_bt.record.report import Report
 from momantu_bt.robot import Robot, RobotDescription
 from momantu_bt.running.audit import Auditor
+from momantu_bt.running.needed import LaunchError, check_sensors, services_of
 from momantu_bt.running.options import RunOptions
 from momantu_bt.running.prepare import Prepared
 from momantu_bt.running.reporting import report_of
 from momantu_bt.service import Service
 from momantu_bt.skill import Skill
-from momantu_bt.tree.check.checker import ROBOT_KEY
 from momantu_bt.tree.check.named_world import world_of
+from momantu_bt.tree.check.root_keys import ROBOT_KEY
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.registry import Registry
 from momantu_bt.values.convert import natural
@@ -42,10 +42,6 @@ from momantu_bt.world import World, WorldError
 from momantu_bt.world_plugins import NoWorld
 
 Watch: TypeAlias = Callable[[Executor], Sequence[Observer]]
-
-
-class LaunchError(MomantuError):
-    """The run cannot begin as requested; nothing was started."""
 
 
 def launch(prepared: Prepared, watch: Watch | None = None) -> Report:
@@ -104,7 +100,7 @@ def assemble(prepared: Prepared, stack: ExitStack) -> Executor:
 def _assembled(prepared: Prepared, stack: ExitStack) -> tuple[Executor, Stage, Recorder | None]:
     document, options, registry = prepared.document, prepared.options, prepared.registry
     kinds = {name: registry.skills[name] for name in skills_in(document, prepared.substitution)}
-    needed = _services(kinds, registry)
+    needed = services_of(prepared, kinds)
     planned = _planned(prepared, kinds)
     events = Events()
     recorder = _recorder(options, events, stack)
@@ -154,7 +150,7 @@ def _open(
     entry = registry.worlds[name]
     description = registry.description(options.robot or entry.default_robot)
     _check_uses(kinds, description)
-    _check_sensors(needed, description)
+    check_sensors(needed, description)
     try:
         return entry.open(description, options.seed, referee=options.referee)
     except MomantuError:
@@ -189,31 +185,6 @@ def _check_uses(kinds: Mapping[str, type[Skill]], description: RobotDescription)
                 description.resolve_use(use)
             except KeyError as error:
                 raise LaunchError(f"{name} cannot run on {description.name}: {error}") from None
-
-
-def _check_sensors(needed: Mapping[str, type[Service]], description: RobotDescription) -> None:
-    having = {sensor.kind for sensor in description.sensors.values()}
-    for name, service in needed.items():
-        for kind in service.senses:
-            if kind not in having:
-                raise LaunchError(
-                    f"the service {name!r} needs a {kind}, and {description.name} has none; its "
-                    f"sensors: {', '.join(description.sensors) or 'none'}"
-                )
-
-
-def _services(kinds: Mapping[str, type[Skill]], registry: Registry) -> dict[str, type[Service]]:
-    """The services that skills need and, before each, the services that it needs itself."""
-    for name, kind in kinds.items():
-        try:
-            in_order(kind.needs, registry.services.__getitem__)
-        except KeyError as error:
-            service = error.args[0]
-            hint = valid_names(service, sorted(registry.services), "installed services")
-            message = f"{name} needs the service {service!r}, which is not installed; {hint}"
-            raise LaunchError(message) from None
-    needs = [need for kind in kinds.values() for need in kind.needs]
-    return in_order(needs, registry.services.__getitem__)
 
 
 def _executor(

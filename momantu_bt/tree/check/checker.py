@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 
 from momantu_bt.formats.places import Place
 from momantu_bt.formats.problems import Problem
-from momantu_bt.messages import RobotState
-from momantu_bt.tree.catalogue.known import Key, literal_type
 from momantu_bt.tree.check.guards import check_guards
 from momantu_bt.tree.check.handlers import check_handlers
 from momantu_bt.tree.check.keys.flow_check import check_keys
 from momantu_bt.tree.check.nodes import check_node, check_tree_ports, with_named_inputs
+from momantu_bt.tree.check.root_keys import ROBOT_KEY, report_broken_services, root_keys
 from momantu_bt.tree.check.signatures import Context
 from momantu_bt.tree.check.surroundings import look_up_surroundings
 from momantu_bt.tree.check.trees import (
@@ -24,14 +22,9 @@ from momantu_bt.tree.check.trees import (
     check_unused,
     reached,
 )
-from momantu_bt.tree.model import Document, Literal, Node, Reference, Scope, Tree
+from momantu_bt.tree.model import Document, Tree
 from momantu_bt.tree.problems import Problems, TooManyProblems
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.script import parse
-from momantu_bt.values.kinds import ScriptText
-
-ROBOT_KEY = "robot"
-"""The key `$@robot.…`, which every run publishes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +91,8 @@ def _check(context: Context, world: str | None, robot: str | None) -> None:
         check_parallel(context, order)
         check_handlers(context, order)
         check_guards(context, order, frozenset({ROBOT_KEY, *context.registry.services}))
-        check_keys(context, order, _root_keys(context))
+        check_keys(context, order, root_keys(context))
+        report_broken_services(context)
 
 
 def _start(document: Document) -> Place:
@@ -112,40 +106,4 @@ def _check_tree_name(context: Context, tree: Tree) -> None:
         context.problems.error("bad-name", tree.place, message, hint)
 
 
-def _root_keys(context: Context) -> Mapping[str, Key | None]:
-    """Every name that `$@name` can have, with what is known about values nothing overwrites."""
-    document = context.document
-    names: dict[str, Key | None] = dict.fromkeys(context.registry.services)
-    names[ROBOT_KEY] = Key(RobotState, _start(document))
-    for name, value in document.values.items():
-        place = document.value_places.get(name, _start(document))
-        names[name] = Key(literal_type(value), place, (value,))
-    for tree in document.trees.values():
-        for node in tree.root.walk():
-            for scope, key, makes in _written_by(context, node):
-                on_root = scope is Scope.ROOT or tree.name == document.main
-                if on_root and (makes or key in names):
-                    names[key] = None
-    return names
-
-
-def _written_by(context: Context, node: Node) -> Iterator[tuple[Scope, str, bool]]:
-    """Keys that a node's outputs and scripts write: board, key, whether it may be a new one."""
-    signature = context.signature(node)
-    ports = signature.ports if signature is not None else {}
-    scripts = list(node.conditions.values())
-    for name, value in node.ports.items():
-        port = ports.get(name)
-        if port is not None and port.direction != "in" and isinstance(value, Reference):
-            yield value.scope, value.key, True
-        elif port is not None and port.type is ScriptText and isinstance(value, Literal):
-            scripts.append(str(value.value))
-    for script in scripts:
-        parsed = parse(script)
-        needed = {variable.key for variable in parsed.needs}
-        for variable in parsed.writes:
-            scope = Scope.ROOT if variable.key.startswith("@") else Scope.LOCAL
-            yield scope, variable.key.removeprefix("@"), variable.key not in needed
-
-
-__all__ = ["ROBOT_KEY", "Checked", "check"]
+__all__ = ["Checked", "check"]

@@ -13,19 +13,16 @@ from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.problems import errors
 from momantu_bt.formats.yaml.reader import YamlSyntaxError
 from momantu_bt.tree.catalogue import NODES, SUBTREE
-from momantu_bt.tree.check.checker import ROBOT_KEY
-from momantu_bt.tree.check.keys.reads import references
 from momantu_bt.tree.check.named_world import world_of
+from momantu_bt.tree.check.root_keys import ROBOT_KEY, root_reads
 from momantu_bt.tree.check.signatures import Context
 from momantu_bt.tree.files.syntax import compose
 from momantu_bt.tree.files.text import read_text
-from momantu_bt.tree.model import Document, Literal, Node, Reference, Scope
+from momantu_bt.tree.model import Document, Node
 from momantu_bt.tree.problems import Problems, TreeError
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.script import ScriptSyntaxError, parse
 from momantu_bt.tree.substitute.rules import Rule, RuleFile, Status, read_rules
 from momantu_bt.values.convert import convert
-from momantu_bt.values.kinds import ScriptText
 from momantu_bt.values.words import ConversionError
 
 
@@ -224,29 +221,8 @@ def _check_values(
     if not without_world:
         return
     for node in reached(context.document, results):
-        for reference in _read_by(node, replaced=id(node) in results):
-            if reference.key in published and reference.key not in found.values:
-                message = f"without a world nothing publishes $@{reference.key}"
+        for key, _ in root_reads(context.document, node, replaced=id(node) in results):
+            if key in published and key not in found.values:
+                message = f"without a world nothing publishes $@{key}"
                 hint = "give it under `values:` of the file of substitutions"
                 context.problems.error("read-before-write", node.place, message, hint)
-
-
-def _read_by(node: Node, replaced: bool) -> Iterator[Reference]:
-    """Keys of the root's board that a node reads; for a replaced node only its conditions count."""
-    scripts = list(node.conditions.values())
-    if not replaced:
-        for value in node.ports.values():
-            yield from (r for r in references(value) if r.scope is Scope.ROOT)
-        code = node.ports.get("code")
-        spec = NODES.get(node.type)
-        port = spec.ports.get("code") if spec is not None else None
-        if port is not None and port.type is ScriptText and isinstance(code, Literal):
-            scripts.append(str(code.value))
-    for script in scripts:
-        try:
-            variables = parse(script).reads
-        except ScriptSyntaxError:
-            continue
-        for variable in variables:
-            if variable.key.startswith("@"):
-                yield Reference(variable.key[1:], scope=Scope.ROOT)

@@ -159,3 +159,78 @@ def test_a_service_gets_the_sites_parameters_and_a_random_of_its_own():
     assert dict(first.context.parameters) == {}
     with pytest.raises(KeyError):
         first.context.other("third")
+
+
+class Battery(Service):
+    """Its charge falls with time."""
+
+    rate = 20.0
+    publishes = {"charge": float}
+    needs = ()
+
+    def start(self, context):
+        self.charge = 1.0
+
+    def update(self, robot, now):
+        self.charge -= 0.1
+
+    def published(self):
+        return {"charge": self.charge}
+
+
+@pytest.mark.parametrize(
+    "tree",
+    [
+        "trees: {Main: [{wait: 0.3 s}, {condition: $@battery.charge < 0.9}]}",
+        "trees: {Main: [{wait: 0.3 s}, {script: $low := $@battery.charge < 0.9}]}",
+        "trees: {Main: [{wait: 1 s, skip_if: $@battery.charge < 1.0}]}",
+        "trees: {Main: [{wait: $@battery.charge}]}",
+        'trees: {Main: [{ask: {question: "${@battery.charge} left?", default: a, answer: $a}}]}',
+        "trees: {Main: [{Below: {left: $@battery.charge}}],"
+        " Below: {inputs: {left: number}, sequence: [{condition: $left < 1.0}]}}",
+        "trees: {Main: [Below], Below: {inputs: {left: {type: any, default: $@battery}},"
+        " sequence: [{condition: $left.charge < 1.0}]}}",
+    ],
+)
+def test_a_service_that_only_the_tree_reads_is_started(run_yaml, tree):
+    report = run_yaml(tree, services={"battery": Battery}, world=ScriptedWorld())
+    assert report.status == "SUCCESS", report.failure
+
+
+def test_what_a_service_needs_is_started_before_it(run_yaml):
+    class Gauge(Battery):
+        """Needs the battery."""
+
+        needs = ("battery",)
+
+        def start(self, context):
+            super().start(context)
+            assert context.other("battery").charge == 1.0
+
+    tree = "trees: {Main: [{condition: $@gauge.charge < 1.0}]}"
+    services = {"gauge": Gauge, "battery": Battery}
+    assert run_yaml(tree, services=services, world=ScriptedWorld()).status == "SUCCESS"
+
+
+def test_a_service_that_nothing_reads_is_not_started(run_yaml):
+    class Broken(Battery):
+        """Cannot start."""
+
+        def start(self, context):
+            raise AssertionError
+
+    for tree in (
+        "trees: {Main: [{wait: 0.1 s}]}",
+        "values: {battery: 3}\ntrees: {Main: [{condition: $@battery == 3}]}",
+        "trees: {Main: [{script: $battery := 3}, {condition: $@battery == 3}]}",
+        "trees: {Main: [{script: $battery := 3}, Below], Below: [{condition: $@battery == 3}]}",
+        "trees: {Main: [{condition: $@battery == 3, disabled: true}, {wait: 0.1 s}]}",
+    ):
+        report = run_yaml(tree, services={"battery": Broken}, world=ScriptedWorld())
+        assert report.status == "SUCCESS", (tree, report.failure, report.error)
+
+
+def test_without_a_world_the_run_says_that_the_service_needs_one(run_yaml):
+    tree = "trees: {Main: [{condition: $@battery.charge < 1}]}"
+    with pytest.raises(LaunchError, match=r"reads \$@battery, which a service publishes"):
+        run_yaml(tree, services={"battery": Battery}, world="none")

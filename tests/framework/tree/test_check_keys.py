@@ -1,10 +1,15 @@
 """Keys and wires: what is read has been written on every way there, and fits."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import pytest
 
 from momantu_bt.formats.problems import Problem, Severity
+from momantu_bt.plugins import PluginError
+from momantu_bt.service import Service
+from momantu_bt.tree.load import TreeError, load
+from momantu_bt.tree.registry import Registry
 
 Expect = Callable[..., None]
 Fine = Callable[[str], None]
@@ -339,3 +344,35 @@ def test_a_wire_to_what_is_of_the_wrong_type_on_one_way(expect: Expect) -> None:
         values="{n: 1}",
     )
     expect("wrong-type", body, message="$side is text", hint="line 8")
+
+
+class Gauge(Service):
+    """Publishes a charge."""
+
+    publishes = {"charge": float}
+
+
+@pytest.mark.parametrize(
+    ("body", "code", "said"),
+    [
+        ("- condition: $@gauge.chrge < 0.2", "unknown-part", "has no part 'chrge'"),
+        ("- navigate: {in_front_of: $@gauge.charge}", "wrong-type", "takes text"),
+        ("- condition: $@broken.charge < 0.2", "broken-plugin", "cannot be loaded"),
+        ("- condition: $@gaug.charge < 0.2", "unknown-key", "no key 'gaug'"),
+    ],
+)
+def test_what_a_service_publishes_is_known(tmp_path, body: str, code: str, said: str) -> None:
+    class Broken(dict):
+        def __getitem__(self, name):
+            if name == "broken":
+                raise PluginError("the service 'broken' (a:B of p) cannot be loaded: NameError: x")
+            return super().__getitem__(name)
+
+    services = Broken(gauge=Gauge, broken=None)
+    file = tmp_path / "tree.yaml"
+    file.write_text("momantu_bt: 1\n" + main(body))
+    with pytest.raises(TreeError) as error:
+        load(str(file), replace(Registry.installed(), services=services))
+    (problem,) = error.value.problems
+    assert (problem.code, problem.place.line) == (code, 4)
+    assert said in problem.message
