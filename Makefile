@@ -1,6 +1,7 @@
 # make setup   installs what is missing, into .venv (quick when nothing is missing)
 # make demo    setup, then runs the main job: bring the can from table A to table B
 # make test    setup with a headless browser, then runs linters, type checks and tests
+# make quick   setup, then runs one test alone: make quick TESTS="tests/skills/test_pick.py -k slipped"
 # make lint    setup, then runs linters and type checks
 # make docs    setup, then builds the API reference in build/docs
 # make clean   removes .venv, build outputs and caches
@@ -17,7 +18,7 @@ TESTS ?=
 # Number of processes that run tests; each takes up to 1.5 GB.
 JOBS ?= 2
 
-.PHONY: help setup demo test lint docs clean
+.PHONY: help setup demo test quick lint docs clean
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
 
@@ -41,6 +42,11 @@ lint: setup
 test: lint
 	@$(BIN)/python setup/browser.py
 	OMP_NUM_THREADS=1 LP_NUM_THREADS=1 $(BIN)/pytest -q -n $(JOBS) --dist loadfile $(TESTS)
+
+quick: setup
+	@if [ -z "$(TESTS)" ]; then \
+		echo 'make quick: which test? make quick TESTS="tests/skills/test_pick.py -k slipped"' >&2; exit 1; fi
+	@OMP_NUM_THREADS=1 LP_NUM_THREADS=1 $(BIN)/pytest -q $(TESTS)
 
 docs: setup
 	@$(BIN)/python setup/reference.py

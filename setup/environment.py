@@ -15,10 +15,20 @@ import tempfile
 from pathlib import Path
 from types import ModuleType
 
+from progress import Progress, StepFailed, Steps
+
 ROOT = Path(__file__).resolve().parent.parent
 VENV = ROOT / ".venv"
 VENV_PYTHON = VENV / "bin" / "python"
 STAMP = VENV / "momantu-bt.stamp"
+LOG = ROOT / "build" / "setup.log"
+STEPS = [
+    "virtual environment",
+    "build tools",
+    "packages",
+    "OpenCV without a display",
+    "compiling kernels",
+]
 CONSTRAINTS = ROOT / "constraints.txt"
 
 OLDEST, NEWEST = (3, 11), (3, 12)
@@ -46,9 +56,15 @@ def main() -> None:
     if not _stamp_says(wanted):
         _check_python()
         print(REASONS, flush=True)
-        _make_venv()
-        _install_packages()
-        _call([str(VENV_PYTHON), "-m", "momantu_skills.warm_up"])
+        steps = Steps(STEPS, LOG, sys.stdout)
+        try:
+            _make_venv(steps)
+            _install_packages(steps)
+            steps.run([str(VENV_PYTHON), "-m", "momantu_skills.warm_up"])
+        except StepFailed as problem:
+            raise SetupError(
+                f"a step failed:\n{problem}\nMend that, then run `make setup` again"
+            ) from None
         STAMP.write_text(wanted, encoding="utf-8")
     if _call([str(VENV_PYTHON), "-m", "momantu_worlds.vulkan.install", "--quiet"]) != 0:
         raise SetupError("everything except rendering is installed; see the line above")
@@ -81,18 +97,21 @@ def _check_python() -> None:
         raise SetupError(f"only Linux is supported (sapien and ompl), not {sys.platform}")
 
 
-def _make_venv() -> None:
+def _make_venv(steps: Steps) -> None:
     """Create .venv with a pip of its own, also where Debian's python3-venv is not installed."""
     asking = [str(VENV_PYTHON), "-m", "pip", "--version"]
     if VENV_PYTHON.exists() and _call(asking, quiet=True) == 0:
+        steps.run()
         return
     ensurepip = importlib.util.find_spec("ensurepip") is not None
     without = [] if ensurepip and _ensurepip_works() else ["--without-pip"]
-    if _call([sys.executable, "-m", "venv", "--clear", *without, str(VENV)]) != 0:
+    try:
+        steps.run([sys.executable, "-m", "venv", "--clear", *without, str(VENV)])
+    except StepFailed as problem:
         raise SetupError(
             "this Python cannot make virtual environments; install `python3-venv` with your "
-            "system's packages, then run `make setup` again"
-        )
+            f"system's packages, then run `make setup` again\n{problem}"
+        ) from None
     if without:
         _bring_pip()
 
@@ -128,21 +147,26 @@ def _bring_pip() -> None:
         )
 
 
-def _install_packages() -> None:
+def _install_packages(steps: Steps) -> None:
     """The project, editable, with everything it uses, in tested versions."""
-    pip = [str(VENV_PYTHON), "-m", "pip", "--disable-pip-version-check", "install", "--quiet"]
-    constrained = [*pip, "--constraint", str(CONSTRAINTS)]
+    pip = [str(VENV_PYTHON), "-m", "pip", "--disable-pip-version-check", "--no-color", "install"]
+    constrained = [*pip, "--progress-bar", "off", "--constraint", str(CONSTRAINTS)]
+    steps.run([*constrained, *BUILD_TOOLS])
     project = ["--no-build-isolation", "--editable", f"{ROOT}[all,dev]"]
+    steps.run([*constrained, *project], progress=Progress(_site_packages(), _pins()))
     # Both builds of OpenCV fill one folder; the one for screens, which sapien asks for, cannot be
     # loaded on a machine without X, so the headless one is laid over it.
     pinned = f"{HEADLESS}=={_pinned(HEADLESS)}"
-    for command in (
-        [*constrained, *BUILD_TOOLS],
-        [*constrained, *project],
-        [*pip, "--no-deps", "--force-reinstall", pinned],
-    ):
-        if _call(command) != 0:
-            raise SetupError("pip failed, see above; fix that, then run `make setup` again")
+    steps.run([*pip, "--no-deps", "--force-reinstall", pinned])
+
+
+def _site_packages() -> Path:
+    """Where .venv keeps its packages."""
+    return next(VENV.glob("lib/python3*/site-packages"), VENV)
+
+
+def _pins() -> int:
+    return sum("==" in line for line in CONSTRAINTS.read_text(encoding="utf-8").splitlines())
 
 
 def _pinned(package: str) -> str:

@@ -17,6 +17,7 @@ ROOT = Path(__file__).resolve().parents[2]
 @pytest.fixture
 def environment(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     """The set-up script, its .venv in a scratch folder and its commands only noted down."""
+    monkeypatch.syspath_prepend(str(ROOT / "setup"))
     spec = importlib.util.spec_from_file_location("environment", ROOT / "setup" / "environment.py")
     assert spec is not None
     assert spec.loader is not None
@@ -28,7 +29,17 @@ def environment(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
         called.append(command)
         return 1 if any(word in command for word in module.refused) else 0
 
+    class Steps:
+        def __init__(self, titles: list[str], log: Path, stream: object) -> None:
+            self.titles = list(titles)
+
+        def run(self, *commands: list[str], progress: object = None) -> None:
+            self.titles.pop(0)
+            if any(call(command) for command in commands):
+                raise module.StepFailed("  | no such package\n  log: setup.log")
+
     (tmp_path / "bin").mkdir()
+    monkeypatch.setattr(module, "Steps", Steps)
     monkeypatch.setattr(module, "VENV_PYTHON", tmp_path / "bin" / "python")
     monkeypatch.setattr(module, "STAMP", tmp_path / "stamp")
     monkeypatch.setattr(module, "_call", call)
@@ -72,7 +83,9 @@ def test_headless_opencv_is_laid_over_the_other_one_last(environment: ModuleType
 
 def test_a_failed_install_leaves_no_stamp(environment: ModuleType) -> None:
     environment.refused.append("hatchling")
-    with pytest.raises(environment.SetupError, match="make setup"):
+    with pytest.raises(
+        environment.SetupError, match=r"no such package\n.*setup\.log\n.*make setup"
+    ):
         environment.main()
     assert not environment.STAMP.exists()
 
