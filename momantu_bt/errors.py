@@ -9,6 +9,9 @@ from __future__ import annotations
 from enum import IntEnum
 from typing import ClassVar
 
+TRACEBACK = "MOMANTU_BT_TRACEBACK"
+"""Environment variable: if it is set to anything, internal errors show their traceback."""
+
 
 class ExitCode(IntEnum):
     """The exit code of a command line."""

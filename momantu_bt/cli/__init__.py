@@ -19,11 +19,9 @@ import momantu_bt.threads  # noqa: F401 - before numpy, which the next imports l
 from momantu_bt.cli.shared.notices import notice
 from momantu_bt.cli.subverbs import add_command, with_subverbs
 from momantu_bt.cli.verbs import COMMANDS, VERBS, built_in
-from momantu_bt.errors import ExitCode, MomantuError
+from momantu_bt.errors import TRACEBACK, ExitCode, MomantuError
 from momantu_bt.version import __version__
 
-TRACEBACK = "MOMANTU_BT_TRACEBACK"
-"""Environment variable: if it is set to anything, internal errors show their traceback."""
 _UNKNOWN = re.compile(r"No such command '(?P<word>.*)'\.(?P<nearest> Did you mean)?")
 """Click's message about an unknown command of a group, with typer's addition."""
 

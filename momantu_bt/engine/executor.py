@@ -15,7 +15,8 @@ from momantu_bt.engine.ending import Ending
 from momantu_bt.engine.fingerprint import Fingerprint
 from momantu_bt.engine.interrupts import Interrupts
 from momantu_bt.engine.node import TreeNode, ticked_in
-from momantu_bt.engine.skills.services import Services
+from momantu_bt.engine.raised import raised_at
+from momantu_bt.engine.skills.services import ServiceError, Services
 from momantu_bt.engine.skills.session import CLOCK_SLACK
 from momantu_bt.engine.status import FAILURE, RUNNING, Status
 from momantu_bt.failure import TIMEOUT, FailureValue
@@ -256,10 +257,16 @@ class Executor:
 
 
 def _told(error: Exception) -> str:
-    """The traceback of an error; its last line also names the node in which it happened."""
-    text = "".join(traceback.format_exception(error)).rstrip()
+    """The traceback of an error; the last line is a sentence with its plug-in's node and line."""
+    *trace, last = "".join(traceback.format_exception(error)).rstrip().splitlines()
     node = ticked_in(error)
-    return f"{text}\n" if node is None else f"{text}, in the node {node.where}\n"
+    if isinstance(error, ServiceError):
+        last = str(error)
+    elif node is not None:
+        last = f"{type(error).__name__}: {error}, in the node {node.where}"
+        place = raised_at(error, type(node).__module__)
+        last += f", at {place}" if place else ""
+    return "\n".join([*trace, " ".join(last.splitlines()), ""])
 
 
 def halt_tree(built: Built) -> None:

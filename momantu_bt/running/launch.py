@@ -7,6 +7,7 @@ import traceback
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
+from functools import partial
 from typing import Any, TypeAlias
 
 from momantu_bt.engine.blackboard import Board, ReadOnlyCell
@@ -231,8 +232,8 @@ def _board(
 ) -> Board:
     """The root's board as it is at the first tick."""
     board = Board(context.writes)
-    for name, service in services.running.items():
-        board.publish(ReadOnlyCell(name, _asking(context, name, service.published)))
+    for name in services.running:
+        board.publish(ReadOnlyCell(name, _asking(context, name, partial(services.published, name))))
     if robot is not None:
         board.publish(ReadOnlyCell(ROBOT_KEY, _asking(context, ROBOT_KEY, robot.state)))
     for key, literal in document.values.items():

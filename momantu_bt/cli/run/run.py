@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Sequence
 from contextlib import ExitStack
@@ -13,7 +14,7 @@ import typer
 
 from momantu_bt.cli.shared.notices import notice
 from momantu_bt.cli.shared.options import Robot
-from momantu_bt.errors import ExitCode, InputError, MomantuError
+from momantu_bt.errors import TRACEBACK, ExitCode, InputError, MomantuError
 from momantu_bt.formats.files import check_writable
 from momantu_bt.lazy import lazily
 
@@ -216,7 +217,10 @@ def _display(terminal: Terminal | None) -> Observer:
 
 def _say_end(result: Report, options: RunOptions, shown: _Shown) -> None:
     if result.error is not None:
-        typer.echo(result.error, err=True)
+        if os.environ.get(TRACEBACK):
+            typer.echo(result.error, err=True)
+        else:
+            notice(f"set {TRACEBACK}=1 for the traceback; a report has it, too")
     named = (("report", shown.report), ("video", shown.video), ("record", options.record))
     places = [f"{what}: {path}" for what, path in named if path is not None]
     typer.echo("; ".join([ending.ending_text(result), *places]))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import traceback
 
+from momantu_bt.engine.raised import raised_at
 from momantu_bt.failure import ENGINE_CODES, HUNG, SKILL_ERROR, Failure, FailureValue
 from momantu_bt.skill import Skill
 
@@ -22,6 +23,8 @@ def skill_error(
     """An exception of a skill. sentence: what the skill did, if the exception does not say it."""
     text = "".join(traceback.format_exception(error))
     said = sentence or f"raised {type(error).__name__}: {error}"
+    place = raised_at(error, kind.__module__)
+    said += f", at {place}" if place else ""
     cause = error.value if isinstance(error, Failure) else cause
     data = {"traceback": text, "exception": type(error).__name__}
     return FailureValue(SKILL_ERROR, f"{kind.__name__} {said}", data, cause=cause)

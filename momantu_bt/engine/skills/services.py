@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any, TypeAlias
 
+from momantu_bt.engine.raised import raised_at
 from momantu_bt.engine.skills.actuators import Actuators
 from momantu_bt.engine.skills.session import CLOCK_SLACK
-from momantu_bt.errors import MomantuError
+from momantu_bt.errors import ExitCode, MomantuError
+from momantu_bt.failure import Failure
 from momantu_bt.frames import FrameBuffer
 from momantu_bt.robot import Robot
 from momantu_bt.service import Service, ServiceContext
@@ -19,6 +22,15 @@ ServiceFinder: TypeAlias = Callable[[str], type[Service]]
 
 class ServiceCycleError(MomantuError):
     """Services need each other in a circle; the message shows it."""
+
+
+class ServiceError(MomantuError):
+    """A service raised an exception, which ends the run; the message says which and at what line.
+
+    The exception is its `__cause__`.
+    """
+
+    exit_code = ExitCode.INTERNAL
 
 
 def in_order(names: Iterable[str], service_of: ServiceFinder) -> dict[str, type[Service]]:
@@ -64,17 +76,17 @@ class Services:
     ) -> None:
         """Start each one, its needs first. other: how they find each other."""
         for name, service in self.running.items():
-            service.start(
-                ServiceContext(
-                    site=site,
-                    description=self._robots[name].description,
-                    frames=frames,
-                    clock=clock,
-                    random=seeded(seed, name),
-                    parameters=site.services.get(name, {}),
-                    other=other or self.running.__getitem__,
-                )
+            context = ServiceContext(
+                site=site,
+                description=self._robots[name].description,
+                frames=frames,
+                clock=clock,
+                random=seeded(seed, name),
+                parameters=site.services.get(name, {}),
+                other=other or self.running.__getitem__,
             )
+            with _told(name, service, "start"):
+                service.start(context)
 
     def update(self, now: float) -> None:
         """Update those whose time has come; the first time, all."""
@@ -82,4 +94,28 @@ class Services:
             due = self._due.get(name, now)
             if now >= due - CLOCK_SLACK:
                 self._due[name] = max(due + 1.0 / service.rate, now)
-                service.update(self._robots[name], now)
+                with _told(name, service, "update"):
+                    service.update(self._robots[name], now)
+
+    def published(self, name: str) -> Mapping[str, Any]:
+        """The current values of a service's keys."""
+        with _told(name, self.running[name], "published"):
+            return self.running[name].published()
+
+
+@contextmanager
+def _told(name: str, service: Service, method: str) -> Iterator[None]:
+    """Raise an exception of a service as ServiceError, which says where it happened.
+
+    What a service publishes may be a Failure: the node that reads it then fails.
+    """
+    try:
+        yield
+    except Exception as error:
+        if method == "published" and isinstance(error, Failure):
+            raise
+        kind = type(service)
+        place = raised_at(error, kind.__module__)
+        said = f"the service {name!r} ended the run: {kind.__name__}.{method} raised "
+        said += f"{type(error).__name__}: {error}" + (f", at {place}" if place else "")
+        raise ServiceError(said) from error

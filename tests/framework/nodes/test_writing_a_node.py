@@ -277,17 +277,24 @@ def test_a_broken_node_is_told_also_with_children_and_beside_a_node(calm, tree, 
 @pytest.mark.parametrize(
     ("method", "said"),
     [
-        ("def step(self): return {}['a']", "KeyError: 'a', in the node calm (tree.yaml:4)"),
+        (
+            "def step(self): return {}['a']",
+            "KeyError: 'a', in the node calm (tree.yaml:4), at {file}:5: def step",
+        ),
         ("def step(self): pass", "TypeError: step() returned None; expected one of RUNNING"),
         ("def step(self): return self.shown", "step() returned <Status.IDLE"),
     ],
 )
-def test_a_node_that_raises_or_returns_no_status_is_named(calm, method, said):
+def test_a_node_that_raises_or_returns_no_status_is_named(calm, monkeypatch, method, said):
     code, told = calm(RUN, method=method)
     assert code == 4
     last = next(line for line in told.splitlines() if "internal error after" in line)
-    assert said in last
-    assert last.endswith("in the node calm (tree.yaml:4)")
+    (file,) = (path.name for path in Path().glob("calm_*.py"))
+    assert said.replace("{file}", file) in last
+    assert "in the node calm (tree.yaml:4)" in last
+    assert "Traceback" not in told
+    monkeypatch.setenv("MOMANTU_BT_TRACEBACK", "1")
+    assert "Traceback" in calm(RUN, method=method)[1]
 
 
 def test_a_constructor_that_raises_is_told_without_a_traceback(calm):
