@@ -17,10 +17,15 @@ import typer
 
 import momantu_bt.threads  # noqa: F401 - before numpy, which the next imports load
 from momantu_bt.cli.shared.notices import notice
+from momantu_bt.cli.shared.program import COMPLETE, PROGRAM
 from momantu_bt.cli.subverbs import add_command, with_subverbs
 from momantu_bt.cli.verbs import COMMANDS, VERBS, built_in
 from momantu_bt.errors import TRACEBACK, ExitCode, MomantuError
+from momantu_bt.lazy import lazily
 from momantu_bt.version import __version__
+
+with lazily():
+    from momantu_bt.cli import completion
 
 _UNKNOWN = re.compile(r"No such command '(?P<word>.*)'\.(?P<nearest> Did you mean)?")
 """Click's message about an unknown command of a group, with typer's addition."""
@@ -33,10 +38,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     given = list(sys.argv[1:] if arguments is None else arguments)
     try:
+        if COMPLETE in os.environ:
+            return completion.answer(_app(completion.words_to_complete()))
         if not given:
-            _app(given)(args=["--help"], prog_name="momantu-bt", standalone_mode=False)
+            _app(given)(args=["--help"], prog_name=PROGRAM, standalone_mode=False)
             return ExitCode.WRONG_INPUT
-        result = _app(given)(args=given, prog_name="momantu-bt", standalone_mode=False)
+        result = _app(given)(args=given, prog_name=PROGRAM, standalone_mode=False)
     except KeyboardInterrupt:
         return ExitCode.INTERRUPTED
     except SystemExit as error:
@@ -58,7 +65,7 @@ def _app(given: Sequence[str]) -> typer.Typer:
     at = next((n for n, word in enumerate(given) if not word.startswith("-")), None)
     verb, rest = (None, ()) if at is None else (given[at], given[at + 1 :])
     app = typer.Typer(
-        name="momantu-bt",
+        name=PROGRAM,
         help="Program a mobile manipulator by editing one tree file.",
         rich_markup_mode=None,
         add_completion=False,
@@ -122,7 +129,7 @@ def _usage_message(error: Any) -> str | None:
     if getattr(error, "format_message", None) is None:
         return None
     message, context = str(error.format_message()), getattr(error, "ctx", None)
-    path = "momantu-bt" if context is None else context.command_path
+    path = PROGRAM if context is None else context.command_path
     message += "" if message.endswith((".", "?", "!")) else "."
     unknown = _UNKNOWN.match(message)
     if unknown is not None and context is not None and context.parent is not None:

@@ -57,6 +57,9 @@ VERBS = {
     "faults": Verb(
         "momantu_bt.cli.faults", "List what can be broken on purpose, or show one fault."
     ),
+    "completion": Verb(
+        "momantu_bt.cli.completion", "Let the shell complete verbs, options and names."
+    ),
     "doctor": Verb("momantu_bt.cli.doctor", "Say what this machine lacks, and the cure."),
 }
 """The built-in verbs, by name."""
