@@ -47,7 +47,7 @@ def completion(
       momantu-bt completion zsh >> ~/.zshrc
       momantu-bt completion fish > ~/.config/fish/completions/momantu-bt.fish
     """
-    script = typer_completion.get_completion_script(
+    script = typer_completion.get_completion_script(  # type: ignore[attr-defined]
         prog_name=PROGRAM, complete_var=COMPLETE, shell=shell.value
     )
     typer.echo(script)
@@ -66,7 +66,7 @@ def answer(app: typer.Typer) -> ExitCode:
     """Print what can stand at the cursor, as the shell's script expects it."""
     command = get_command(app)
     _add_names(command, ())
-    typer_completion.completion_init()
+    typer_completion.completion_init()  # type: ignore[attr-defined]
     instruction = os.environ[COMPLETE]
     code = typer_completion.shell_complete(command, {}, PROGRAM, COMPLETE, instruction)
     return ExitCode.SUCCESS if code == 0 else ExitCode.WRONG_INPUT
