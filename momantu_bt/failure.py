@@ -32,6 +32,8 @@ SENSOR_DEAD = "SENSOR_DEAD"
 """A sensor does not answer, or repeats the same reading; `data["sensor"]` names it."""
 HUNG = "HUNG"
 """One step of a skill exceeded the run's time limit; `data["traceback"]` says where it was."""
+CALL_FAILED = "CALL_FAILED"
+"""A skill called another one, which failed with a code that the caller does not declare."""
 SCRIPT_ERROR = "SCRIPT_ERROR"
 """A script or a condition could not be evaluated."""
 
@@ -52,6 +54,7 @@ ENGINE_CODES: Mapping[str, str] = MappingProxyType(
         FAILED: "the node failed without saying more",
         SENSOR_DEAD: "a sensor does not answer, or repeats itself",
         HUNG: "the skill took longer over one step than the run has patience for",
+        CALL_FAILED: "a skill that this one called failed; the cause says which and why",
         SCRIPT_ERROR: "a script or a condition could not be evaluated",
     }
 )

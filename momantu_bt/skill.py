@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import inspect
 import sys
-from collections.abc import Callable, Generator, Mapping
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol, TypeAlias, TypeVar
 
@@ -26,6 +26,7 @@ from momantu_bt.activity import Activity
 from momantu_bt.claim import Claim
 from momantu_bt.failure import CODE, Failure, FailureValue
 from momantu_bt.frames import FrameBuffer
+from momantu_bt.marker import Marker
 from momantu_bt.robot import Robot
 from momantu_bt.symptom import Symptom
 from momantu_bt.world import Site
@@ -80,6 +81,28 @@ def compute(function: Callable[[], T], budget: float) -> Generator[Compute, Any,
     """
     result: T = yield Compute(function, budget)
     return result
+
+
+class Host:
+    """What the engine does for a running skill besides the robot. This one does nothing."""
+
+    @property
+    def watched(self) -> bool:
+        """Whether somebody sees what the skill draws."""
+        return False
+
+    def log(self, text: str) -> None:
+        """Show a line to whoever watches the run."""
+
+    def draw(self, markers: Sequence[Marker]) -> None:
+        """Show markers to whoever watches the run."""
+
+    def call(
+        self, skill: str | type[Skill], inputs: Mapping[str, Any]
+    ) -> Generator[str | Compute, Any, Mapping[str, Any]]:
+        """Run another skill to its end; see `Skill.call`."""
+        raise RuntimeError(f"{skill!r} is called by a skill that the engine does not run")
+        yield ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -221,6 +244,8 @@ class Skill:
 
     failures: each code this skill raises, with a sentence that explains it.
     uses: the actuators it commands; CAMERA_CARRIER for the one that carries the camera.
+    calls: the skills that it calls, by name or class. Their actuators must be in `uses`; the
+    services that they need start with the run.
     one_of: groups of inputs with defaults; a tree gives exactly one input of each group.
     activities: what the skill does, for faults that start during such an activity. The value is a
     suffix to the skill's name that says when: "" as soon as the skill runs, "+2 s" two seconds
@@ -230,11 +255,12 @@ class Skill:
     sensors and inputs that the skill uses.
 
     The engine makes a new instance for each start. Before it calls `run` it sets the inputs,
-    `services`, `clock`, `random`, `frames` and `site`.
+    `services`, `clock`, `random`, `frames`, `site` and `host`.
     """
 
     failures: ClassVar[Mapping[str, str]] = {}
     uses: ClassVar[frozenset[str] | set[str]] = frozenset()
+    calls: ClassVar[Iterable[str | type[Skill]]] = ()
     one_of: ClassVar[tuple[tuple[str, ...], ...]] = ()
     activities: ClassVar[Mapping[Activity, str] | None] = None
     symptoms: ClassVar[Mapping[str, frozenset[Symptom] | set[Symptom]] | None] = None
@@ -247,6 +273,7 @@ class Skill:
         cls.ports = {**cls.ports, **_declared_ports(cls)}
         mine = [v.service for v in vars(cls).values() if isinstance(v, _NeedsDescriptor)]
         cls.needs = tuple(dict.fromkeys((*cls.needs, *mine)))
+        cls.calls = _checked_calls(cls)
         wrong = [code for code in cls.failures if not CODE.fullmatch(code)]
         if wrong:
             raise TypeError(f"{cls.__name__}.failures: {', '.join(wrong)}: not UPPER_CASE words")
@@ -262,6 +289,7 @@ class Skill:
         self.random: np.random.Generator
         self.frames: FrameBuffer
         self.site: Site
+        self.host = Host()
 
     @classmethod
     def rehearsal(cls, seed: int) -> Mapping[str, Any]:
@@ -281,10 +309,57 @@ class Skill:
         """
         return None
 
+    def call(
+        self, skill: str | type[Skill], /, **inputs: Any
+    ) -> Generator[str | Compute, Any, Mapping[str, Any]]:
+        """Run another skill to its end, and return its outputs by port.
+
+        Write `way = (yield from self.call("dock", at="desk"))["way"]`.
+        skill: one of `calls`. inputs: by port, as a tree gives them. Each of its ticks is a tick of
+        this skill, and its phase is shown as `dock/turning`. At its end its actuators
+        stop; they stay this skill's own. A halt of this skill halts it too.
+
+        Raises:
+            Failure: the called skill's own failure. If it is not caught and its code is in
+                `failures`, this skill fails with that code; otherwise with CALL_FAILED. In both
+                cases the called skill's failure is the cause.
+        """
+        return (yield from self.host.call(skill, inputs))
+
+    def log(self, text: str) -> None:
+        """Show a line in the terminal, the record and the page; it never influences the run."""
+        self.host.log(text)
+
+    def draw(self, *markers: Marker) -> None:
+        """Show markers in the record, the page's map and 3D viewers; see `momantu_bt.marker`.
+
+        It costs next to nothing when nobody watches. Where the markers themselves are expensive,
+        ask `self.host.watched` first.
+        """
+        self.host.draw(markers)
+
     def run(self, robot: Robot) -> Run:
         """The skill's work: `yield "phase"` is RUNNING, return SUCCESS, raise Failure FAILURE."""
         raise NotImplementedError(f"{type(self).__name__} has no run(self, robot)")
         yield ""
+
+
+def _checked_calls(cls: type[Skill]) -> tuple[str | type[Skill], ...]:
+    """Its `calls` in an order that is the same in every process."""
+    calls = cls.calls
+    given = [] if isinstance(calls, str) else list(calls)
+    wrong = isinstance(calls, str) or not all(
+        isinstance(each, str) or (isinstance(each, type) and issubclass(each, Skill))
+        for each in given
+    )
+    if wrong:
+        raise TypeError(
+            f"{cls.__name__}.calls is {calls!r}; expected skills by name or class, such as "
+            '("dock",)'
+        )
+    if isinstance(calls, set | frozenset):
+        given.sort(key=lambda each: each if isinstance(each, str) else each.__name__)
+    return tuple(given)
 
 
 def _declared_ports(cls: type) -> dict[str, Port]:

@@ -30,6 +30,7 @@ PUBLIC = (
     "momantu_bt.frames",
     "momantu_bt.geometry",
     "momantu_bt.lazy",
+    "momantu_bt.marker",
     "momantu_bt.messages",
     "momantu_bt.nodes",
     "momantu_bt.nodes.behaviour",

@@ -9,7 +9,7 @@ from typing import NamedTuple, TypeVar
 from momantu_bt.engine.blackboard import Journal
 from momantu_bt.engine.changes import Change
 from momantu_bt.engine.events import Events
-from momantu_bt.engine.outside import Answered, Outside, Refused
+from momantu_bt.engine.outside import Answered, Logged, Outside, Refused
 from momantu_bt.engine.person import Person, Scripted
 from momantu_bt.engine.skills.body import Body
 from momantu_bt.engine.watchdog import Watchdog
@@ -31,6 +31,7 @@ class RunContext:
 
     now: time of the world's clock at this tick, s. tick: its number, from 1.
     writes: cells written in this tick, with their values before. changes: of statuses in this tick.
+    logs: what skills have logged in this tick.
     person: answers questions.
     waited: wall time that the run has spent waiting for a person, s.
     outside: source of everything that the tree gets from outside. watchdog: ends steps that hang.
@@ -44,6 +45,7 @@ class RunContext:
     tick: int = 0
     writes: Journal = field(default_factory=list)
     changes: list[Change] = field(default_factory=list)
+    logs: list[Logged] = field(default_factory=list)
     person: Person = field(default_factory=Scripted)
     waited: float = 0.0
     outside: Outside = field(default_factory=Outside)
@@ -56,6 +58,7 @@ class RunContext:
         self.tick += 1
         self.writes.clear()
         self.changes.clear()
+        self.logs.clear()
 
     def remark(self, text: str) -> None:
         """Publish a remark for a person."""

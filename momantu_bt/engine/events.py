@@ -1,7 +1,7 @@
 """The events of a run: each one is passed to its subscribers at the moment it happens.
 
 Kinds of events are defined beside their publishers: `Ticked`, `Stepping` and `NodeStarting` in
-`executor.py`, `SkillStepped`, `SkillEnded` and `Answered` in `outside.py`, `Remarked` in
+`executor.py`, `SkillStepped`, `SkillEnded`, `Drawn` and `Answered` in `outside.py`, `Remarked` in
 `context.py`, `SensorRead` in `actuators.py`. A subscriber only observes: the run is the same
 without it.
 """

@@ -213,6 +213,7 @@ class Executor:
         """Halt the tree, stop the actuators, let the world come to rest; then ask the referee."""
         self.context.changes.clear()
         self.context.writes.clear()
+        self.context.logs.clear()
         try:
             self.stop()
             if status == ending.ERROR:

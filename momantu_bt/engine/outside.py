@@ -6,17 +6,19 @@ recorded these things can repeat the run without a world.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple, Protocol, TypeVar
 
 from momantu_bt.engine.changes import SeenNode
+from momantu_bt.engine.events import Events
 from momantu_bt.engine.skills.body import Body
-from momantu_bt.engine.skills.session import Session, SkillContext
+from momantu_bt.engine.skills.session import Session
+from momantu_bt.engine.skills.start import SkillContext
 from momantu_bt.engine.status import Status
 from momantu_bt.failure import FailureValue
-from momantu_bt.skill import Clock, Skill
-from momantu_bt.world import seeded
+from momantu_bt.marker import Marker
+from momantu_bt.skill import Clock, Host, Skill
 
 T = TypeVar("T")
 
@@ -63,6 +65,16 @@ class Surroundings(Protocol):
         """The robot and its surroundings; None in a run without a world."""
         ...
 
+    @property
+    def events(self) -> Events:
+        """The run's events."""
+        ...
+
+    @property
+    def logs(self) -> list[Logged]:
+        """What skills have logged in this tick."""
+        ...
+
 
 class SkillNode(SeenNode, Protocol):
     """A node that runs a skill. path: its position in the tree. runs: its starts so far."""
@@ -82,6 +94,41 @@ class SkillNode(SeenNode, Protocol):
         ...
 
 
+class Logged(NamedTuple):
+    """A skill has logged a line."""
+
+    leaf: SkillNode
+    text: str
+
+
+class Drawn(NamedTuple):
+    """A skill has drawn markers."""
+
+    leaf: SkillNode
+    markers: tuple[Marker, ...]
+
+
+class LeafReporter(Host):
+    """Passes on what the skill of a leaf logs and draws."""
+
+    def __init__(self, leaf: SkillNode) -> None:
+        self._leaf, self._events = leaf, leaf.context.events
+
+    @property
+    def watched(self) -> bool:
+        """Whether somebody sees what the skill draws."""
+        return self._events.has_subscribers(Drawn)
+
+    def log(self, text: str) -> None:
+        """Add each line to the journal of this tick."""
+        lines = text.splitlines()
+        self._leaf.context.logs.extend(Logged(self._leaf, line) for line in lines)
+
+    def draw(self, markers: Sequence[Marker]) -> None:
+        """Publish markers."""
+        self._events.publish(Drawn(self._leaf, tuple(markers)))
+
+
 class Outside:
     """The outside of a normal run: skills run on the robot, and a person answers questions."""
 
@@ -96,10 +143,12 @@ class Outside:
         assert body is not None
         surroundings = SkillContext(
             clock=context.clock,
-            random=seeded(context.seed, leaf.path, leaf.runs),
+            seeds=(context.seed, leaf.path, leaf.runs),
             frames=body.frames,
             site=body.site,
             services=body.services,
+            skills=body.skills,
+            reporter=LeafReporter(leaf),
         )
         lease = body.actuators.lease(leaf.name, leaf.kind.uses)
         return Session(leaf.kind, inputs, lease, surroundings)

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 import math
+from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from momantu_bt.frames import MAP, ODOM
 from momantu_bt.geometry import Pose2D
+from momantu_bt.page.markers import marker_shapes
 from momantu_bt.page.plan import plan_image
 from momantu_bt.record.about import SITE
 from momantu_bt.record.codec import CodecError, from_json
@@ -26,6 +28,7 @@ def floor(recording: Recording) -> dict[str, Any]:
 
     image: the floor plan and where it lies. path: columns t, x, y, yaw. scenes: columns t and
     items: all objects that the robot believes in from t on; an object in the hand has no x and y.
+    markers: what skills drew; see `marker_shapes`.
     bounds: left, bottom, right, top of the drawing; None if there is nothing to draw.
     """
     image = plan_image(recording)
@@ -39,6 +42,7 @@ def floor(recording: Recording) -> dict[str, Any]:
         "surfaces": surfaces,
         "path": path,
         "scenes": _scenes(recording),
+        "markers": _markers(recording),
         "bounds": _bounds(image, path, [*places, *surfaces]),
     }
 
@@ -86,7 +90,7 @@ def _scenes(recording: Recording) -> dict[str, list[Any]]:
     scenes: list[Any] = []
     for time, is_scene, message in updates:
         if not is_scene:
-            map_from_odom = _newest(message["transforms"], map_from_odom)
+            map_from_odom = _newest(message["transforms"]) or map_from_odom
             continue
         for gone in message["deletions"]:
             items.pop(gone["id"], None)
@@ -97,12 +101,24 @@ def _scenes(recording: Recording) -> dict[str, list[Any]]:
     return {"t": times, "items": scenes}
 
 
-def _newest(transforms: Sequence[Mapping[str, Any]], before: Pose2D) -> Pose2D:
-    """The pose of odom in the map."""
+def _markers(recording: Recording) -> list[dict[str, Any]]:
+    """The shapes that skills drew, with odom where it was believed to be at that time."""
+    newest = ((time, _newest(m["transforms"])) for time, m in _messages(recording, "/tf"))
+    known = [(time, pose) for time, pose in newest if pose is not None]
+    times = [time for time, _ in known]
+    updates = []
+    for time, message in _messages(recording, "/markers"):
+        at = max(0, bisect_right(times, time + 1e-6) - 1)
+        updates.append((time, message, known[at][1] if known else Pose2D(0.0, 0.0, 0.0)))
+    return marker_shapes(updates, recording.ticks[-1].now if recording.ticks else 0.0)
+
+
+def _newest(transforms: Sequence[Mapping[str, Any]]) -> Pose2D | None:
+    """The pose of odom in the map, if the message has it."""
     for each in transforms:
         if each["parent_frame_id"] == MAP and each["child_frame_id"] == ODOM:
             return _planar(each["translation"], each["rotation"])
-    return before
+    return None
 
 
 def _item(entity: Mapping[str, Any], map_from_odom: Pose2D) -> dict[str, Any]:

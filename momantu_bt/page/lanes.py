@@ -33,6 +33,8 @@ def lanes(recording: Recording, failures: Sequence[Mapping[str, Any]]) -> list[d
         "denied claims": list(_lies(recording)),
         "faults": list(_faults(recording)),
     }
+    said = list(_logs(recording))
+    found += [{"name": "log", "kind": "marks", "bars": said}] if said else []
     return found + [
         {"name": name, "kind": "faults" if name == "faults" else "marks", "bars": marks}
         for name, marks in told.items()
@@ -59,6 +61,15 @@ def _row(recording: Recording, bar: Bar) -> dict[str, Any]:
         "status": STATUS_NUMBERS[bar.status],
         "words": "\n".join(filter(None, words)),
     }
+
+
+def _logs(recording: Recording) -> Iterator[dict[str, Any]]:
+    """What skills logged, a mark for each tick."""
+    for tick, record in enumerate(recording.ticks):
+        lines = [f"{recording.nodes[node].name}: {text}" for node, text in record.logs]
+        if lines:
+            words = "\n".join([f"{record.now:.2f} s", *lines])
+            yield _mark(tick, words) | {"status": STATUS_NUMBERS[RUNNING]}
 
 
 def _failure(failure: Mapping[str, Any]) -> dict[str, Any]:

@@ -158,6 +158,7 @@ class _Ticks:
             settling=data.get("settling", False),
             notes=tuple((node, note) for node, note in data.get("notes", ())),
             labels=tuple((node, label) for node, label in data.get("labels", ())),
+            logs=tuple((node, text) for node, text in data.get("logs", ())),
         )
 
     def _failure(self, node: int, data: Any) -> Any:

@@ -21,6 +21,7 @@ from momantu_bt.record.about import files_of, nodes_data, run_data
 from momantu_bt.record.channels.channel import Channel, stamp_of
 from momantu_bt.record.channels.floor_plan import grid_text
 from momantu_bt.record.channels.log_lines import LogLines
+from momantu_bt.record.channels.markers import Markers
 from momantu_bt.record.channels.objects import Objects
 from momantu_bt.record.channels.poses import Poses
 from momantu_bt.record.channels.published import Published
@@ -58,6 +59,7 @@ class Recorder:
         self._flushed = time.monotonic()
         self._outside = OutsideLog(events)
         self._sensors = Sensors(events)
+        self._markers = Markers(events)
         self._remarks: list[str] = []
         events.subscribe(Remarked, lambda event: self._remarks.append(event.text))
         self._ticks: Ticks | None = None
@@ -128,7 +130,7 @@ class Recorder:
         body = run.context.body
         if body is not None:
             others += [Poses(file, body), Published(run.context.remark), Objects(file)]
-            others.append(self._sensors)
+            others += [self._sensors, self._markers]
             self._write_map(file, body.site.map_file, run.context.remark)
         self._others = others
         file.flush()

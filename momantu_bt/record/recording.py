@@ -61,6 +61,7 @@ class TickRecord:
     without a robot. settling: the tree had ended and the robot came to rest; the first such record
     has the number of the last tick, and in it all nodes are halted. notes: by node, new notes that
     are not in `changes`. labels: by node, new lines with the values of the node's newest start.
+    logs: by node, what its skill has logged.
     """
 
     number: int
@@ -74,6 +75,7 @@ class TickRecord:
     settling: bool = False
     notes: tuple[tuple[int, str], ...] = ()
     labels: tuple[tuple[int, str], ...] = ()
+    logs: tuple[tuple[int, str], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -58,6 +58,7 @@ def _nodes_in(tick: TickRecord) -> Iterator[int]:
     yield from (step.node for step in tick.steps)
     yield from (node for node, _ in tick.notes)
     yield from (node for node, _ in tick.labels)
+    yield from (node for node, _ in tick.logs)
 
 
 def _statuses_in(tick: TickRecord) -> Iterator[str]:

@@ -38,6 +38,7 @@ def run_lines(recording: Recording) -> Iterator[tuple[int, str]]:
         lines.print_changes(
             tick.now,
             [(nodes[c.node], Status(c.status), c.note, c.failure) for c in tick.changes],
+            [(nodes[node], text) for node, text in tick.logs],
         )
         yield from ((index, line) for line in said)
         said.clear()

@@ -28,6 +28,7 @@ from momantu_bt.record.recorder import Recorder
 from momantu_bt.record.report import Report
 from momantu_bt.robot import Robot, RobotDescription
 from momantu_bt.running.audit import Auditor
+from momantu_bt.running.calls import called_skills, check_calls
 from momantu_bt.running.needed import LaunchError, check_sensors, services_of
 from momantu_bt.running.options import RunOptions
 from momantu_bt.running.prepare import Prepared
@@ -101,16 +102,17 @@ def assemble(prepared: Prepared, stack: ExitStack) -> Executor:
 def _assembled(prepared: Prepared, stack: ExitStack) -> tuple[Executor, Stage, Recorder | None]:
     document, options, registry = prepared.document, prepared.options, prepared.registry
     kinds = {name: registry.skills[name] for name in skills_in(document, prepared.substitution)}
-    needed = services_of(prepared, kinds)
+    called = called_skills(kinds, registry)
+    needed = services_of(prepared, {**called, **kinds})
     planned = _planned(prepared, kinds)
     events = Events()
     recorder = _recorder(options, events, stack)
     events.subscribe(Remarked, lambda event: options.remark(event.text))
-    world = _open(prepared, kinds, needed)
+    world = _open(prepared, kinds, called, needed)
     if world is not None and world is not options.world:
         stack.callback(world.close)
     stage = Stage(planned, world, options.seed, stack)
-    return _executor(prepared, kinds, needed, stage, events), stage, recorder
+    return _executor(prepared, kinds, called, needed, stage, events), stage, recorder
 
 
 def _recorder(options: RunOptions, events: Events, stack: ExitStack) -> Recorder | None:
@@ -141,6 +143,7 @@ def _close(observers: Sequence[Observer]) -> str | None:
 def _open(
     prepared: Prepared,
     kinds: Mapping[str, type[Skill]],
+    called: Mapping[str, type[Skill]],
     needed: Mapping[str, type[Service]],
 ) -> World | None:
     options, registry = prepared.options, prepared.registry
@@ -150,7 +153,8 @@ def _open(
         return None
     entry = registry.worlds[name]
     description = registry.description(options.robot or entry.default_robot)
-    _check_uses(kinds, description)
+    _check_uses({**called, **kinds}, description)
+    check_calls({**called, **kinds}, registry, description)
     check_sensors(needed, description)
     try:
         return entry.open(description, options.seed, referee=options.referee)
@@ -191,6 +195,7 @@ def _check_uses(kinds: Mapping[str, type[Skill]], description: RobotDescription)
 def _executor(
     prepared: Prepared,
     kinds: Mapping[str, type[Skill]],
+    called: Mapping[str, type[Skill]],
     needed: Mapping[str, type[Service]],
     stage: Stage,
     events: Events,
@@ -209,7 +214,8 @@ def _executor(
         actuators = Actuators(stage.robot, events)
         services = Services({name: kind() for name, kind in needed.items()}, actuators)
         frames = FrameBuffer(stage.robot.description.kinematics())
-        context.body = Body(actuators, frames, stage.site, services.running)
+        callable_skills = {name: stage.skill(kind) for name, kind in called.items()}
+        context.body = Body(actuators, frames, stage.site, services.running, callable_skills)
     board = _board(context, document, services, stage.robot)
     for key, value in substitution.values.items():
         board.cell(key).store(natural(value))

@@ -10,7 +10,7 @@ from momantu_bt.formats.problems import Problem, Severity
 from momantu_bt.skill import Skill
 from momantu_bt.testing.clock_rules import ClockWatch, clocks_in_source
 from momantu_bt.testing.rehearsal import CannotRehearse, Rehearsals, Take
-from momantu_bt.testing.source_rules import codes, documented, ports
+from momantu_bt.testing.source_rules import calls, codes, documented, ports
 
 Example: TypeAlias = Callable[[int], Mapping[str, Any]]
 """Keyword arguments of `run_skill` for a seed, made anew at each call."""
@@ -34,7 +34,8 @@ def check_skill(
 
     Returns: the problems; for a correct skill the list is empty or has only notes.
     """
-    found = [*documented(skill), *ports(skill), *codes(skill), *clocks_in_source(skill)]
+    found = [*documented(skill), *ports(skill), *codes(skill), *calls(skill)]
+    found += clocks_in_source(skill)
     rehearsals = Rehearsals(skill, example, seed, max_time)
     try:
         found += _run(rehearsals, halts)

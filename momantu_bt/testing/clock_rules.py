@@ -17,7 +17,7 @@ import numpy as np
 from momantu_bt.formats.places import NOWHERE, Place
 from momantu_bt.formats.problems import Problem
 from momantu_bt.skill import Skill
-from momantu_bt.testing.source import reached
+from momantu_bt.testing.source import family, reached
 
 _TIMES = ("time", "monotonic", "perf_counter", "process_time", "thread_time")
 _CLOCKS = frozenset(
@@ -104,7 +104,7 @@ class ClockWatch:
     """
 
     def __init__(self, skill: type[Skill]) -> None:
-        self._top = skill.__module__.partition(".")[0]
+        self._tops = {kind.__module__.partition(".")[0] for kind in family(skill)}
         self._found: dict[tuple[str, str], Place] = {}
         self._before: tuple[Any, Any] = (None, None)
         self._profile: Any = None
@@ -125,7 +125,10 @@ class ClockWatch:
         return [_finding(rule, name, place) for (rule, name), place in self._found.items()]
 
     def _called(self, frame: FrameType, event: str, argument: Any) -> None:
-        if event != "c_call" or frame.f_globals.get("__name__", "").partition(".")[0] != self._top:
+        if (
+            event != "c_call"
+            or frame.f_globals.get("__name__", "").partition(".")[0] not in self._tops
+        ):
             return
         rule, name = _of_builtin(argument)
         if rule:

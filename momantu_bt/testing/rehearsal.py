@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from momantu_bt.engine.encode import encode
+from momantu_bt.engine.skills.calls import callees
 from momantu_bt.engine.skills.services import ServiceCycleError, in_order
 from momantu_bt.engine.skills.session import Session
 from momantu_bt.engine.status import RUNNING
@@ -138,7 +139,7 @@ class Rehearsals:
 
         A skill that needs services is not run, as the services would fail first.
         """
-        if self.skill.needs:
+        if self._needs():
             return Take(self.skill, None)
         arguments = self._arguments()
         robot = _scripted(arguments["world"].robot)
@@ -219,9 +220,19 @@ class Rehearsals:
             raise CannotRehearse(f"{error}; {_GIVE}") from None
         return arguments
 
+    def _needs(self) -> list[str]:
+        """The services that the skill and those that it calls need."""
+        try:
+            called = callees([self.skill], self._registry.skills.__getitem__)
+        except KeyError as error:
+            raise CannotRehearse(f"it calls the skill {error}, which is not installed") from None
+        except PluginError as error:
+            raise CannotRehearse(str(error)) from None
+        return [need for kind in (self.skill, *called.values()) for need in kind.needs]
+
     def _services(self) -> dict[str, Any]:
         try:
-            ordered = in_order(self.skill.needs, self._registry.services.__getitem__)
+            ordered = in_order(self._needs(), self._registry.services.__getitem__)
             return {name: kind() for name, kind in ordered.items()}
         except KeyError as error:
             raise CannotRehearse(f"no service {error} is installed; {_GIVE}") from None

@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from momantu_bt.claim import Claim
 from momantu_bt.engine.skills.actuators import Actuators
 from momantu_bt.engine.skills.services import Services
-from momantu_bt.engine.skills.session import Session, SkillContext
+from momantu_bt.engine.skills.session import Session
+from momantu_bt.engine.skills.start import SkillContext
 from momantu_bt.engine.status import FAILURE, RUNNING
 from momantu_bt.failure import Failure, FailureValue
 from momantu_bt.frames import FrameBuffer
 from momantu_bt.geometry import Transform
+from momantu_bt.marker import Marker
 from momantu_bt.robot import Robot
 from momantu_bt.service import Localization, Service, offers
-from momantu_bt.skill import Skill
+from momantu_bt.skill import Host, Skill
 from momantu_bt.testing.robot import ScriptedRobot
 from momantu_bt.testing.world import ScriptedWorld
+from momantu_bt.tree.plugins import SKILLS
 from momantu_bt.values.admit import admit
-from momantu_bt.world import TICK, Site, World, seeded
+from momantu_bt.world import TICK, Site, World
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +32,7 @@ class SkillResult:
 
     status: SUCCESS, FAILURE, or HALTED if `max_time` was over first. phases: the phases in order,
     without repetitions. duration: time of the world's clock, s. ticks: number of steps.
-    skill: the instance; None if it could not be created.
+    skill: the instance; None if it could not be created. logs, markers: what it logged and drew.
     """
 
     status: str
@@ -40,6 +43,8 @@ class SkillResult:
     ticks: int
     skill: Skill | None
     robot: Robot
+    logs: tuple[str, ...] = ()
+    markers: tuple[Marker, ...] = ()
 
     @property
     def code(self) -> str | None:
@@ -71,6 +76,7 @@ def run_skill(
     world: World | None = None,
     frames: FrameBuffer | None = None,
     map_from_odom: Transform | None = None,
+    skills: Mapping[str, type[Skill]] | None = None,
     seed: int = 0,
     max_time: float = 60.0,
     on_tick: Callable[[Session, World], None] | None = None,
@@ -82,6 +88,7 @@ def run_skill(
     rate; if `frames` is given, they count as already started. Other objects are used unchanged.
     map_from_odom: set in the frame buffer at the start; by default the identity if no service is
     a Localization.
+    skills: those that it may call by name, such as stand-ins; by default the installed ones.
     frames: the buffer of an earlier run in the same world, to run skills one after the other.
     on_tick: called after each step of the skill, to script events. The skill is halted after
     `max_time` simulated seconds.
@@ -95,12 +102,15 @@ def run_skill(
     localized = any(offers(each, Localization) for each in running.services.values())
     if map_from_odom is not None or (frames is None and not localized):
         running.frames.set_map_from_odom(map_from_odom or Transform(), place.now())
+    reporter = _Listening()
     context = SkillContext(
         clock=place,
-        random=seeded(seed, skill.__name__, 1),
+        seeds=(seed, skill.__name__, 1),
         frames=running.frames,
         site=place.site,
         services=running.services,
+        skills=SKILLS if skills is None else skills,
+        reporter=reporter,
     )
     lease = Actuators(place.robot).lease(skill.__name__, skill.uses)
     session = Session(skill, admitted, lease, context)
@@ -130,7 +140,27 @@ def run_skill(
         ticks=ticks,
         skill=session.skill,
         robot=place.robot,
+        logs=tuple(reporter.logs),
+        markers=tuple(reporter.markers),
     )
+
+
+class _Listening(Host):
+    """Keeps what the skill logs and draws."""
+
+    @property
+    def watched(self) -> bool:
+        return True
+
+    def __init__(self) -> None:
+        self.logs: list[str] = []
+        self.markers: list[Marker] = []
+
+    def log(self, text: str) -> None:
+        self.logs.append(text)
+
+    def draw(self, markers: Sequence[Marker]) -> None:
+        self.markers += markers
 
 
 def _admitted(skill: type[Skill], inputs: Mapping[str, Any]) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""The source of a skill: its class, and the modules of its own package that it reaches."""
+"""The source of a skill: its classes, and the modules of their packages that it reaches."""
 
 from __future__ import annotations
 
@@ -32,10 +32,15 @@ class Module:
         return Place(str(self.path), getattr(node, "lineno", 1))
 
 
+def family(skill: type[Skill]) -> tuple[type, ...]:
+    """The skill's class and all that it inherits from, without Skill and object, nearest first."""
+    return tuple(kind for kind in skill.__mro__ if kind not in (Skill, object))
+
+
 def classes(skill: type[Skill]) -> list[tuple[Module, ast.ClassDef]]:
     """The class statements of a skill and of its base classes, except Skill."""
     found: list[tuple[Module, ast.ClassDef]] = []
-    for kind in skill.__mro__[: skill.__mro__.index(Skill)]:
+    for kind in family(skill):
         module = _module(kind.__module__)
         if module is None:
             continue
@@ -44,20 +49,50 @@ def classes(skill: type[Skill]) -> list[tuple[Module, ast.ClassDef]]:
     return found
 
 
-def reached(skill: type[Skill]) -> list[Module]:
-    """The skill's module and all modules of its own package that it imports, also indirectly.
+def methods(skill: type[Skill]) -> list[tuple[Module, ast.FunctionDef | ast.AsyncFunctionDef]]:
+    """The methods that a skill has: its own, and those that it inherits.
 
-    Imports inside functions count too. The search imports only parent packages.
+    A base's method that a nearer class replaces counts only if some `super()` can reach it.
     """
-    top = skill.__module__.partition(".")[0]
-    waiting, found = [skill.__module__], dict[str, Module]()
+    found: list[tuple[Module, ast.FunctionDef | ast.AsyncFunctionDef]] = []
+    replaced: set[str] = set()
+    names = {kind.__name__ for kind in family(skill)}
+    for module, owner in classes(skill):
+        own = [n for n in owner.body if isinstance(n, ast.FunctionDef | ast.AsyncFunctionDef)]
+        live = [method for method in own if method.name not in replaced]
+        found += [(module, method) for method in live]
+        replaced |= {method.name for method in own}
+        replaced -= {name for method in live for name in _asked_of_bases(method, names)}
+    return found
+
+
+def _asked_of_bases(method: ast.AST, family: set[str]) -> set[str]:
+    """Names in `super().name` and `Base.name`."""
+    asked = (node for node in ast.walk(method) if isinstance(node, ast.Attribute))
+    return {
+        node.attr
+        for node in asked
+        if getattr(getattr(node.value, "func", None), "id", "") == "super"
+        or getattr(node.value, "id", "") in family
+    }
+
+
+def reached(skill: type[Skill]) -> list[Module]:
+    """The modules of the skill and its base classes, and all that they import, also indirectly.
+
+    From each package only its own modules are followed. Imports inside functions count too. The
+    search imports only parent packages.
+    """
+    homes = dict.fromkeys(kind.__module__ for kind in family(skill))
+    tops = {name.partition(".")[0] for name in homes}
+    waiting, found = list(homes), dict[str, Module]()
     while waiting and len(found) < MOST_MODULES:
         name = waiting.pop()
         module = None if name in found else _module(name)
         if module is None:
             continue
         found[name] = module
-        waiting += [other for other in _imported(module) if other.partition(".")[0] == top]
+        waiting += [other for other in _imported(module) if other.partition(".")[0] in tops]
     return list(found.values())
 
 

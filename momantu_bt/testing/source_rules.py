@@ -8,10 +8,10 @@ from collections.abc import Iterator
 from momantu_bt.failure import ENGINE_CODES
 from momantu_bt.formats.problems import Problem
 from momantu_bt.skill import Skill
-from momantu_bt.testing.source import Module, classes, reached
+from momantu_bt.testing.source import Module, methods, reached
 from momantu_bt.tree.skill_objection import skill_objection
 
-_GIVEN = {"port_values", "services", "clock", "random", "frames", "site"}
+_GIVEN = {"port_values", "services", "clock", "random", "frames", "site", "host"}
 """Attributes that the engine sets."""
 
 
@@ -49,12 +49,25 @@ def ports(skill: type[Skill]) -> Iterator[Problem]:
 
 def codes(skill: type[Skill]) -> Iterator[Problem]:
     """Failures that its class raises by a code which neither it nor the engine declares."""
-    for module, owner in classes(skill):
-        for node in ast.walk(owner):
+    for module, method in methods(skill):
+        for node in ast.walk(method):
             code = _raised_code(node)
             if code is not None and code not in skill.failures and code not in ENGINE_CODES:
                 message = f"raises {code}, which `failures` does not declare"
                 yield Problem("undeclared-code", message, module.place(node))
+
+
+def calls(skill: type[Skill]) -> Iterator[Problem]:
+    """Skills that it calls by a name which `calls` does not have."""
+    for module, method in methods(skill):
+        for node in ast.walk(method):
+            if not (isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute)):
+                continue
+            name = getattr(node.args[0], "value", None) if node.args else None
+            own = node.func.attr == "call" and getattr(node.func.value, "id", "") == "self"
+            if own and isinstance(name, str) and name not in skill.calls:
+                message = f"calls {name!r}, which `calls` does not declare"
+                yield Problem("undeclared-call", message, module.place(node))
 
 
 def _raised_code(node: ast.AST) -> str | None:
@@ -70,19 +83,17 @@ def _raised_code(node: ast.AST) -> str | None:
 
 def _attributes(skill: type[Skill]) -> Iterator[tuple[Module, ast.Attribute]]:
     """Every `self.name` in the methods of the skill and of what it inherits from."""
-    for module, owner in classes(skill):
-        methods = (n for n in owner.body if isinstance(n, ast.FunctionDef | ast.AsyncFunctionDef))
-        for method in methods:
-            if not method.args.args or _is_static(method):
-                continue
-            own = method.args.args[0].arg
-            for node in ast.walk(method):
-                if (
-                    isinstance(node, ast.Attribute)
-                    and isinstance(node.value, ast.Name)
-                    and node.value.id == own
-                ):
-                    yield module, node
+    for module, method in methods(skill):
+        if not method.args.args or _is_static(method):
+            continue
+        own = method.args.args[0].arg
+        for node in ast.walk(method):
+            if (
+                isinstance(node, ast.Attribute)
+                and isinstance(node.value, ast.Name)
+                and node.value.id == own
+            ):
+                yield module, node
 
 
 def _is_static(method: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:

@@ -147,9 +147,14 @@ class Lease:
 
     def _enter(self, actuator: str) -> None:
         if actuator in self._robot.description.actuators and actuator not in self._allowed:
-            declared = ", ".join(sorted(self._allowed)) or "nothing"
-            raise PermissionError(
-                f"{self.owner} commands {actuator!r} but its `uses` declares {declared}: "
-                f"add {actuator!r} to `uses`, so that the checker can see it"
-            )
+            raise PermissionError(undeclared_actuator(self.owner, actuator, self._allowed))
         self._book._claim(actuator, self)
+
+
+def undeclared_actuator(who: str, actuator: str, allowed: Iterable[str]) -> str:
+    """What is wrong with a command to an actuator that `uses` does not declare, and what to do."""
+    declared = ", ".join(sorted(allowed)) or "nothing"
+    return (
+        f"{who} commands {actuator!r} but its `uses` declares {declared}: "
+        f"add {actuator!r} to `uses`, so that the checker can see it"
+    )

@@ -5,12 +5,36 @@ from __future__ import annotations
 import traceback
 
 from momantu_bt.engine.raised import raised_at
-from momantu_bt.failure import ENGINE_CODES, HUNG, SKILL_ERROR, Failure, FailureValue
+from momantu_bt.failure import (
+    CALL_FAILED,
+    ENGINE_CODES,
+    HUNG,
+    SKILL_ERROR,
+    Failure,
+    FailureValue,
+)
 from momantu_bt.skill import Skill
 
 
+class CalledFailure(Failure):
+    """The failure of a called skill, as it is raised in the skill that called it."""
+
+    def __init__(self, value: FailureValue) -> None:
+        super().__init__(value.code, value.message)
+        self.value = value
+
+
 def declared(kind: type[Skill], failure: Failure) -> FailureValue:
-    """A failure that a skill raised, with its cause; SKILL_ERROR if the code is undeclared."""
+    """A failure that a skill raised, with its cause; SKILL_ERROR if the code is undeclared.
+
+    A failure of a skill that it called becomes the cause: of the same code if the skill declares
+    it, else of CALL_FAILED.
+    """
+    if isinstance(failure, CalledFailure):
+        own = failure.code if failure.code in kind.failures else CALL_FAILED
+        said = failure.value
+        message = said.message if own == said.code else f"{said.node} failed with {said.code}"
+        return FailureValue(own, message, said.data, cause=said)
     if failure.code in kind.failures or failure.code in ENGINE_CODES:
         return _with_cause(failure.value, _cause(failure))
     codes = ", ".join(kind.failures) or "none"

@@ -7,33 +7,25 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from momantu_bt.engine.skills.actuators import Lease
+from momantu_bt.engine.skills.calls import SkillHost
 from momantu_bt.engine.skills.errors import declared, hung_failure, skill_error
+from momantu_bt.engine.skills.start import (
+    SkillContext,
+    admitted,
+    begun,
+    instance,
+    outputs_at_end,
+)
 from momantu_bt.engine.status import FAILURE, RUNNING, SUCCESS, Status
 from momantu_bt.engine.watchdog import Hung
-from momantu_bt.failure import INPUT_MISSING, SERVICE_MISSING, Failure, FailureValue
-from momantu_bt.frames import FrameBuffer
-from momantu_bt.skill import MISSING, Clock, Compute, Port, Run, Skill
-from momantu_bt.values.admit import admit_output
-from momantu_bt.world import Site
+from momantu_bt.failure import Failure, FailureValue
+from momantu_bt.skill import MISSING, Compute, Port, Run, Skill
 
 SLOW_STEP = 0.020
 """Seconds of wall time that a skill may use in one tick without declaring them as `compute`."""
 CLOCK_SLACK = 1e-9
 """Tolerance for rounding when the clock is compared with a deadline, s."""
-
-
-@dataclass(frozen=True, slots=True)
-class SkillContext:
-    """What a skill instance gets besides the robot."""
-
-    clock: Clock
-    random: np.random.Generator
-    frames: FrameBuffer
-    site: Site
-    services: Mapping[str, Any]
 
 
 class Session:
@@ -63,6 +55,7 @@ class Session:
         self._generator: Run | None = None
         self._waiting: _Pending | None = None
         self.skill: Skill | None = None
+        self._host = SkillHost(kind, lease, context)
         self._live = [p for p in kind.ports.values() if p.direction == "out" and p.live]
         self._given: dict[str, Any] = {}
 
@@ -110,50 +103,9 @@ class Session:
             self.status = Status.IDLE
 
     def _begin(self) -> Run:
-        missing = [name for name in self.kind.needs if name not in self._context.services]
-        if missing:
-            having = ", ".join(self._context.services) or "none"
-            raise Failure(
-                SERVICE_MISSING,
-                f"{self.kind.__name__} needs {', '.join(missing)}; running services: {having}",
-                services=missing,
-            )
-        skill = self.kind()
-        self._refuse_unknown()
-        skill.port_values.update(self._inputs)
-        absent = [
-            p.name for p in self.kind.ports.values() if p.required and p.name not in self._inputs
-        ]
-        if absent:
-            raise Failure(
-                INPUT_MISSING,
-                f"{self.kind.__name__} was started without {', '.join(absent)}",
-                ports=absent,
-            )
         context = self._context
-        skill.services, skill.clock, skill.random = (
-            context.services,
-            context.clock,
-            context.random,
-        )
-        skill.frames, skill.site = context.frames, context.site
-        self.skill = skill
-        generator = skill.run(self.lease)
-        if not hasattr(generator, "send"):
-            raise TypeError(
-                f"{self.kind.__name__}.run returned {type(generator).__name__}, expected a "
-                "generator: write at least one `yield` in it"
-            )
-        return generator
-
-    def _refuse_unknown(self) -> None:
-        ports = self.kind.ports
-        unknown = [n for n in self._inputs if n not in ports or ports[n].direction != "in"]
-        if unknown:
-            inputs = ", ".join(p.name for p in ports.values() if p.direction == "in") or "none"
-            raise TypeError(
-                f"{self.kind.__name__} has no input {', '.join(unknown)}; inputs: {inputs}"
-            )
+        self.skill = instance(self.kind, self._inputs, context, self._host)
+        return begun(self.skill, self.lease)
 
     def _advance(self, generator: Run) -> None:
         now = self._context.clock.now()
@@ -177,7 +129,7 @@ class Session:
         if isinstance(said, Compute):
             self._waiting = _compute(said, now)
         elif isinstance(said, str):
-            self.phase = said
+            self.phase = self._host.prefix + said
         else:
             raise TypeError(
                 f"{self.kind.__name__}.run yielded {said!r}; it may yield a phase's name, or "
@@ -212,19 +164,11 @@ class Session:
 
     def _check_outputs(self) -> None:
         assert self.skill is not None
-        values = self.skill.port_values
-        for port in self.kind.ports.values():
-            if port.direction != "out":
-                continue
-            value = values.get(port.name, MISSING)
-            if value is MISSING:
-                raise TypeError(f"{self.kind.__name__} ended without giving output {port.name!r}")
-            values[port.name] = self._admitted(value, port)
+        self.skill.port_values.update(outputs_at_end(self.skill, self._given))
 
     def _admitted(self, value: Any, port: Port) -> Any:
-        """An output's value; one that is known already is not looked at again."""
-        if value is not self._given.get(port.name, MISSING):
-            self._given[port.name] = admit_output(value, port)
+        """A live output's value; one that is known already is not looked at again."""
+        self._given[port.name] = admitted(value, port, self._given)
         return self._given[port.name]
 
     def _fail(self, failure: FailureValue) -> None:

@@ -11,6 +11,7 @@ function showFloor() {
   const driven = draw("polyline", { class: "driven" });
   const robot = draw("path", { class: "robot", d: "M 1.6 0 L -1 1 L -0.5 0 L -1 -1 Z" });
   const seen = draw("g", { class: "seen" });
+  const marked = draw("g", { class: "marked" });
   const image = draw(
     "svg",
     {
@@ -19,11 +20,12 @@ function showFloor() {
     },
     ...plan(), ...record.floor.surfaces.map((each) => surface(each, unit)),
     ...record.floor.places.map((each) => place(each, unit)),
-    draw("polyline", { class: "way", points: points(path, path.t.length) }), driven, seen, robot,
+    draw("polyline", { class: "way", points: points(path, path.t.length) }), driven, marked, seen, robot,
   );
   body.append(image);
   let passed = -1;
   let scene = null;
+  let drawn = "";
   watch((tick) => {
     const now = timeOf(tick) + 1e-6;
     const items = record.floor.scenes.items[countUpTo(record.floor.scenes.t, now) - 1] ?? [];
@@ -31,6 +33,11 @@ function showFloor() {
       const lying = items.filter((item) => "x" in item);
       seen.replaceChildren(...lying.map((item) => sighting(item, unit)));
     }
+    const there = [...record.floor.markers.keys()].filter((i) => isThere(record.floor.markers[i], now));
+    if (there.join() !== drawn) {
+      marked.replaceChildren(...there.map((i) => marker(record.floor.markers[i], unit)));
+    }
+    drawn = there.join();
     const count = countUpTo(path.t, now);
     if (count !== passed) {
       driven.setAttribute("points", points(path, count));
@@ -85,6 +92,25 @@ function surface({ name, x, y, yaw, size }, unit) {
 function place({ name, x, y }, unit) {
   const dot = draw("circle", { cx: x, cy: -y, r: 0.8 * unit });
   return draw("g", { class: "place" }, dot, label(x, y + 1.2 * unit, unit, name));
+}
+
+function isThere({ begin, end }, now) {
+  return begin <= now && now < end;
+}
+
+/** What a skill drew: a text, dots, or a line. */
+function marker({ points: found, color, text, size, closed }, unit) {
+  const flipped = found.map(([x, y]) => [x, -y]);
+  if (text !== undefined) {
+    const [x, y] = flipped[0];
+    return draw("text", { x, y, "font-size": 2.6 * unit, style: `fill: ${color}` }, text);
+  }
+  if (size !== undefined) {
+    const r = Math.max(size / 2, 0.25 * unit);
+    return draw("g", {}, ...flipped.map(([cx, cy]) => draw("circle", { cx, cy, r, style: `fill: ${color}` })));
+  }
+  const corners = flipped.map((each) => each.join()).join(" ");
+  return draw(closed ? "polygon" : "polyline", { points: corners, style: `stroke: ${color}` });
 }
 
 /** An object as it was seen, at least as large as a dot; its name is below it. */

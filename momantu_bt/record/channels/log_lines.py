@@ -1,4 +1,4 @@
-"""Failures and remarks for a reader: `/log`."""
+"""Failures, remarks and what skills log, for a reader: `/log`."""
 
 from __future__ import annotations
 
@@ -15,7 +15,10 @@ _INFO, _WARNING = 2, 3
 
 
 class LogLines:
-    """Writes each new failure of a leaf, and each remark. remarks: `write` empties it."""
+    """Writes each new failure of a leaf, each line of a skill, and each remark.
+
+    remarks: `write` empties it.
+    """
 
     def __init__(self, file: McapFile, remarks: list[str]) -> None:
         self._channel = file.channel("/log", "foxglove.Log", LOG)
@@ -28,6 +31,8 @@ class LogLines:
         for text in self._remarks:
             self._line(file, now, _WARNING, text, "momantu-bt", "")
         self._remarks.clear()
+        for leaf, text in run.context.logs:
+            self._line(file, now, _INFO, text, leaf.name, leaf.place)
         for node, status, _, failure in run.context.changes:
             if status is not FAILURE or failure is None or node.kids:
                 continue

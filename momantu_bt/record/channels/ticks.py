@@ -59,6 +59,9 @@ class Ticks:
             parts.append(f'"notes":{dumps(notes)}')
         if labels:
             parts.append(f'"labels":{dumps(labels)}')
+        if context.logs:
+            logs = [(log.leaf.index, log.text) for log in context.logs]
+            parts.append(f'"logs":{dumps(logs)}')
         if context.body is not None and context.body.actuators.issued:
             issued = map(self._issued, context.body.actuators.issued)
             parts.append(f'"issued":[{",".join(issued)}]')

@@ -99,12 +99,14 @@ TICK = record(
         "state": TEXT,
         "notes": array(row(COUNT, TEXT)),
         "labels": array(row(COUNT, TEXT)),
+        "logs": array(row(COUNT, TEXT)),
         "settling": {"const": True},
     },
 )
 """`/tick`, each tick. Every part is optional: changes [node, status, note, failure], writes [cell,
 value], reads [key, value], steps of skills [node, status, phase, failure, outputs], issued
-[actuator, goal], notes of running nodes [node, note], new lines of nodes [node, label]."""
+[actuator, goal], notes of running nodes [node, note], new lines of nodes [node, label],
+what skills logged [node, text]."""
 
 SERVICE: Schema = {"type": "object"}
 """`/service/<name>`: published values by key."""

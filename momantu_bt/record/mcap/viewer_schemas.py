@@ -84,6 +84,19 @@ _LABEL = record(
         "text": TEXT,
     }
 )
+_SPHERE = record({"pose": POSE, "size": VECTOR, "color": COLOR})
+_LINE = record(
+    {
+        "type": COUNT,
+        "pose": POSE,
+        "thickness": NUMBER,
+        "scale_invariant": {"type": "boolean"},
+        "points": array(VECTOR),
+        "color": COLOR,
+        "colors": array(COLOR),
+        "indices": array(COUNT),
+    }
+)
 _UNUSED = array({"type": "object"})
 SCENE = record(
     {
@@ -100,8 +113,8 @@ SCENE = record(
                     "cylinders": array(_CYLINDER),
                     "texts": array(_LABEL),
                     "arrows": _UNUSED,
-                    "spheres": _UNUSED,
-                    "lines": _UNUSED,
+                    "spheres": array(_SPHERE),
+                    "lines": array(_LINE),
                     "triangles": _UNUSED,
                     "models": _UNUSED,
                 }

@@ -61,15 +61,32 @@ class ChangeLines:
 
     def ticked(self, run: Executor) -> None:
         """Print this tick's changes."""
-        self.print_changes(run.context.now, run.context.changes)
+        self.print_changes(run.context.now, run.context.changes, run.context.logs)
 
-    def print_changes(self, now: float, changes: Iterable[StatusChange]) -> None:
-        """Print the changes of one tick of a run or of a record."""
+    def print_changes(
+        self,
+        now: float,
+        changes: Iterable[StatusChange],
+        logs: Iterable[tuple[ReportedNode, str]] = (),
+    ) -> None:
+        """Print the changes of one tick of a run or of a record, and what skills have logged.
+
+        What a skill logs comes after its start and before its end.
+        """
+        waiting = list(logs)
         for node, status, note, failure in _parents_first(changes):
+            if waiting and status is not RUNNING:
+                self._tell_logs(now, [log for log in waiting if log[0].index == node.index])
+                waiting = [log for log in waiting if log[0].index != node.index]
             if node.role is Role.RECOVERY:
                 self._tell_note(now, node, note)
             elif node.role is Role.ACT or node.role is Role.TREE:
                 self._tell(now, node, status, failure)
+        self._tell_logs(now, waiting)
+
+    def _tell_logs(self, now: float, logs: Iterable[tuple[ReportedNode, str]]) -> None:
+        for node, text in logs:
+            self._line(now, node, f"  {node.name}: {text}")
 
     def close(self) -> None:
         """Nothing is left to say."""

@@ -4,7 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from momantu_bt.failure import ENGINE_CODES, FAILED, HALTED, SCRIPT_ERROR, TIMEOUT
+from momantu_bt.failure import (
+    CALL_FAILED,
+    ENGINE_CODES,
+    FAILED,
+    HALTED,
+    SCRIPT_ERROR,
+    TIMEOUT,
+)
 from momantu_bt.formats.names import nearest
 from momantu_bt.formats.places import Place, within
 from momantu_bt.tree.catalogue import SUBTREE
@@ -13,7 +20,7 @@ from momantu_bt.tree.check.signatures import Context
 from momantu_bt.tree.language import ANY
 from momantu_bt.tree.model import Handler, Literal, Node, Reference, Tree
 
-_ANY_SKILL = frozenset(ENGINE_CODES) - {TIMEOUT, FAILED, HALTED, SCRIPT_ERROR}
+_ANY_SKILL = frozenset(ENGINE_CODES) - {TIMEOUT, FAILED, HALTED, SCRIPT_ERROR, CALL_FAILED}
 """Codes with which the engine fails a skill, in addition to those that the skill declares."""
 
 _HANDLED_CODE = Reference("failure", ("code",))
@@ -69,6 +76,8 @@ def _own(context: Context, node: Node, failing: Failing, of_tree: Mapping[str, C
         return signature.spec.codes(node, failing)
     assert signature.skill is not None
     own = {*signature.skill.failures, *_ANY_SKILL}
+    if signature.skill.calls:
+        own.add(CALL_FAILED)
     return frozenset(own | {f"{node.type}.{code}" for code in own})
 
 

@@ -19,7 +19,7 @@ from momantu_bt.frames import FrameBuffer
 from momantu_bt.messages import BaseVelocity, GripperCommand, JointPositions
 from momantu_bt.skill import In, Out, Run, Skill, compute
 from momantu_bt.testing import ScriptedRobot, ScriptedWorld, run_skill
-from momantu_bt.world import TICK, Verdict, seeded
+from momantu_bt.world import TICK, Verdict
 
 GOALS = {
     "base": BaseVelocity(0.3, 0.0),
@@ -155,7 +155,7 @@ trees:
 def session(kind, world, book, name, **inputs):
     context = SkillContext(
         clock=world,
-        random=seeded(0, name),
+        seeds=(0, name),
         frames=FrameBuffer(world.robot.description.kinematics()),
         site=world.site,
         services={},

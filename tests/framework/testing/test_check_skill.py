@@ -273,3 +273,147 @@ def test_modules_that_it_imports_are_looked_at(
     (finding,) = check_skill(kind, halts=1)
     assert finding.code == "wall-clock"
     assert finding.place == Place(str(package / "deep.py"), 5)
+
+
+def test_a_skill_that_calls_another_is_rehearsed_with_it(
+    skill: Callable[..., type[Skill]],
+) -> None:
+    lines = {
+        "# begin": 'yield from self.call("reset_pose", pose="home")',
+        'uses = {"base"}': 'uses = {"base", "arm", "head"}; calls = ("reset_pose",)',
+    }
+    assert check_skill(skill(lines), halts=2) == []
+    undeclared = {**lines, 'calls = ("reset_pose",)': "pass"}
+    assert "undeclared-call" in rules(check_skill(skill(undeclared), halts=2))
+    unused = {**lines, 'uses = {"base", "arm", "head"}': 'uses = {"base"}'}
+    assert rules(check_skill(skill(unused), halts=2)) == {"undeclared-actuator"}
+
+
+BASE = """
+from momantu_bt import Failure, In, Out, Robot, Run, Skill
+from momantu_bt.messages import BaseVelocity
+
+from base_package_{n}.helper import least
+
+
+class Rolling(Skill):
+    \"\"\"Roll ahead.\"\"\"
+
+    distance: float = In(0.2, unit="m", doc="how far to go")
+    clearance: float = In(0.0, unit="m", doc="what stays free")
+    covered: float = Out(unit="m", doc="how far it went")
+    failures = {{"BLOCKED": "something is in the way", "TOO_FAR": "it is too far to go"}}
+    uses = {{"base"}}
+
+    def __init__(self):
+        super().__init__()
+        self._began = 0.0
+
+    def run(self, robot: Robot) -> Run:
+        self._check()
+        self._began = self.clock.now()
+        start = robot.state().odom_from_base
+        while self._moved(robot, start) < least(self):
+            robot.command("base", BaseVelocity(0.2, 0.0))
+            yield "rolling"
+        self.covered = self._moved(robot, start)
+
+    def _check(self):
+        if self.distance > 3.0:
+            raise Failure("TOO_FAR", "that is too far")
+
+    def _moved(self, robot, start):
+        return float((start.inverse() @ robot.state().odom_from_base).position[0])
+
+
+class Counting:
+    def count(self):
+        self._count = 1
+        return self._count
+"""
+HELPER = """
+def least(skill):
+    return skill.distance - skill.clearance
+"""
+SUB = """
+from momantu_bt import Failure, In, Out
+from base_package_{n}.rolling import Counting, Rolling
+
+
+class Other(Rolling, Counting):
+    \"\"\"Roll ahead, as another package has it.\"\"\"
+
+    extra: float = In(0.0, unit="m", doc="how much farther to go")
+    failures = {{"BLOCKED": "something is in the way"}}
+
+    def _check(self):
+        self.count()
+        if self._count and self.extra > 1.0:
+            raise Failure("BLOCKED", "that is too much")
+"""
+
+
+@pytest.fixture
+def subclass(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> Iterator[Callable[[dict[str, str]], type[Skill]]]:
+    """`subclass(lines)`: a skill whose base class stands in another package."""
+    monkeypatch.syspath_prepend(tmp_path)
+
+    def build(replaced: dict[str, str]) -> type[Skill]:
+        number = len(list(tmp_path.iterdir())) + sum(map(ord, tmp_path.name))
+        package = tmp_path / f"base_package_{number}"
+        package.mkdir()
+        texts = {"__init__": "", "helper": HELPER, "rolling": BASE.format(n=number)}
+        for name, text in texts.items():
+            (package / f"{name}.py").write_text(text, encoding="utf-8")
+        text = SUB.format(n=number)
+        for old, new in replaced.items():
+            assert old in text
+            text = text.replace(old, new)
+        (tmp_path / f"sub_module_{number}.py").write_text(text, encoding="utf-8")
+        importlib.invalidate_caches()
+        found: type[Skill] = importlib.import_module(f"sub_module_{number}").Other
+        return found
+
+    before = set(sys.modules)
+    yield build
+    for name in set(sys.modules) - before:
+        if name.startswith(("base_package_", "sub_module_")):
+            del sys.modules[name]
+
+
+def test_what_a_base_class_in_another_package_does_counts(
+    subclass: Callable[[dict[str, str]], type[Skill]],
+) -> None:
+    """Its ports are read and given there, and a method that is replaced raises nothing."""
+    assert check_skill(subclass({}), halts=3) == []
+
+
+@pytest.mark.parametrize(
+    ("lines", "rule"),
+    [
+        ({"extra > 1.0": "extra > 1.0 and self._other"}, "undeclared-port"),
+        ({"self.count()": "self.count(); super()._check()"}, "undeclared-code"),
+        (
+            {"    def _check(self):": "    def _check(self):\n        import time; time.time()"},
+            "wall-clock",
+        ),
+    ],
+)
+def test_a_subclass_is_still_checked(
+    subclass: Callable[[dict[str, str]], type[Skill]], lines: dict[str, str], rule: str
+) -> None:
+    found = rules(check_skill(subclass(lines), halts=3))
+    assert found == {rule}
+
+
+def test_the_clock_of_a_base_class_is_found(
+    subclass: Callable[[dict[str, str]], type[Skill]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(
+        globals(),
+        "HELPER",
+        HELPER.replace("    return", "    import time; time.time()\n    return"),
+    )
+    assert rules(check_skill(subclass({}), halts=2)) == {"wall-clock"}

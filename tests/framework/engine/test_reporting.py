@@ -1,0 +1,160 @@
+"""What a skill logs and draws: terminal, record, page, replay; the run itself does not change."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from momantu_bt.geometry import Transform
+from momantu_bt.marker import Axes, Box, Line, Marker, Points, Text
+from momantu_bt.page.data import page_data
+from momantu_bt.record.reader import read_record
+from momantu_bt.record.text.changes import ChangeLines
+from momantu_bt.replay.run_text import run_lines
+from momantu_bt.skill import Run, Skill
+from momantu_bt.testing import run_skill
+
+SQUARE = [(0, 0, 0), (1, 0, 0), (1, 1, 0)]
+
+
+class Talk(Skill):
+    """Say and draw something in each tick."""
+
+    def run(self, robot) -> Run:
+        """Talk."""
+        self.log("it begins")
+        for count in range(3):
+            self.draw(
+                Line("edge", SQUARE, closed=True, color="red"),
+                Points(f"dots {count}", [(count, 0, 0), (np.nan, 0, 0)], size=0.02),
+                Axes("pose", Transform((count, 2.0, 0.5)), length=0.2, frame="map"),
+                Box("box", Transform((2.0, 2.0, 0.0)), (0.2, 0.4, 0.6), seconds=0.1),
+                Text("words", (1.0, 1.0, 1.0), "here", color=(0.1, 0.2, 0.3, 0.5)),
+                Text("hand", (0.0, 0.0, 0.0), "hand", frame="gripper_link"),
+            )
+            yield "talking"
+        self.log("two\nlines")
+
+
+class Quiet(Skill):
+    """Do the same without a word."""
+
+    def run(self, robot) -> Run:
+        """Wait."""
+        for _ in range(3):
+            yield "talking"
+
+
+TREE = "trees: {Main: [talk]}\n"
+SILENT = "trees: {Main: [quiet]}\n"
+
+
+def test_a_test_sees_what_was_logged_and_drawn():
+    result = run_skill(Talk)
+    assert result.logs == ("it begins", "two\nlines")
+    assert {marker.name for marker in result.markers} >= {"edge", "dots 2", "pose", "box"}
+
+
+def test_it_costs_nothing_and_changes_nothing(run_yaml, tmp_path):
+    plain = run_yaml(SILENT, Quiet)
+    talking = run_yaml(TREE, Talk)
+    recorded = run_yaml(TREE, Talk, record=tmp_path / "r")
+    assert plain.fingerprint == talking.fingerprint == recorded.fingerprint
+
+
+def test_nobody_watches_unless_someone_does(run_yaml, tmp_path):
+    seen = []
+
+    class Talk(Skill):
+        """Ask."""
+
+        def run(self, robot) -> Run:
+            """Ask whether somebody watches."""
+            seen.append(self.host.watched)
+            return
+            yield ""
+
+    run_yaml(TREE, Talk)
+    run_yaml(TREE, Talk, record=tmp_path / "r")
+    assert seen == [False, True]
+
+
+def lines_of(run_yaml, tmp_path):
+    said: list[str] = []
+    run_yaml(
+        TREE,
+        Talk,
+        record=tmp_path / "r",
+        watch=lambda run: [ChangeLines(said.append)],
+    )
+    return said
+
+
+def test_the_terminal_shows_lines_between_start_and_end(run_yaml, tmp_path):
+    words = [line.split(" s ", 1)[1].strip() for line in lines_of(run_yaml, tmp_path)]
+    at = words.index("talk: it begins")
+    assert words[at - 1] == "talk starts"
+    assert words[words.index("talk: two") :][:3] == ["talk: two", "talk: lines", "talk done"]
+
+
+def test_a_replay_prints_the_same_lines_and_checks(run_yaml, tmp_path):
+    said = lines_of(run_yaml, tmp_path)
+    recording = read_record(tmp_path / "r")
+    assert [line for _, line in run_lines(recording)] == said
+
+
+def test_viewers_get_the_markers_and_the_lines(run_yaml, tmp_path):
+    lines_of(run_yaml, tmp_path)
+    recording = read_record(tmp_path / "r")
+    messages = [message for _, message in recording.messages("/markers")]
+    assert len(messages) == 3
+    entities = {each["id"]: each for each in messages[-1]["entities"]}
+    talk = next(node for node in recording.nodes if node.type == "talk")
+    edge = entities[f"{talk.index} talk/edge"]
+    assert (edge["frame_id"], edge["lines"][0]["type"]) == ("odom", 1)
+    assert len(entities[f"{talk.index} talk/dots 2"]["spheres"]) == 1  # without the NaN
+    assert entities[f"{talk.index} talk/box"]["lifetime"] == {"sec": 0, "nsec": 100000000}
+    assert entities[f"{talk.index} talk/words"]["texts"][0]["text"] == "here"
+    assert len(entities[f"{talk.index} talk/pose"]["lines"][0]["colors"]) == 6
+    said = [message["message"] for _, message in recording.messages("/log")]
+    assert said == ["it begins", "two", "lines"]
+
+
+def test_the_page_has_a_lane_of_lines_and_shapes_on_its_map(run_yaml, tmp_path):
+    lines_of(run_yaml, tmp_path)
+    data = json.loads(json.dumps(page_data(read_record(tmp_path / "r"))))
+    (lane,) = [lane for lane in data["lanes"] if lane["name"] == "log"]
+    assert "talk: it begins" in lane["bars"][0]["words"]
+    assert "talk: two\ntalk: lines" in lane["bars"][1]["words"]
+    shapes = data["floor"]["markers"]
+    boxes = [s for s in shapes if len(s["points"]) == 4]
+    assert boxes[0]["points"][0] == [1.9, 1.8]
+    assert boxes[-1]["end"] == pytest.approx(boxes[-1]["begin"] + 0.1, abs=0.01)
+    edges = [s for s in shapes if s.get("closed") and len(s["points"]) == 3]
+    assert [a["end"] for a in edges[:-1]] == [b["begin"] for b in edges[1:]]
+    assert not any(s.get("text") == "hand" for s in shapes)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        (lambda: Line("a", [(0, 0)]), r"'a' have shape \(1, 2\), expected \(n, 3\)"),
+        (lambda: Points("a", SQUARE, color="rod"), "no color 'rod'; colors: red, green"),
+        (lambda: Points("a", SQUARE, color=(1, 2, 3, 4)), "four numbers from 0 to 1"),
+        (lambda: Text("a", (0, 0, 0), "b", seconds=-1.0), "expected 0 or more"),
+    ],
+)
+def test_a_wrong_marker_says_what_is_right(wrong, said):
+    with pytest.raises(ValueError, match=said):
+        wrong()
+
+
+def test_points_are_copied_and_read_only():
+    points = np.zeros((2, 3))
+    marker: Marker = Points("a", points)
+    points[0] = 1.0
+    assert marker.points.sum() == 0.0
+    with pytest.raises(ValueError, match="read-only"):
+        marker.points[0] = 1.0
