@@ -79,7 +79,10 @@ def tunable_problems(reading: Reading, keys: KeyPath) -> Iterator[KeyProblem]:
         if name in TUNABLES:
             if isinstance(values, dict):
                 yield from _problems_of(reading, (*keys, name))
-        elif name not in installed_names("momantu_bt.services"):
+        elif name in installed_names("momantu_bt.services"):
+            message = f"the service {name!r} declares no tunables, so a site cannot set any of it"
+            yield reading.problem((*keys, name), message, key=True)
+        else:
             hint = valid_names(str(name), sorted(TUNABLES), "with tunables")
             message = f"no service or skill {name!r} has tunables; {hint}"
             yield reading.problem((*keys, name), message, key=True)

@@ -29,7 +29,7 @@ from momantu_bt.record.report import Report
 from momantu_bt.robot import Robot, RobotDescription
 from momantu_bt.running.audit import Auditor
 from momantu_bt.running.calls import called_skills, check_calls
-from momantu_bt.running.needed import LaunchError, check_sensors, services_of
+from momantu_bt.running.needed import LaunchError, check_parameters, check_sensors, services_of
 from momantu_bt.running.options import RunOptions
 from momantu_bt.running.prepare import Prepared
 from momantu_bt.running.reporting import report_of
@@ -109,8 +109,10 @@ def _assembled(prepared: Prepared, stack: ExitStack) -> tuple[Executor, Stage, R
     recorder = _recorder(options, events, stack)
     events.subscribe(Remarked, lambda event: options.remark(event.text))
     world = _open(prepared, kinds, called, needed)
-    if world is not None and world is not options.world:
-        stack.callback(world.close)
+    if world is not None:
+        if world is not options.world:
+            stack.callback(world.close)
+        check_parameters(needed, world.site)
     stage = Stage(planned, world, options.seed, stack)
     return _executor(prepared, kinds, called, needed, stage, events), stage, recorder
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from momantu_bt.descriptions.tunables import TUNABLES, configured
 from momantu_bt.engine.skills.services import in_order
 from momantu_bt.errors import MomantuError
 from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.places import Place
+from momantu_bt.plugins import installed_names
 from momantu_bt.robot import RobotDescription
 from momantu_bt.running.prepare import Prepared
 from momantu_bt.service import Service
@@ -17,6 +19,7 @@ from momantu_bt.tree.check.root_keys import services_read
 from momantu_bt.tree.check.signatures import Context
 from momantu_bt.tree.problems import Problems
 from momantu_bt.tree.substitute.substitution import reached
+from momantu_bt.world import Site
 
 
 class LaunchError(MomantuError):
@@ -37,6 +40,27 @@ def check_sensors(needed: Mapping[str, type[Service]], description: RobotDescrip
                     f"the service {name!r} needs a {kind}, and {description.name} has none; its "
                     f"sensors: {', '.join(description.sensors) or 'none'}"
                 )
+
+
+def check_parameters(needed: Mapping[str, type[Service]], site: Site) -> None:
+    """Check what a site sets of services, for sites that no world file describes.
+
+    Raises:
+        LaunchError: it sets what a service does not declare, or a wrong value.
+        PluginError: the tunables of a service are broken.
+    """
+    for name in needed:
+        given = site.services.get(name, {})
+        said = f"the site {site.name} sets the service {name!r}"
+        if not isinstance(given, Mapping):
+            raise LaunchError(f"{said} to {given!r}; expected a mapping of tunables to values")
+        if name in TUNABLES:
+            try:
+                configured(TUNABLES.load(name), given, name)
+            except ValueError as error:
+                raise LaunchError(f"{said} wrongly: {error}") from None
+        elif given and name in installed_names("momantu_bt.services"):
+            raise LaunchError(f"{said}, which declares no tunables: {', '.join(given)}")
 
 
 def services_of(prepared: Prepared, kinds: Mapping[str, type[Skill]]) -> dict[str, type[Service]]:

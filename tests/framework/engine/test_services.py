@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -234,3 +236,20 @@ def test_without_a_world_the_run_says_that_the_service_needs_one(run_yaml):
     tree = "trees: {Main: [{condition: $@battery.charge < 1}]}"
     with pytest.raises(LaunchError, match=r"reads \$@battery, which a service publishes"):
         run_yaml(tree, services={"battery": Battery}, world="none")
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"particle": 3}, "localization has no tunable 'particle'; did you mean"),
+        ({"move": "3 kg"}, "localization.move: '3 kg' is a mass; expected a length"),
+        (5, "sets the service 'localization' to 5; expected a mapping"),
+    ],
+)
+def test_a_site_that_sets_a_service_wrongly_is_refused_before_the_run(run_yaml, given, said):
+    site = replace(scripted_site(), services={"localization": given})
+    tree = "trees: {Main: [{condition: $@localization.charge > 0}]}"
+    world = ScriptedWorld(site=site)
+    with pytest.raises(LaunchError) as error:
+        run_yaml(tree, services={"localization": Battery}, world=world)
+    assert said in str(error.value)
