@@ -67,6 +67,11 @@ __all__ = [
 ]
 
 
+def __dir__() -> list[str]:
+    """The public names, for completion in a shell."""
+    return sorted(__all__)
+
+
 def __getattr__(name: str) -> Any:
     """A public name, imported from the module that defines it."""
     if name not in _HOMES:

@@ -20,9 +20,13 @@ class TreeError(MomantuError):
         self.source = dict(source)
         super().__init__("\n".join(f"{p.place}: {p.message}" for p in self.problems))
 
-    def printed(self) -> str:
-        """Every problem with its line, and the number of problems."""
+    def __str__(self) -> str:
+        """Every problem with its line, and the number of problems, as the command line shows it."""
         return report(self.problems, self.source)
+
+    def printed(self) -> str:
+        """The same text, without the program's name before it."""
+        return str(self)
 
 
 class TooManyProblems(TreeError):

@@ -210,7 +210,7 @@ def test_one_broken_skill_and_one_clash_leave_the_rest_alone(
     good, broken = module(GOOD), module("import no_such_module")
     entries += [entry("good", f"{good}:Good"), entry("ill", f"{broken}:Ill")]
     entries += [entry("twice", "one:A"), entry("twice", "two:A")]
-    assert main(["skills", "list", "--json"]) == 0
+    assert main(["skills", "list", "--json"]) == 1
     rows = {row["name"]: row for row in json.loads(capsys.readouterr().out)}
     assert [name for name, row in rows.items() if row["ok"]] == ["good"]
     assert "no_such_module" in rows["ill"]["about"]
@@ -236,3 +236,10 @@ def test_checking_a_tree_imports_only_what_it_names(
     assert good in sys.modules
     assert other not in sys.modules
     assert set(Registry.installed().skills) == {"good", "other"}
+
+
+def test_the_public_names_are_completed():
+    import momantu_bt
+
+    assert dir(momantu_bt) == sorted(momantu_bt.__all__)
+    assert {"run", "Skill", "Service"} <= set(dir(momantu_bt))

@@ -9,13 +9,17 @@ from typing import Any
 
 import typer
 
+from momantu_bt.errors import ExitCode, MomantuError
 from momantu_bt.plugins import Group
 
 
 def listing(group: Group[Any], about: Callable[[Any], str], as_json: bool) -> None:
     """Print every plug-in of an entry-point group with what `about` returns for it.
 
-    List a broken plug-in with the reason.
+    A broken plug-in is listed with the reason.
+
+    Raises:
+        typer.Exit: a plug-in is broken; exit code 1.
     """
     rows: list[tuple[str, str]] = []
     broken: set[str] = set()
@@ -23,16 +27,28 @@ def listing(group: Group[Any], about: Callable[[Any], str], as_json: bool) -> No
         try:
             rows.append((name, about(group.load(name))))
         except Exception as error:  # a plug-in may raise anything; list it as the reason
-            rows.append((name, f"broken: {error}"))
+            rows.append((name, f"broken: {_reason(error)}"))
             broken.add(name)
     if as_json:
         typer.echo(json.dumps(_plain(rows, broken), indent=2))
-        return
+    else:
+        _print(rows)
+    if broken:
+        raise typer.Exit(ExitCode.FAILURE)
+
+
+def _print(rows: list[tuple[str, str]]) -> None:
     width = max((len(name) for name, _ in rows), default=0)
     for name, line in rows:
         typer.echo(f"{name:{width}}  {line}".rstrip())
     if not rows:
         typer.echo("none is installed", err=True)
+
+
+def _reason(error: Exception) -> str:
+    """The first line of an error; a file with several mistakes has a line for each."""
+    said = str(error) if isinstance(error, MomantuError) else f"{type(error).__name__}: {error}"
+    return said.partition("\n")[0]
 
 
 def _plain(rows: list[tuple[str, str]], broken: set[str]) -> list[dict[str, Any]]:

@@ -103,9 +103,44 @@ def test_one_broken_plug_in_does_not_hide_the_others(
         return whole(name)
 
     monkeypatch.setattr(SKILLS, "load", load)
-    about = {row["name"]: row["about"] for row in as_json(capsys, "skills")}
+    assert main(["skills", "--json"]) == 1
+    about = {row["name"]: row["about"] for row in json.loads(capsys.readouterr().out)}
     assert about["pick"] == "broken: its library is missing"
     assert list(about) == list(SKILLS)
+
+
+@pytest.mark.parametrize("group", [SKILLS, WORLDS, ROBOTS])
+def test_a_list_with_a_broken_entry_says_so_and_ends_with_1(
+    capsys: Out, monkeypatch: pytest.MonkeyPatch, group: plugins.Group[Any]
+) -> None:
+    def load(name: str) -> Any:
+        raise OSError("no disk\nand no tape")
+
+    monkeypatch.setattr(group, "load", load)
+    verb = f"{group.what}s"
+    for arguments in ([verb], [verb, "list"], [verb, "list", "--json"]):
+        assert main(arguments) == 1
+        said = capsys.readouterr()
+        assert "broken: OSError: no disk" in said.out
+        assert said.out.count("no disk") == len(group)
+        assert "tape" not in said.out
+
+
+def test_a_broken_skill_has_no_page_and_the_others_have(
+    capsys: Out, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    whole = SKILLS.load
+
+    def load(name: str) -> Any:
+        if name == "pick":
+            raise PluginError("the skill 'pick' cannot be loaded")
+        return whole(name)
+
+    monkeypatch.setattr(SKILLS, "load", load)
+    assert main(["skills", "pages", str(tmp_path)]) == 1
+    assert "left out: the skill 'pick' cannot be loaded" in capsys.readouterr().err
+    written = {path.stem for path in tmp_path.glob("*.md")}
+    assert {"index", *SKILLS} - written == {"pick"}
 
 
 def test_a_list_of_nothing_says_so(capsys: Out, monkeypatch: pytest.MonkeyPatch) -> None:

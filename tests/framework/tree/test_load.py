@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from momantu_bt.cli import main
 from momantu_bt.descriptions.reading import DescriptionError, KeyProblem
 from momantu_bt.formats.places import Place
 from momantu_bt.tree.check.checker import check
@@ -62,7 +63,7 @@ def test_a_near_miss_is_named(folder: Path, name: str, message: str) -> None:
 
 def test_a_file_that_is_not_utf8(folder: Path) -> None:
     (folder / "bad.yaml").write_bytes(b"momantu_bt: 1\nmain: \xff\n")
-    with pytest.raises(TreeError, match="bad.yaml:2:7: the file is not UTF-8"):
+    with pytest.raises(TreeError, match="bad.yaml:2:7: error: the file is not UTF-8"):
         load("bad.yaml", Registry())
 
 
@@ -177,3 +178,14 @@ def test_a_document_stays_as_it_was_read(registry: Registry) -> None:
     assert list(before.ports) == [FIRST_INPUT]
     assert FIRST_INPUT not in after.ports
     assert list(after.ports.values()) == list(before.ports.values())
+
+
+def test_the_error_says_in_python_what_the_command_line_prints(tmp_path: Path, capsys) -> None:
+    file = tmp_path / "t.yaml"
+    file.write_text("momantu_bt: 1\ntrees:\n  Main: [{wiat: 1 s}, {succed: }]\n")
+    with pytest.raises(TreeError) as error:
+        load(str(file))
+    assert main(["check", str(file)]) == 2
+    assert capsys.readouterr().err.strip() == str(error.value)
+    assert "did you mean wait?" in str(error.value)
+    assert "2 errors" in str(error.value)
