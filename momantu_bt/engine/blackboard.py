@@ -47,6 +47,15 @@ class Cell:
         self.value = value
         self.writes += 1
 
+    def begin(self, value: Any) -> None:
+        """Give it the value with which a run begins; no tick has written it."""
+        self.value = value
+        self.writes = 1
+
+    def note(self) -> None:
+        """Tell the observers of a run which value it holds; this is no write."""
+        self._journal.append((self, self.value))
+
 
 class ReadOnlyCell(Cell):
     """A key that the engine publishes, such as `@robot`: its value is computed when read.
@@ -122,6 +131,11 @@ class Board:
             else:
                 found = Cell(f"{self.path}{key}", self._journal)
             self.cells[key] = found
+        return found
+
+    def own(self, key: str) -> Cell:
+        """A cell of this board alone, which automatic remapping leaves out."""
+        found = self.cells[key] = Cell(f"{self.path}{key}", self._journal)
         return found
 
     def publish(self, cell: ReadOnlyCell) -> None:

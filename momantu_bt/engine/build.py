@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TypeAlias, TypeGuard, cast
 
@@ -21,6 +21,7 @@ from momantu_bt.tree.catalogue.built_in import BUILT_IN
 from momantu_bt.tree.language import FAILURE_KEY
 from momantu_bt.tree.model import Document, Literal, Node, PortValue, Reference, Tree
 from momantu_bt.tree.substitute.substitution import Substitution, reached
+from momantu_bt.values.contents import freeze
 from momantu_bt.values.words import ConversionError
 
 MAX_DEPTH = 250
@@ -158,31 +159,29 @@ class _Builder:
     def _subtree(self, parts: Parts, path: str) -> SubTree:
         model, board = parts.model, parts.board
         tree = _tree(self.document, model.target or "")
-        wired = {n: d.default for n, d in tree.ports.items() if _is_wire(d.default)}
-        values: dict[str, PortValue] = {**wired, **model.ports}
+        values: dict[str, PortValue] = dict(model.ports)
         autoremap = values.pop(AUTOREMAP, Literal(False)) == Literal(True)
+        if not autoremap:  # with it, a key that is not given is the outer one, default or not
+            defaults = {n: d.default for n, d in tree.ports.items() if d.default is not None}
+            values = {**defaults, **values}
         wires = {k: cell_of(v, board) for k, v in values.items() if _is_wire(v)}
         inner = Board(
             self.context.writes, board, wires, path=f"{path}/{tree.name}/", autoremap=autoremap
         )
-        given = self._given(tree, values, board, inner)
-        child = self.node(tree.root, inner, f"{path}.0")
-        return SubTree(replace(parts, kids=(child,)), given=given, wires=wires, board=inner)
-
-    def _given(
-        self, tree: Tree, values: Mapping[str, PortValue], outer: Board, inner: Board
-    ) -> dict[str, tuple[Cell, Reader]]:
-        """Inner keys that are written at each start, with their values: all that are not wires."""
         given: dict[str, tuple[Cell, Reader]] = {}
+        constants: dict[str, Cell] = {}
         for name, value in values.items():
-            if not _is_wire(value):
-                port = _declared(tree, name)
-                given[name] = (inner.cell(name), reader(port, value, outer))
-        for name, declaration in tree.ports.items():
-            if name not in values and declaration.default is not None:
-                constant = reader(declaration.port(), declaration.default, outer)
-                given[name] = (inner.cell(name), constant)
-        return given
+            if name in wires:
+                continue
+            cell, read = inner.own(name), reader(_declared(tree, name), value, board)
+            if isinstance(value, Literal):
+                constants[name] = cell
+                cell.begin(freeze(read()))
+            else:
+                given[name] = (cell, read)
+        child = self.node(tree.root, inner, f"{path}.0")
+        parts = replace(parts, kids=(child,))
+        return SubTree(parts, given=given, constants=constants, wires=wires, board=inner)
 
 
 def _is_wire(value: PortValue | None) -> TypeGuard[Reference]:

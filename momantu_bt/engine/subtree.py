@@ -17,8 +17,10 @@ from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, Status
 class SubTree(Decorator):
     """Runs another tree and returns its status; failures get this node's name and place.
 
-    An inner key that is connected to an outer key shares its cell. All other inputs (a value, a
-    part of a value, a text, a default) are written to the inner key at each start. board: the
+    An inner key that is connected to an outer key shares its cell. A value and a default are in
+    the inner key when the run begins, and what the tree inside makes of them stays, as in
+    BehaviorTree.CPP. A part of a value and a text with keys are written to the inner key at each
+    start. given: those, with their cells. constants: the cells of values and defaults. board: the
     board inside.
     """
 
@@ -27,11 +29,13 @@ class SubTree(Decorator):
         parts: Parts,
         *,
         given: Mapping[str, tuple[Cell, Reader]],
+        constants: Mapping[str, Cell],
         wires: Mapping[str, Cell],
         board: Board,
     ) -> None:
         super().__init__(parts)
         self.given = dict(given)
+        self.constants = dict(constants)
         self.wires = dict(wires)
         self.board = board
 
@@ -45,7 +49,10 @@ class SubTree(Decorator):
         if self.state is IDLE:
             for cell, read in self.given.values():
                 cell.store(read())
+            for cell in self.constants.values():
+                cell.note()
             values = {name: cell.value for name, (cell, _) in self.given.items()}
+            values |= {name: cell.value for name, cell in self.constants.items()}
             values |= {name: cell.value for name, cell in self.wires.items()}
             self.label = label(self.model, values)
             self.state = RUNNING

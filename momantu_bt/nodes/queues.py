@@ -67,9 +67,8 @@ class QueueLoop(Decorator):
         self.state = RUNNING
         status = self.child.execute()
         self.in_round = status is RUNNING
-        if status is RUNNING:
-            return RUNNING
-        self.child.reset()
+        if status.completed:
+            self.child.reset()
         return self.pass_on(FAILURE) if status is FAILURE else RUNNING
 
     @property

@@ -110,9 +110,12 @@ class SequenceWithMemory(Sequence):
 
     def renew(self) -> None:
         """Back to the first child."""
+        self.reset_children()
         self.at = self.skipped = 0
 
     def _failed(self, child: TreeNode) -> Status:
+        """Reset the children from the failed one on; those before it stay as they ended."""
         failure = self.failure_of(child)
-        self.reset_children()
+        for each in self.kids[self.at :]:
+            each.reset()
         return self.fail_with(failure)

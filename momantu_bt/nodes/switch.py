@@ -2,11 +2,11 @@
 
 The variable is read on each tick; when the choice changes, the child that was running is halted.
 The chosen child's status is the node's status. A variable without a value selects the last child.
+A boolean selects the case `true` or `false`; where no case is it, the case 1 or 0.
 """
 
 from __future__ import annotations
 
-import re
 from enum import Enum
 from typing import Any
 
@@ -18,9 +18,7 @@ from momantu_bt.tree.catalogue.known import NEVER, Known, meet
 from momantu_bt.tree.catalogue.spec import NodeSpec, control, input_port
 from momantu_bt.tree.catalogue.wording import port_text, ports_in_words
 from momantu_bt.tree.model import Node
-from momantu_bt.tree.script.nodes import EPSILON
-
-_NUMBER = re.compile(r"-?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
+from momantu_bt.tree.script.nodes import EPSILON, number_in
 
 
 def _cases(walk: Walk, node: Node, before: Known) -> After:
@@ -75,8 +73,8 @@ class Switch(TreeNode):
         child = self.kids[chosen]
         status = child.execute()
         self.at = chosen if status is RUNNING else None
-        if status is RUNNING:
-            return RUNNING
+        if not status.completed:
+            return status
         if status is FAILURE:
             self.fail_with(self.failure_of(child))
         self.reset_children()
@@ -94,8 +92,11 @@ class Switch(TreeNode):
             if failure.value.code == INPUT_MISSING:
                 return default
             raise
-        cases = (self.inputs[f"case_{number}"] for number in range(1, default + 1))
-        return next((i for i, case in enumerate(cases) if is_case(variable, case)), default)
+        cases = [self.inputs[f"case_{number}"] for number in range(1, default + 1)]
+        found = next((i for i, case in enumerate(cases) if is_case(variable, case)), None)
+        if found is None and isinstance(variable, bool):
+            found = next((i for i, case in enumerate(cases) if is_case(int(variable), case)), None)
+        return default if found is None else found
 
 
 class Switch2(Switch):
@@ -149,8 +150,6 @@ def _bare(value: Any) -> Any:
 
 
 def _number(value: Any) -> float | None:
-    if isinstance(value, int | float):
-        return float(value)
-    if isinstance(value, str) and _NUMBER.fullmatch(value):
-        return float(value)
-    return None
+    if isinstance(value, str):
+        return None if value in ("true", "false") else number_in(value)
+    return float(value) if isinstance(value, int | float) else None

@@ -126,5 +126,5 @@ class TryCatch(TreeNode):
         if status is FAILURE:
             caught = replace(caught, beside=(*caught.beside, self.failure_of(cleaner)))
         self.reset_children()
-        self.clear()
+        self.at, self.caught = 0, None
         return self.fail_with(caught)

@@ -95,7 +95,7 @@ class SkipUnlessUpdated(Decorator):
             return self.instead
         status = self.child.execute()
         self.at_work = status is RUNNING
-        if not self.at_work:
+        if status.completed:
             self.child.reset()
         return self.pass_on(status)
 

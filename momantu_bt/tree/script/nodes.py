@@ -1,14 +1,18 @@
 """The expressions of a script, which evaluate themselves on a blackboard.
 
 The meaning is BehaviorTree.CPP 4's: both sides of `&&` and `||` are evaluated, comparisons
-chain (`1 < n < 3`), numbers are equal within `EPSILON`, types are never mixed silently.
+chain (`1 < n < 3`), and numbers are equal within `EPSILON`. A number meets a text in two places:
+`..` joins it as it is written, and a comparison reads the text as a number.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, is_dataclass
 from typing import Any, Protocol, TypeAlias
+
+from momantu_bt.values.words import in_words
 
 EPSILON = 1.1920929e-07
 """Numbers nearer than this are equal. As in BehaviorTree.CPP, a single-precision ulp."""
@@ -69,12 +73,12 @@ class Unary:
     operand: Expression
 
     def evaluate(self, board: Board) -> Any:
-        """The result; ScriptError if the operand is not a number."""
+        """The result, `~` of the whole part; ScriptError if the operand is not a number."""
         value = _number(self.operand.evaluate(board), self.operator)
         if self.operator == "!":
             return not value
         if self.operator == "~":
-            return ~_integer(value, "~")
+            return ~_whole_part(value)
         return -value
 
 
@@ -101,7 +105,7 @@ class Comparison:
     operators: tuple[str, ...]
 
     def evaluate(self, board: Board) -> Any:
-        """Whether it is true; ScriptError if a number is compared with a text."""
+        """Whether it is true; ScriptError if a number meets a text that reads as none."""
         left = self.operands[0].evaluate(board)
         for operator, operand in zip(self.operators, self.operands[1:], strict=True):
             right = operand.evaluate(board)
@@ -198,6 +202,13 @@ def _integer(value: Any, operator: str) -> int:
     return int(number)
 
 
+def _whole_part(number: float) -> int:
+    try:
+        return int(number)
+    except (OverflowError, ValueError):
+        raise ScriptError(f"~ needs a finite number, not {number}") from None
+
+
 def _describe(value: Any) -> str:
     return f"the text {value!r}" if isinstance(value, str) else f"{type(value).__name__} {value!r}"
 
@@ -213,7 +224,7 @@ def apply(operator: str, left: Any, right: Any) -> Any:
             return left + right
         raise ScriptError(f"{operator} does not work on texts")
     if operator == "..":
-        raise ScriptError(f".. joins texts, not {_describe(left)} and {_describe(right)}")
+        return _together(left, right)
     _number(left, operator)
     _number(right, operator)
     if operator == "/" and right == 0:
@@ -237,12 +248,32 @@ _OPERATIONS: dict[str, Callable[[Any, Any], Any]] = {
 }
 
 
+def _together(left: Any, right: Any) -> str:
+    """A text and a number as one text."""
+    for value in (left, right):
+        if not isinstance(value, str | bool | int | float):
+            raise ScriptError(f".. joins texts and numbers, not {_describe(value)}")
+    if not isinstance(left, str) and not isinstance(right, str):
+        raise ScriptError(".. needs a text on one side, not two numbers")
+    return "".join(each if isinstance(each, str) else in_words(each) for each in (left, right))
+
+
+def number_in(text: str) -> float | None:
+    """The number that a text reads as, `true` and `false` too; None if it reads as none."""
+    if text in _TRUTHS:
+        return _TRUTHS[text]
+    return float(text) if _NUMBER.fullmatch(text) else None
+
+
+_NUMBER = re.compile(r"-?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
+_TRUTHS = {"true": 1.0, "false": 0.0}
+
+
 def _compare(operator: str, left: Any, right: Any) -> bool:
     texts = isinstance(left, str), isinstance(right, str)
     if texts[0] != texts[1]:
-        raise ScriptError(
-            f"{operator} compares alike with alike, not {_describe(left)} with {_describe(right)}"
-        )
+        left, right = _numeric(operator, left, right), _numeric(operator, right, left)
+        texts = False, False
     if operator in ("==", "!="):
         same = bool(left == right) if texts[0] else _same(left, right)
         return same if operator == "==" else not same
@@ -250,6 +281,16 @@ def _compare(operator: str, left: Any, right: Any) -> bool:
         _number(left, operator)
         _number(right, operator)
     return bool(_ORDER[operator](left, right))
+
+
+def _numeric(operator: str, value: Any, other: Any) -> Any:
+    """A value that is compared with one of another kind: a text must read as a number."""
+    number = number_in(value) if isinstance(value, str) else value
+    if isinstance(number, bool | int | float):
+        return number
+    raise ScriptError(
+        f"{operator} compares alike with alike, not {_describe(value)} with {_describe(other)}"
+    )
 
 
 def _same(left: Any, right: Any) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from momantu_bt.tree.script.nodes import (
@@ -18,11 +19,12 @@ from momantu_bt.tree.script.nodes import (
 from momantu_bt.tree.script.tokens import ScriptSyntaxError, Token
 
 MAX_DEPTH = 40
-"""The most brackets within brackets. The limit protects the reader's own stack."""
+"""The most levels of brackets, signs, assignments and choices. It protects the reader's stack."""
 
-_MATHS = ({"+": 1, "-": 1, "*": 2, "/": 2}, {"|": 1, "^": 1, "&": 2}, {"..": 1})
-# each group's operators with their rank; groups mix only with brackets
 _COMPARE = ("==", "!=", "<", ">", "<=", ">=")
+_LEVELS = (("||",), ("&&",), _COMPARE, ("|", "^"), ("&",), ("+", "-", ".."), ("*", "/"))
+_RANKS = {operator: rank for rank, level in enumerate(_LEVELS) for operator in level}
+"""How tightly an operator binds, as in BehaviorTree.CPP 4.10."""
 _ASSIGN = (":=", "=", "+=", "-=", "*=", "/=")
 
 
@@ -66,6 +68,7 @@ class _Parser:
         self.tokens, self.text, self.strict = found, text, strict
         self.index = 0
         self.depth = 0
+        self.logic = ""
         self.reads: list[Variable] = []
         self.writes: list[Variable] = []
         self.needs: list[Variable] = []
@@ -91,6 +94,8 @@ class _Parser:
             statements.append(self.statement())
             if self.now.kind != "end" and not self.accept(";"):
                 raise self.unexpected("`;`, an operator or the end")
+            while self.accept(";"):
+                pass
         if not statements:
             raise ScriptSyntaxError("an empty script", 0)
         return Script(
@@ -116,87 +121,68 @@ class _Parser:
             del self.reads[reads:]
         if operator.text == ":=":
             del self.needs[needs:]
-        value = self.choice()
+        value = self.deeper(self.statement)
         self.writes.append(left)
         self.made |= {left.key}
         return Assignment(left, operator.text, value)
 
     def choice(self) -> Expression:
-        condition = self.logic()
+        condition = self.joined()
         if self.accept("?") is None:
             return condition
         made = self.made
-        yes = self.nested()
+        yes = self.deeper(self.statement)
         if self.accept(":") is None:
             raise self.unexpected("`:`")
         made_by_yes, self.made = self.made, made
-        no = self.logic()
+        no = self.deeper(self.choice)
         self.made &= made_by_yes
         return Choice(condition, yes, no)
 
-    def logic(self) -> Expression:
-        first = self.comparison()
-        rest: list[tuple[str, Expression]] = []
-        while operator := self.accept("&&", "||"):
-            if self.strict and rest and rest[-1][0] != operator.text:
+    def joined(self, least: int = 0) -> Expression:
+        """Operands joined by operators that bind at least as tightly as rank `least`."""
+        start = self.now
+        left = self.operand()
+        while (rank := self.rank()) >= least:
+            operators, operands = [], [left]
+            while self.rank() == rank:
+                operator = self.take()
+                if self.strict:
+                    self.refuse_misread(start, operator)
+                operators.append(operator.text)
+                operands.append(self.joined(rank + 1))
+            if operators[0] in _COMPARE:
+                left = Comparison(tuple(operands), tuple(operators))
+            else:
+                left = Chain(left, tuple(zip(operators, operands[1:], strict=True)))
+        return left
+
+    def rank(self) -> int:
+        """The rank of the operator that follows; -1 if none does."""
+        return _RANKS.get(self.now.text, -1) if self.now.kind == "operator" else -1
+
+    def refuse_misread(self, start: Token, operator: Token) -> None:
+        """Refuse what people and other readers of such scripts may take for something else."""
+        if operator.text in ("&&", "||"):
+            if self.logic not in ("", operator.text):
                 raise ScriptSyntaxError(
                     "`and` and `or` together need brackets",
                     operator.offset,
                     operator.length,
                     "write ($a and $b) or $c",
                 )
-            rest.append((operator.text, self.comparison()))
-        return Chain(first, tuple(rest)) if rest else first
-
-    def comparison(self) -> Expression:
-        start = self.now
-        operands = [self.maths()]
-        operators: list[str] = []
-        while operator := self.accept(*_COMPARE):
-            if self.strict and start.word and start.text == "!":
-                raise ScriptSyntaxError(
-                    "`not` before a comparison needs brackets",
-                    start.offset,
-                    start.length,
-                    "write not ($a == $b)",
-                )
-            operators.append(operator.text)
-            operands.append(self.maths())
-        if not operators:
-            return operands[0]
-        return Comparison(tuple(operands), tuple(operators))
-
-    def maths(self) -> Expression:
-        first = self.operand()
-        for group in _MATHS:
-            if self.now.kind == "operator" and self.now.text in group:
-                chain = self.chain(first, group, 1)
-                self.no_other_group(group)
-                return chain
-        return first
-
-    def chain(self, first: Expression, group: dict[str, int], rank: int) -> Expression:
-        rest: list[tuple[str, Expression]] = []
-        if rank == 1 and 2 in group.values():
-            first = self.chain(first, group, 2)
-        ranked = [name for name, its in group.items() if its == rank]
-        while operator := self.accept(*ranked):
-            right = self.operand()
-            if rank == 1 and 2 in group.values():
-                right = self.chain(right, group, 2)
-            rest.append((operator.text, right))
-        return Chain(first, tuple(rest)) if rest else first
-
-    def no_other_group(self, group: dict[str, int]) -> None:
-        others = [name for other in _MATHS if other is not group for name in other]
-        if self.now.kind == "operator" and self.now.text in others:
+            self.logic = operator.text
+        if operator.text in _COMPARE and start.word and start.text == "!":
             raise ScriptSyntaxError(
-                f"`{self.now.text}` cannot follow without brackets", self.now.offset, 1
+                "`not` before a comparison needs brackets",
+                start.offset,
+                start.length,
+                "write not ($a == $b)",
             )
 
     def operand(self) -> Expression:
         if operator := self.accept("-", "~", "!"):
-            return Unary(operator.text, self.atom())
+            return Unary(operator.text, self.deeper(self.operand))
         if self.now.text == "+" and self.tokens[self.index + 1].kind == "number":
             self.take()
         return self.atom()
@@ -204,7 +190,7 @@ class _Parser:
     def atom(self) -> Expression:
         token = self.take()
         if token.kind == "operator" and token.text == "(":
-            inside = self.nested()
+            inside = self.deeper(self.statement)
             if self.accept(")") is None:
                 raise self.unexpected("`)`")
             return inside
@@ -224,12 +210,14 @@ class _Parser:
         self.index -= 1
         raise self.unexpected("a variable, a number, a text in quotes or `(`")
 
-    def nested(self) -> Expression:
+    def deeper(self, part: Callable[[], Expression]) -> Expression:
+        """A part inside brackets, or behind a sign, an assignment or a choice."""
         self.depth += 1
         if self.depth > MAX_DEPTH:
-            raise ScriptSyntaxError(f"more than {MAX_DEPTH} brackets deep", self.now.offset)
-        inside = self.statement()
-        self.depth -= 1
+            raise ScriptSyntaxError(f"more than {MAX_DEPTH} levels deep", self.now.offset)
+        logic, self.logic = self.logic, ""
+        inside = part()
+        self.depth, self.logic = self.depth - 1, logic
         return inside
 
     def unexpected(self, wanted: str) -> ScriptSyntaxError:

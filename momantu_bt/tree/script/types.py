@@ -1,7 +1,7 @@
-"""The types in a script: numbers and texts are never mixed silently.
+"""The types in a script: numbers and texts are joined by `..` alone.
 
-Only what surely fails when it is evaluated is reported. A variable of unknown type fits
-everywhere.
+What surely fails when it is evaluated is reported, and a number that is compared with a variable
+whose type is text. A variable of unknown type fits everywhere.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from momantu_bt.tree.script.nodes import (
     Expression,
     Unary,
     Variable,
+    number_in,
 )
 from momantu_bt.values import kinds
 from momantu_bt.values.kinds import ValueType, kind_of
@@ -97,11 +98,15 @@ def _must_be_number(operator: str, operand: Expression, type_of: TypeOf) -> None
 
 def _comparison(comparison: Comparison, type_of: TypeOf) -> Kind:
     kinds = [check_types(operand, type_of) for operand in comparison.operands]
-    neighbours = zip(kinds, kinds[1:], comparison.operators, comparison.operands[1:], strict=False)
-    for left, right, operator, operand in neighbours:
+    pairs = zip(comparison.operands, comparison.operands[1:], strict=False)
+    neighbours = zip(kinds, kinds[1:], comparison.operators, pairs, strict=False)
+    for left, right, operator, (before, operand) in neighbours:
         known = Kind.UNKNOWN not in (left, right)
         ordered = operator not in ("==", "!=")
         if known and Kind.TEXT in (left, right) and left is not right:
+            texts = (each for each in (before, operand) if isinstance(each, Constant))
+            if Kind.OTHER not in (left, right) and any(map(_reads_as_number, texts)):
+                continue
             message = f"`{operator}` compares {_WORDS[left]} with {_WORDS[right]}"
             raise Mismatch(message, _variable(operand) or _variable(comparison.operands[0]))
         if ordered and Kind.OTHER in (left, right):
@@ -127,17 +132,21 @@ def _joined(operator: str, left: Kind, right: Kind, variable: Variable | None) -
     both = (left, right)
     if Kind.OTHER in both:
         raise Mismatch(f"`{operator}` needs numbers or texts", variable)
-    if Kind.TEXT in both and Kind.NUMBER in both:
+    if Kind.TEXT in both and Kind.NUMBER in both and operator != "..":
         raise Mismatch(f"`{operator}` joins {_WORDS[left]} and {_WORDS[right]}", variable)
     if both == (Kind.TEXT, Kind.TEXT) and operator not in ("+", ".."):
         raise Mismatch(f"`{operator}` does not work on texts", variable)
     if operator == "..":
-        if Kind.NUMBER in both:
-            raise Mismatch("`..` joins texts, not numbers", variable)
+        if both == (Kind.NUMBER, Kind.NUMBER):
+            raise Mismatch("`..` needs a text on one side, not two numbers", variable)
         return Kind.TEXT
     if Kind.UNKNOWN in both and operator == "+":
         return left if right is Kind.UNKNOWN else right
     return Kind.TEXT if Kind.TEXT in both else Kind.NUMBER
+
+
+def _reads_as_number(constant: Constant) -> bool:
+    return isinstance(constant.value, str) and number_in(constant.value) is not None
 
 
 def _variable(expression: Expression) -> Variable | None:

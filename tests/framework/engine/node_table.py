@@ -127,7 +127,7 @@ def made(bench: Bench, row: Row, kids: list[Telling]) -> TreeNode:
         model.ports[port] = _value(port, text, spec)
     parts = Parts(model, bench.context, bench.board, kids=tuple(kids))
     if row.type == "SubTree":
-        return SubTree(parts, given={}, wires={}, board=Board([]))
+        return SubTree(parts, given={}, constants={}, wires={}, board=Board([]))
     assert spec is not None
     answers = tuple((("any",), kid) for kid in kids[1:2]) if spec.handlers else ()
     caught = Cell("failure", bench.context.writes)

@@ -189,6 +189,23 @@ def _tree(node: str) -> str:
     )
 
 
+@pytest.mark.parametrize(
+    "node", ['<UnsetBlackboard key="{n}"/>', '<SetBlackboard output_key="{n}" value="1"/>']
+)
+def test_in_xml_braces_would_name_another_key(node: str) -> None:
+    text = f'<root BTCPP_format="4"><BehaviorTree ID="Main">{node}</BehaviorTree></root>'
+    problem = read_xml(text, "t.xml")[1].sorted()[0]
+    assert problem.code == "not-a-key"
+    assert "would be the key whose name {n} holds" in problem.message
+    assert 'key="n"' in problem.hint
+
+
+def test_xml_names_the_key_that_is_set_without_braces() -> None:
+    document, _ = read(_tree("{set: {key: $@n, value: 2}}"), "t.yaml")
+    assert '<SetBlackboard output_key="@n" value="2"/>' in write_xml(document)
+    assert read_xml(write_xml(document), "t.xml")[0] == document
+
+
 def test_xml_names_the_key_that_is_unset_without_braces() -> None:
     document, _ = read(_tree("{unset: $n}"), "t.yaml")
     assert '<UnsetBlackboard key="n"/>' in write_xml(document)

@@ -59,7 +59,7 @@ def shown(found: list[Problem]) -> list[tuple[str, str, int]]:
         # what it takes away is not
         (
             f'{SET}<SubTree ID="Sub" k="{{x}}"/>{READS.replace("k", "x")}',
-            '<UnsetBlackboard key="{k}"/>',
+            '<UnsetBlackboard key="k"/>',
             [("warning", 3)],
         ),
         # keys inside are its own
@@ -123,7 +123,7 @@ def test_a_default_that_is_a_key(check: Check) -> None:
 
 def test_types_of_what_is_shared(check: Check) -> None:
     model = '<SubTree ID="Sub"><inout_port name="k" type="pose"/></SubTree>'
-    main = USE_OTHER + '<SetBlackboard output_key="{x}" value="5"/><SubTree ID="Sub" k="{x}"/>'
+    main = USE_OTHER + '<SetBlackboard output_key="x" value="5"/><SubTree ID="Sub" k="{x}"/>'
     (problem,) = check(files(main, '<navigate within_reach_of="{k}"/>', model=model))
     assert (problem.code, problem.message[:8]) == ("wrong-type", "{x} is i")
 

@@ -91,9 +91,9 @@ class Maker:
             return f"<ScriptCondition code={quoteattr(self.condition())}{given}/>"
         if kind < 0.65 and self.careless:
             return self.pick(
-                f'<UnsetBlackboard key="{{{self.key()}}}"/>',
-                f'<SetBlackboard output_key="{{{self.key()}}}" value="4"/>',
-                f'<SetBlackboard output_key="{{{self.key()}}}" value="{{{self.key()}}}"/>',
+                f'<UnsetBlackboard key="{self.key()}"/>',
+                f'<SetBlackboard output_key="{self.key()}" value="4"/>',
+                f'<SetBlackboard output_key="{self.key()}" value="{{{self.key()}}}"/>',
             )
         if kind < 0.75 and tree < self.trees:
             return self.call(tree)

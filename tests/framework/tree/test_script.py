@@ -62,8 +62,28 @@ def value(text: str, **keys: Any) -> Any:
         ("'a' < 'b'", True),
         ("!false && true", True),
         ("!n == 0", True),
-        # both logical signs have one rank and go from the left, as in BehaviorTree.CPP
-        ("true || true && false", False),
+        # the ranks of operators are those of BehaviorTree.CPP 4.10, which gave these values
+        ("true || true && false", True),
+        ("false && true || true", True),
+        ("1 + 2 & 3", 3),
+        ("1 | 2 + 4", 7),
+        ("6 & 3 == 2", True),
+        ("1 + 2 .. 'a'", "3a"),
+        ("- -2", 2),
+        ("!!n", True),
+        ("~2.5", -3),
+        ("true ? 1 : 0 ? 2 : 3", 1),
+        ("0 ? 1 : 0 ? 2 : 3", 3),
+        ("a := b := 3; a + b", 6),
+        ("a := 1;; a", 1),
+        # a number and a text
+        ("'a' .. 1", "a1"),
+        ("1 .. 'a'", "1a"),
+        ("'a' .. 0.5 .. true", "a0.5true"),
+        ("'5' == 5", True),
+        ("5 != '5.0'", False),
+        ("'1.50' < 1.6", True),
+        ("'true' == true", True),
         ("n > 2 ? 'yes' : 'no'", "yes"),
         ("n := 4; n + 1", 5),
         ("m := 1; m += 2; m *= 4; m -= 2; m /= 5; m", 2),
@@ -88,7 +108,10 @@ def test_value(text: str, expected: Any) -> None:
         ("1.5 & 1", "whole numbers"),
         ("pose.z", "no part 'z'; parts: x, y, yaw"),
         ("pose.__class__", "no part '__class__'"),
-        ("1 .. 2", "joins texts"),
+        ("1 .. 2", "a text on one side"),
+        ("'a' .. pose", "joins texts and numbers"),
+        ("'5m' == 5", "compares alike with alike"),
+        ("pose == 'a'", "compares alike with alike"),
         ("pose + 1", "needs a number"),
         ("pose ? 1 : 2", "needs a number"),
         # both sides are evaluated, as in BehaviorTree.CPP
@@ -109,7 +132,7 @@ def test_an_evaluation_that_fails(text: str, message: str) -> None:
         ("(n > 1", 6),
         ("1 := 2", 0),
         ("n.x := 2", 0),
-        ("n & 1 + 2", 6),
+        ("n := 1 m := 2", 7),
         ("n # 2", 2),
         ("'open", 0),
         ("n ? 1", 5),
@@ -126,8 +149,11 @@ def test_a_script_that_cannot_be_read(text: str, offset: int) -> None:
 
 
 def test_scripts_are_bounded() -> None:
-    with pytest.raises(ScriptSyntaxError, match="brackets deep"):
+    with pytest.raises(ScriptSyntaxError, match="levels deep"):
         parse("(" * (MAX_DEPTH + 1) + "1" + ")" * (MAX_DEPTH + 1))
+    for repeated in ("!", "a := ", "1 ? 2 : "):
+        with pytest.raises(ScriptSyntaxError, match="levels deep"):
+            parse(repeated * (MAX_DEPTH + 1) + "1")
     with pytest.raises(ScriptSyntaxError, match="characters"):
         parse("1" * (MAX_LENGTH + 1))
     assert value("+".join(["1"] * (MAX_LENGTH // 2))) == MAX_LENGTH // 2

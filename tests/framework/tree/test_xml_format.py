@@ -9,6 +9,7 @@ from momantu_bt.formats.places import Place
 from momantu_bt.formats.problems import Problem, Severity
 from momantu_bt.tree.catalogue import NODES, XML_CONDITIONS, is_ours
 from momantu_bt.tree.files.xml.format import read
+from momantu_bt.tree.files.xml.ports import names_key
 from momantu_bt.tree.files.yaml.format import read as read_yaml
 from momantu_bt.tree.model import (
     Document,
@@ -96,7 +97,7 @@ def test_the_same_model_as_in_yaml(document: Callable[[str], Document]) -> None:
       <input_port name="at" type="std::string" default="x">where</input_port>
     </SubTree>
   </TreeNodesModel>
-</root>""".replace("<Take ", '<SubTree ID="Take" ').replace('output_key="x"', 'output_key="{x}"')
+</root>""".replace("<Take ", '<SubTree ID="Take" ').replace('output_key="x"', 'output_key="x"')
     )
     yaml, problems = read_yaml(
         """momantu_bt: 1
@@ -153,6 +154,7 @@ def test_every_node_of_the_catalogue_with_every_port(type_: str, root: Root) -> 
     names = {port: spec.xml.get(port, port) or f"momantu:{port}" for port in spec.ports}
     once = [port for port in names if not any(port in group[1:] for group in spec.one_of)]
     given = {port: "x" if spec.ports[port].type is ScriptText else "{k}" for port in once}
+    given = {p: "k" if names_key(spec, p) else v for p, v in given.items()}
     given = {p: "$k" if names[p].startswith("momantu:") else v for p, v in given.items()}
     inside = "<AlwaysSuccess/>" * spec.children[0]
     inside += '<momantu:Catch codes="any"/>' if spec.handlers and type_ == "Recover" else ""

@@ -40,7 +40,7 @@ def _xml(body: str, registry: Registry | None = None, head: str = "") -> str:
         ("go: {name: a, _x: 1}", '<go momantu:name="a" momantu:_x="1"/>'),
         (
             "set: {key: $a, value: '5'}",
-            '<SetBlackboard output_key="{a}" momantu:value="&quot;5&quot;"/>',
+            '<SetBlackboard output_key="a" momantu:value="&quot;5&quot;"/>',
         ),
         ("fail: {code: OH, message: '5'}", '<momantu:Fail code="OH" message="5"/>'),
         ("was_entry_updated: $a", '<WasEntryUpdated entry="{a}"/>'),

@@ -16,7 +16,7 @@ from momantu_bt.tree.catalogue.known import NEVER, Key, Known, literal_type, mee
 from momantu_bt.tree.catalogue.spec import Kind, Scripts
 from momantu_bt.tree.check.keys.changes import KeyChanges
 from momantu_bt.tree.check.keys.reads import Demand, KeyReads, Written, references
-from momantu_bt.tree.check.keys.shared import Call, call_of, shared_keys
+from momantu_bt.tree.check.keys.shared import ROOT_MARK, Call, call_of, shared_keys
 from momantu_bt.tree.check.signatures import Context, Signature
 from momantu_bt.tree.model import Literal, Node, Reference, Scope, Tree
 from momantu_bt.tree.script import Script, ScriptSyntaxError, parse
@@ -224,10 +224,13 @@ class _KeyCheck:
             port = signature.ports.get(name)
             if port is None or port.direction != "out" or not isinstance(value, Reference):
                 continue
-            if value.scope is Scope.ROOT or value.fields:
+            on_root = value.scope is Scope.ROOT
+            if (on_root and self.tree.name != self.context.document.main) or value.fields:
                 continue
             place = node.port_places.get(name, node.place)
-            self.reads.written.append(Written(value.key, place, signature.said))
+            self.reads.given.add(value.key)
+            if not on_root:
+                self.reads.written.append(Written(value.key, place, signature.said))
             given = node.ports.get(copies.get(name, ""))
             type_ = literal_type(given) if isinstance(given, Literal) else port.type
             after = after.having(value.key, Key(type_, place))
@@ -304,6 +307,12 @@ class _KeyCheck:
             return before
         return self.script_keys(script, before, place)
 
+    def on_board(self, variable: str) -> str | None:
+        """The key of the tree's own board that a script names; the root's in the main tree."""
+        if not variable.startswith(ROOT_MARK):
+            return variable
+        return variable[1:] if self.tree.name == self.context.document.main else None
+
     def written_by_script(self, written: Written) -> None:
         """Whether a script's key may be a result: the report shows the main tree's keys."""
         self.reads.written.append(written)
@@ -344,13 +353,14 @@ class _KeyCheck:
                 known[".".join((name, *parts))] = self.reads.part_of(read, parts, where) or object
         self.script_types(script, known, place)
         self.reads.given.update(variable.key for variable in script.writes)
-        keys = dict.fromkeys(v.key for v in script.writes if not v.key.startswith("@"))
+        names = (self.on_board(v.key) for v in script.writes)
+        keys = dict.fromkeys(name for name in names if name is not None)
         for key in keys:
             self.written_by_script(Written(key, self.in_script(key, place), "the script"))
         return before.having_all({name: Key(object, place) for name in keys})
 
 
 def _reference(variable: str) -> Reference:
-    if variable.startswith("@"):
+    if variable.startswith(ROOT_MARK):
         return Reference(variable[1:], scope=Scope.ROOT)
     return Reference(variable)

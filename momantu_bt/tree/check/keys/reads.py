@@ -109,7 +109,9 @@ class KeyReads:
         return key
 
     def _unwritten(self, name: str, before: Known, place: Place) -> None:
-        """Report a key without a value, unless a caller of the tree may give it one."""
+        """Report a key without a value, unless a caller or a write of `$@key` may give it one."""
+        if name in self.keys[self.tree.name].written_as_root:
+            return
         declared = self.tree.ports.get(name)
         from_outside = self.tree.open if declared is None else declared.direction == "inout"
         if from_outside:
@@ -135,7 +137,7 @@ class KeyReads:
                 self._report_needed(name, place, inside)
         if autoremaps(call.node):
             for name, port in self.context.tree_signature(call.tree).ports.items():
-                if port.required and name not in call.node.ports:
+                if port.direction == "in" and name not in call.node.ports:
                     self.lookup(Reference(name), before, call.node.place)
         for name in call.node.ports if call.tree.open else ():
             if name not in inside.mentioned and name not in (AUTOREMAP, *call.tree.ports):

@@ -18,6 +18,8 @@ MAX_KEYS = 1000
 """The most different keys of one tree. Each node knows of all the keys before it."""
 MAX_SHARED = 50_000
 """The most keys that trees share with trees that run them, added up over all those calls."""
+ROOT_MARK = "@"
+"""Prefix of a key in a script: it means the key of the root's board."""
 _PRIVATE = re.compile("_")
 """The start of keys that are never remapped automatically (BehaviorTree.CPP's rule)."""
 
@@ -64,7 +66,7 @@ class Call:
         if key in self.node.ports:
             return self.node.ports[key]
         declared = self.tree.ports.get(key)
-        return None if declared is None else declared.default
+        return None if declared is None or autoremaps(self.node) else declared.default
 
 
 @dataclass(slots=True)
@@ -75,7 +77,8 @@ class TreeKeys:
     written, removed: keys that it may write, and take away. shared: keys that some node wires
     from outside. remapped: whether some node shares them all. needed: keys that it reads and
     may not have written before, with the first place. success, failure: which keys have a
-    value after each result.
+    value after each result. written_as_root: keys of the main tree that any tree writes as the
+    root's (`$@key`), at a time that is not followed.
     """
 
     mentioned: set[str] = field(default_factory=set)
@@ -86,6 +89,7 @@ class TreeKeys:
     needed: dict[str, Place] = field(default_factory=dict)
     success: frozenset[str] = frozenset()
     failure: frozenset[str] = frozenset()
+    written_as_root: set[str] = field(default_factory=set)
 
     def goes_out(self, key: str) -> bool:
         """Whether anything outside may read the key."""
@@ -99,10 +103,11 @@ def shared_keys(context: Context, order: list[Tree]) -> dict[str, TreeKeys] | No
     """
     found = {tree.name: TreeKeys() for tree in order}
     shared = 0
+    on_root: set[str] = set()
     for tree in order:
         keys = found[tree.name]
         for node in tree.root.walk():
-            _own_keys(context, node, keys)
+            _own_keys(context, node, keys, on_root)
             if node.type == SUBTREE:
                 call = call_of(context, node)
                 shared += _keys_of_call(call, keys, found[call.tree.name])
@@ -115,6 +120,10 @@ def shared_keys(context: Context, order: list[Tree]) -> dict[str, TreeKeys] | No
             message = f"{tree.name!r} has {len(keys.mentioned)} keys; at most {MAX_KEYS}"
             context.problems.error("too-large", tree.place, message, "make trees of its parts")
             return None
+    main = found.get(context.document.main)
+    if main is not None:
+        main.written_as_root = on_root
+        main.written |= on_root
     return found
 
 
@@ -123,7 +132,8 @@ def call_of(context: Context, node: Node) -> Call:
     return Call(node, context.document.trees[node.target or ""])
 
 
-def _own_keys(context: Context, node: Node, keys: TreeKeys) -> None:
+def _own_keys(context: Context, node: Node, keys: TreeKeys, on_root: set[str]) -> None:
+    """Add the keys that a node mentions itself. on_root: those that it writes as the root's."""
     signature = context.signature(node)
     ports = signature.ports if signature is not None else {}
     spec = signature.spec if signature is not None else None
@@ -135,11 +145,14 @@ def _own_keys(context: Context, node: Node, keys: TreeKeys) -> None:
         if port is None or port.direction == "out":
             # an unknown node may write what it names
             keys.written |= local if removed is None else set()
+            root = {each.key for each in _references(value) if each.scope is Scope.ROOT}
+            on_root |= root if removed is None else set()
         if removed is not None:
             keys.removed |= local
     for script in scripts_of(context, node):
         keys.mentioned |= {v.key for v in (*script.reads, *script.writes)}
         keys.written |= {v.key for v in script.writes}
+        on_root |= {v.key[1:] for v in script.writes if v.key.startswith(ROOT_MARK)}
 
 
 def _keys_of_call(call: Call, keys: TreeKeys, inside: TreeKeys) -> int:

@@ -11,7 +11,7 @@ from momantu_bt.plugins import PluginError
 from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue import AUTOREMAP, NODES, SUBTREE, XML_CONDITIONS, NodeSpec
 from momantu_bt.tree.files.scalars import CannotWrite, port_text
-from momantu_bt.tree.files.xml.ports import DESCRIPTION, DISABLED, NOTE, PREFIX, RESERVED
+from momantu_bt.tree.files.xml.ports import DESCRIPTION, DISABLED, NOTE, PREFIX, RESERVED, names_key
 from momantu_bt.tree.files.xml.text import attribute, fits_in_xml
 from momantu_bt.tree.files.xml.values import WireError, attribute_value
 from momantu_bt.tree.model import (
@@ -125,8 +125,8 @@ class AttributeWriter:
         if spec is not None and name in spec.keys and isinstance(value, Literal):
             reserved = True  # in these attributes a bare word names a key
         text = None if reserved else plain(value, name, type_)
-        if spec is not None and spec.removes == name:
-            text = _unset_key(value, text)
+        if spec is not None and names_key(spec, name):
+            text = _bare_key(value, text)
         if text is not None:
             return attribute(shown, text)
         ours = attribute(PREFIX + name, port_text(value))
@@ -160,8 +160,8 @@ def _has_attribute(node: Node, name: str) -> bool:
     return is_name(name) and (node.type in NODES or name not in (DISABLED, NOTE))
 
 
-def _unset_key(value: PortValue, text: str | None) -> str | None:
-    """The bare name of the key: BehaviorTree.CPP's `{k}` names the same key as our $k."""
+def _bare_key(value: PortValue, text: str | None) -> str | None:
+    """The bare name of the key: behind BehaviorTree.CPP's `{k}` is the name of another key."""
     if isinstance(value, Reference) and not value.fields:
         return f"@{value.key}" if value.scope is Scope.ROOT else value.key
     return text

@@ -188,6 +188,13 @@ class PortReader:
             scope = Scope.LOCAL if bare == attribute.value else Scope.ROOT
             self._put(name, attribute, Reference(bare, scope=scope))
             return
+        if self.spec is not None and names_key(self.spec, name) and attribute.value[:1] == "{":
+            self._keep_places(name, attribute)
+            self.node.ports[name] = Reference(BROKEN)
+            message = f"{attribute.value} would be the key whose name {attribute.value} holds"
+            hint = f'write {attribute.name}="{attribute.value.strip("{}")}" for that key itself'
+            self._error("not-a-key", attribute.place, message, hint)
+            return
         type_ = type_of(name)
         if type_ is ScriptText:
             self._keep_places(name, attribute)
@@ -250,6 +257,11 @@ class PortReader:
             self._error("wrong-value", places["msec"], message, hint)
         for having in (ports, places, self.node.port_name_places):
             having.pop("msec")
+
+
+def names_key(spec: NodeSpec, port: str) -> bool:
+    """Whether BehaviorTree.CPP reads the attribute as a key's name: `output_key="k"` writes k."""
+    return port in spec.keys and (port == spec.removes or port in spec.copies)
 
 
 def _number(value: object, unit: str | None) -> float | None:
