@@ -99,6 +99,7 @@ class Ask(_Asking):
         input_port("choices", tuple[str, ...], "the answers it takes; none: any text", ()),
         input_port("default", str | None, "the answer when nobody gives one", None),
         dialect=Dialect.OURS,
+        choices={"answer": "choices"},
         codes=and_also(NO_ANSWER),
         objection=_wrong_default,
     )

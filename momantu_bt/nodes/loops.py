@@ -24,7 +24,9 @@ from momantu_bt.tree.catalogue.flow import After, Walk, again, around, as_child,
 from momantu_bt.tree.catalogue.known import NEVER, Known, meet
 from momantu_bt.tree.catalogue.spec import Dialect, decorator, input_port, output_port
 from momantu_bt.tree.catalogue.wording import tries_text
-from momantu_bt.tree.model import Node
+from momantu_bt.tree.model import Literal, Node
+
+_ENDLESS = Literal(-1)
 
 
 def _until_failure(walk: Walk, node: Node, before: Known) -> After:
@@ -38,6 +40,18 @@ def _once(walk: Walk, node: Node, before: Known) -> After:
     return After(end.success, meet(end.failure, before), before)
 
 
+def _rounds(walk: Walk, node: Node, before: Known) -> After:
+    """Without end, it never succeeds."""
+    end = around(walk, node, before)
+    return After(NEVER, end.failure, end.skipped) if node.ports.get("cycles") == _ENDLESS else end
+
+
+def _tries(walk: Walk, node: Node, before: Known) -> After:
+    """Without end, it never fails."""
+    end = around(walk, node, before)
+    return After(end.success, NEVER, end.skipped) if node.ports.get("attempts") == _ENDLESS else end
+
+
 class Repeat(Decorator):
     """Runs the child again when it succeeds."""
 
@@ -47,7 +61,7 @@ class Repeat(Decorator):
         "Runs the child again when it succeeds.",
         input_port("cycles", int, "runs in all; -1 is without end", least=1, endless=True),
         xml={"cycles": "num_cycles"},
-        flow=again(around),
+        flow=again(_rounds),
         around=lambda node: tries_text(node, "cycles", "round", "rounds"),
     )
 
@@ -97,7 +111,7 @@ class RetryUntilSuccessful(Decorator):
         input_port("attempts", int, "tries in all; -1 is without end", least=1, endless=True),
         xml={"attempts": "num_attempts"},
         retries=True,
-        flow=again(around),
+        flow=again(_tries),
         around=lambda node: tries_text(node, "attempts"),
     )
 

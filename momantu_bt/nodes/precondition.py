@@ -35,6 +35,7 @@ class Precondition(Decorator):
             "FAILURE",
         ),
         modifier=False,
+        asks=("if",),
         flow=perhaps,
         port_words=script_ports,
     )

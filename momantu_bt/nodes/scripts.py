@@ -81,6 +81,7 @@ class ScriptCondition(Script):
         "condition",
         "Succeeds when a condition holds, fails when it does not.",
         input_port("code", ScriptText, "the condition"),
+        asks=("code",),
         condition=True,
         port_words=script_ports,
     )

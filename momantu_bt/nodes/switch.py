@@ -7,9 +7,6 @@ A boolean selects the case `true` or `false`; where no case is it, the case 1 or
 
 from __future__ import annotations
 
-from enum import Enum
-from typing import Any
-
 from momantu_bt.engine.node import Parts, TreeNode
 from momantu_bt.engine.status import FAILURE, RUNNING, Status
 from momantu_bt.failure import INPUT_MISSING, Failure
@@ -18,7 +15,7 @@ from momantu_bt.tree.catalogue.known import NEVER, Known, meet
 from momantu_bt.tree.catalogue.spec import NodeSpec, control, input_port
 from momantu_bt.tree.catalogue.wording import port_text, ports_in_words
 from momantu_bt.tree.model import Node
-from momantu_bt.tree.script.nodes import EPSILON, number_in
+from momantu_bt.tree.script.cases import is_case
 
 
 def _cases(walk: Walk, node: Node, before: Known) -> After:
@@ -127,29 +124,3 @@ class Switch6(Switch):
     """A switch with six cases."""
 
     spec = _spec(6)
-
-
-def is_case(value: Any, case: Any) -> bool:
-    """Whether a value matches a case: they are equal, or equal as texts or as numbers.
-
-    A text such as "3" counts as a number, `true` does not. Numbers are equal within `EPSILON`.
-    """
-    value, case = (_bare(value), _bare(case))
-    if type(value) is type(case) and value == case:
-        return True
-    left, right = _number(value), _number(case)
-    return left is not None and right is not None and abs(left - right) <= EPSILON
-
-
-def _bare(value: Any) -> Any:
-    if isinstance(value, Enum):
-        return value.value
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    return value
-
-
-def _number(value: Any) -> float | None:
-    if isinstance(value, str):
-        return None if value in ("true", "false") else number_in(value)
-    return float(value) if isinstance(value, int | float) else None

@@ -63,6 +63,11 @@ class Problems:
             self._found[Problem("too-large", message, problem.place)] = None
             raise TooManyProblems(self._found, {})
 
+    @property
+    def grave(self) -> bool:
+        """Whether there is an error. Advice that may only follow from one is not given then."""
+        return any(problem.severity is Severity.ERROR for problem in self._found)
+
     def sorted(self) -> list[Problem]:
         """All of them, in the order of the file."""
         return in_order(self._found)

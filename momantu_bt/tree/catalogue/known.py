@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import typing
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cache
 from typing import Any
 
@@ -21,13 +21,15 @@ class Key:
 
     type: of the value. literals: every possible value, if all are literals in the file; else empty.
     place: where the key was written. either: alternatives with different types, when the ways that
-    lead here write different things.
+    lead here write different things. choices: every possible value, if a node offered these to
+    choose from, and nothing has written the key since.
     """
 
     type: ValueType
     place: Place
     literals: tuple[Literal, ...] = ()
     either: tuple[Key, ...] = ()
+    choices: tuple[Literal, ...] = ()
 
     def misfits(self, type_: ValueType) -> Iterator[Key]:
         """The possible values that do not fit an expected type."""
@@ -69,6 +71,8 @@ class Known:
         having = dict(self.keys)
         for name, key in keys:
             old = having.get(name)
+            if old is not None and old.choices and old.place != key.place:
+                old = having[name] = replace(old, choices=())
             if old is not None and any(
                 not assignable(key.type, k.type) for k in old.either or (old,)
             ):
@@ -138,7 +142,7 @@ def part_type(type_: ValueType, parts: tuple[str, ...]) -> ValueType:
     """The type of a part of a value; `object` when it is unknown.
 
     Raises:
-        KeyError: the type has no such part; the arguments are the part and the valid ones.
+        KeyError: a type has no such part; the arguments are the type, the part and the valid ones.
     """
     for name in parts:
         match without_none(kind_of(type_)):
@@ -149,7 +153,7 @@ def part_type(type_: ValueType, parts: tuple[str, ...]) -> ValueType:
             case _:
                 return object
         if name not in known:
-            raise KeyError(name, tuple(known))
+            raise KeyError(type_, name, tuple(known))
         type_ = known[name]
     return type_
 

@@ -67,8 +67,9 @@ class NodeSpec:
         one_of: groups of inputs; a tree gives exactly one input of each. keys: ports that take a
         key itself instead of its value; in XML the bare name is enough. may_be_empty: inputs whose
         key may have no value. item: of a loop, the output with the current item and the input with
-        the list. copies: for each such output, the input whose value it gets. removes: the port
-        whose key is removed. scripts: see `Scripts`. objection: checks the ports' values.
+        the list. copies: for each such output, the input whose value it gets. choices: for outputs,
+        the input that lists the possible values. removes: the port whose key is removed. scripts:
+        see `Scripts`. objection: checks the ports' values. asks: ports whose script is a condition.
         concurrent: the children run at the same time. in_turn: each child runs once, in order.
         condition: a leaf that tests something and ends at once. retries: it runs the first child
         again after a failure. flow: which keys surely have a value after the node; the default
@@ -99,8 +100,10 @@ class NodeSpec:
     may_be_empty: tuple[str, ...] = ()
     item: tuple[str, str] | None = None
     copies: Mapping[str, str] = field(default_factory=dict)
+    choices: Mapping[str, str] = field(default_factory=dict)
     removes: str | None = None
     scripts: Scripts = Scripts.ASKED
+    asks: tuple[str, ...] = ()
     objection: Callable[[Node], Objection | None] | None = None
     concurrent: bool = False
     in_turn: bool = False
@@ -131,8 +134,10 @@ class Further(TypedDict, total=False):
     may_be_empty: tuple[str, ...]
     item: tuple[str, str] | None
     copies: Mapping[str, str]
+    choices: Mapping[str, str]
     removes: str | None
     scripts: Scripts
+    asks: tuple[str, ...]
     objection: Callable[[Node], Objection | None] | None
     concurrent: bool
     in_turn: bool

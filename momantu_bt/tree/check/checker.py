@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from momantu_bt.formats.places import Place
 from momantu_bt.formats.problems import Problem
+from momantu_bt.tree.check.conditions import check_conditions
 from momantu_bt.tree.check.guards import check_guards
 from momantu_bt.tree.check.handlers import check_handlers
 from momantu_bt.tree.check.keys.flow_check import check_keys
@@ -83,6 +84,7 @@ def _check(context: Context, world: str | None, robot: str | None) -> None:
         _check_tree_name(context, tree)
         for node in tree.root.walk():
             check_node(context, node)
+            check_conditions(context, node)
         check_given_names(context, tree)
     check_unused(context)
     shallow = [check_nesting(context, tree) for tree in document.trees.values()]

@@ -16,19 +16,20 @@ from momantu_bt.formats.names import nearest
 from momantu_bt.formats.places import Place, within
 from momantu_bt.tree.catalogue import SUBTREE
 from momantu_bt.tree.catalogue.codes import UNKNOWN, Codes, Failing, joined
+from momantu_bt.tree.check.cases import HANDLED_CODE, check_handled_cases
+from momantu_bt.tree.check.refusals import check_refusals, refuses
 from momantu_bt.tree.check.signatures import Context
 from momantu_bt.tree.language import ANY
-from momantu_bt.tree.model import Handler, Literal, Node, Reference, Tree
+from momantu_bt.tree.model import Handler, Literal, Node, Tree
 
 _ANY_SKILL = frozenset(ENGINE_CODES) - {TIMEOUT, FAILED, HALTED, SCRIPT_ERROR, CALL_FAILED}
 """Codes with which the engine fails a skill, in addition to those that the skill declares."""
-
-_HANDLED_CODE = Reference("failure", ("code",))
 
 
 def check_handlers(context: Context, order: list[Tree]) -> None:
     """Check every handler of every tree. order: the trees, each after those that it runs."""
     of_tree: dict[str, Codes] = {}
+    refusing: set[str] = set()
     for tree in order:
         of_node: dict[int, Codes] = {}
         handled = _handled(tree)
@@ -36,6 +37,10 @@ def check_handlers(context: Context, order: list[Tree]) -> None:
             of_node[id(node)] = _codes(context, node, of_node, of_tree, handled)
             if node.handlers and node.children:
                 _check(context, node, of_node[id(node.children[0])])
+                check_handled_cases(context, node, of_node[id(node.children[0])])
+        check_refusals(context, tree.root, of_node, refusing)
+        if refuses(tree.root, of_node, refusing):
+            refusing.add(tree.name)
         of_tree[tree.name] = of_node[id(tree.root)]
 
 
@@ -84,7 +89,7 @@ def _own(context: Context, node: Node, failing: Failing, of_tree: Mapping[str, C
 def _named(node: Node, handled: Codes | None) -> Codes:
     """The possible values of a node's port `code`."""
     code = node.ports.get("code")
-    if code == _HANDLED_CODE and handled is not None:
+    if code == HANDLED_CODE and handled is not None:
         return handled
     return frozenset({str(code.value) if isinstance(code, Literal) else UNKNOWN})
 

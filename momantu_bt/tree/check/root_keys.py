@@ -7,7 +7,7 @@ from collections.abc import Container, Iterable, Iterator, Mapping
 from dataclasses import make_dataclass
 from functools import cache
 
-from momantu_bt.formats.places import Place
+from momantu_bt.formats.places import NOWHERE, Place
 from momantu_bt.messages import RobotState
 from momantu_bt.plugins import PluginError
 from momantu_bt.service import Service
@@ -108,8 +108,8 @@ def root_keys(context: Context) -> Mapping[str, Key | None]:
     nodes = ((node, False) for tree in document.trees.values() for node in tree.root.walk())
     read = services_read(context, nodes)
     names: dict[str, Key | None] = dict.fromkeys(context.registry.services)
-    names |= {name: _published(context, name, start) for name in read}
-    names[ROBOT_KEY] = Key(RobotState, start)
+    names |= {name: _published(context, name) for name in read}
+    names[ROBOT_KEY] = Key(RobotState, NOWHERE)
     for name, value in document.values.items():
         place = document.value_places.get(name, start)
         names[name] = Key(literal_type(value), place, (value,))
@@ -152,7 +152,7 @@ def _written_by(context: Context, node: Node) -> Iterator[tuple[Scope, str, bool
             yield scope, variable.key.removeprefix("@"), variable.key not in needed
 
 
-def _published(context: Context, name: str, place: Place) -> Key | None:
+def _published(context: Context, name: str) -> Key | None:
     """What a service publishes, as far as it is known; None if nothing is."""
     try:
         kind = context.registry.services[name]
@@ -161,7 +161,7 @@ def _published(context: Context, name: str, place: Place) -> Key | None:
     if not (isinstance(kind, type) and issubclass(kind, Service)):
         return None  # a test's registry may give anything
     fields = tuple((key, type_) for key, type_ in kind.publishes.items() if _is_name(key))
-    return Key(_record(f"@{name}", fields, kind.__module__), place)
+    return Key(_record(f"@{name}", fields, kind.__module__), NOWHERE)
 
 
 @cache

@@ -14,7 +14,7 @@ from momantu_bt.skill import Port, Skill
 from momantu_bt.tree.catalogue import AUTOREMAP, NODES, SUBTREE, NodeSpec, is_ours
 from momantu_bt.tree.catalogue.nodes import DOCTOR, why_broken
 from momantu_bt.tree.language import is_xml
-from momantu_bt.tree.model import BROKEN, Document, Node, Tree
+from momantu_bt.tree.model import BROKEN, Document, Node, Reference, Scope, Tree
 from momantu_bt.tree.problems import Problems
 from momantu_bt.tree.registry import Registry
 from momantu_bt.values.types import parse_type
@@ -96,6 +96,11 @@ class Context:
     def wire(self, key: str, place: Place) -> str:
         """A reference to a key in the format of the file of a place."""
         return f"{{{key}}}" if self.in_xml(place) else f"${key}"
+
+    def wire_to(self, reference: Reference, place: Place) -> str:
+        """As `wire`, for a reference with its parts, or to a key of the root's board."""
+        at = "@" if reference.scope is Scope.ROOT else ""
+        return self.wire(at + ".".join((reference.key, *reference.fields)), place)
 
     def tree_signature(self, tree: Tree) -> Signature:
         """The ports of a subtree. An unknown type counts as `any`; `tree_ports` reports it."""

@@ -6,7 +6,7 @@ a `$`, and words may replace signs (`not $at_a and $n > 2`). Python's `eval` is 
 
 from __future__ import annotations
 
-from momantu_bt.tree.script.nodes import Board, ScriptError, part, truth
+from momantu_bt.tree.script.nodes import Assignment, Board, ScriptError, part, truth
 from momantu_bt.tree.script.parser import Script, script_of
 from momantu_bt.tree.script.tokens import ScriptSyntaxError, respell, tokens
 
@@ -15,6 +15,7 @@ __all__ = [
     "Script",
     "ScriptError",
     "ScriptSyntaxError",
+    "assigned",
     "canonical",
     "parse",
     "part",
@@ -30,6 +31,24 @@ def parse(text: str) -> Script:
         ScriptSyntaxError: with the offset of the first thing that is wrong.
     """
     return script_of(tokens(text, dollar=False), text)
+
+
+def assigned(text: str, *, dollar: bool) -> tuple[int, int] | None:
+    """The place of `=` or `:=` in a condition that ends with an assignment, or None.
+
+    In `$n = 3` a person most likely means `==`. An earlier statement, as in `$n := 1; $n > 0`, and
+    `+=` may assign. dollar: whether the text is in our YAML spelling.
+
+    Returns the offset and the length.
+
+    Raises:
+        ScriptSyntaxError: the text cannot be read.
+    """
+    last = script_of(tokens(text, dollar=dollar), text).statements[-1]
+    if not isinstance(last, Assignment) or last.operator not in ("=", ":="):
+        return None
+    after = last.target.offset + last.target.length
+    return text.index(last.operator, after), len(last.operator)
 
 
 def canonical(text: str) -> str:

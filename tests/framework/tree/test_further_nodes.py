@@ -15,6 +15,8 @@ from momantu_bt.tree.model import Literal, Reference, Scope
 
 Check = Callable[[str], list[Problem]]
 
+ADVICE = ("unused-value", "unreachable")
+
 
 @pytest.mark.parametrize("count", sorted(SWITCHES))
 def test_a_switch_has_as_many_cases_as_are_written(count: int) -> None:
@@ -107,7 +109,7 @@ def test_what_is_refused(check: Check, node: str, code: str) -> None:
     ],
 )
 def test_what_is_accepted(check: Check, node: str) -> None:
-    assert check(_tree(node)) == []
+    assert [p for p in check(_tree(node)) if p.code not in ADVICE] == []
 
 
 @pytest.mark.parametrize(
@@ -142,7 +144,8 @@ def test_a_key_that_may_have_stayed_empty_is_not_known_afterwards(check: Check, 
     ],
 )
 def test_a_key_that_is_surely_written_is_known_afterwards(check: Check, node: str) -> None:
-    assert check(_tree(f"[{node}, {{script: $n = $v}}]")) == []
+    found = check(_tree(f"[{node}, {{script: $n = $v}}]"))
+    assert [p for p in found if p.code not in ADVICE] == []
 
 
 def test_a_switch_may_be_written_with_its_ports() -> None:

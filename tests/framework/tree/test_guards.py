@@ -82,3 +82,68 @@ def test_any_tree_may_read_what_the_main_tree_writes(check: Check, reader: str) 
     # the subtree's own key of that name is another one
     own = "  Sub: [{set: {key: $n, value: 1}}, " + reader + "]\n"
     assert found(check, nodes, own) == [("unread-output", 8)]
+
+
+@pytest.mark.parametrize(
+    ("values", "nodes", "line"),
+    [
+        ("{a: 1 s}", "- succeed", 3),
+        ("{a: 1 s, b: 2 s}", "- wait: $a", 3),
+        ("{a: 1 s}", "- Sub: {a: 2 s}", 3),
+    ],
+)
+def test_a_value_that_nothing_reads(check: Check, values: str, nodes: str, line: int) -> None:
+    sub = "  Sub:\n    inputs: {a: number}\n    wait: $a\n" if "Sub" in nodes else ""
+    text = f"momantu_bt: 1\nmain: Main\nvalues: {values}\ntrees:\n  Main:\n    {nodes}\n{sub}"
+    assert [(p.code, p.place.line) for p in check(text)] == [("unused-value", line)]
+
+
+@pytest.mark.parametrize(
+    "nodes",
+    [
+        "- wait: $a",
+        "- condition: $a > 0",
+        "- {wait: $a, disabled: true}\n    - succeed",
+        "- {succeed: , skip_if: $a > 0, disabled: true}\n    - succeed",
+        "- Sub: {b: $a}",
+        "- Root",
+        "- wiat: 3 s",
+    ],
+)
+def test_a_value_that_something_may_read(check: Check, nodes: str) -> None:
+    sub = "  Sub: {inputs: {b: number}, wait: $b}\n" if "Sub" in nodes else ""
+    sub = "  Root: {wait: $@a}\n" if "Root" in nodes else sub
+    text = f"momantu_bt: 1\nmain: Main\nvalues: {{a: 1 s}}\ntrees:\n  Main:\n    {nodes}\n{sub}"
+    assert "unused-value" not in [problem.code for problem in check(text)]
+
+
+@pytest.mark.parametrize(
+    "nodes",
+    [
+        "- {relocalize: , repeat: -1}\n    - succeed",
+        "- always_failure\n    - succeed",
+        "- fallback: [{relocalize: , force: success}, relocalize]",
+        "- fallback: [{relocalize: , retry: -1}, relocalize]",
+        "- {relocalize: , keep_running_until_failure: }\n    - succeed",
+        "- Sub\n    - succeed",
+        "- if: succeed\n      then: relocalize\n      else: relocalize",
+    ],
+)
+def test_a_node_that_is_never_reached(check: Check, nodes: str) -> None:
+    sub = "  Sub: [{fail: {code: NO_WAY}}]\n" if "Sub" in nodes else ""
+    assert [code for code, _ in found(check, nodes, sub)] == ["unreachable"]
+
+
+@pytest.mark.parametrize(
+    "nodes",
+    [
+        "- {relocalize: , repeat: -1, timeout: 3 s, force: success}\n    - succeed",
+        "- {always_failure: , invert: }\n    - succeed",
+        "- {always_failure: , disabled: true}\n    - succeed",
+        "- {always_failure: , skip_if: $@robot.stamp > 3}\n    - succeed",
+        "- {relocalize: , repeat: -1}\n    - {succeed: , disabled: true}",
+        "- fallback: [{relocalize: , retry: 3}, relocalize]",
+    ],
+)
+def test_a_node_that_may_be_reached(check: Check, nodes: str) -> None:
+    assert found(check, nodes) == []

@@ -225,7 +225,7 @@ def test_a_script_runs_exactly_when_it_has_what_it_needs(
         ("$a := $a + 1", ["nothing writes $a before it is read here"]),
         ("$a += 1", ["nothing writes $a before it is read here"]),
         ("$a = 1", ["nothing writes $a before it is read here"]),
-        ("$a := 1; $a += 1", []),
+        ("$a := 1; $a += $n", []),
         ("$n += 1", []),
     ],
 )

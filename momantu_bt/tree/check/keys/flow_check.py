@@ -14,9 +14,12 @@ from momantu_bt.tree.catalogue import NODES, PRE_CONDITIONS, SUBTREE, NodeSpec
 from momantu_bt.tree.catalogue.flow import After, Walk, as_written
 from momantu_bt.tree.catalogue.known import NEVER, Key, Known, literal_type, meet
 from momantu_bt.tree.catalogue.spec import Kind, Scripts
+from momantu_bt.tree.check.cases import check_switch
 from momantu_bt.tree.check.keys.changes import KeyChanges
 from momantu_bt.tree.check.keys.reads import Demand, KeyReads, Written, references
 from momantu_bt.tree.check.keys.shared import ROOT_MARK, Call, call_of, shared_keys
+from momantu_bt.tree.check.keys.unused import warn_of_unused_values
+from momantu_bt.tree.check.reachable import report_unreachable
 from momantu_bt.tree.check.signatures import Context, Signature
 from momantu_bt.tree.model import Literal, Node, Reference, Scope, Tree
 from momantu_bt.tree.script import Script, ScriptSyntaxError, parse
@@ -51,12 +54,14 @@ class _KeyCheck:
         self.ports = self.context.tree_signature(self.tree).ports
         self.changes = KeyChanges(self.context, self.tree, reads.keys)
         self.walk = self.walking(self.node)
+        self.at: dict[int, bool] = {}
 
     def run(self) -> None:
         after = self.node(self.tree.root, self.start())
         success, mine = after.passed, self.reads.keys[self.tree.name]
         mine.success = frozenset(success.keys or ())
         mine.failure = frozenset(after.failure.keys or ())
+        mine.succeeds, mine.fails = success.reached, after.failure.reached
         if self.tree.name == self.context.document.main:
             self.reads.report_needed()
         for name, port in self.ports.items():
@@ -81,6 +86,11 @@ class _KeyCheck:
                 wire = self.context.wire(written.key, written.place)
                 message = f"nothing reads {wire}, which {written.said} writes"
                 self.context.problems.warning("unread-output", written.place, message)
+        if self.context.problems.grave:
+            return
+        report_unreachable(self.context, self.tree.root, self.at)
+        if self.tree.name == self.context.document.main:
+            warn_of_unused_values(self.context, self.tree, seen)
 
     def watched(self) -> None:
         """Check watched keys: they need not have a value, but something must write them."""
@@ -126,6 +136,7 @@ class _KeyCheck:
         return known.rewritten(each for changes in written for each in changes)
 
     def node(self, node: Node, before: Known) -> After:
+        self.at[id(node)] = self.at.get(id(node), False) or before.reached
         if node.disabled:
             return After(NEVER, NEVER, before)
         if not node.conditions:
@@ -173,6 +184,8 @@ class _KeyCheck:
             return After(before, before)
         self.reads.inputs(node, signature, self.at_any_tick(node, before))
         spec = signature.spec
+        if spec is not None and spec.switch:
+            check_switch(self.context, self.tree, node, self.at_any_tick(node, before))
         scripts = Scripts.ASKED if spec is None else spec.scripts
         for name, port in signature.ports.items():
             code = node.ports.get(name)
@@ -196,7 +209,8 @@ class _KeyCheck:
         kept = before.lacking(call.local(inside.removed))
         success = self.outputs(call.node, kept)
         success = self.known_after(success, call, call.local(inside.success))
-        return After(success, self.known_after(kept, call, call.local(inside.failure)))
+        failure = self.known_after(kept, call, call.local(inside.failure))
+        return After(success if inside.succeeds else NEVER, failure if inside.fails else NEVER)
 
     def known_after(self, known: Known, call: Call, shared: Mapping[str, str]) -> Known:
         """Give values to keys that the tree inside shares. What was known of them may be outdated.
@@ -233,7 +247,8 @@ class _KeyCheck:
                 self.reads.written.append(Written(value.key, place, signature.said))
             given = node.ports.get(copies.get(name, ""))
             type_ = literal_type(given) if isinstance(given, Literal) else port.type
-            after = after.having(value.key, Key(type_, place))
+            choices = () if signature.spec is None else _choices(node, name, signature.spec)
+            after = after.having(value.key, Key(type_, place, choices=choices))
         return after
 
     def handed_on(self, node: Node, signature: Signature, spec: NodeSpec, before: Known) -> Known:
@@ -358,6 +373,14 @@ class _KeyCheck:
         for key in keys:
             self.written_by_script(Written(key, self.in_script(key, place), "the script"))
         return before.having_all({name: Key(object, place) for name in keys})
+
+
+def _choices(node: Node, output: str, spec: NodeSpec) -> tuple[Literal, ...]:
+    """The possible values of an output, if the file lists them."""
+    listed = node.ports.get(spec.choices.get(output, ""))
+    if not isinstance(listed, Literal) or not isinstance(listed.value, list):
+        return ()
+    return tuple(Literal(value) for value in listed.value)
 
 
 def _reference(variable: str) -> Reference:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from momantu_bt.formats.names import valid_names
-from momantu_bt.formats.places import Place
+from momantu_bt.formats.places import NOWHERE, Place
 from momantu_bt.formats.units import UnitError, in_unit
 from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue import AUTOREMAP, SUBTREE
@@ -171,17 +171,15 @@ class KeyReads:
         self.see(reference)
         key = before.get(reference.key) if reference.scope is Scope.LOCAL else None
         if key is not None and any(key.misfits(port.type)):
-            message = f"{self.context.wire(reference.key, place)} is {label(key.type)}; "
-            hint = f"it comes from {key.place.seen_from(place)}"
+            message = f"{self.context.wire_to(reference, place)} is {label(key.type)}; "
+            hint = _origin(key, place)
             message += f"{port.name!r} of {said} takes {label(port.type)}"
             self.context.problems.error("wrong-type", place, message, hint)
 
     def _report_misfit(self, key: Key, place: Place, message: str) -> None:
-        """Report a wrong value: where it is used, or where it is given if that is another file."""
-        where, hint = place, f"it comes from {key.place.seen_from(place)}"
-        if key.place.file != place.file:
-            where, hint = key.place, f"it is used in {place.seen_from(key.place)}"
-        self.context.problems.error("wrong-value", where, message, hint)
+        """Report a value that is wrong for the node that reads it: where the value is written."""
+        hint = f"it is used in {place.seen_from(key.place)}"
+        self.context.problems.error("wrong-value", key.place, message, hint)
 
     def _wire(
         self, reference: Reference, before: Known, place: Place, port: Port, said: str
@@ -190,7 +188,7 @@ class KeyReads:
         if key is None:
             return
         if key.literals and not reference.fields:
-            wire = self.context.wire(reference.key, place)
+            wire = self.context.wire_to(reference, place)
             for literal in key.literals:
                 try:
                     convert(literal.value, port)
@@ -201,19 +199,18 @@ class KeyReads:
         type_ = self.part_of(key, reference.fields, place)
         whole = Key(type_, key.place, either=() if reference.fields else key.either)
         for wrong in whole.misfits(port.type) if type_ is not None else ():
-            wire = self.context.wire(".".join((reference.key, *reference.fields)), place)
+            wire = self.context.wire_to(reference, place)
             wanted = f"{port.name!r} of {said} takes {label(port.type)}"
-            origin = f"it comes from {wrong.place.seen_from(place)}"
             message = f"{wire} is {label(wrong.type)}; {wanted}"
-            self.context.problems.error("wrong-type", place, message, origin)
+            self.context.problems.error("wrong-type", place, message, _origin(wrong, place))
 
     def part_of(self, key: Key, parts: tuple[str, ...], place: Place) -> ValueType | None:
         """The type of a part of a key's value; None, with a report, if there is no such part."""
         try:
             return part_type(key.type, parts)
         except KeyError as error:
-            part, valid = error.args
-            message = f"{label(key.type)} has no part {part!r}"
+            whole, part, valid = error.args
+            message = f"{label(whole)} has no part {part!r}"
             hint = valid_names(part, valid, "parts")
             self.context.problems.error("unknown-part", place, message, hint)
             return None
@@ -253,6 +250,11 @@ class KeyReads:
             in_unit(text, unit)
         except UnitError as error:
             self.context.problems.error("wrong-value", place, str(error))
+
+
+def _origin(key: Key, place: Place) -> str:
+    """Where a key's value comes from, in words; empty for what the run itself publishes."""
+    return "" if key.place is NOWHERE else f"it comes from {key.place.seen_from(place)}"
 
 
 def references(value: PortValue) -> list[Reference]:

@@ -78,7 +78,8 @@ class TreeKeys:
     from outside. remapped: whether some node shares them all. needed: keys that it reads and
     may not have written before, with the first place. success, failure: which keys have a
     value after each result. written_as_root: keys of the main tree that any tree writes as the
-    root's (`$@key`), at a time that is not followed.
+    root's (`$@key`), at a time that is not followed. succeeds, fails: whether the tree can end
+    so at all.
     """
 
     mentioned: set[str] = field(default_factory=set)
@@ -90,6 +91,8 @@ class TreeKeys:
     success: frozenset[str] = frozenset()
     failure: frozenset[str] = frozenset()
     written_as_root: set[str] = field(default_factory=set)
+    succeeds: bool = True
+    fails: bool = True
 
     def goes_out(self, key: str) -> bool:
         """Whether anything outside may read the key."""

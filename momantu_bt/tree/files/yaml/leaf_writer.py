@@ -65,8 +65,8 @@ class LeafWriter:
         """One port's value. A script is in our spelling."""
         spec = NODES.get(node.type)
         port = spec.ports.get(name) if spec is not None else None
-        if port is not None and port.type is ScriptText and isinstance(value, Literal):
-            return script_text(str(value.value), flow=flow)
+        if spec and port and port.type is ScriptText and isinstance(value, Literal):
+            return script_text(str(value.value), asked=name in spec.asks, flow=flow)
         return port_text(value, flow=flow)
 
     def _is_bare(self, node: Node) -> bool:
@@ -79,7 +79,8 @@ class LeafWriter:
         spec = NODES.get(node.type)
         if spec is not None:
             script = spec.ports[name].type is ScriptText if name in spec.ports else False
-            spelled = not script or script_spelling(_text(value)) is not None
+            asked = name in spec.asks
+            spelled = not script or script_spelling(_text(value), asked=asked) is not None
             return name == spec.first and spelled
         if name == FIRST_INPUT:
             return True

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from momantu_bt.formats.names import nearest
 from momantu_bt.formats.yaml.values import Entries, Raw, Scalar
-from momantu_bt.tree.catalogue import FORCED, MODIFIERS, NODES, SPELLED, NodeSpec
+from momantu_bt.tree.catalogue import FORCED, MODIFIERS, NODES, PRE_CONDITIONS, SPELLED, NodeSpec
 from momantu_bt.tree.catalogue.nodes import DOCTOR, why_broken
 from momantu_bt.tree.files.port_values import words
 from momantu_bt.tree.files.yaml.ports import is_empty, read_port, read_ports
@@ -70,7 +70,7 @@ def _flag(value: Raw, problems: Problems) -> bool:
 
 
 def _condition(node: Node, key: Scalar, value: Raw, problems: Problems) -> None:
-    script = read_script(value, problems)
+    script = read_script(value, problems, asked=key.text in PRE_CONDITIONS)
     if script is not None:
         node.conditions[key.text] = script
         node.condition_places[key.text] = value.place

@@ -11,7 +11,7 @@ from typing import TypeAlias
 
 from momantu_bt.formats.text import Beside
 from momantu_bt.formats.yaml.writer import scalar
-from momantu_bt.tree.catalogue import NODES, Kind
+from momantu_bt.tree.catalogue import NODES, PRE_CONDITIONS, Kind
 from momantu_bt.tree.files.scalars import CannotWrite, port_text
 from momantu_bt.tree.files.yaml.leaf_writer import LeafWriter
 from momantu_bt.tree.files.yaml.lines import STEP, WIDTH, above, beside
@@ -166,7 +166,10 @@ class NodeWriter:
         ]
         if node.disabled:
             lines.append(f"{pad}disabled: true")
-        return lines + [f"{pad}{key}: {script_text(s)}" for key, s in node.conditions.items()]
+        return lines + [
+            f"{pad}{key}: {script_text(text, asked=key in PRE_CONDITIONS)}"
+            for key, text in node.conditions.items()
+        ]
 
     def _keyed(self, node: Node, lead: str, pad: str, more: bool) -> list[_Piece]:
         """The node's key with everything under it. more: whether other keys follow."""

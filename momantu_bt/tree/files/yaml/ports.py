@@ -52,9 +52,8 @@ def read_port(
     name, place = named
     node.port_places[name] = value.place
     node.port_name_places[name] = place
-    port = spec.ports.get(name) if spec is not None else None
-    if port is not None and port.type is ScriptText:
-        script = read_script(value, problems)
+    if spec is not None and name in spec.ports and spec.ports[name].type is ScriptText:
+        script = read_script(value, problems, asked=name in spec.asks)
         if script is not None:
             node.ports[name] = Literal(script)
         return

@@ -7,11 +7,14 @@ from momantu_bt.formats.yaml.values import Entries, Raw, Scalar
 from momantu_bt.formats.yaml.writer import scalar
 from momantu_bt.tree.files.yaml.words import BTCPP
 from momantu_bt.tree.problems import Problems
-from momantu_bt.tree.script import ScriptSyntaxError, canonical, parse, yaml_spelling
+from momantu_bt.tree.script import ScriptSyntaxError, assigned, canonical, parse, yaml_spelling
 
 
-def read_script(value: Raw, problems: Problems) -> str | None:
-    """A script in BehaviorTree.CPP's spelling; None if a problem was reported."""
+def read_script(value: Raw, problems: Problems, *, asked: bool) -> str | None:
+    """A script in BehaviorTree.CPP's spelling; None if a problem was reported.
+
+    asked: whether it is a condition.
+    """
     if isinstance(value, Entries) and [key.text for key, _ in value.entries] == [BTCPP]:
         return _kept(value.entries[0][1], problems)
     if not isinstance(value, Scalar) or value.value is None:
@@ -19,10 +22,17 @@ def read_script(value: Raw, problems: Problems) -> str | None:
         problems.error("script", value.place, "a script is expected here", hint)
         return None
     try:
-        return canonical(value.text)
+        script = canonical(value.text)
+        slip = assigned(value.text, dollar=True) if asked else None
     except ScriptSyntaxError as error:
         problems.error("script", _within(value, error), error.message, error.hint)
         return None
+    if slip is None:
+        return script
+    place = _place(value, *slip)
+    message = f"`{value.text[slip[0] : sum(slip)]}` assigns; a condition compares"
+    problems.error("assigns", place, message, "did you mean `==`?")
+    return None
 
 
 def as_condition(value: Raw) -> Raw | None:
@@ -47,21 +57,28 @@ def _kept(value: Raw, problems: Problems) -> str | None:
 
 
 def _within(value: Scalar, error: ScriptSyntaxError) -> Place:
+    return _place(value, error.offset, error.length)
+
+
+def _place(value: Scalar, offset: int, length: int) -> Place:
+    """The place of a part of a script."""
     place = value.place
     quotes = 1 if value.quoted else 0
     if place.length != len(value.text) + 2 * quotes:
         return place  # with several lines or escapes, an offset in the text is not one in the file
-    offset = error.offset + quotes
-    if offset >= place.length:
+    if offset + quotes >= place.length:
         return place
-    return Place(place.file, place.line, place.column + offset, error.length)
+    return Place(place.file, place.line, place.column + offset + quotes, length)
 
 
-def script_spelling(text: str) -> str | None:
+def script_spelling(text: str, *, asked: bool) -> str | None:
     """A canonical script in our spelling, with words if possible, or else with signs.
 
-    None if neither reads back as the same script, as with `a && b || c`.
+    asked: whether it is a condition. None if neither reads back as the same script, as with
+    `a && b || c`, or as a condition `n = 3`.
     """
+    if asked and _assigns(text):
+        return None
     for words in (True, False):
         try:
             spelled = yaml_spelling(text, words=words)
@@ -72,9 +89,19 @@ def script_spelling(text: str) -> str | None:
     return None
 
 
-def script_text(text: str, *, flow: bool = False) -> str:
-    """A canonical script as a YAML value. `{btcpp: …}` holds one that our spelling cannot say."""
-    spelled = script_spelling(text)
+def _assigns(text: str) -> bool:
+    try:
+        return assigned(text, dollar=False) is not None
+    except ScriptSyntaxError:
+        return False
+
+
+def script_text(text: str, *, asked: bool, flow: bool = False) -> str:
+    """A canonical script as a YAML value. `{btcpp: …}` holds one that our spelling cannot say.
+
+    asked: whether it is a condition.
+    """
+    spelled = script_spelling(text, asked=asked)
     if spelled is not None:
         return scalar(spelled, flow=flow, typed=False)
     return f"{{{BTCPP}: {scalar(text, flow=True, typed=False)}}}"

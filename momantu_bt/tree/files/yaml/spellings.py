@@ -70,5 +70,5 @@ def bare_condition(node: Node) -> str | None:
         return None
     if has_modifiers(node) or node.children or node.end_comments or node.port_comments:
         return None
-    spelled = script_spelling(str(code.value))
+    spelled = script_spelling(str(code.value), asked=True)
     return scalar(spelled, typed=False) if spelled is not None and "$" in spelled else None
