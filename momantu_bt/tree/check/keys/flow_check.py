@@ -14,7 +14,6 @@ from momantu_bt.tree.catalogue import NODES, PRE_CONDITIONS, SUBTREE, NodeSpec
 from momantu_bt.tree.catalogue.flow import After, Walk, as_written
 from momantu_bt.tree.catalogue.known import NEVER, Key, Known, literal_type, meet
 from momantu_bt.tree.catalogue.spec import Kind, Scripts
-from momantu_bt.tree.check.cases import check_switch
 from momantu_bt.tree.check.keys.changes import KeyChanges
 from momantu_bt.tree.check.keys.reads import Demand, KeyReads, Written, references
 from momantu_bt.tree.check.keys.shared import ROOT_MARK, Call, call_of, shared_keys
