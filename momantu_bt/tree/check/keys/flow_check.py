@@ -17,6 +17,7 @@ from momantu_bt.tree.catalogue.spec import Kind, Scripts
 from momantu_bt.tree.check.keys.changes import KeyChanges
 from momantu_bt.tree.check.keys.reads import Demand, KeyReads, Written, references
 from momantu_bt.tree.check.keys.shared import ROOT_MARK, Call, call_of, shared_keys
+from momantu_bt.tree.check.keys.switches import check_switch
 from momantu_bt.tree.check.keys.unused import warn_of_unused_values
 from momantu_bt.tree.check.reachable import report_unreachable
 from momantu_bt.tree.check.signatures import Context, Signature
