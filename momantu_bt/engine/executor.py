@@ -7,6 +7,7 @@ import traceback
 from collections.abc import Callable
 from typing import Any, NamedTuple, Protocol
 
+from momantu_bt import collector
 from momantu_bt.engine import ending
 from momantu_bt.engine.build import Built
 from momantu_bt.engine.causes import running_as_cause
@@ -142,19 +143,19 @@ class Executor:
 
     def _until_end(self, interrupts: Interrupts, started: float) -> str:
         self.begin()
-        while True:
-            if interrupts.requested:
-                return ending.INTERRUPTED
-            status = self.tick()
-            if status is not RUNNING:
-                self._failure = self.built.root.failure if status is FAILURE else None
-                return ending.FAILURE if status is FAILURE else ending.SUCCESS
-            if self.context.now >= self._max_time - CLOCK_SLACK:
-                self._failure = self._timed_out()
-                return ending.FAILURE
-            if self._realtime:
-                due = started + self.context.waited + self.context.now
-                time.sleep(max(0.0, due - time.perf_counter()))
+        with collector.frozen():
+            while not interrupts.requested:
+                status = self.tick()
+                if status is not RUNNING:
+                    self._failure = self.built.root.failure if status is FAILURE else None
+                    return ending.FAILURE if status is FAILURE else ending.SUCCESS
+                if self.context.now >= self._max_time - CLOCK_SLACK:
+                    self._failure = self._timed_out()
+                    return ending.FAILURE
+                if self._realtime:
+                    due = started + self.context.waited + self.context.now
+                    time.sleep(max(0.0, due - time.perf_counter()))
+        return ending.INTERRUPTED
 
     def _step(self) -> None:
         """Step the world; mark it as broken while the step lasts, in case it raises."""

@@ -10,6 +10,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Any, TypeAlias
 
+from momantu_bt import collector
 from momantu_bt.engine.blackboard import Board, ReadOnlyCell
 from momantu_bt.engine.build import build, skills_in
 from momantu_bt.engine.context import Remarked, RunContext
@@ -63,7 +64,7 @@ def launch(prepared: Prepared, watch: Watch | None = None) -> Report:
     document, options = prepared.document, prepared.options
     if not options.patience > 0.0:
         raise LaunchError(f"a patience of {options.patience} s; expected more than 0, or inf")
-    with ExitStack() as stack:
+    with collector.paused(), ExitStack() as stack:
         interrupts = stack.enter_context(Interrupts())
         executor, stage, recorder = _assembled(prepared, stack)
         auditor = Auditor(executor.context, executor.world) if options.audit else None

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from momantu_bt import collector
 from momantu_bt.cli.shared.notices import notice
 from momantu_bt.cli.shared.options import Robot
 from momantu_bt.errors import TRACEBACK, ExitCode, InputError, MomantuError
@@ -153,7 +154,8 @@ class _Shown:
 
 def _run(tree: str, options: RunOptions, shown: _Shown) -> Report:
     """Check the arguments, run, and print how it ended."""
-    prepared = preparing.prepare(tree, options)
+    with collector.paused():
+        prepared = preparing.prepare(tree, options)
     stops = _breakpoints(shown, prepared)
     for path in (shown.report, shown.video):
         if path is not None:

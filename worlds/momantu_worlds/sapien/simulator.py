@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import gc
 from collections.abc import Mapping
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +27,8 @@ from momantu_worlds.scenes.geometry.bodies import Body, Episode
 START_POSE = "home"
 """The named pose in which an episode begins."""
 SHADERS = Path(__file__).parent / "shaders" / "lambert"
+_OPENED = count()
+"""How many episodes this process has opened: before the first there is nothing to tidy."""
 
 
 class Simulator:
@@ -53,7 +56,8 @@ class Simulator:
         Raises:
             WorldError: the robot cannot be simulated, or SAPIEN cannot render.
         """
-        tidy()
+        if next(_OPENED) > 0:
+            tidy()
         self.config = config or SimulatorConfig()
         self._ticks = 0
         self.scene = _new_scene(self.config.physics, render)

@@ -1,0 +1,46 @@
+"""The garbage collector during a run: off while it starts, and back as it was afterwards."""
+
+from __future__ import annotations
+
+import gc
+import weakref
+
+import pytest
+
+from momantu_bt import collector
+
+
+class Loop:
+    """An object that refers to itself: the collector alone can free it."""
+
+    def __init__(self) -> None:
+        self.itself = self
+
+
+@pytest.mark.parametrize("was_on", [True, False])
+def test_afterwards_it_is_as_before(was_on: bool) -> None:
+    (gc.enable if was_on else gc.disable)()
+    try:
+        with pytest.raises(KeyError), collector.paused():
+            assert not gc.isenabled()
+            with collector.frozen():
+                assert gc.isenabled()
+                assert gc.get_freeze_count() > 0
+                raise KeyError
+        assert gc.isenabled() is was_on
+        assert gc.get_freeze_count() == 0
+    finally:
+        gc.enable()
+
+
+def test_what_was_there_is_freed_after_the_run_and_garbage_of_the_run_during_it() -> None:
+    before = Loop()
+    early = weakref.ref(before)
+    with collector.frozen():
+        del before
+        within = weakref.ref(Loop())
+        gc.collect()
+        assert within() is None
+        assert early() is not None
+    gc.collect()
+    assert early() is None
