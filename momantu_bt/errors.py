@@ -25,9 +25,21 @@ class ExitCode(IntEnum):
     NO_WORLD = 3
     """The world could not start: `momantu_bt.world.WorldError`."""
     INTERNAL = 4
-    """A mistake in the program."""
+    """A mistake in the program or in a plug-in, or an output of a good run got lost."""
     INTERRUPTED = 130
-    """Ctrl-C or SIGTERM."""
+    """Ctrl-C, SIGTERM or SIGHUP."""
+
+
+class StopRequested(KeyboardInterrupt):
+    """Ctrl-C or a signal such as SIGTERM ends the run now.
+
+    Code of plug-ins may raise anything, `SystemExit` too. Whoever calls it catches BaseException
+    and lets this one pass.
+    """
+
+
+PLUGIN_ERRORS = (Exception, SystemExit, GeneratorExit)
+"""What code of a plug-in may raise before a run begins; Ctrl-C passes."""
 
 
 class MomantuError(Exception):
@@ -51,3 +63,14 @@ class MomantuError(Exception):
 
 class InputError(MomantuError):
     """An argument, or a file that it names, is wrong; the message says what would be right."""
+
+
+def words_of(error: BaseException) -> str:
+    """`ValueError: too long`, on one line, also for an exception whose text cannot be made."""
+    try:
+        text = str(error)
+    except Exception:
+        text = "its text cannot be made"
+    return (
+        ": ".join([type(error).__name__, " ".join(text.split())]) if text else type(error).__name__
+    )

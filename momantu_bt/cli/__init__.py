@@ -2,13 +2,14 @@
 
 Exit codes: 0 the tree succeeded and no referee denies it; 1 it failed, or something is wrong;
 2 the tree or the arguments are wrong, and nothing was started; 3 the world could not start;
-4 an internal error; 130 interrupted.
+4 an internal error, or an output that got lost; 130 interrupted.
 """
 
 from __future__ import annotations
 
 import os
 import re
+import signal
 import sys
 from collections.abc import Sequence
 from typing import Any
@@ -16,16 +17,18 @@ from typing import Any
 import typer
 
 import momantu_bt.threads  # noqa: F401 - before numpy, which the next imports load
+from momantu_bt.cli.shared import streams
 from momantu_bt.cli.shared.notices import notice
 from momantu_bt.cli.shared.program import COMPLETE, PROGRAM
 from momantu_bt.cli.subverbs import add_command, with_subverbs
 from momantu_bt.cli.verbs import COMMANDS, VERBS, built_in
-from momantu_bt.errors import TRACEBACK, ExitCode, MomantuError
+from momantu_bt.errors import TRACEBACK, ExitCode, MomantuError, words_of
 from momantu_bt.lazy import lazily
 from momantu_bt.version import __version__
 
 with lazily():
     from momantu_bt.cli import completion
+    from momantu_bt.running import leftovers
 
 _UNKNOWN = re.compile(r"No such command '(?P<word>.*)'\.(?P<nearest> Did you mean)?")
 """Click's message about an unknown command of a group, with typer's addition."""
@@ -36,7 +39,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     A verb returns its exit code or raises; only this function reports what it raises.
     """
-    given = list(sys.argv[1:] if arguments is None else arguments)
+    if arguments is not None:
+        return _main(list(arguments))
+    streams.open_standard_streams()
+    code = _main(sys.argv[1:])
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # too late: all that is left is to end
+    leftovers.end_with(code)
+    return code
+
+
+def _main(given: list[str]) -> int:
     try:
         if COMPLETE in os.environ:
             return completion.answer(_app(completion.words_to_complete()))
@@ -47,17 +59,24 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         return ExitCode.INTERRUPTED
     except SystemExit as error:
-        return error.code if isinstance(error.code, int) else ExitCode.WRONG_INPUT
+        return _ended_early(error, given)
     except BrokenPipeError:
         # the reader of the output has gone, so nobody would see a message
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return ExitCode.FAILURE
     except MomantuError as error:
         typer.echo(error.printed(), err=True)
         return error.exit_code
-    except Exception as error:
+    except BaseException as error:
         return _other_error(error)
     return result if isinstance(result, int) else ExitCode.SUCCESS
+
+
+def _ended_early(error: SystemExit, given: Sequence[str]) -> int:
+    """The exit code after `sys.exit`, which only a plug-in's verb may call; its own code holds."""
+    words = [word for word in given if not word.startswith("-")]
+    if words and any(name in COMMANDS for name in (words[0], " ".join(words[:2]))):
+        return error.code if isinstance(error.code, int) else int(error.code is not None)
+    return _other_error(error)
 
 
 def _app(given: Sequence[str]) -> typer.Typer:
@@ -108,7 +127,7 @@ def _never() -> None:
     """A placeholder for a verb that was not given."""
 
 
-def _other_error(error: Exception) -> ExitCode:
+def _other_error(error: BaseException) -> ExitCode:
     """Report a wrong command line, or a mistake in the program."""
     usage = _usage_message(error)
     if usage is not None:
@@ -116,7 +135,7 @@ def _other_error(error: Exception) -> ExitCode:
         return ExitCode.WRONG_INPUT
     if os.environ.get(TRACEBACK):
         raise error
-    notice(f"internal error: {type(error).__name__}: {error} (set {TRACEBACK}=1 for the traceback)")
+    notice(f"internal error: {words_of(error)} (set {TRACEBACK}=1 for the traceback)")
     return ExitCode.INTERNAL
 
 

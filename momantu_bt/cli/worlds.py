@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from momantu_bt.cli.shared.listing import listing
-from momantu_bt.errors import MomantuError
+from momantu_bt.errors import PLUGIN_ERRORS, MomantuError, words_of
 from momantu_bt.messages import plain
 from momantu_bt.plugins import PluginError
 from momantu_bt.world import AboutWorld, Site, WorldEntry
@@ -78,8 +78,8 @@ def _site(name: str, entry: WorldEntry) -> Site:
         return entry.site()
     except MomantuError:
         raise
-    except Exception as error:  # a plug-in's code, which may raise anything
-        message = f"the world {name!r} cannot be read: {type(error).__name__}: {error}"
+    except PLUGIN_ERRORS as error:  # a plug-in's code, which may raise anything
+        message = f"the world {name!r} cannot be read: {words_of(error)}"
         raise PluginError(message) from error
 
 

@@ -8,6 +8,7 @@ from importlib.metadata import EntryPoint
 from typing import Any
 
 from momantu_bt.diagnosis import Diagnosis
+from momantu_bt.errors import PLUGIN_ERRORS, words_of
 from momantu_bt.plugins import PREFIX, Group, PluginClash, PluginError
 
 Hook = Callable[[], Iterable[Diagnosis]]
@@ -41,8 +42,8 @@ def asked(name: str, hook: Hook) -> Iterator[Diagnosis]:
     """The diagnoses of one plug-in; a hook that raises is itself a finding."""
     try:
         yield from hook()
-    except Exception as error:
-        detail = f"its diagnose() raised {type(error).__name__}: {error}"
+    except PLUGIN_ERRORS as error:
+        detail = f"its diagnose() raised {words_of(error)}"
         yield Diagnosis(name, False, detail, "tell its authors")
 
 

@@ -14,7 +14,7 @@ from momantu_bt.engine.ports import Reader, cell_of, reader
 from momantu_bt.engine.skill_leaf import SkillLeaf
 from momantu_bt.engine.substituted import Disabled, Substituted
 from momantu_bt.engine.subtree import SubTree
-from momantu_bt.errors import MomantuError
+from momantu_bt.errors import PLUGIN_ERRORS, MomantuError, words_of
 from momantu_bt.skill import Port, Skill
 from momantu_bt.tree.catalogue import AUTOREMAP, NODE_CLASSES, NODES, SUBTREE
 from momantu_bt.tree.catalogue.built_in import BUILT_IN
@@ -77,10 +77,10 @@ def _plugged_in(kind: type[TreeNode], parts: Parts) -> TreeNode:
         return kind(parts)
     except (MomantuError, ConversionError):
         raise
-    except Exception as error:
+    except PLUGIN_ERRORS as error:
         raise BuildError(
             f"{parts.model.place}: the node {parts.model.type} cannot be made: its constructor "
-            f"({kind.__module__}:{kind.__qualname__}) raised {type(error).__name__}: {error}",
+            f"({kind.__module__}:{kind.__qualname__}) raised {words_of(error)}",
             hint="Tell its authors, or leave the node out.",
         ) from error
 

@@ -13,7 +13,10 @@ SUCCESS, FAILURE, INTERRUPTED, ERROR = "SUCCESS", "FAILURE", "INTERRUPTED", "ERR
 
 @dataclass(frozen=True, slots=True)
 class Ending:
-    """How a run ended. status: one of the four. error: a traceback."""
+    """How a run ended. status: one of the four. error: a traceback.
+
+    interrupted_by: name of the signal that ended it.
+    """
 
     status: str
     failure: FailureValue | None
@@ -22,3 +25,4 @@ class Ending:
     wall_time: float
     ticks: int
     error: str | None
+    interrupted_by: str | None = None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import time
 import traceback
 from collections.abc import Callable
@@ -20,6 +21,7 @@ from momantu_bt.engine.raised import raised_at
 from momantu_bt.engine.skills.services import ServiceError, Services
 from momantu_bt.engine.skills.session import CLOCK_SLACK
 from momantu_bt.engine.status import FAILURE, RUNNING, Status
+from momantu_bt.errors import StopRequested, words_of
 from momantu_bt.failure import TIMEOUT, FailureValue
 from momantu_bt.messages import RobotState
 from momantu_bt.world import Verdict, World
@@ -100,29 +102,36 @@ class Executor:
         self._error: str | None = None
         self._world_is_sound = True
         self._failure: FailureValue | None = None
+        self._depth = sys.getrecursionlimit()
 
     def show_to(self, observer: Observer) -> None:
         """Show each tick to an observer."""
         self.context.events.subscribe(Ticked, lambda event: observer.ticked(event.run))
 
     def run(self, interrupts: Interrupts) -> Ending:
-        """Run from the first tick to the last. Only a second signal of an interrupt is raised."""
+        """Run from the first tick to the last. Nothing is raised, whatever plug-ins raise."""
         started = time.perf_counter()
         interrupts.patient = True
         self._publish_starts(interrupts)
         try:
             status = self._until_end(interrupts, started)
-        except KeyboardInterrupt:
-            status = ending.INTERRUPTED
-        except Exception as error:
-            self._error = _told(error)
-            status = ending.ERROR
+        except BaseException as error:  # services, worlds and nodes: they may raise anything
+            status = self._broken_by(error, interrupts)
         sim_time, ticks = self.context.now, self.context.tick
         verdict = self._come_to_rest(status)
         wall_time = time.perf_counter() - started
         if self._error is not None:
             status = ending.ERROR
-        return Ending(status, self._failure, verdict, sim_time, wall_time, ticks, self._error)
+        by = interrupts.by if status == ending.INTERRUPTED else None
+        return Ending(status, self._failure, verdict, sim_time, wall_time, ticks, self._error, by)
+
+    def _broken_by(self, error: BaseException, interrupts: Interrupts) -> str:
+        """The status of a run that an exception ended: INTERRUPTED after a signal, else ERROR."""
+        ours = isinstance(error, StopRequested) or not interrupts.caught
+        if ours and isinstance(error, KeyboardInterrupt):
+            return ending.INTERRUPTED
+        self._error = _told(error)
+        return ending.ERROR
 
     def _publish_starts(self, interrupts: Interrupts) -> None:
         """Make nodes publish their starts, if anyone subscribes; an interrupt suspends the tree."""
@@ -146,6 +155,7 @@ class Executor:
         with collector.frozen():
             while not interrupts.requested:
                 status = self.tick()
+                self._hold(interrupts)
                 if status is not RUNNING:
                     self._failure = self.built.root.failure if status is FAILURE else None
                     return ending.FAILURE if status is FAILURE else ending.SUCCESS
@@ -156,6 +166,17 @@ class Executor:
                     due = started + self.context.waited + self.context.now
                     time.sleep(max(0.0, due - time.perf_counter()))
         return ending.INTERRUPTED
+
+    def _hold(self, interrupts: Interrupts) -> None:
+        """Undo what would keep Ctrl-C or the engine from working: signals, the recursion limit."""
+        changed = list(interrupts.hold())
+        if sys.getrecursionlimit() < self._depth:
+            changed.append(f"the recursion limit ({sys.getrecursionlimit()})")
+            sys.setrecursionlimit(self._depth)
+        if changed:
+            running = [n.where for n in self.built.nodes if n.ticked_at == self.context.tick]
+            where = running[-1] if running else "a service"
+            self.context.remark(f"{where}: changed {', '.join(changed)}; it is as before again")
 
     def _step(self) -> None:
         """Step the world; mark it as broken while the step lasts, in case it raises."""
@@ -223,9 +244,9 @@ class Executor:
             self.settling = True
             self._settle()
             return None if self.world is None else self.world.verdict()
-        except KeyboardInterrupt:
+        except StopRequested:
             return None
-        except Exception as error:
+        except BaseException as error:
             self._error = self._error or _told(error)
             return None
 
@@ -258,14 +279,14 @@ class Executor:
             self._step()
 
 
-def _told(error: Exception) -> str:
+def _told(error: BaseException) -> str:
     """The traceback of an error; the last line is a sentence with its plug-in's node and line."""
     *trace, last = "".join(traceback.format_exception(error)).rstrip().splitlines()
     node = ticked_in(error)
     if isinstance(error, ServiceError):
         last = str(error)
     elif node is not None:
-        last = f"{type(error).__name__}: {error}, in the node {node.where}"
+        last = f"{words_of(error)}, in the node {node.where}"
         place = raised_at(error, type(node).__module__)
         last += f", at {place}" if place else ""
     return "\n".join([*trace, " ".join(last.splitlines()), ""])
@@ -276,11 +297,11 @@ def halt_tree(built: Built) -> None:
 
     All nodes are halted even if one raises; the first exception is raised at the end.
     """
-    troubles: list[Exception] = []
+    troubles: list[BaseException] = []
     for halt in (built.root.reset, *map(_halting, reversed(built.nodes))):
         try:
             halt()
-        except Exception as trouble:
+        except BaseException as trouble:  # a plug-in's code; a signal waits until all are halted
             troubles.append(trouble)
     if troubles:
         raise troubles[0]

@@ -23,6 +23,7 @@ from momantu_bt.engine.node import Parts, TreeNode
 from momantu_bt.engine.role import Role
 from momantu_bt.engine.status import RUNNING, SUCCESS, Status
 from momantu_bt.engine.watchdog import Hung
+from momantu_bt.errors import StopRequested, words_of
 from momantu_bt.failure import CODE, FAILED, HUNG, Failure
 from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue.codes import and_also
@@ -199,7 +200,9 @@ class BehaviourLeaf(TreeNode):
         if running is not None and running.status is PyTreesStatus.RUNNING:
             try:
                 running.stop(PyTreesStatus.INVALID)
-            except Exception as error:
+            except StopRequested:
+                raise
+            except BaseException as error:  # other people's code: it may raise anything
                 running.status = PyTreesStatus.INVALID  # never terminate it twice
                 self.context.remark(f"{self.where}: while it was halted: {_words(error)}")
 
@@ -218,7 +221,9 @@ class BehaviourLeaf(TreeNode):
         except Hung:
             message = f"{self.name} gave no status back within the run's patience"
             raise Failure(HUNG, message) from None
-        except Exception as error:
+        except StopRequested:
+            raise
+        except BaseException as error:
             text = "".join(traceback.format_exception(error))
             raise Failure(BEHAVIOUR_ERROR, _words(error), traceback=text) from error
         finally:
@@ -260,5 +265,5 @@ class BehaviourLeaf(TreeNode):
         return found
 
 
-def _words(error: Exception) -> str:
-    return f"raised {type(error).__name__}: {error}"
+def _words(error: BaseException) -> str:
+    return f"raised {words_of(error)}"

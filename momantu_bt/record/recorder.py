@@ -44,6 +44,7 @@ class Recorder:
     """Writes one record. It subscribes to the run's events; call `begin`, and `finish` at the end.
 
     remark: called with a message for a person if the record cannot be written.
+    broken: it could not be written to its end.
 
     Raises:
         OutputError: the folder cannot be written, or holds a record already.
@@ -51,10 +52,10 @@ class Recorder:
 
     def __init__(self, folder: Path, events: Events, remark: Callable[[str], None]) -> None:
         prepare_folder(folder)
-        self._folder = folder
+        self._folder = folder.absolute()  # a skill may change the working directory
         self._remark = remark
         self._file: McapFile | None = None
-        self._broken = False
+        self.broken = False
         self._stamp = 0
         self._flushed = time.monotonic()
         self._outside = OutsideLog(events)
@@ -90,23 +91,24 @@ class Recorder:
         try:
             write_whole(self._folder / REPORT, text + "\n")
         except OutputError as error:
+            self.broken = True
             self._remark(f"the record has no report: {error}")
 
     def release(self) -> None:
         """Close the log of a run without a report; remove the log if the run never began."""
         if self._file is not None:
             self._guarded(self._file.close)
-        elif not self._broken:
+        elif not self.broken:
             (self._folder / LOG).unlink(missing_ok=True)
 
     def _guarded(self, work: Callable[..., None], *arguments: Any) -> None:
         """Call `work`, unless an earlier call failed; the first failure ends the record."""
-        if self._broken:
+        if self.broken:
             return
         try:
             work(*arguments)
         except Exception as error:
-            self._broken = True
+            self.broken = True
             why = (isinstance(error, OSError) and error.strerror) or repr(error)
             self._remark(f"the record {self._folder} breaks off here: {why}; the run goes on")
             if self._file is not None:

@@ -95,7 +95,9 @@ class Report:
     start_time_s: wall time before the first tick. ticks: number of ticks of the tree. blackboard:
     the root's values at the end. error: traceback of an internal error. incidents: dangerous events
     that the referee saw. claims: results of the audit by the skill's name in the tree; None without
-    an audit. faults: the requested faults.
+    an audit. faults: the requested faults. interrupted_by: the signal that ended the run, such as
+    SIGTERM. remarks: what was said to a person besides, such as a display that broke. lost: files
+    that were asked for and could not be written.
     """
 
     tree: str
@@ -119,6 +121,9 @@ class Report:
     incidents: tuple[Incident, ...] = ()
     claims: Mapping[str, SkillClaims] | None = None
     faults: tuple[FaultReport, ...] = ()
+    interrupted_by: str | None = None
+    remarks: tuple[str, ...] = ()
+    lost: tuple[str, ...] = ()
 
     @property
     def real_time_factor(self) -> float:
@@ -132,8 +137,9 @@ class Report:
             return ExitCode.INTERNAL
         if self.status == INTERRUPTED:
             return ExitCode.INTERRUPTED
-        good = self.status == SUCCESS and self.success is not False
-        return ExitCode.SUCCESS if good else ExitCode.FAILURE
+        if self.status != SUCCESS or self.success is False:
+            return ExitCode.FAILURE
+        return ExitCode.INTERNAL if self.lost else ExitCode.SUCCESS
 
     def as_dict(self) -> dict[str, Any]:
         """Plain data for JSON."""
@@ -160,6 +166,9 @@ class Report:
             "incidents": [finite(plain(incident)) for incident in self.incidents],
             "claims": None if self.claims is None else plain(self.claims),
             "faults": [plain(fault) for fault in self.faults],
+            "interrupted_by": self.interrupted_by,
+            "remarks": list(self.remarks),
+            "lost": list(self.lost),
         }
 
     def write(self, path: Path) -> None:

@@ -76,6 +76,7 @@ def report_of(data: Mapping[str, Any]) -> Report:
         nodes=(),
         fingerprint=data["fingerprint"],
         error=data["error"],
+        interrupted_by=data.get("interrupted_by"),
     )
 
 

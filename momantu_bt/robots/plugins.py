@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from momantu_bt.errors import MomantuError
+from momantu_bt.errors import PLUGIN_ERRORS, MomantuError, words_of
 from momantu_bt.plugins import Files, Group, PluginError
 from momantu_bt.robot import RobotDescription
 from momantu_bt.robots.reader import read_robot
@@ -29,8 +29,8 @@ def load_robot(name: str) -> RobotDescription:
         return describe()
     except MomantuError:
         raise
-    except Exception as error:  # a plug-in's code, which may raise anything
-        message = f"the robot {name!r} cannot be read: {type(error).__name__}: {error}"
+    except PLUGIN_ERRORS as error:  # a plug-in's code, which may raise anything
+        message = f"the robot {name!r} cannot be read: {words_of(error)}"
         raise PluginError(message) from error
 
 

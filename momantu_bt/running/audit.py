@@ -9,6 +9,7 @@ from momantu_bt.claim import Claim, Judge, Sentence
 from momantu_bt.engine.context import RunContext
 from momantu_bt.engine.outside import SkillEnded, SkillNode, SkillSession
 from momantu_bt.engine.skills.session import Session
+from momantu_bt.errors import PLUGIN_ERRORS, words_of
 from momantu_bt.geometry import Transform
 from momantu_bt.record.report import FalseClaim, SkillClaims
 from momantu_bt.world import World
@@ -71,8 +72,8 @@ class Auditor:
                 return None, None
             sentences = claim if isinstance(claim, tuple) else (claim,)
             return claim, self._all(sentences, robot.state().odom_from_base)
-        except Exception as error:
-            what = f"{type(error).__name__}: {error}"
+        except PLUGIN_ERRORS as error:
+            what = f"{words_of(error)}"
             self._context.remark(f"{leaf.where}: its claim cannot be judged: {what}")
             return None, None
 

@@ -22,7 +22,7 @@ from momantu_bt.engine.skills.actuators import Actuators
 from momantu_bt.engine.skills.body import Body
 from momantu_bt.engine.skills.services import Services
 from momantu_bt.engine.watchdog import Watchdog
-from momantu_bt.errors import MomantuError
+from momantu_bt.errors import PLUGIN_ERRORS, MomantuError, words_of
 from momantu_bt.faults.stage import Planned, Stage, plan
 from momantu_bt.frames import FrameBuffer
 from momantu_bt.record.recorder import Recorder
@@ -30,6 +30,7 @@ from momantu_bt.record.report import Report
 from momantu_bt.robot import Robot, RobotDescription
 from momantu_bt.running.audit import Auditor
 from momantu_bt.running.calls import called_skills, check_calls
+from momantu_bt.running.leftovers import Leftovers
 from momantu_bt.running.needed import LaunchError, check_parameters, check_sensors, services_of
 from momantu_bt.running.options import RunOptions
 from momantu_bt.running.prepare import Prepared
@@ -67,6 +68,9 @@ def launch(prepared: Prepared, watch: Watch | None = None) -> Report:
     with collector.paused(), ExitStack() as stack:
         interrupts = stack.enter_context(Interrupts())
         executor, stage, recorder = _assembled(prepared, stack)
+        remarks: list[str] = []
+        executor.context.events.subscribe(Remarked, lambda event: remarks.append(event.text))
+        leftovers = Leftovers()
         auditor = Auditor(executor.context, executor.world) if options.audit else None
         observers = [] if watch is None else list(watch(executor))
         if recorder is not None:
@@ -74,19 +78,27 @@ def launch(prepared: Prepared, watch: Watch | None = None) -> Report:
         for observer in observers:
             executor.show_to(observer)
         started = time.perf_counter() - begun
-        try:
-            with executor.context.watchdog:
-                ending = executor.run(interrupts)
-        finally:
-            trouble = _close(observers)
+        with executor.context.watchdog:
+            ending = executor.run(interrupts)
+        interrupts.begin_again()
+        trouble = _close(observers)
+        for left in leftovers.told():
+            executor.context.remark(left)
         if trouble is not None:
             ending = replace(ending, status=ERROR, error=ending.error or trouble)
         report = report_of(document.file, executor, ending, started, stage.reports())
         if auditor is not None:
             report = replace(report, claims=auditor.claims())
-        if recorder is not None:
-            recorder.finish(report)
-        return report
+        report = replace(report, remarks=tuple(remarks))
+        return report if recorder is None else _recorded(report, recorder, options)
+
+
+def _recorded(report: Report, recorder: Recorder, options: RunOptions) -> Report:
+    """Write the report into the record; its `lost` names a record that broke off."""
+    whole = report
+    broken = replace(report, lost=(*report.lost, str(options.record)))
+    recorder.finish(broken if recorder.broken else whole)
+    return broken if recorder.broken else whole
 
 
 def assemble(prepared: Prepared, stack: ExitStack) -> Executor:
@@ -112,16 +124,24 @@ def _assembled(prepared: Prepared, stack: ExitStack) -> tuple[Executor, Stage, R
     world = _open(prepared, kinds, called, needed)
     if world is not None:
         if world is not options.world:
-            stack.callback(world.close)
+            stack.callback(_close_world, world, options.remark)
         check_parameters(needed, world.site)
     stage = Stage(planned, world, options.seed, stack)
     return _executor(prepared, kinds, called, needed, stage, events), stage, recorder
 
 
+def _close_world(world: World, remark: Callable[[str], None]) -> None:
+    """Close a world; its own errors no longer change how the run ended."""
+    try:
+        world.close()
+    except PLUGIN_ERRORS as error:
+        remark(f"the world {world.name} could not be closed: {words_of(error)}")
+
+
 def _recorder(options: RunOptions, events: Events, stack: ExitStack) -> Recorder | None:
     if options.record is None:
         return None
-    recorder = Recorder(options.record, events, options.remark)
+    recorder = Recorder(options.record, events, lambda text: events.publish(Remarked(text)))
     stack.callback(recorder.release)
     return recorder
 
@@ -138,7 +158,7 @@ def _close(observers: Sequence[Observer]) -> str | None:
     for observer in observers:
         try:
             observer.close()
-        except Exception:
+        except BaseException:  # a signal too: the run is over, its report is still to be written
             troubles.append(traceback.format_exc())
     return troubles[0] if troubles else None
 
@@ -163,8 +183,8 @@ def _open(
         return entry.open(description, options.seed, referee=options.referee)
     except MomantuError:
         raise
-    except Exception as error:  # a plug-in's code, which may raise anything
-        message = f"the world {name!r} could not start: {type(error).__name__}: {error}"
+    except PLUGIN_ERRORS as error:  # a plug-in's code, which may raise anything
+        message = f"the world {name!r} could not start: {words_of(error)}"
         raise WorldError(message, hint="Tell its authors, or choose another world.") from error
 
 
@@ -215,7 +235,7 @@ def _executor(
     services = Services({}, None)
     if stage.robot is not None and stage.site is not None:
         actuators = Actuators(stage.robot, events)
-        services = Services({name: kind() for name, kind in needed.items()}, actuators)
+        services = Services({name: _made(name, kind) for name, kind in needed.items()}, actuators)
         frames = FrameBuffer(stage.robot.description.kinematics())
         callable_skills = {name: stage.skill(kind) for name, kind in called.items()}
         context.body = Body(actuators, frames, stage.site, services.running, callable_skills)
@@ -234,6 +254,16 @@ def _executor(
         max_time=options.max_time,
         realtime=options.realtime,
     )
+
+
+def _made(name: str, kind: type[Service]) -> Service:
+    try:
+        return kind()
+    except PLUGIN_ERRORS as error:  # a plug-in's code, which may raise anything
+        raise LaunchError(
+            f"the service {name!r} cannot be made: {words_of(error)}",
+            hint="Tell its authors, or leave out the skills that need it.",
+        ) from error
 
 
 def _board(

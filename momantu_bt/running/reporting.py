@@ -43,6 +43,7 @@ def report_of(
         error=ending.error,
         incidents=() if verdict is None else verdict.incidents,
         faults=faults,
+        interrupted_by=ending.interrupted_by,
     )
 
 

@@ -11,6 +11,7 @@ from momantu_bt.engine.skills.calls import callees
 from momantu_bt.engine.skills.services import ServiceCycleError, in_order
 from momantu_bt.engine.skills.session import Session
 from momantu_bt.engine.status import RUNNING
+from momantu_bt.errors import PLUGIN_ERRORS, words_of
 from momantu_bt.failure import SKILL_ERROR, WRONG_TYPE, FailureValue
 from momantu_bt.formats.places import NOWHERE, Place
 from momantu_bt.formats.problems import Problem
@@ -36,13 +37,12 @@ class CannotRehearse(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Take:
-    """One run. turns: ticks at which the phase changed. escaped: what `run_skill` raised."""
+    """One run. turns: ticks at which the phase changed."""
 
     skill: type[Skill]
     result: SkillResult | None
     commands: tuple[Any, ...] = ()
     turns: tuple[int, ...] = ()
-    escaped: str = ""
 
     @property
     def status(self) -> str:
@@ -62,7 +62,7 @@ class Take:
     @property
     def broken(self) -> bool:
         """Whether it ended in a way that is not allowed for any skill."""
-        return bool(self.escaped) or self.code in (SKILL_ERROR, WRONG_TYPE)
+        return self.code in (SKILL_ERROR, WRONG_TYPE)
 
     def difference(self, other: Take) -> str:
         """The differences between two runs; empty if there are none."""
@@ -85,9 +85,7 @@ class Take:
     def findings(self, when: str = "") -> Iterator[Problem]:
         """The findings of this run."""
         said = f" {when}" if when else ""
-        if self.escaped:
-            yield Problem("escapes", f"raises {self.escaped}{said}: nothing but Failure may leave")
-        elif self.broken and self.result is not None and self.result.failure is not None:
+        if self.broken and self.result is not None and self.result.failure is not None:
             yield _error(self.result.failure, said)
 
 
@@ -102,6 +100,8 @@ def _error(failure: FailureValue, said: str) -> Problem:
         return Problem("output-never-given", message)
     if failure.data.get("exception") == "PermissionError":
         return Problem("undeclared-actuator", message)
+    if failure.data.get("exception") in ("SystemExit", "GeneratorExit", "KeyboardInterrupt"):
+        return Problem("escapes", f"{message}: nothing but Failure may leave")
     return Problem("exception", message, _last_line(str(failure.data.get("traceback", ""))))
 
 
@@ -185,12 +185,9 @@ class Rehearsals:
 
         robot = _scripted(arguments["world"].robot)
         before = len(robot.commands)
-        try:
-            result = run_skill(
-                self.skill, seed=self.seed, max_time=self.max_time, on_tick=watch, **arguments
-            )
-        except (SystemExit, GeneratorExit) as error:
-            return Take(self.skill, None, escaped=type(error).__name__)
+        result = run_skill(
+            self.skill, seed=self.seed, max_time=self.max_time, on_tick=watch, **arguments
+        )
         commands = tuple((time, name, goal) for time, name, goal in robot.commands[before:])
         turns = [i for i in range(1, len(phases) + 1) if phases[i - 2 : i - 1] != phases[i - 1 : i]]
         return Take(self.skill, result, commands, tuple(turns))
@@ -199,8 +196,8 @@ class Rehearsals:
         """Keyword arguments for `run_skill`: those of the example, and generated ones."""
         try:
             arguments = dict((self.example or self.skill.rehearsal)(self.seed))
-        except Exception as error:  # other people's code: it may raise anything
-            raise CannotRehearse(f"its example raises {type(error).__name__}: {error}") from error
+        except PLUGIN_ERRORS as error:  # other people's code: it may raise anything
+            raise CannotRehearse(f"its example raises {words_of(error)}") from error
         if "world" not in arguments:
             if "robot" in arguments or "site" in arguments:
                 world = ScriptedWorld(arguments.pop("robot", None), arguments.pop("site", None))

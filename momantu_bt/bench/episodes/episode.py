@@ -27,6 +27,7 @@ from momantu_bt.faults.spec import parse_fault
 from momantu_bt.formats.files import write_whole
 from momantu_bt.record.report import Report
 from momantu_bt.running.launch import launch
+from momantu_bt.running.leftovers import end_with
 from momantu_bt.running.options import RunOptions
 from momantu_bt.running.prepare import prepare
 from momantu_bt.tree.catalogue import NODES
@@ -147,4 +148,6 @@ def _end_with(parent: int) -> None:
 
 
 if __name__ == "__main__":
-    raise SystemExit(main(sys.argv[1:]))
+    code = main(sys.argv[1:])
+    end_with(code)
+    raise SystemExit(code)

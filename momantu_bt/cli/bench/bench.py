@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from momantu_bt.cli.shared import streams
+from momantu_bt.cli.shared.notices import notice
 from momantu_bt.cli.shared.options import (
     OUT,
     RECORD,
@@ -149,6 +151,7 @@ def _bench(
     plan: Plan, document: Document, demands: Sequence[Demand], options: _Options
 ) -> ExitCode:
     """Run the missing episodes, then print the results of all."""
+    streams.keep_on(notice)
     part = plan.wanted.shard(*bench_setup.shard_of(options.shard))
     engine = bench_setup.engine_of(*options.engine)
     if options.report is not None:

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from momantu_bt.cli.shared import streams
+from momantu_bt.cli.shared.notices import notice
 from momantu_bt.cli.shared.options import (
     OUT,
     RECORD,
@@ -93,6 +95,7 @@ def compare(
 
 def _compare(plans: list[Plan], engine: Engine, out: Path, report: Path | None) -> ExitCode:
     """Run the missing episodes of both in turn, then print how they differ."""
+    streams.keep_on(notice)
     names = [Path(plan.tree).stem for plan in plans]
     if names[0] == names[1]:
         names[1] += "-2"

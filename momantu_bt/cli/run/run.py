@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from momantu_bt import collector
+from momantu_bt.cli.shared import streams
 from momantu_bt.cli.shared.notices import notice
 from momantu_bt.cli.shared.options import Robot
 from momantu_bt.errors import TRACEBACK, ExitCode, InputError, MomantuError
@@ -22,19 +23,22 @@ from momantu_bt.lazy import lazily
 with lazily():
     from rich import console
 
-    from momantu_bt.cli.run import breakpoints, live
+    from momantu_bt.cli.run import breakpoints, live, shield
+    from momantu_bt.cli.run import report_file as reports
     from momantu_bt.cli.run import terminal as terminals
     from momantu_bt.cli.shared import given
-    from momantu_bt.engine import person
+    from momantu_bt.engine import interrupts, person
     from momantu_bt.faults import spec
     from momantu_bt.record import film
     from momantu_bt.record.text import changes, ending
     from momantu_bt.running import launch as launching
+    from momantu_bt.running import leftovers
     from momantu_bt.running import options as run_options
     from momantu_bt.running import prepare as preparing
 
 if TYPE_CHECKING:
     from momantu_bt.cli.run.breakpoints import Breakpoints
+    from momantu_bt.cli.run.report_file import ReportFile
     from momantu_bt.cli.run.terminal import Terminal
     from momantu_bt.engine.executor import Executor, Observer
     from momantu_bt.record.report import Report
@@ -98,7 +102,7 @@ def run(
 
     Exit code 0: the tree succeeded and no referee denies it; 1: it failed, or the referee denies
     its success; 2: the tree or the arguments are wrong; 3: the world could not start; 4: an
-    internal error; 130: interrupted.
+    internal error, or a good run lost a file that was asked for; 130: interrupted.
 
     Examples:
       momantu-bt run bring_object
@@ -157,13 +161,23 @@ def _run(tree: str, options: RunOptions, shown: _Shown) -> Report:
     with collector.paused():
         prepared = preparing.prepare(tree, options)
     stops = _breakpoints(shown, prepared)
-    for path in (shown.report, shown.video):
-        if path is not None:
-            check_writable(path)
-    result = launching.launch(prepared, lambda run: _watch(run, shown, stops))
-    if shown.report is not None:
-        result.write(shown.report)
-    _say_end(result, options, shown)
+    if shown.video is not None:
+        check_writable(shown.video, regular=True)
+    file = None if shown.report is None else reports.ReportFile(shown.report)
+    lost: list[str] = []
+    try:
+        with leftovers.no_sudden_exit():
+            result = launching.launch(prepared, lambda run: _watch(run, shown, stops, lost, file))
+    except BaseException:
+        if file is not None:
+            file.withdraw()
+        raise
+    with interrupts.Interrupts() as late:
+        late.patient = True  # a signal comes too late to stop anything
+        result = replace(result, lost=(*result.lost, *lost))
+        if file is not None:
+            result = file.write(result)
+        _say_end(result, options, shown)
     return result
 
 
@@ -178,40 +192,53 @@ def _breakpoints(shown: _Shown, prepared: Prepared) -> Breakpoints | None:
     )
 
 
-def _watch(run: Executor, shown: _Shown, stops: Breakpoints | None) -> list[Observer]:
-    """The requested observers; if one cannot be opened, the others are closed."""
+def _watch(
+    run: Executor,
+    shown: _Shown,
+    stops: Breakpoints | None,
+    lost: list[str],
+    report: ReportFile | None,
+) -> list[Observer]:
+    """The requested observers; if one cannot be opened, the others are closed.
+
+    lost: gets the film if it breaks off. report: says from now on that the run did not end.
+    """
+    streams.keep_on(run.context.remark)
     observers: list[Observer] = []
     with ExitStack() as stack:
 
-        def add(observer: Observer) -> None:
-            stack.callback(observer.close)
-            observers.append(observer)
+        def add(observer: Observer, what: str, on_break: Callable[[], object] = int) -> None:
+            shielded = shield.Shielded(observer, what, run.context.remark, on_break)
+            stack.callback(shielded.close)
+            observers.append(shielded)
 
         if (shown.video is not None or shown.view_port is not None) and run.world is None:
             raise InputError("--video and --view need a world; this run has none")
         if shown.video is not None and run.world is not None:
-            add(
-                film.FilmObserver(
-                    run.world.open_video(shown.video, run.built.root.model.place.file)
-                )
-            )
+            video = shown.video
+            opened = run.world.open_video(video.absolute(), run.built.root.model.place.file)
+            add(film.FilmObserver(opened), f"the film {video}", lambda: lost.append(str(video)))
         if shown.view_port is not None and run.world is not None:
             scene = run.world.open_view(shown.view_port)
-            add(film.ViewObserver(scene))
+            add(film.ViewObserver(scene), "the view")
             typer.echo(f"view: {scene.url}")
         if not shown.quiet:
-            add(_display(shown.terminal))
+            add(_display(shown.terminal), "the display")
         if stops is not None:
             stops.attach(run)
+        if report is not None:
+            report.begin(run)
         stack.pop_all()
     return observers
 
 
 def _display(terminal: Terminal | None) -> Observer:
     """A live tree on a terminal, plain lines elsewhere."""
-    if not sys.stdout.isatty():
-        return changes.ChangeLines(typer.echo)
-    display = live.LiveTree(console.Console())
+    out = sys.stdout  # a skill may redirect it
+    screen = console.Console(file=out)
+    if not screen.is_terminal or screen.is_dumb_terminal:
+        return changes.ChangeLines(lambda line: typer.echo(line, file=out))
+    display = live.LiveTree(screen)
     if terminal is not None:
         terminal.display = display
     return display
@@ -224,5 +251,8 @@ def _say_end(result: Report, options: RunOptions, shown: _Shown) -> None:
         else:
             notice(f"set {TRACEBACK}=1 for the traceback; a report has it, too")
     named = (("report", shown.report), ("video", shown.video), ("record", options.record))
-    places = [f"{what}: {path}" for what, path in named if path is not None]
-    typer.echo("; ".join([ending.ending_text(result), *places]))
+    there = [(what, path) for what, path in named if path is not None]
+    places = [f"{what}: {path}" for what, path in there if str(path) not in result.lost]
+    if result.lost:
+        places.append(f"lost: {', '.join(result.lost)}")
+    streams.say("; ".join([ending.ending_text(result), *places]))

@@ -9,7 +9,7 @@ from typing import Any
 
 import typer
 
-from momantu_bt.errors import ExitCode, MomantuError
+from momantu_bt.errors import PLUGIN_ERRORS, ExitCode, MomantuError, words_of
 from momantu_bt.plugins import Group
 
 
@@ -26,7 +26,7 @@ def listing(group: Group[Any], about: Callable[[Any], str], as_json: bool) -> No
     for name in group:
         try:
             rows.append((name, about(group.load(name))))
-        except Exception as error:  # a plug-in may raise anything; list it as the reason
+        except PLUGIN_ERRORS as error:  # a plug-in may raise anything; list it as the reason
             rows.append((name, f"broken: {_reason(error)}"))
             broken.add(name)
     if as_json:
@@ -45,9 +45,9 @@ def _print(rows: list[tuple[str, str]]) -> None:
         typer.echo("none is installed", err=True)
 
 
-def _reason(error: Exception) -> str:
+def _reason(error: BaseException) -> str:
     """The first line of an error; a file with several mistakes has a line for each."""
-    said = str(error) if isinstance(error, MomantuError) else f"{type(error).__name__}: {error}"
+    said = str(error) if isinstance(error, MomantuError) else words_of(error)
     return said.partition("\n")[0]
 
 

@@ -63,11 +63,13 @@ class Actuators:
         All are stopped even if one raises; the first exception is raised at the end.
         """
         self._owners.clear()
-        troubles: list[Exception] = []
+        troubles: list[BaseException] = []
         for actuator in self.robot.description.actuators:
             try:
                 self._stop(actuator)
-            except Exception as trouble:
+            except (
+                BaseException
+            ) as trouble:  # a driver's code; a signal waits until all have stopped
                 troubles.append(trouble)
         if troubles:
             raise troubles[0]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import traceback
 
 from momantu_bt.engine.raised import raised_at
+from momantu_bt.errors import words_of
 from momantu_bt.failure import (
     CALL_FAILED,
     ENGINE_CODES,
@@ -42,11 +43,11 @@ def declared(kind: type[Skill], failure: Failure) -> FailureValue:
 
 
 def skill_error(
-    kind: type[Skill], error: Exception, sentence: str = "", cause: FailureValue | None = None
+    kind: type[Skill], error: BaseException, sentence: str = "", cause: FailureValue | None = None
 ) -> FailureValue:
     """An exception of a skill. sentence: what the skill did, if the exception does not say it."""
     text = "".join(traceback.format_exception(error))
-    said = sentence or f"raised {type(error).__name__}: {error}"
+    said = sentence or f"raised {words_of(error)}"
     place = raised_at(error, kind.__module__)
     said += f", at {place}" if place else ""
     cause = error.value if isinstance(error, Failure) else cause

@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 from momantu_bt.engine.raised import raised_at
 from momantu_bt.engine.skills.actuators import Actuators
 from momantu_bt.engine.skills.session import CLOCK_SLACK
-from momantu_bt.errors import ExitCode, MomantuError
+from momantu_bt.errors import PLUGIN_ERRORS, ExitCode, MomantuError
 from momantu_bt.failure import Failure
 from momantu_bt.frames import FrameBuffer
 from momantu_bt.robot import Robot
@@ -111,7 +111,7 @@ def _told(name: str, service: Service, method: str) -> Iterator[None]:
     """
     try:
         yield
-    except Exception as error:
+    except PLUGIN_ERRORS as error:
         if method == "published" and isinstance(error, Failure):
             raise
         kind = type(service)

@@ -19,6 +19,7 @@ from momantu_bt.engine.skills.start import (
 )
 from momantu_bt.engine.status import FAILURE, RUNNING, SUCCESS, Status
 from momantu_bt.engine.watchdog import Hung
+from momantu_bt.errors import StopRequested
 from momantu_bt.failure import Failure, FailureValue
 from momantu_bt.skill import MISSING, Compute, Port, Run, Skill
 
@@ -83,7 +84,9 @@ class Session:
             self._fail(declared(self.kind, failure))
         except Hung as hung:
             self._fail(hung_failure(self.kind, hung))
-        except Exception as error:
+        except StopRequested:
+            raise
+        except BaseException as error:  # other people's code: it may raise anything
             self._fail(skill_error(self.kind, error))
         return self.status
 
@@ -96,7 +99,10 @@ class Session:
                 generator.close()
             except Hung as hung:
                 self.failure = hung_failure(self.kind, hung)
-            except Exception as error:
+            except StopRequested:
+                self.lease.end()
+                raise
+            except BaseException as error:
                 self.failure = skill_error(self.kind, error)
         self.lease.end()
         if self.status is RUNNING:
@@ -180,7 +186,10 @@ class Session:
                 generator.close()
             except Hung as hung:
                 self.failure = hung_failure(self.kind, hung, cause=failure)
-            except Exception as error:
+            except StopRequested:
+                self.lease.end()
+                raise
+            except BaseException as error:
                 self.failure = skill_error(self.kind, error, cause=failure)
         self.lease.end()
         self.status = FAILURE

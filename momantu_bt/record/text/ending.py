@@ -17,11 +17,19 @@ def ending_text(report: Report) -> str:
         last = (report.error or "").strip().rpartition("\n")[2]
         return f"{name}: internal error {times}: {last}"
     if report.status == INTERRUPTED:
-        return f"{name} was interrupted {times}; everything stands still"
+        return f"{name} was interrupted{_by(report)} {times}; everything stands still"
     if report.status == FAILURE:
         chain = "" if report.failure is None else failure_line(report.failure)
         return f"{name} failed: {chain}; {times}{_referee(report)}"
     return f"{name} succeeded {times}{_referee(report)}"
+
+
+def _by(report: Report) -> str:
+    """The signal, unless it was Ctrl-C."""
+    if report.interrupted_by == "SIGHUP":
+        return " by SIGHUP, as the terminal has closed,"
+    ctrl_c = report.interrupted_by in (None, "SIGINT")
+    return "" if ctrl_c else f" by {report.interrupted_by}"
 
 
 def _referee(report: Report) -> str:

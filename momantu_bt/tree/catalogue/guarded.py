@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import wraps
 from typing import Any, ParamSpec, TypeVar
 
-from momantu_bt.errors import MomantuError
+from momantu_bt.errors import PLUGIN_ERRORS, MomantuError, words_of
 from momantu_bt.plugins import PluginError
 from momantu_bt.tree.catalogue.spec import NodeSpec
 
@@ -34,10 +34,10 @@ def _guarded(spec: NodeSpec, name: str, function: Callable[P, R]) -> Callable[P,
             return function(*arguments, **named)
         except (MomantuError, RecursionError):
             raise
-        except Exception as error:
+        except PLUGIN_ERRORS as error:
             raise PluginError(
                 f"the node {spec.yaml[0]!r} is broken: its spec's `{name}` raised "
-                f"{type(error).__name__}: {error}",
+                f"{words_of(error)}",
                 hint="Tell its authors, or uninstall its package.",
             ) from error
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from momantu_bt.descriptions.reading import DescriptionError
+from momantu_bt.errors import PLUGIN_ERRORS, words_of
 from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.places import Place
 from momantu_bt.plugins import PluginError
@@ -56,8 +57,8 @@ def _look_up_world(context: Context, name: str, place: Place) -> str | None:
         _broken("broken-world", context, error)
     except PluginError as error:
         _error("broken-world", context, place, name, str(error))
-    except Exception as error:  # a plug-in's code, which may raise anything
-        message = f"the world {name!r} cannot be read: {type(error).__name__}: {error}"
+    except PLUGIN_ERRORS as error:  # a plug-in's code, which may raise anything
+        message = f"the world {name!r} cannot be read: {words_of(error)}"
         _error("broken-world", context, place, name, message)
     return None
 
@@ -78,8 +79,8 @@ def _look_up_robot(context: Context, name: str, place: Place) -> None:
         # Its files are not installed, for example without the extra [worlds]; check the rest.
         message = f"poses and actuators of {name!r} are not checked: {error}"
         context.problems.warning("robot-not-installed", place, message)
-    except Exception as error:  # a plug-in's code, which may raise anything
-        message = f"the robot {name!r} cannot be read: {type(error).__name__}: {error}"
+    except PLUGIN_ERRORS as error:  # a plug-in's code, which may raise anything
+        message = f"the robot {name!r} cannot be read: {words_of(error)}"
         _error("broken-robot", context, place, name, message)
 
 

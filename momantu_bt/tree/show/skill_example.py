@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from momantu_bt.errors import PLUGIN_ERRORS
 from momantu_bt.messages import ObjectClass
 from momantu_bt.skill import Port, Skill
 from momantu_bt.tree import model
@@ -35,7 +36,7 @@ def example_ports(skill: type[Skill]) -> dict[str, Any]:
     """A value or a Wire for each port that a tree must give, and a key for each output."""
     try:
         rehearsed = dict(skill.rehearsal(0)).get("inputs", {})
-    except Exception:  # other people's code; `skills test` reports what it raises
+    except PLUGIN_ERRORS:  # other people's code; `skills test` reports what it raises
         rehearsed = {}
     given = {
         name: value for name, value in rehearsed.items() if isinstance(value, str | int | float)

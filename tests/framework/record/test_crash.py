@@ -1,5 +1,6 @@
 """A record is as good as what was written before the crash, and never in the way of the run."""
 
+import json
 import shutil
 import signal
 import subprocess
@@ -117,8 +118,9 @@ def test_a_full_disk_ends_the_record_and_not_the_run(tree, tmp_path):
     record = tmp_path / "record"
     command = [sys.executable, "-c", FULL, tree(COUNTING), str(record)]
     done = subprocess.run(command, capture_output=True, text=True)
-    assert done.returncode == 0
+    assert done.returncode == 4  # the tree succeeded, and what was asked for got lost
     assert "succeeded" in done.stdout
+    assert json.loads((record / "report.json").read_text())["lost"] == [str(record)]
     assert done.stderr.count("breaks off here: File too large; the run goes on") == 1
     recording = read_record(record)
     assert not recording.complete

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import json
 import math
+import os
+import subprocess
+from pathlib import Path
 from types import MappingProxyType
 
 import numpy as np
@@ -12,6 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from momantu_bt.failure import FailureValue
+from momantu_bt.formats import files
 from momantu_bt.formats.files import OutputError, check_writable, write_whole
 from momantu_bt.geometry import Pose2D
 from momantu_bt.record.folder import prepare_folder
@@ -41,8 +45,11 @@ FIELDS = {
     "incidents": list,
     "claims": dict,
     "faults": list,
+    "interrupted_by": str,
+    "remarks": list,
+    "lost": list,
 }
-MAY_BE_NULL = ("world", "robot", "success", "failure", "error", "claims")
+MAY_BE_NULL = ("world", "robot", "success", "failure", "error", "claims", "interrupted_by")
 
 FAILURES = st.deferred(
     lambda: st.builds(
@@ -165,11 +172,10 @@ def below_a_file(folder):
     [
         below_a_file,
         lambda folder: folder / ("x" * 300),
-        lambda folder: folder / ("x" * 250),
         lambda folder: folder / "none" / "report.json",
         lambda folder: folder,
     ],
-    ids=["below a file", "too long", "nearly too long", "no folder", "a folder"],
+    ids=["below a file", "too long", "no folder", "a folder"],
 )
 def test_what_cannot_be_written_is_said_before_and_after_in_one_sentence(tmp_path, place):
     path = place(tmp_path)
@@ -180,6 +186,78 @@ def test_what_cannot_be_written_is_said_before_and_after_in_one_sentence(tmp_pat
     with pytest.raises(OutputError, match="cannot be written"):
         write_whole(path, "text")
     assert sorted(tmp_path.iterdir()) == before
+
+
+@pytest.mark.parametrize("letter", ["x", "é", "木"])
+def test_the_longest_name_there_can_be_is_written(tmp_path, letter):
+    path = tmp_path / (letter * (255 // len(letter.encode())))
+    check_writable(path)
+    write_whole(path, "text")
+    assert path.read_text() == "text"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_link_stays_a_link_and_its_file_keeps_its_permissions(tmp_path):
+    there, link = tmp_path / "there" / "report.json", tmp_path / "report.json"
+    there.parent.mkdir()
+    link.symlink_to(there)
+    check_writable(link)
+    write_whole(link, "first")  # the link leads nowhere yet
+    there.chmod(0o600)
+    write_whole(link, "second")
+    assert link.is_symlink()
+    assert (there.read_text(), there.stat().st_mode & 0o777) == ("second", 0o600)
+    assert [entry.name for entry in there.parent.iterdir()] == ["report.json"]
+
+
+def test_a_fifo_is_written_to(tmp_path):
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    text = "x" * 300_000  # more than a pipe holds
+    check_writable(pipe)
+    with (tmp_path / "read").open("w") as out, subprocess.Popen(["cat", pipe], stdout=out):
+        write_whole(pipe, text)
+    assert (tmp_path / "read").read_text() == text
+    assert pipe.is_fifo()
+
+
+def test_a_fifo_that_nobody_reads_is_told_and_not_waited_for(tmp_path, monkeypatch):
+    monkeypatch.setattr(files, "READER_SECONDS", 0.1)
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    with pytest.raises(OutputError, match="nobody reads it"):
+        write_whole(pipe, "text")
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    with pytest.raises(OutputError, match="its reader takes nothing any more"):
+        write_whole(pipe, "x" * 300_000)
+    os.close(reader)
+
+
+def test_a_device_is_written_to_and_a_full_one_is_told():
+    write_whole(Path("/dev/null"), "text")
+    assert Path("/dev/null").is_char_device()
+    with pytest.raises(OutputError, match="No space left"):
+        write_whole(Path("/dev/full"), "text")
+    assert Path("/dev/full").is_char_device()
+
+
+@pytest.mark.parametrize("name", ["/dev/fd/{}", "/proc/self/fd/{}"])
+def test_an_open_file_of_the_process_is_written_where_it_stands(tmp_path, name):
+    with (tmp_path / "out").open("wb", buffering=0) as out:
+        out.write(b"before, ")
+        place = Path(name.format(out.fileno()))
+        check_writable(place)
+        write_whole(place, "report, ")
+        out.write(b"after")
+    assert (tmp_path / "out").read_text() == "before, report, after"
+    with pytest.raises(OutputError, match="Bad file descriptor"):
+        check_writable(Path("/dev/fd/987"))
+
+
+def test_a_film_is_no_film_in_what_is_no_file(tmp_path):
+    with pytest.raises(OutputError, match="is no regular file"):
+        check_writable(Path("/dev/null"), regular=True)
+    check_writable(tmp_path / "film.mp4", regular=True)
 
 
 def test_folders_are_made_where_that_is_asked_for_or_refused_in_one_sentence(tmp_path):
