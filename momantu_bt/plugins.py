@@ -16,8 +16,9 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Generic, TypeAlias, TypeVar
 
-from momantu_bt.errors import MomantuError
+from momantu_bt.errors import MomantuError, words_of
 from momantu_bt.formats.names import nearest
+from momantu_bt.importing import importing
 
 PREFIX = "momantu_bt."
 """How the names of all groups begin."""
@@ -111,10 +112,13 @@ class Group(Mapping[str, T]):
                 "uninstall one of them or rename its entry point"
             )
         try:
-            plugin: T = entry.load()
+            with importing(entry.module, f"the {self.what} {name!r} ({_origin(entry)})"):
+                plugin: T = entry.load()
             objection = self.objection(name, plugin)
-        except (Exception, SystemExit) as error:  # other people's code: it may raise anything
-            reason = f"cannot be loaded: {type(error).__name__}: {error}"
+        except KeyboardInterrupt:
+            raise
+        except BaseException as error:  # other people's code: it may raise anything
+            reason = f"cannot be loaded: {words_of(error)}"
         else:
             if objection is None:
                 return plugin

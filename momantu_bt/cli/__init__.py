@@ -30,6 +30,8 @@ with lazily():
     from momantu_bt.cli import completion
     from momantu_bt.running import leftovers
 
+_FOR_PROGRAMS = frozenset({"--json", "--sarif"})
+"""Options whose output a program reads: nothing else may get into it."""
 _UNKNOWN = re.compile(r"No such command '(?P<word>.*)'\.(?P<nearest> Did you mean)?")
 """Click's message about an unknown command of a group, with typer's addition."""
 
@@ -41,7 +43,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     if arguments is not None:
         return _main(list(arguments))
-    streams.open_standard_streams()
+    streams.open_standard_streams(alone=not _FOR_PROGRAMS.isdisjoint(sys.argv))
     code = _main(sys.argv[1:])
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # too late: all that is left is to end
     leftovers.end_with(code)

@@ -9,6 +9,7 @@ import typer
 
 from momantu_bt.cli.shared.listing import listing
 from momantu_bt.errors import PLUGIN_ERRORS, MomantuError, words_of
+from momantu_bt.importing import output_aside
 from momantu_bt.messages import plain
 from momantu_bt.plugins import PluginError
 from momantu_bt.world import AboutWorld, Site, WorldEntry
@@ -75,7 +76,8 @@ def show_one(
 
 def _site(name: str, entry: WorldEntry) -> Site:
     try:
-        return entry.site()
+        with output_aside():
+            return entry.site()
     except MomantuError:
         raise
     except PLUGIN_ERRORS as error:  # a plug-in's code, which may raise anything

@@ -8,18 +8,29 @@ from importlib.metadata import EntryPoint
 from typing import Any
 
 from momantu_bt.diagnosis import Diagnosis
+from momantu_bt.diagnosis.imports import fatal_imports
+from momantu_bt.diagnosis.packages import DISTRIBUTION
 from momantu_bt.errors import PLUGIN_ERRORS, words_of
+from momantu_bt.importing import output_aside
 from momantu_bt.plugins import PREFIX, Group, PluginClash, PluginError
 
+PLUGIN_SECONDS = 30.0
+"""Time for the imports of other packages' plug-ins; one that takes longer is named."""
 Hook = Callable[[], Iterable[Diagnosis]]
 
 
 def plugins(groups: Iterable[Group[Any]]) -> Iterator[Diagnosis]:
     """Load every plug-in, count those that load, and collect their diagnoses."""
     hooks: dict[int, tuple[str, Hook]] = {}
-    for group in groups:
+    known = list(groups)
+    errors = fatal_imports(_others(known), PLUGIN_SECONDS)
+    for group in known:
         loaded: list[str] = []
         for name, entry in group.installed().items():
+            if entry.module in errors:
+                detail = f"{entry.value} cannot be imported: {errors[entry.module]}"
+                yield Diagnosis(f"{group.name} {name}", False, detail, _reinstall(entry))
+                continue
             try:
                 hook = _hook(group.load(name), entry)
             except PluginClash as error:
@@ -38,13 +49,27 @@ def plugins(groups: Iterable[Group[Any]]) -> Iterator[Diagnosis]:
         yield from asked(name, hook)
 
 
+def _others(groups: Iterable[Group[Any]]) -> list[str]:
+    """Modules of other packages that are not imported yet, which may hang or end the process."""
+    entries = [entry for group in groups for entry in group.installed().values()]
+    own = {entry.module for entry in entries if _is_ours(entry)}
+    return sorted({entry.module for entry in entries} - own - sys.modules.keys())
+
+
+def _is_ours(entry: EntryPoint) -> bool:
+    return entry.dist is not None and entry.dist.name == DISTRIBUTION
+
+
 def asked(name: str, hook: Hook) -> Iterator[Diagnosis]:
     """The diagnoses of one plug-in; a hook that raises is itself a finding."""
+    found: list[Diagnosis] = []
     try:
-        yield from hook()
+        with output_aside():
+            found.extend(hook())
     except PLUGIN_ERRORS as error:
         detail = f"its diagnose() raised {words_of(error)}"
-        yield Diagnosis(name, False, detail, "tell its authors")
+        found.append(Diagnosis(name, False, detail, "tell its authors"))
+    yield from found
 
 
 def _hook(plugin: Any, entry: EntryPoint) -> Hook | None:

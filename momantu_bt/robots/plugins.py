@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from momantu_bt.errors import PLUGIN_ERRORS, MomantuError, words_of
+from momantu_bt.importing import output_aside
 from momantu_bt.plugins import Files, Group, PluginError
 from momantu_bt.robot import RobotDescription
 from momantu_bt.robots.reader import read_robot
@@ -26,7 +27,8 @@ def load_robot(name: str) -> RobotDescription:
     """
     describe = ROBOTS.load(name)
     try:
-        return describe()
+        with output_aside():
+            return describe()
     except MomantuError:
         raise
     except PLUGIN_ERRORS as error:  # a plug-in's code, which may raise anything

@@ -10,6 +10,7 @@ from typing import Any
 import typer
 
 from momantu_bt.errors import PLUGIN_ERRORS, ExitCode, MomantuError, words_of
+from momantu_bt.importing import output_aside
 from momantu_bt.plugins import Group
 
 
@@ -25,7 +26,9 @@ def listing(group: Group[Any], about: Callable[[Any], str], as_json: bool) -> No
     broken: set[str] = set()
     for name in group:
         try:
-            rows.append((name, about(group.load(name))))
+            with output_aside():
+                said = about(group.load(name))
+            rows.append((name, said))
         except PLUGIN_ERRORS as error:  # a plug-in may raise anything; list it as the reason
             rows.append((name, f"broken: {_reason(error)}"))
             broken.add(name)

@@ -71,11 +71,12 @@ class Dropping(io.FileIO):
             left = left[super().write(left) or 0 :]
 
 
-def open_standard_streams() -> None:
+def open_standard_streams(*, alone: bool = False) -> None:
     """Make standard output and error safe to write to; only for a process that is all ours.
 
     A descriptor that is closed is opened on nothing, so that no other file takes its number.
-    Characters that a stream's encoding lacks become escapes.
+    Characters that a stream's encoding lacks become escapes. alone: what libraries and child
+    processes write to standard output goes to standard error.
     """
     closed = [number for number in (0, 1, 2) if not _is_open(number)]
     for number in closed:
@@ -87,6 +88,8 @@ def open_standard_streams() -> None:
         sys.stdin = io.TextIOWrapper(io.FileIO(0, closefd=False))
     sys.stdout = _stream(sys.stdout, 1, 1 in closed)
     sys.stderr = _stream(sys.stderr, 2, 2 in closed)
+    if alone:
+        os.dup2(2, 1)
 
 
 def keep_on(remark: Callable[[str], None]) -> None:

@@ -9,6 +9,7 @@ import typer
 
 from momantu_bt.errors import ExitCode
 from momantu_bt.formats.problems import Problem, Severity
+from momantu_bt.importing import output_aside
 from momantu_bt.lazy import lazily
 from momantu_bt.plugins import PluginError
 from momantu_bt.tree.plugins import SKILLS
@@ -39,7 +40,8 @@ def promises(
     passed, told = True, dict[str, list[Problem]]()
     for name in names or SKILLS:
         try:
-            found = testing.check_skill(SKILLS.load(name), seed=seed, halts=halts)
+            with output_aside():
+                found = testing.check_skill(SKILLS.load(name), seed=seed, halts=halts)
         except PluginError as error:
             if names and name not in SKILLS:
                 raise

@@ -6,6 +6,7 @@ from momantu_bt.descriptions.reading import DescriptionError
 from momantu_bt.errors import PLUGIN_ERRORS, words_of
 from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.places import Place
+from momantu_bt.importing import output_aside
 from momantu_bt.plugins import PluginError
 from momantu_bt.robots.plugins import ROBOTS
 from momantu_bt.tree.check.named_world import world_of
@@ -51,7 +52,8 @@ def _look_up_world(context: Context, name: str, place: Place) -> str | None:
         return None
     try:
         entry = worlds[name]
-        context.site = entry.site()
+        with output_aside():
+            context.site = entry.site()
         return entry.default_robot
     except DescriptionError as error:
         _broken("broken-world", context, error)

@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -192,7 +193,7 @@ class Installed:
         return Ended(done.returncode, done.stdout, done.stderr, read)
 
 
-def install(folder: Path, name: str, entries: str, files: dict[str, str]) -> Installed:
+def _install(folder: Path, name: str, entries: str, files: dict[str, str]) -> Installed:
     """Install a package of single modules into a folder. entries: its entry points."""
     about = folder / f"{name}-1.0.dist-info"
     about.mkdir()
@@ -204,7 +205,13 @@ def install(folder: Path, name: str, entries: str, files: dict[str, str]) -> Ins
 
 
 @pytest.fixture(scope="session")
+def install() -> Callable[..., Installed]:
+    """Installs a package; see `_install`."""
+    return _install
+
+
+@pytest.fixture(scope="session")
 def breakers(tmp_path_factory: pytest.TempPathFactory) -> Installed:
     """The package of skills that break."""
     folder = tmp_path_factory.mktemp("breakers")
-    return install(folder, "breakers", ENTRIES, {"breakers.py": BREAKERS})
+    return _install(folder, "breakers", ENTRIES, {"breakers.py": BREAKERS})
