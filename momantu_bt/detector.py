@@ -8,7 +8,7 @@ from typing import Any, Protocol
 
 from momantu_bt.geometry import Array
 from momantu_bt.messages import DetectedObject, ObjectClass
-from momantu_bt.plugins import Group
+from momantu_bt.plugins import Group, PluginError
 from momantu_bt.service import Snapshot
 
 
@@ -29,7 +29,8 @@ class ObjectDetector(Protocol):
     """Finds objects on a surface.
 
     Its class is an entry point of `momantu_bt.detectors`, and is made without arguments once per
-    search.
+    search. It may have an attribute `categories`, the categories that it tells apart; the checker
+    then warns of others.
     """
 
     @property
@@ -64,3 +65,17 @@ DETECTORS: Group[Callable[[], ObjectDetector]] = Group(
     "momantu_bt.detectors", "detector", _objection
 )
 """Classes of detectors, by the names that trees give."""
+
+
+def known_categories() -> tuple[str, ...] | None:
+    """The categories that the installed detectors know; None if one of them does not say."""
+    known: list[str] = []
+    for name in DETECTORS:
+        try:
+            categories = getattr(DETECTORS[name], "categories", None)
+        except PluginError:
+            continue
+        if categories is None:
+            return None
+        known += [category for category in categories if category not in known]
+    return tuple(known) or None

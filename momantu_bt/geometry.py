@@ -189,7 +189,9 @@ class Pose2D:
 
     x: float = field(metadata={"unit": "m"})
     y: float = field(metadata={"unit": "m"})
-    yaw: float = field(default=0.0, metadata={"unit": "rad"})
+    yaw: float = field(
+        default=0.0, metadata={"unit": "rad", "least": -2 * math.pi, "most": 2 * math.pi}
+    )
 
     def transform(self, z: float = 0.0) -> Transform:
         """The pose as a rigid transform, at height z, m."""

@@ -162,15 +162,19 @@ ActuatorGoal: TypeAlias = BaseVelocity | JointTrajectory | JointPositions | Grip
 # What skills exchange over the blackboard.
 
 
+_SIZE: Mapping[str, Any] = {"unit": "m", "least": 0.001, "most": 2.0}
+"""A size of an object that can stand on a surface."""
+
+
 @dataclass(frozen=True, slots=True)
 class ObjectClass:
     """A kind of object to look for. Sizes in metres; None means unknown."""
 
-    category: str
-    diameter: float | None = field(default=None, metadata={"unit": "m"})
-    height: float | None = field(default=None, metadata={"unit": "m"})
-    width: float | None = field(default=None, metadata={"unit": "m"})
-    depth: float | None = field(default=None, metadata={"unit": "m"})
+    category: str = field(metadata={"names": "category"})
+    diameter: float | None = field(default=None, metadata=_SIZE)
+    height: float | None = field(default=None, metadata=_SIZE)
+    width: float | None = field(default=None, metadata=_SIZE)
+    depth: float | None = field(default=None, metadata=_SIZE)
 
 
 @dataclass(frozen=True, slots=True)

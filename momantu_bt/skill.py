@@ -42,7 +42,7 @@ class _Missing:
 MISSING: Any = _Missing()
 """The default of an input that a tree must give."""
 
-NAMES = ("place", "surface", "named_pose")
+NAMES = ("place", "surface", "named_pose", "category")
 """What a text input may name, so that the checker knows the valid values.
 
 It may also be an entry point group, such as `momantu_bt.detectors`; the input then names a plug-in
@@ -110,7 +110,7 @@ class Port:
     """One port as declared. type: the resolved annotation. names: see `NAMES`, or None.
 
     least, most: bounds of a number, in the port's unit. endless: -1 is valid too and means
-    "without end".
+    "without end". frame: "map" for a pose that must lie on the site's map, or None.
     """
 
     name: str
@@ -124,6 +124,7 @@ class Port:
     least: float | None = None
     most: float | None = None
     endless: bool = False
+    frame: str | None = None
 
     @property
     def bounded(self) -> bool:
@@ -163,6 +164,7 @@ class _PortDescriptor:
         names: str | None = None,
         least: float | None = None,
         most: float | None = None,
+        frame: str | None = None,
     ) -> None:
         if names is not None and names not in NAMES and "." not in names:
             valid = f"{', '.join(NAMES)}, or the name of an entry point group"
@@ -170,7 +172,7 @@ class _PortDescriptor:
         if least is not None and most is not None and least > most:
             raise TypeError(f"least={least:g} is more than most={most:g}")
         self.default, self.doc, self.unit, self.live = default, doc, unit, live
-        self.names, self.least, self.most = names, least, most
+        self.names, self.least, self.most, self.frame = names, least, most, frame
         self.name = ""
 
     def __set_name__(self, owner: type, name: str) -> None:
@@ -218,14 +220,16 @@ def In(
     names: str | None = None,
     least: float | None = None,
     most: float | None = None,
+    frame: str | None = None,
 ) -> Any:
     """Declare an input. Without a default it is required. live: read again on each tick.
 
     unit: SI unit that numbers in trees are converted to. names: see `NAMES`.
     least, most: bounds of a number, in `unit`; the checker rejects a tree that exceeds them.
+    frame: "map" for a pose2d in the map; the checker rejects one outside the map.
     """
     return _InDescriptor(
-        default, doc=doc, unit=unit, live=live, names=names, least=least, most=most
+        default, doc=doc, unit=unit, live=live, names=names, least=least, most=most, frame=frame
     )
 
 
@@ -390,6 +394,7 @@ def _declared_ports(cls: type) -> dict[str, Port]:
             value.names,
             value.least,
             value.most,
+            frame=value.frame,
         )
         if isinstance(port.default, int | float) and not port.allows(port.default):
             raise TypeError(f"port {cls.__name__}.{name}: the default is not {port.bounds}")

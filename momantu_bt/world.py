@@ -61,7 +61,8 @@ class Site:
     map_file: the floor plan, in map_server's YAML format. overhang_file: a map in the same format
     of known furniture that the laser's plane misses. start: the robot's approximate start pose in
     the map; start_sigma: its standard deviations (m, rad). services: parameters of services and
-    skills, by name.
+    skills, by name. area: the least x and y and the largest x and y of the floor plan, m; None if
+    they are not known.
     """
 
     name: str
@@ -73,6 +74,7 @@ class Site:
     surfaces: Mapping[str, Surface] = field(default_factory=lambda: MappingProxyType({}))
     objects: Mapping[str, ObjectClass] = field(default_factory=lambda: MappingProxyType({}))
     services: Mapping[str, Mapping[str, Any]] = field(default_factory=lambda: MappingProxyType({}))
+    area: tuple[float, float, float, float] | None = None
 
     def known_places(self) -> tuple[str, ...]:
         """Names of places and surfaces."""

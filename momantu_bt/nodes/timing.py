@@ -37,7 +37,7 @@ class Timeout(Decorator):
         "Timeout",
         "timeout",
         "Halts the child and fails with TIMEOUT when it takes longer.",
-        *time_ports("the limit"),
+        *time_ports("the limit", least=0.001),
         xml={"duration": ""},
         one_of=TIME,
         flow=again(around),

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from functools import cache
 from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
 from momantu_bt.formats.names import nearest
-from momantu_bt.formats.units import UnitError, quantity
+from momantu_bt.formats.units import UnitError, quantity, units_of
 from momantu_bt.skill import Port
 from momantu_bt.values import kinds
 from momantu_bt.values.contents import freeze, retuple
@@ -43,11 +44,27 @@ def convert(value: Any, port: Port) -> Any:
 
 def _check_bounds(value: Any, found: Any, port: Port) -> None:
     """Check a number, or each number of a list; items that are not numbers have no bounds."""
-    for number in found if isinstance(found, tuple) else (found,):
-        if isinstance(number, int | float) and not port.allows(number):
-            said = value if isinstance(value, str) else shown(number)
-            unit = f" {port.unit}" if port.unit is not None else ""
-            raise ConversionError(f"{said} is out of range; expected {port.bounds}{unit}")
+    written = value if isinstance(value, list | tuple) else (value,)
+    for number, raw in zip(found if isinstance(found, tuple) else (found,), written, strict=False):
+        if not isinstance(number, int | float) or port.allows(number):
+            continue
+        unit = f" {port.unit}" if port.unit is not None else ""
+        said = raw if isinstance(raw, str) else f"{shown(number)}{unit}"
+        message = f"{said} is out of range; expected {port.bounds}{unit}"
+        raise ConversionError(message + _unit_meant(raw, port))
+
+
+def _unit_meant(value: Any, port: Port) -> str:
+    """A hint at the units with which a bare number would be within the bounds; perhaps empty."""
+    if port.unit is None or isinstance(value, str) or not isinstance(value, int | float):
+        return ""
+    said = shown(value)
+    fitting = []
+    for unit in reversed(units_of(port.unit)):
+        found = quantity(f"{value!r} {unit}")
+        if found is not None and port.allows(found.value):
+            fitting.append(f"{said} {unit}")
+    return f"; did you mean {' or '.join(fitting)}?" if fitting else ""
 
 
 def natural(value: Any) -> Any:
@@ -210,6 +227,7 @@ def _to_dataclass(value: Any, kind: kinds.Record, unit: str | None) -> Any:
         if part.name in value:
             try:
                 arguments[part.name] = _convert(value[part.name], part.kind, part.unit)
+                _check_bounds(value[part.name], arguments[part.name], _port_of(part))
             except ConversionError as error:
                 raise ConversionError(f"field {part.name!r}: {error}") from None
         elif part.required:
@@ -218,6 +236,14 @@ def _to_dataclass(value: Any, kind: kinds.Record, unit: str | None) -> Any:
         return kind.type(**arguments)
     except ValueError as error:
         raise ConversionError(f"{label(kind.type)}: {error}") from None
+
+
+@cache
+def _port_of(part: kinds.Part) -> Port:
+    """A port with the bounds of a field."""
+    return Port(
+        part.name, "in", part.kind.type, "", unit=part.unit, least=part.least, most=part.most
+    )
 
 
 def _refuse_unknown_fields(

@@ -187,12 +187,19 @@ ANYTHING = Anything(object)
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """One field of a dataclass. unit: the SI unit of a number. required: it has no default."""
+    """One field of a dataclass.
+
+    unit: the SI unit of a number. required: it has no default. least, most: bounds of a number, in
+    its unit. names: what a text names, as for a port.
+    """
 
     name: str
     kind: ValueKind
     unit: str | None
     required: bool
+    least: float | None = None
+    most: float | None = None
+    names: str | None = None
 
 
 def kind_of(type_: ValueType) -> ValueKind:
@@ -224,6 +231,9 @@ def parts_of(type_: type) -> tuple[Part, ...]:
             kind_of(hints[field.name]),
             field.metadata.get("unit"),
             taken[field.name].default is empty,
+            field.metadata.get("least"),
+            field.metadata.get("most"),
+            field.metadata.get("names"),
         )
         for field in fields(type_)
         if field.init and field.name in taken

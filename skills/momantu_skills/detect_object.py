@@ -39,7 +39,7 @@ class DetectObject(Skill):
 
     object: ObjectClass = In(doc="what to find: its category and the sizes that are known")
     on: str = In(names="surface", doc="the surface that it stands on")
-    views: int = In(2, least=1, doc="number of views that must show the object")
+    views: int = In(2, least=1, most=20, doc="number of views that must show the object")
     detector: str = In(
         "geometric", names=DETECTORS.name, doc="the detector that finds it in the pictures"
     )

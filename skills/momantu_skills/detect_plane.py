@@ -39,7 +39,11 @@ class DetectPlane(Skill):
 
     near: Pose = In(doc="a place on the surface, such as a tag's pose")
     size: tuple[float, ...] | None = In(
-        None, unit="m", doc="x, y (and z) of the object to place; default: the held one"
+        None,
+        unit="m",
+        least=0.001,
+        most=2,
+        doc="x, y (and z) of the object to place; default: the held one",
     )
     plane: SupportPlane = Out(
         doc="the surface within 0.6 m of `near`; its frame is there, with axes parallel to odom's"

@@ -39,8 +39,8 @@ mounting."""
 class FindAprilTag(Skill):
     """Look over a surface (or around) until a tag36h11 tag is seen, and measure its pose."""
 
-    tag_id: int = In(least=0, doc="which tag")
-    edge: float = In(unit="m", least=0.001, doc="length of the black square's side")
+    tag_id: int = In(least=0, most=586, doc="which tag of the family 36h11")
+    edge: float = In(unit="m", least=0.001, most=1, doc="length of the black square's side")
     on: str | None = In(None, names="surface", doc="the surface it lies on; None: look around")
     tag_pose: Pose = Out(doc="centre of the tag, z out of it, x to its right; odom, stamped")
     tag_sigma: float = Out(unit="m", doc="standard deviation of its position")

@@ -38,15 +38,19 @@ class Navigate(Skill):
     """Drive to a goal, around unknown obstacles, and stop there within tolerance."""
 
     in_front_of: str | None = In(None, names="place", doc="a place, or a surface to look over")
-    goal: Pose2D | None = In(None, doc="a pose in the map")
+    goal: Pose2D | None = In(None, frame="map", doc="a pose in the map")
     within_reach_of: Pose | None = In(
         None, doc="drive to where the hand reaches this pose, or as near as its surface allows"
     )
     side: int = In(
         0, least=0, doc="0: the best goal pose; 1, 2, …: the next best, to retry from elsewhere"
     )
-    tolerance: float = In(0.05, unit="m", least=0, doc="largest distance from the goal pose")
-    angle_tolerance: float = In(0.05, unit="rad", least=0, doc="largest heading error at the end")
+    tolerance: float = In(
+        0.05, unit="m", least=0.001, most=2, doc="largest distance from the goal pose"
+    )
+    angle_tolerance: float = In(
+        0.05, unit="rad", least=0.001, most=3.15, doc="largest heading error at the end"
+    )
     recovery: bool = In(True, doc="when blocked: look again, back up, turn, and retry")
 
     failures: ClassVar = {

@@ -24,6 +24,7 @@ class Release(Skill):
         0.0,
         unit="m",
         least=0,
+        most=1,
         doc="distance to retreat the open hand along its fingers, where possible, so that the "
         "next motion does not push the object",
     )

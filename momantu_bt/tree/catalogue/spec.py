@@ -207,10 +207,13 @@ def input_port(
     return Port(name, "in", type_, doc, default, unit, least=least, most=most, endless=endless)
 
 
-def time_ports(doc: str) -> tuple[Port, Port]:
-    """The ports `duration` and `msec` (BehaviorTree.CPP's); a tree gives exactly one of them."""
+def time_ports(doc: str, least: float = 0) -> tuple[Port, Port]:
+    """The ports `duration` and `msec` (BehaviorTree.CPP's); a tree gives exactly one of them.
+
+    least: of `duration`, s.
+    """
     return (
-        input_port("duration", float, doc, None, unit="s", least=0),
+        input_port("duration", float, doc, None, unit="s", least=least),
         input_port("msec", int, f"{doc}, in milliseconds", None, least=0),
     )
 

@@ -11,6 +11,7 @@ from momantu_bt.formats.places import Place
 from momantu_bt.messages import VALUE_TYPES
 from momantu_bt.skill import MISSING, Port
 from momantu_bt.tree.catalogue import AUTOREMAP, MODIFIERS
+from momantu_bt.tree.check.names import check_named
 from momantu_bt.tree.check.signatures import Context, Signature, known_type, report_unknown_node
 from momantu_bt.tree.model import (
     FIRST_INPUT,
@@ -256,33 +257,7 @@ def check_literal(context: Context, value: Literal, place: Place, port: Port) ->
     if port.type is CodeText and not CODE.fullmatch(found):
         hint = "upper-case words joined by underscores, such as NOT_FOUND"
         context.problems.error("bad-code", place, f"{found!r} is not a failure code", hint)
-    if port.names is not None and isinstance(found, str):
-        check_name(context, found, place, port.names)
-
-
-_KINDS = {
-    "place": ("place", "places"),
-    "surface": ("surface", "surfaces"),
-    "named_pose": ("named pose", "named poses"),
-}
-
-
-def check_name(context: Context, name: str, place: Place, kind: str) -> None:
-    """Check the name of a place, surface, named pose or plug-in, if the valid names are known."""
-    valid = context.names_of(kind)
-    if valid is None or name in valid:
-        return
-    if kind not in _KINDS:
-        message = f"no plug-in of {kind} is called {name!r}"
-        context.problems.error(
-            "unknown-plugin", place, message, valid_names(name, valid, "installed")
-        )
-        return
-    one, several = _KINDS[kind]
-    where = "the robot" if kind == "named_pose" else "the world"
-    message = f"{where} has no {one} {name!r}"
-    code = f"unknown-{one.replace(' ', '-')}"
-    context.problems.error(code, place, message, valid_names(name, valid, several))
+    check_named(context, found, place, port)
 
 
 def _report_unknown_port(context: Context, node: Node, name: str, signature: Signature) -> None:

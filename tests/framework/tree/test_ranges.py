@@ -68,7 +68,7 @@ def test_defaults_of_built_in_nodes_are_within_their_bounds() -> None:
         ("{wait: «-1»}", "at least 0 s"),
         ("{wait: «-5 ms»}", "-5 ms is out of range; expected at least 0 s"),
         ("{wait: {msec: «-1»}}", "at least 0"),
-        ("{succeed: , timeout: «-1 min»}", "at least 0 s"),
+        ("{succeed: , timeout: «-1 min»}", "at least 0.001 s"),
         ("{succeed: , delay: «-0.1»}", "at least 0 s"),
         ("{succeed: , rate_controller: «0»}", "at least 0.001 Hz"),
         ("{succeed: , distance_controller: «-1 m»}", "at least 0 m"),

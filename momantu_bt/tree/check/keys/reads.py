@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
 from momantu_bt.formats.names import valid_names
-from momantu_bt.formats.places import NOWHERE, Place
+from momantu_bt.formats.places import NOWHERE, Place, within
 from momantu_bt.formats.units import UnitError, in_unit
 from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue import AUTOREMAP, SUBTREE
 from momantu_bt.tree.catalogue.known import Key, Known, part_type
 from momantu_bt.tree.check.keys.shared import Call, TreeKeys
-from momantu_bt.tree.check.nodes import autoremaps, check_name
+from momantu_bt.tree.check.names import check_name, check_named
+from momantu_bt.tree.check.nodes import autoremaps
 from momantu_bt.tree.check.signatures import Context, Signature
 from momantu_bt.tree.model import BROKEN, Literal, Node, PortValue, Reference, Scope, Template, Tree
 from momantu_bt.values.convert import convert
@@ -21,8 +22,8 @@ from momantu_bt.values.kinds import ScriptText, ValueType
 from momantu_bt.values.types import label
 from momantu_bt.values.words import ConversionError
 
-Demand: TypeAlias = tuple[str, str]
-"""What a text must be: a name, ("names", "place"), or a quantity in a unit, ("unit", "m")."""
+Demand: TypeAlias = tuple[str, str | Port]
+"""What a value must be: a name, ("names", "place"), or a number with a unit, ("number", port)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,10 +192,12 @@ class KeyReads:
             wire = self.context.wire_to(reference, place)
             for literal in key.literals:
                 try:
-                    convert(literal.value, port)
+                    found = convert(literal.value, port)
                 except ConversionError as error:
                     message = f"{wire} does not fit {port.name!r} of {said}: {error}"
                     self._report_misfit(key, place, message)
+                else:
+                    check_named(self.context, found, key.place, replace(port, names=None))
             return
         type_ = self.part_of(key, reference.fields, place)
         whole = Key(type_, key.place, either=() if reference.fields else key.either)
@@ -217,9 +220,20 @@ class KeyReads:
 
     def _demands(self, node: Node, name: str, value: PortValue, before: Known, port: Port) -> None:
         """Check names and quantities that reach a port by wire or through a subtree."""
-        demands = {("names", port.names)} if port.names is not None else set()
-        if port.unit is not None:
-            demands.add(("unit", port.unit))
+        demands: set[Demand] = {("names", port.names)} if port.names is not None else set()
+        if port.unit is not None or port.bounded:
+            demands.add(
+                (
+                    "number",
+                    replace(
+                        _NUMBER,
+                        unit=port.unit,
+                        least=port.least,
+                        most=port.most,
+                        endless=port.endless,
+                    ),
+                )
+            )
         if node.type == SUBTREE:
             demands |= self.demands.get((node.target or "", name), set())
             if isinstance(value, Literal):
@@ -237,19 +251,28 @@ class KeyReads:
             self.demands.setdefault((self.tree.name, value.key), set()).update(demands)
 
     def _check_demands(self, value: Literal, place: Place, demands: set[Demand]) -> None:
-        if not isinstance(value.value, str):
-            return
-        for kind, what in sorted(demands):
-            if kind == "names":
-                check_name(self.context, value.value, place, what)
-            else:
-                self._check_unit(value.value, place, what)
+        items = value.value if isinstance(value.value, list) else [value.value]
+        for _, what in sorted(demands, key=repr):
+            for item in items:
+                if isinstance(what, Port):
+                    self._check_number(item, place, what)
+                elif isinstance(item, str):
+                    where = within(place, item, self.context.document.source)
+                    check_name(self.context, item, where if item != value.value else place, what)
 
-    def _check_unit(self, text: str, place: Place, unit: str) -> None:
+    def _check_number(self, value: object, place: Place, port: Port) -> None:
+        """Check a quantity or a number; other values are checked by their type."""
         try:
-            in_unit(text, unit)
-        except UnitError as error:
+            text = isinstance(value, str)
+            if text and (port.unit is None or in_unit(str(value), port.unit) is None):
+                return
+            if text or (isinstance(value, int | float) and not isinstance(value, bool)):
+                convert(value, port)
+        except (UnitError, ConversionError) as error:
             self.context.problems.error("wrong-value", place, str(error))
+
+
+_NUMBER = Port("", "in", float, "")
 
 
 def _origin(key: Key, place: Place) -> str:

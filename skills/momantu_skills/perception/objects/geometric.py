@@ -13,7 +13,7 @@ from momantu_bt.detector import View
 from momantu_bt.frames import ODOM
 from momantu_bt.geometry import Array, Pose, Transform, quaternion_from_axis_angle
 from momantu_bt.messages import DetectedObject, ObjectClass
-from momantu_skills.perception.objects.matching import MatchConfig, score
+from momantu_skills.perception.objects.matching import KNOWN, MatchConfig, score
 from momantu_skills.perception.objects.shapes import Shape, describe
 from momantu_skills.perception.objects.splitting import split
 from momantu_skills.perception.surface.planes import PlaneConfig, Support, measure_support
@@ -33,6 +33,8 @@ class GeometricDetector:
     segments: SegmentConfig = field(default_factory=SegmentConfig)
     matches: MatchConfig = field(default_factory=MatchConfig)
 
+    categories: ClassVar[tuple[str, ...]] = KNOWN
+    """The shapes that it tells apart."""
     budget: ClassVar[float] = 0.1
     """Time allowed for processing one view together with the earlier ones, s."""
 

@@ -22,7 +22,7 @@ from momantu_bt.geometry import Pose2D
 from momantu_bt.messages import ObjectClass, plain
 from momantu_bt.world import Overhang, Site, Surface
 
-FIELDS = ("name", "start", "start_sigma", "places", "surfaces", "objects", "services")
+FIELDS = ("name", "start", "start_sigma", "places", "surfaces", "objects", "services", "area")
 """Fields of a site that are cached: all but maps, which depend on the robot."""
 
 
@@ -74,6 +74,7 @@ def _read(data: dict[str, Any]) -> Site:
         surfaces=MappingProxyType(surfaces),
         objects=MappingProxyType({o: ObjectClass(**e) for o, e in data["objects"].items()}),
         services=MappingProxyType(data["services"]),
+        area=None if data["area"] is None else tuple(data["area"]),
     )
 
 

@@ -97,6 +97,12 @@ def _extent(world: WorldFile, cell: float) -> tuple[Array, Array]:
     return np.floor((low - MARGIN) / cell) * cell, np.ceil((high + MARGIN) / cell) * cell
 
 
+def area_of(world: WorldFile) -> tuple[float, float, float, float]:
+    """The least x and y and the largest x and y within the walls, m."""
+    low, high = _walled(world)
+    return float(low[0]), float(low[1]), float(high[0]), float(high[1])
+
+
 def _walled(world: WorldFile) -> tuple[Array, Array]:
     """The box around all walls, or around the floor where there are none."""
     walls = wall_rectangles(world)

@@ -13,7 +13,7 @@ from momantu_worlds.scenes.arrange.surfaces import nominal_surfaces
 from momantu_worlds.scenes.file.world import WorldFile
 from momantu_worlds.scenes.geometry.plane import Rectangle, gap
 from momantu_worlds.scenes.site.coverage import Column
-from momantu_worlds.scenes.site.floor_plan import known_parts
+from momantu_worlds.scenes.site.floor_plan import area_of, known_parts
 
 SIGMAS = 2.0
 """The largest error of the rough start pose, in standard deviations."""
@@ -45,6 +45,7 @@ def site_of(world: WorldFile, start: Pose2D) -> Site:
             {name: ObjectClass(**sizes.model_dump()) for name, sizes in notes.objects.items()}
         ),
         services=MappingProxyType(notes.services),
+        area=None if world.site.map is not None else area_of(world),
     )
 
 
