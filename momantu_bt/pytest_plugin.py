@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import ChainMap
 from collections.abc import Iterator, Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 import pytest
@@ -21,6 +20,7 @@ if TYPE_CHECKING:
     from momantu_bt.record.report import Report
     from momantu_bt.skill import Skill
     from momantu_bt.testing import ScriptedRobot
+    from momantu_bt.tree.files.given_text import AnyTree
     from momantu_bt.world import Site, World
 
 
@@ -29,7 +29,7 @@ class RunTree(Protocol):
 
     def __call__(
         self,
-        tree: str | Path,
+        tree: AnyTree,
         *,
         skills: Mapping[str, type[Skill]] | None = None,
         services: Mapping[str, Any] | None = None,
@@ -45,11 +45,11 @@ class RunTree(Protocol):
 
 
 @pytest.fixture
-def run_tree(tmp_path: Path) -> Iterator[RunTree]:
+def run_tree() -> Iterator[RunTree]:
     """`run_tree(tree, …)` runs a tree in a scripted world and returns its Report.
 
-    tree: the text of a tree, YAML or XML (it has several lines), a path, or a bundled tree's
-    name. skills, services: by name, in addition to the installed ones; they take precedence.
+    tree: a text, a path, a bundled tree's name or a mapping, as for `momantu_bt.run`.
+    skills, services: by name, in addition to the installed ones; they take precedence.
     robot: it stands in the room of `ExampleWorld`, unless `site` is given; or give `world`,
     which has both.
     values: keys of the root's board. max_time: simulated seconds.
@@ -58,7 +58,7 @@ def run_tree(tmp_path: Path) -> Iterator[RunTree]:
     opened: list[World] = []
 
     def start(
-        tree: str | Path,
+        tree: AnyTree,
         *,
         skills: Mapping[str, type[Skill]] | None = None,
         services: Mapping[str, Any] | None = None,
@@ -84,9 +84,8 @@ def run_tree(tmp_path: Path) -> Iterator[RunTree]:
                 else testing.ScriptedWorld(robot, site)
             )
             opened.append(place)
-        file = _file(tree, tmp_path)
         return api.run(
-            file, world=place, seed=seed, values=values, max_time=max_time, registry=chosen
+            tree, world=place, seed=seed, values=values, max_time=max_time, registry=chosen
         )
 
     yield start
@@ -97,13 +96,3 @@ def run_tree(tmp_path: Path) -> Iterator[RunTree]:
 def _before(mine: Mapping[str, Any] | None, installed: Mapping[str, Any]) -> Mapping[str, Any]:
     # ChainMap only writes to its first mapping, though its type asks that all can be written
     return ChainMap(dict(mine or {}), installed)  # type: ignore[arg-type]
-
-
-def _file(tree: str | Path, folder: Path) -> str | Path:
-    """The tree's file; a text becomes one."""
-    if isinstance(tree, Path) or "\n" not in tree:
-        return tree
-    suffix = "xml" if tree.lstrip().startswith("<") else "yaml"
-    file = folder / f"tree.{suffix}"
-    file.write_text(tree, encoding="utf-8")
-    return file

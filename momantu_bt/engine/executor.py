@@ -197,6 +197,17 @@ class Executor:
 
     def tick(self) -> Status:
         """Run one tick: step the world, then the services, the tree and the observers."""
+        self._pass_time()
+        status = self.built.root.execute()
+        self._note()
+        return status
+
+    def idle(self) -> None:
+        """Run one tick without the tree: step the world, then the services and the observers."""
+        self._pass_time()
+        self._note()
+
+    def _pass_time(self) -> None:
         self._step()
         self.context.begin_tick()
         body = self.context.body
@@ -204,9 +215,6 @@ class Executor:
             self.state = body.actuators.robot.state()
             body.frames.add_state(self.state)
         self.services.update(self.context.now)
-        status = self.built.root.execute()
-        self._note()
-        return status
 
     def _note(self) -> None:
         """Add the tick to the fingerprint, then call the observers."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from contextlib import ExitStack
-from pathlib import Path
 from typing import Any
 
 from py_trees.behaviour import Behaviour
@@ -19,12 +18,13 @@ from momantu_bt.record.text.lines import tree_lines
 from momantu_bt.running.launch import assemble
 from momantu_bt.running.options import RunOptions
 from momantu_bt.running.prepare import Prepared, prepare
+from momantu_bt.tree.files.given_text import AnyTree, tree_source
 from momantu_bt.tree.registry import Registry
 from momantu_bt.world import World
 
 
 def as_behaviour(
-    tree: str | Path,
+    tree: AnyTree,
     *,
     name: str | None = None,
     world: str | World | None = None,
@@ -34,10 +34,10 @@ def as_behaviour(
     answers: Iterable[str | bool] = (),
     registry: Registry | None = None,
 ) -> TreeBehaviour:
-    """A checked tree, by its file or as a bundled tree by name, for a py_trees tree.
+    """A checked tree for a py_trees tree.
 
-    name: of the behaviour; the main tree's unless given. The other arguments are those of
-    `momantu_bt.run`. The tree is read and checked here.
+    name: of the behaviour; the main tree's unless given. The tree and the other arguments are those
+    of `momantu_bt.run`. The tree is read and checked here.
 
     Raises:
         TreeNotFound: there is no such tree.
@@ -46,7 +46,7 @@ def as_behaviour(
     options = RunOptions(
         world=world, robot=robot, seed=seed, values=values or {}, person=Scripted(answers)
     )
-    return TreeBehaviour(name, prepare(str(tree), options, registry))
+    return TreeBehaviour(name, prepare(tree_source(tree), options, registry))
 
 
 class TreeBehaviour(Behaviour):

@@ -13,12 +13,13 @@ from momantu_bt.record.report import Report
 from momantu_bt.running.launch import Watch, launch
 from momantu_bt.running.options import RunOptions
 from momantu_bt.running.prepare import prepare
+from momantu_bt.tree.files.given_text import AnyTree, tree_source
 from momantu_bt.tree.registry import Registry
 from momantu_bt.world import World
 
 
 def run(
-    tree: str | Path,
+    tree: AnyTree,
     *,
     world: str | World | None = None,
     robot: str | None = None,
@@ -37,7 +38,11 @@ def run(
     patience: float = math.inf,
     record: Path | None = None,
 ) -> Report:
-    """Run a tree file, or a bundled tree by name.
+    """Run a tree: a file, a bundled tree by name, a text, or a mapping.
+
+    A `Path` is a file. A `str` with a line break, or one that begins with `<` or `{`, is a text in
+    YAML or XML; any other is a path or a bundled tree's name. A mapping is what a YAML file would
+    hold. Includes of a text or a mapping are found from the working directory.
 
     Most arguments are those of `RunOptions`. The others, or those with another form, are:
     report: path for the report as JSON. registry: the skills, worlds, robots and services that the
@@ -47,6 +52,7 @@ def run(
     default, as a hang in native code beyond the limit ends the process, which here is yours.
 
     Raises:
+        InputError: the tree is none of these, or the mapping holds what a YAML file cannot.
         TreeNotFound: there is no such tree.
         TreeError: the tree has errors; the exception lists all of them.
         LaunchError: the run cannot begin with these arguments.
@@ -69,7 +75,7 @@ def run(
         record=record,
         person=Scripted(answers),
     )
-    result = launch(prepare(str(tree), options, registry), watch)
+    result = launch(prepare(tree_source(tree), options, registry), watch)
     if report is not None:
         result.write(report)
     return result

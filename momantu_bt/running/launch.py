@@ -7,27 +7,21 @@ import traceback
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
-from functools import partial
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 from momantu_bt import collector
-from momantu_bt.engine.blackboard import Board, ReadOnlyCell
-from momantu_bt.engine.build import build, skills_in
-from momantu_bt.engine.context import Remarked, RunContext
+from momantu_bt.engine.build import skills_in
+from momantu_bt.engine.context import Remarked
 from momantu_bt.engine.ending import ERROR
 from momantu_bt.engine.events import Events
 from momantu_bt.engine.executor import Executor, Observer
 from momantu_bt.engine.interrupts import Interrupts
-from momantu_bt.engine.skills.actuators import Actuators
-from momantu_bt.engine.skills.body import Body
-from momantu_bt.engine.skills.services import Services
-from momantu_bt.engine.watchdog import Watchdog
 from momantu_bt.errors import PLUGIN_ERRORS, MomantuError, words_of
 from momantu_bt.faults.stage import Planned, Stage, plan
-from momantu_bt.frames import FrameBuffer
 from momantu_bt.record.recorder import Recorder
 from momantu_bt.record.report import Report
-from momantu_bt.robot import Robot, RobotDescription
+from momantu_bt.robot import RobotDescription
+from momantu_bt.running.assembly import program, set_up
 from momantu_bt.running.audit import Auditor
 from momantu_bt.running.calls import called_skills, check_calls
 from momantu_bt.running.leftovers import Leftovers
@@ -38,12 +32,9 @@ from momantu_bt.running.reporting import report_of
 from momantu_bt.service import Service
 from momantu_bt.skill import Skill
 from momantu_bt.tree.check.named_world import world_of
-from momantu_bt.tree.check.root_keys import ROBOT_KEY
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.registry import Registry
-from momantu_bt.values.convert import natural
 from momantu_bt.world import World, WorldError
-from momantu_bt.world_plugins import NoWorld
 
 Watch: TypeAlias = Callable[[Executor], Sequence[Observer]]
 
@@ -121,13 +112,14 @@ def _assembled(prepared: Prepared, stack: ExitStack) -> tuple[Executor, Stage, R
     events = Events()
     recorder = _recorder(options, events, stack)
     events.subscribe(Remarked, lambda event: options.remark(event.text))
-    world = _open(prepared, kinds, called, needed)
+    world = open_world(prepared, kinds, called, needed)
     if world is not None:
         if world is not options.world:
             stack.callback(_close_world, world, options.remark)
         check_parameters(needed, world.site)
     stage = Stage(planned, world, options.seed, stack)
-    return _executor(prepared, kinds, called, needed, stage, events), stage, recorder
+    setting = set_up(options, stage, called, needed, events)
+    return program(prepared, setting, kinds), stage, recorder
 
 
 def _close_world(world: World, remark: Callable[[str], None]) -> None:
@@ -163,12 +155,18 @@ def _close(observers: Sequence[Observer]) -> str | None:
     return troubles[0] if troubles else None
 
 
-def _open(
+def open_world(
     prepared: Prepared,
     kinds: Mapping[str, type[Skill]],
     called: Mapping[str, type[Skill]],
     needed: Mapping[str, type[Service]],
 ) -> World | None:
+    """Open a run's world; None for a tree without one.
+
+    Raises:
+        LaunchError, CallError: the robot lacks what skills or services need, or there is no world.
+        WorldError: the world could not start.
+    """
     options, registry = prepared.options, prepared.registry
     check_world(prepared.document, options.world_name, kinds, registry)
     name = world_of(prepared.document, options.world_name)
@@ -213,72 +211,3 @@ def _check_uses(kinds: Mapping[str, type[Skill]], description: RobotDescription)
                 description.resolve_use(use)
             except KeyError as error:
                 raise LaunchError(f"{name} cannot run on {description.name}: {error}") from None
-
-
-def _executor(
-    prepared: Prepared,
-    kinds: Mapping[str, type[Skill]],
-    called: Mapping[str, type[Skill]],
-    needed: Mapping[str, type[Service]],
-    stage: Stage,
-    events: Events,
-) -> Executor:
-    document, options, substitution = prepared.document, prepared.options, prepared.substitution
-    stepper = stage.world if stage.world is not None else NoWorld()
-    context = RunContext(
-        stepper,
-        seed=options.seed,
-        person=options.person,
-        watchdog=Watchdog(options.patience),
-        events=events,
-    )
-    services = Services({}, None)
-    if stage.robot is not None and stage.site is not None:
-        actuators = Actuators(stage.robot, events)
-        services = Services({name: _made(name, kind) for name, kind in needed.items()}, actuators)
-        frames = FrameBuffer(stage.robot.description.kinematics())
-        callable_skills = {name: stage.skill(kind) for name, kind in called.items()}
-        context.body = Body(actuators, frames, stage.site, services.running, callable_skills)
-    board = _board(context, document, services, stage.robot)
-    for key, value in substitution.values.items():
-        board.cell(key).store(natural(value))
-    skills = {name: stage.skill(kind) for name, kind in kinds.items()}
-    built = build(document, context, skills.__getitem__, board, substitution)
-    stage.direct(built, context, document)
-    return Executor(
-        built,
-        context,
-        stepper,
-        world=stage.world,
-        services=services,
-        max_time=options.max_time,
-        realtime=options.realtime,
-    )
-
-
-def _made(name: str, kind: type[Service]) -> Service:
-    try:
-        return kind()
-    except PLUGIN_ERRORS as error:  # a plug-in's code, which may raise anything
-        raise LaunchError(
-            f"the service {name!r} cannot be made: {words_of(error)}",
-            hint="Tell its authors, or leave out the skills that need it.",
-        ) from error
-
-
-def _board(
-    context: RunContext, document: Document, services: Services, robot: Robot | None
-) -> Board:
-    """The root's board as it is at the first tick."""
-    board = Board(context.writes)
-    for name in services.running:
-        board.publish(ReadOnlyCell(name, _asking(context, name, partial(services.published, name))))
-    if robot is not None:
-        board.publish(ReadOnlyCell(ROBOT_KEY, _asking(context, ROBOT_KEY, robot.state)))
-    for key, literal in document.values.items():
-        board.cell(key).store(natural(literal.value))
-    return board
-
-
-def _asking(context: RunContext, key: str, ask: Callable[[], Any]) -> Callable[[], Any]:
-    return lambda: context.ask(key, ask)

@@ -9,6 +9,7 @@ from typing import Any
 
 from momantu_bt.robot import RobotDescription
 from momantu_bt.running.options import RunOptions
+from momantu_bt.tree.files.given_text import TreeText
 from momantu_bt.tree.load import load
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.registry import Registry
@@ -29,7 +30,9 @@ class Prepared:
     substitution: Substitution
 
 
-def prepare(tree: str, options: RunOptions, registry: Registry | None = None) -> Prepared:
+def prepare(
+    tree: str | TreeText, options: RunOptions, registry: Registry | None = None
+) -> Prepared:
     """Read and check a tree for a run. registry: plug-ins it can name; by default all installed.
 
     Raises:

@@ -11,6 +11,7 @@ from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.places import Place
 from momantu_bt.formats.problems import errors
 from momantu_bt.tree.check.checker import Checked, check
+from momantu_bt.tree.files.given_text import TreeText
 from momantu_bt.tree.files.includes import read_project
 from momantu_bt.tree.files.lookup import TreeNotFound, find
 from momantu_bt.tree.files.settings import Given
@@ -26,7 +27,7 @@ __all__ = ["Checked", "TreeError", "TreeNotFound", "load", "read_file", "read_va
 
 
 def load(
-    tree: str,
+    tree: str | TreeText,
     registry: Registry | None = None,
     *,
     world: str | None = None,
@@ -35,16 +36,17 @@ def load(
 ) -> Checked:
     """Find, read and check a tree.
 
-    tree: a path or the name of a bundled tree. values: keys of the root's board, in addition to
-    those in the file or in their place (`--set`, `--values`), not converted ("66 mm"); `Given` also
-    has their places.
+    tree: a path, the name of a bundled tree, or a text. values: keys of the root's board, in
+    addition to those in the file or in their place (`--set`, `--values`), not converted ("66 mm");
+    `Given` also has their places.
 
     Raises:
         TreeNotFound: there is no such file.
         TreeError: the file has errors; all of them are in it.
     """
     having = registry if registry is not None else Registry.installed()
-    document, problems = read_file(find(tree), having)
+    found = tree if isinstance(tree, TreeText) else find(tree)
+    document, problems = read_file(found, having)
     _override(document, values or {}, problems)
     checked = check(document, having, world=world, robot=robot, reading=problems)
     if errors(checked.problems):
@@ -52,8 +54,8 @@ def load(
     return checked
 
 
-def read_file(path: Path, registry: Registry | None = None) -> tuple[Document, Problems]:
-    """Read a tree file, YAML or XML, and the files that it includes, without checking them.
+def read_file(path: Path | TreeText, registry: Registry | None = None) -> tuple[Document, Problems]:
+    """Read a tree, YAML or XML, and the files that it includes, without checking them.
 
     registry: has the skills whose port types are needed to read XML; by default those installed.
 

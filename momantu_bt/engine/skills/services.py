@@ -63,8 +63,16 @@ class Services:
         self.running = dict(running)
         self._robots: dict[str, Robot] = {}
         self._due: dict[str, float] = {}
+        self._started: set[str] = set()
+        self._actuators = actuators
         if actuators is not None:
             self._robots = {name: actuators.lease(name, ()) for name in running}
+
+    def add(self, name: str, service: Service) -> None:
+        """Add a service that `start` will start."""
+        assert self._actuators is not None
+        self._robots[name] = self._actuators.lease(name, ())
+        self.running[name] = service
 
     def start(
         self,
@@ -74,8 +82,11 @@ class Services:
         seed: int,
         other: Callable[[str], Any] | None = None,
     ) -> None:
-        """Start each one, its needs first. other: how they find each other."""
+        """Start each that is not started yet, its needs first. other: how they find each other."""
         for name, service in self.running.items():
+            if name in self._started:
+                continue
+            self._started.add(name)
             context = ServiceContext(
                 site=site,
                 description=self._robots[name].description,

@@ -10,9 +10,10 @@ from typing import Protocol
 
 from momantu_bt.formats.names import nearest
 from momantu_bt.formats.problems import Problem, errors
+from momantu_bt.tree.files.given_text import TreeText
 from momantu_bt.tree.files.lookup import TreeNotFound, tree_files
 from momantu_bt.tree.files.resolve import resolve
-from momantu_bt.tree.files.text import read_text
+from momantu_bt.tree.files.text import checked_text, read_text
 from momantu_bt.tree.files.xml.format import XmlSource
 from momantu_bt.tree.files.yaml.format import YamlSource
 from momantu_bt.tree.language import is_xml
@@ -42,8 +43,8 @@ class Source(Protocol):
         ...
 
 
-def read_project(path: Path, registry: Registry) -> tuple[Document, Problems]:
-    """Read a tree file and all that it includes.
+def read_project(tree: Path | TreeText, registry: Registry) -> tuple[Document, Problems]:
+    """Read a tree file, or a text, and all that it includes. A text includes as a file here would.
 
     Included files must lie in the project. The project is the nearest folder above `path` that has
     `.git` or `pyproject.toml`, or else the file's own folder. Includes give only their trees.
@@ -52,9 +53,10 @@ def read_project(path: Path, registry: Registry) -> tuple[Document, Problems]:
         TreeNotFound: the file itself cannot be opened.
         TreeError: a file is neither YAML nor XML, holds no tree, or has too many problems.
     """
+    path = Path.cwd() / tree.shown if isinstance(tree, TreeText) else tree
     project = _Project(registry, Problems(), project_folder(path))
     try:
-        return project.read(path)
+        return project.read(path, tree if isinstance(tree, TreeText) else None)
     except TooManyProblems as error:
         raise TreeError(errors(error.problems), project.source) from None
 
@@ -90,9 +92,12 @@ class _Project:
     broken: list[Problem] = field(default_factory=list)
     """Syntax errors of included files. If there are any, only they are reported."""
 
-    def read(self, path: Path) -> tuple[Document, Problems]:
+    def read(self, path: Path, given: TreeText | None = None) -> tuple[Document, Problems]:
         main = path.resolve()
-        stack = [self.open(main, str(path))]
+        if given is None:
+            stack = [self.open(main, str(path))]
+        else:
+            stack = [self.opened(main, given.shown, checked_text(given.text, given.shown))]
         while stack:
             top = stack[-1]
             include = next(top.includes, None)
@@ -111,7 +116,10 @@ class _Project:
         return self.whole(self.documents.pop(main)), self.problems
 
     def open(self, path: Path, shown: str) -> _Open:
-        text = read_text(path, shown)
+        return self.opened(path, shown, read_text(path, shown))
+
+    def opened(self, path: Path, shown: str, text: str) -> _Open:
+        """A file, or a text, whose syntax is right."""
         self.source[shown] = text
         source: Source
         if is_xml(shown, text):

@@ -5,9 +5,20 @@ from __future__ import annotations
 from pathlib import Path
 
 from momantu_bt.formats import text
+from momantu_bt.formats.places import Place
+from momantu_bt.formats.problems import Problem
 from momantu_bt.tree.files.lookup import TreeNotFound
 from momantu_bt.tree.files.syntax import MAX_BYTES, WHAT
 from momantu_bt.tree.problems import TreeError
+
+
+def checked_text(given: str, shown: str) -> str:
+    """A text that is no file's, without a byte order mark; TreeError if it is too long."""
+    size = len(given.encode("utf-8", "surrogatepass"))
+    if size > MAX_BYTES:
+        message = f"the text has {size} bytes; a {WHAT} has at most {MAX_BYTES}"
+        raise TreeError([Problem("too-large", message, Place(shown))], {})
+    return given.removeprefix("\ufeff")
 
 
 def read_text(path: Path, shown: str) -> str:
