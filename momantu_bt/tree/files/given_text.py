@@ -27,7 +27,7 @@ class TreeText:
     shown: str = SHOWN
 
 
-AnyTree: TypeAlias = "str | Path | TreeText | Mapping[str, Any]"
+AnyTree: TypeAlias = str | Path | TreeText | Mapping[str, Any]
 """A tree: a path, a bundled tree's name, a text, or what a YAML file would hold."""
 
 
