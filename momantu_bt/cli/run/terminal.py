@@ -71,7 +71,10 @@ class Terminal:
         if signals in ready:
             typer.echo()
             raise Interrupted
-        line = os.read(keyboard, LONGEST)
+        try:
+            line = os.read(keyboard, LONGEST)
+        except OSError:  # the terminal has gone
+            line = b""
         if not line:
             typer.echo()
             return None

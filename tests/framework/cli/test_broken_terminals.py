@@ -42,6 +42,23 @@ def test_a_reader_that_goes_away_leaves_the_exit_code_of_the_run(breakers, tmp_p
     assert (bad.code, bad.report["status"]) == (1, "FAILURE")
 
 
+def test_a_bench_goes_on_without_its_progress(tmp_path):
+    file = tmp_path / "tree.yaml"
+    file.write_text("momantu_bt: 1\ntrees: {Main: [{wait: 0.1}]}")
+    line = (
+        f"{sys.executable} -m momantu_bt bench {file} --world none --seeds 0:2 --jobs 1 --out out"
+    )
+    done = subprocess.run(
+        ["bash", "-c", f"{line} --report bench.json >/dev/full"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+    assert "standard output cannot be written" in done.stderr
+    assert len(json.loads((tmp_path / "bench.json").read_text())["rows"]) == 2
+
+
 @pytest.mark.parametrize("encoding", ["ascii", "latin-1"])
 def test_characters_that_the_output_lacks_are_escaped(tmp_path, encoding):
     file = tmp_path / "tree.yaml"

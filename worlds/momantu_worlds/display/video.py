@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from fractions import Fraction
 from pathlib import Path
@@ -32,6 +33,7 @@ class Film:
 
     def __init__(self, simulator: Simulator, episode: Episode, path: Path, title: str) -> None:
         """See `open_video`."""
+        path = Path(os.path.realpath(path))  # a link stays a link
         self._simulator, self._path = simulator, path
         self._part = path.with_name(f".{path.stem}.part{path.suffix or '.mp4'}")
         self._part.touch()  # the encoder would open it with the first frame, too late to refuse
@@ -67,9 +69,13 @@ class Film:
         if self._container is None:
             return
         container, self._container = self._container, None
-        container.mux(self._stream.encode(None))
-        container.close()
-        self._part.replace(self._path)
+        try:
+            container.mux(self._stream.encode(None))
+            container.close()
+            self._part.replace(self._path)
+        except BaseException:
+            self._part.unlink(missing_ok=True)
+            raise
 
 
 def open_video(simulator: Simulator, episode: Episode, path: Path, title: str) -> Film:
