@@ -133,6 +133,8 @@ class _Builder:
             kids = (self.node(replace(model, conditions={}), board, path),)
         cells = {n: cell_of(v, board) for n, v in model.ports.items() if _is_wire(v)}
         results = self.substitution.of(model)
+        if results[0].test is not None:
+            kids, results = (self.node(results[0].test, board, path),), ()
         return Substituted(replace(parts, kids=kids), results=results, outputs=cells)
 
     def _skill(self, parts: Parts, path: str) -> SkillLeaf:

@@ -20,7 +20,7 @@ from momantu_bt.engine.node import TreeNode, ticked_in
 from momantu_bt.engine.raised import raised_at
 from momantu_bt.engine.skills.services import ServiceError, Services
 from momantu_bt.engine.skills.session import CLOCK_SLACK
-from momantu_bt.engine.status import FAILURE, RUNNING, Status
+from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, Status
 from momantu_bt.errors import StopRequested, words_of
 from momantu_bt.failure import TIMEOUT, FailureValue
 from momantu_bt.messages import RobotState
@@ -261,7 +261,7 @@ class Executor:
     def stop(self) -> None:
         """Halt the tree and stop every actuator, even if halting the tree raises."""
         try:
-            halt_tree(self.built)
+            halt_tree(self.built, broken=self._error is not None)
         finally:
             if self.context.body is not None:
                 self.context.body.actuators.stop_all()
@@ -300,25 +300,24 @@ def _told(error: BaseException) -> str:
     return "\n".join([*trace, " ".join(last.splitlines()), ""])
 
 
-def halt_tree(built: Built) -> None:
-    """Halt a tree; also halt each node that an exception left running.
+def halt_tree(built: Built, *, broken: bool = False) -> None:
+    """Halt a tree; all its nodes are halted even if one raises, and the first exception is raised.
 
-    All nodes are halted even if one raises; the first exception is raised at the end.
+    broken: an exception may have left nodes running; they are halted each by itself. Otherwise a
+    node that is still marked as running was skipped since, and has nothing left to do.
     """
     troubles: list[BaseException] = []
-    for halt in (built.root.reset, *map(_halting, reversed(built.nodes))):
+    try:
+        built.root.reset()
+    except BaseException as trouble:  # a plug-in's code; a signal waits until all are halted
+        troubles.append(trouble)
+    for node in reversed(built.nodes):
         try:
-            halt()
-        except BaseException as trouble:  # a plug-in's code; a signal waits until all are halted
+            if node.state is RUNNING and (broken or troubles):
+                node.halt()
+            node.clear()
+            node.state = IDLE
+        except BaseException as trouble:
             troubles.append(trouble)
     if troubles:
         raise troubles[0]
-
-
-def _halting(node: TreeNode) -> Callable[[], None]:
-    def halt() -> None:
-        if node.state is RUNNING:
-            node.halt()
-        node.clear()
-
-    return halt

@@ -15,7 +15,8 @@ from momantu_bt.tree.substitute.substitution import Result
 class Substituted(TreeNode):
     """Returns the results that a test's rules give, each as often as they say; then runs its child.
 
-    The child is the replaced node. Its conditions are moved to this node.
+    The child is the replaced node, or the one that runs instead. Its conditions are moved to this
+    node. replaced: whether the node itself never runs.
     """
 
     def __init__(
@@ -26,11 +27,12 @@ class Substituted(TreeNode):
         self.outputs = dict(outputs)
         self.at = self.given = 0
         self.result: Result | None = None
+        self.replaced = not self.kids or self.kids[0].model.type != self.model.type
         self.begun = 0.0
 
     @property
     def is_itself(self) -> bool:
-        """Whether the rules are used up, so that the replaced node runs."""
+        """Whether the rules are used up, so that the child runs."""
         return self.at >= len(self.results)
 
     @property
@@ -41,7 +43,8 @@ class Substituted(TreeNode):
     @property
     def note(self) -> str:
         """Text that says that the node is replaced."""
-        return "" if self.is_itself and self.result is None else "substituted"
+        plain = self.is_itself and self.result is None and not self.replaced
+        return "" if plain else "substituted"
 
     def step(self) -> Status:
         """Begin the next result, or continue with the current one."""

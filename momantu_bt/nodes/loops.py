@@ -14,19 +14,21 @@ rounds.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal
 
-from momantu_bt.engine.causes import with_tries
+from momantu_bt.engine.causes import with_beside, with_tries
 from momantu_bt.engine.decorator import Decorator
 from momantu_bt.engine.node import Parts
 from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Status
+from momantu_bt.failure import FAILED, FailureValue
+from momantu_bt.tree import model
 from momantu_bt.tree.catalogue.flow import After, Walk, again, around, as_child, perhaps
 from momantu_bt.tree.catalogue.known import NEVER, Known, meet
 from momantu_bt.tree.catalogue.spec import Dialect, decorator, input_port, output_port
 from momantu_bt.tree.catalogue.wording import tries_text
-from momantu_bt.tree.model import Literal, Node
+from momantu_bt.tree.model import Node
 
-_ENDLESS = Literal(-1)
+_ENDLESS = model.Literal(-1)
 
 
 def _until_failure(walk: Walk, node: Node, before: Known) -> After:
@@ -50,6 +52,15 @@ def _tries(walk: Walk, node: Node, before: Known) -> After:
     """Without end, it never fails."""
     end = around(walk, node, before)
     return After(end.success, NEVER, end.skipped) if node.ports.get("attempts") == _ENDLESS else end
+
+
+def _each(walk: Walk, node: Node, before: Known) -> After:
+    if node.ports.get("until", model.Literal("failure")) == model.Literal("failure"):
+        return perhaps(walk, node, before)
+    end = as_child(walk, node, before)
+    if node.ports["until"] == model.Literal("success"):
+        return After(end.success, meet(before, end.failure), NEVER)
+    return After(before, meet(before, end.failure), NEVER)
 
 
 class Repeat(Decorator):
@@ -173,24 +184,32 @@ class KeepRunningUntilFailure(Decorator):
 
 
 class ForEach(Decorator):
-    """Runs the child for each item of a list.
+    """Runs the child for each item of a list, or until it has succeeded for one.
 
     The list is read when the node starts; the key of `as` holds the current item. SUCCESS after
     the last item (at once for an empty list). FAILURE when the child fails. When the child is
-    skipped, the next item follows.
+    skipped, the next item follows. With `until: success` it is the other way round: SUCCESS as soon
+    as the child succeeds; when it fails, the next item follows; FAILURE after the last item, with
+    the failures of all. An empty list fails.
     """
 
     spec = decorator(
         "ForEach",
         "for_each",
-        "Runs the child for each item of a list, until it fails.",
+        "Runs the child for each item of a list, until it fails or, if asked, succeeds.",
         input_port("in", tuple, "the items"),
         output_port("as", object, "the key that holds the item of the round"),
+        input_port(
+            "until",
+            Literal["failure", "success"],
+            "success: it ends well with the first item for which the child succeeds",
+            "failure",
+        ),
         first=None,
         modifier=False,
         dialect=Dialect.OURS,
         item=("as", "in"),
-        flow=again(perhaps),
+        flow=again(_each),
     )
 
     def __init__(self, parts: Parts) -> None:
@@ -199,11 +218,14 @@ class ForEach(Decorator):
         self.item = parts.key("as")
         self.items: tuple[Any, ...] | None = None
         self.at = 0
+        self.failures_seen: list[FailureValue] = []
 
     def step(self) -> Status:
         """One round at most."""
         if self.items is None:
             self.items, self.at = tuple(self.inputs["in"]), 0
+            self.failures_seen = []
+        searching = self.inputs["until"] == "success"
         self.state = RUNNING
         if self.at < len(self.items):
             if self.child.state is IDLE:
@@ -212,14 +234,21 @@ class ForEach(Decorator):
             if status is RUNNING:
                 return RUNNING
             self.child.reset()
-            if status is FAILURE:
+            if status is FAILURE and searching:
+                self.failures_seen.append(self.failure_of(self.child))
+            elif status.completed and (searching or status is FAILURE):
                 self.items = None
-                return self.pass_on(FAILURE)
+                return self.pass_on(status)
             self.at += 1
             if self.at < len(self.items):
                 return RUNNING
         self.items = None
-        return SUCCESS
+        return self._found_none() if searching else SUCCESS
+
+    def _found_none(self) -> Status:
+        if self.failures_seen:
+            return self.fail_with(with_beside(self.failures_seen))
+        return self.fail(FAILED, "its list has no item for which the child could succeed")
 
     def clear(self) -> None:
         """Forget the list; the next start reads it again."""

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Literal
 
+from momantu_bt.engine.blackboard import Cell
 from momantu_bt.engine.node import Parts, TreeNode
 from momantu_bt.engine.skills.session import CLOCK_SLACK
 from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, SUCCESS, Status
@@ -18,6 +20,10 @@ from momantu_bt.tree.model import Node
 from momantu_bt.values.kinds import CodeText, ScriptText
 
 _SCRIPTS = ("return_status_script", "success_script", "failure_script", "post_script")
+
+
+_NUMBERS = {"IDLE": 0, "RUNNING": 1, "SUCCESS": 2, "FAILURE": 3, "SKIPPED": 4}
+"""Names that `return_status_script` knows, and BehaviorTree.CPP's numbers for them."""
 
 
 def _prescribed(walk: Walk, node: Node, before: Known) -> After:
@@ -74,6 +80,10 @@ class TestNode(TreeNode):
         self.inputs = parts.inputs()
         given = [name for name in _SCRIPTS if name in parts.model.ports]
         self.scripts = {name: code_at(parts, name) for name in given}
+        if "return_status_script" in given:
+            self.scripts["return_status_script"] = code_at(
+                _with_statuses(parts), "return_status_script"
+            )
         self.begun: float | None = None
 
     def step(self) -> Status:
@@ -104,11 +114,21 @@ class TestNode(TreeNode):
 
     def _prescribed(self) -> Status:
         code = self.scripts.get("return_status_script")
-        name = self.inputs["return_status"] if code is None else code.run()
+        value = self.inputs["return_status"] if code is None else code.run()
+        numbers = {number: name for name, number in _NUMBERS.items()}
+        name = numbers.get(int(value)) if isinstance(value, int | float) else value
         if not isinstance(name, str) or name not in Status.__members__ or name == IDLE.name:
             raise Failure(
                 SCRIPT_ERROR,
-                f"return_status_script gives {name!r}, which is not one of "
-                "'SUCCESS', 'FAILURE', 'RUNNING' and 'SKIPPED'",
+                f"return_status_script gives {value!r}, which is not one of "
+                "SUCCESS, FAILURE, RUNNING and SKIPPED",
             )
         return Status[name]
+
+
+def _with_statuses(parts: Parts) -> Parts:
+    """The parts with a board on which `SUCCESS` and the others have their numbers."""
+    cells = {name: Cell(name, []) for name in _NUMBERS}
+    for name, cell in cells.items():
+        cell.begin(_NUMBERS[name])
+    return replace(parts, board=parts.board.with_cells(cells))

@@ -22,6 +22,7 @@ from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue.spec import by_name, input_port
 from momantu_bt.tree.files.port_values import drop_duplicates
 from momantu_bt.tree.files.side_file import top_values
+from momantu_bt.tree.model import Node
 from momantu_bt.tree.problems import Problems
 from momantu_bt.values.convert import convert
 from momantu_bt.values.kinds import CodeText
@@ -44,7 +45,10 @@ _ONLY_WITH = {"code": "FAILURE", "message": "FAILURE", "outputs": "SUCCESS"}
 
 @dataclass(slots=True)
 class Rule:
-    """One rule. place: of the rule. places: of its keys' values. used: it replaces a node."""
+    """One rule. place: of the rule. places: of its keys' values. used: it replaces a node.
+
+    test: the node that runs instead; then chosen has the `id` of each node that it replaces.
+    """
 
     node: str
     status: Status
@@ -58,6 +62,8 @@ class Rule:
     places: dict[str, Place] = field(default_factory=dict)
     output_places: dict[str, Place] = field(default_factory=dict)
     used: bool = False
+    test: Node | None = None
+    chosen: frozenset[int] = frozenset()
 
     def place_of(self, key: str) -> Place:
         """The place of a key's value; that of the rule if it lacks the key."""

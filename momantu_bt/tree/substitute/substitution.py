@@ -21,6 +21,7 @@ from momantu_bt.tree.files.text import read_text
 from momantu_bt.tree.model import Document, Node
 from momantu_bt.tree.problems import Problems, TreeError
 from momantu_bt.tree.registry import Registry
+from momantu_bt.tree.substitute.btcpp import is_btcpp, read_test_configs
 from momantu_bt.tree.substitute.rules import Rule, RuleFile, Status, read_rules
 from momantu_bt.values.convert import convert
 from momantu_bt.values.words import ConversionError
@@ -31,7 +32,7 @@ class Result:
     """A result that replaces the run of a node.
 
     delay: time of the world's clock until the end, s. times: number of starts that it replaces;
-    None: all. outputs: values by port.
+    None: all. outputs: values by port. test: the node that runs instead, at every start.
     """
 
     status: Status
@@ -40,6 +41,7 @@ class Result:
     delay: float
     times: int | None
     outputs: Mapping[str, Any]
+    test: Node | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,9 +78,11 @@ def load_substitution(
     text, name, problems = read_text(path, str(path)), str(path), Problems()
     source = {**document.source, name: text}
     try:
-        found = read_rules(compose(text, name), problems)
+        raw = compose(text, name)
     except YamlSyntaxError as error:
         raise TreeError([error.problem], source) from None
+    theirs = is_btcpp(raw)
+    found = read_test_configs(raw, document, problems) if theirs else read_rules(raw, problems)
     context = Context(document, registry, problems)
     results = _match(context, found.rules)
     _check_used(context, found.rules)
@@ -121,6 +125,8 @@ def names(node: Node) -> list[str]:
 
 
 def _matches(rule: Rule, node: Node) -> bool:
+    if rule.test is not None:
+        return id(node) in rule.chosen
     if rule.line is not None and rule.line != node.place.line:
         return False
     return any(fnmatchcase(word, rule.node) for word in names(node))
@@ -144,6 +150,8 @@ def _match(context: Context, rules: list[Rule]) -> dict[int, tuple[Result, ...]]
 
 def _result(context: Context, rule: Rule, node: Node) -> Result:
     """The result of a rule for a node, with converted outputs; problems are reported."""
+    if rule.test is not None:
+        return Result(rule.status, rule.code, "", 0.0, None, {}, rule.test)
     signature = context.signature(node)
     ports = signature.ports if signature is not None else {}
     said = signature.said if signature is not None else node.type

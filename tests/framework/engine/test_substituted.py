@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+import momantu_bt
 from momantu_bt.cli import main
 from momantu_bt.messages import BaseVelocity
 from momantu_bt.running.launch import LaunchError
@@ -145,3 +146,32 @@ def test_the_page_on_testing_trees_is_true(tmp_path, monkeypatch, capsys):
     exec(test, scope)
     scope["test_it_tries_again_when_the_can_slips"]()
     assert json.loads(Path("report.json").read_text())["sim_time_s"] == pytest.approx(6.05, abs=0.2)
+
+
+CPP_TREE = """<root BTCPP_format="4" main_tree_to_execute="Main"><BehaviorTree ID="Main"><Sequence>
+<Script code="tries := 0; seen := 0"/>
+<RetryUntilSuccessful num_attempts="5"><AlwaysFailure name="open"/></RetryUntilSuccessful>
+<SubTree ID="Arm" name="arm" _autoremap="true"/></Sequence></BehaviorTree>
+<BehaviorTree ID="Arm"><Fallback><AlwaysFailure name="grasp_1" _skipIf="tries == 0"/>
+</Fallback></BehaviorTree></root>"""
+CPP_RULES = {
+    "TestNodeConfigs": {
+        "Slow": {"return_status": "SUCCESS", "async_delay": 100, "post_script": "seen = tries"},
+        "Moody": {
+            "return_status_script": "tries >= 2 ? SUCCESS : FAILURE",
+            "failure_script": "tries += 1",
+        },
+    },
+    "SubstitutionRules": {"open": "Moody", "arm/grasp_*": "Slow"},
+}
+
+
+def test_a_configuration_of_behaviortree_cpp_runs_instead(tmp_path):
+    tree, rules = tmp_path / "tree.xml", tmp_path / "rules.json"
+    tree.write_text(CPP_TREE)
+    rules.write_text(json.dumps(CPP_RULES))
+    report = momantu_bt.run(tree, substitute=rules, world="none")
+    assert (report.status, report.blackboard) == ("SUCCESS", {"seen": 2, "tries": 2})
+    assert report.ticks == 5
+    runs = {node.name: node.runs for node in report.nodes}
+    assert (runs["open"], runs["grasp_1"]) == (3, 1)

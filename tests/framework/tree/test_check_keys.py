@@ -263,6 +263,17 @@ def test_for_each_gives_its_item(fine: Fine, expect: Expect) -> None:
     expect("wrong-type", body, message="$stop is pose2d")
 
 
+def test_for_each_until_success_leaves_the_item(fine: Fine, expect: Expect) -> None:
+    count = "- count: {poses: $stops}"
+    loop = "- for_each: {in: $stops, as: $stop, until: success, child: {navigate: {goal: $stop}}}"
+    after = "- navigate: {goal: $stop}"
+    fine(main(count, loop, after))
+    body = main(count, loop.replace(", until: success", ""), after.replace("$stop", "«$stop»"))
+    expect("read-before-write", body)
+    wrong = main(count, loop.replace("success", "«done»"))
+    expect("wrong-value", wrong, message="'done' is not one of failure, success")
+
+
 def test_a_written_list_is_checked_item_by_item(fine: Fine, expect: Expect) -> None:
     loop = "- for_each: {in: $stops, as: $stop, child: {navigate: {in_front_of: $stop}}}"
     expect("unknown-place", main(loop, values="{stops: «[table_a, tabel_b]»}"), message="'tabel_b'")

@@ -161,3 +161,72 @@ def test_without_a_world_published_keys_must_be_given(load: Load) -> None:
         load(text + "values: {localization: {quality: 0.9}}\n")
     with pytest.raises(TreeError, match="no service publishes 'loc'"):
         load(text + "values: {localization: {quality: 0.9}, loc: 1}\n", "none")
+
+
+CONFIG = '{"TestNodeConfigs": {"T": {"return_status": "FAILURE"}}, "SubstitutionRules": {%s}}'
+
+
+@pytest.mark.parametrize(
+    ("pattern", "types"),
+    [
+        ("first", {"count"}),
+        ("pick", set()),
+        ("reset_pose", {"reset_pose"}),
+        ("Sub::3/*", {"Recover"}),  # what is below does not run
+        ("Sub::3/nav*", {"navigate"}),
+        ("Sub::?/reset_*", {"reset_pose"}),
+        ("Sub*::*", {"SubTree"}),
+        ("wai?::*", set()),
+        ("Sleep::*", {"Sleep"}),
+    ],
+)
+def test_rules_of_behaviortree_cpp(
+    pattern: str, types: set[str], registry: Registry, tmp_path: Path
+) -> None:
+    path = tmp_path / "rules.json"
+    path.write_text(CONFIG % f'"{pattern}": "T"')
+    document, _ = read(TREE, "t.yaml")
+    if not types:
+        with pytest.raises(TreeError, match="no node"):
+            load_substitution(path, document, registry)
+        return
+    found = load_substitution(path, document, registry)
+    nodes = [node for tree in document.trees.values() for node in tree.root.walk()]
+    assert {node.type for node in nodes if found.replaces(node)} == types
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "words"),
+    [
+        ('{"SubstitutionRules": {"first": «"TestAction"»}}', "unknown-node", "registered in C++"),
+        ('«{"TestNodeConfigs": {}}»', "missing-input", "SubstitutionRules"),
+        ('{"TestNodeConfigs": {"T": «{}»}, "SubstitutionRules": {}}', "missing-input", "status"),
+        (
+            '{"TestNodeConfigs": {"T": {"return_status": «"DONE"»}}, "SubstitutionRules": {}}',
+            "wrong-value",
+            "one of",
+        ),
+        (
+            '{"TestNodeConfigs": {"T": {"return_status": "SUCCESS", "post_script": «"a :="»}}, '
+            '"SubstitutionRules": {}}',
+            "script",
+            "should be",
+        ),
+        (
+            '{"TestNodeConfigs": {"T": {"return_status": "SUCCESS", "delay": «3»}}, '
+            '"SubstitutionRules": {}}',
+            "unknown-key",
+            "async_delay",
+        ),
+        (CONFIG % '"nobody": «"T"»', "unmatched-rule", "nobody"),
+    ],
+)
+def test_what_is_wrong_with_rules_of_behaviortree_cpp(
+    load: Load, text: str, code: str, words: str
+) -> None:
+    column = text.index("«") + 1
+    with pytest.raises(TreeError) as caught:
+        load(text.replace("«", "").replace("»", ""))
+    (problem,) = caught.value.problems
+    assert (problem.code, problem.place.column) == (code, column)
+    assert words in problem.message + problem.hint
