@@ -113,15 +113,21 @@ class FailureValue:
         return f"{self.code}, {self.message}" if self.message else self.code
 
 
+def checked_code(code: str) -> str:
+    """The code itself; ValueError if it is not one."""
+    if not CODE.fullmatch(code):
+        raise ValueError(
+            f"failure code {code!r} is not upper-case words joined by underscores, "
+            "such as 'NOT_FOUND'"
+        )
+    return code
+
+
 class Failure(Exception):
     """Raised by a skill to fail: `raise Failure("NOT_FOUND", "no can here", seen=3)`."""
 
     def __init__(self, code: str, message: str = "", /, **data: Any) -> None:
-        if not CODE.fullmatch(code):
-            raise ValueError(
-                f"failure code {code!r} is not upper-case words joined by underscores, "
-                "such as 'NOT_FOUND'"
-            )
+        checked_code(code)
         super().__init__(f"{code}, {message}" if message else code)
         self.value = FailureValue(code, message, MappingProxyType(dict(data)))
 

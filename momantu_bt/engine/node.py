@@ -22,7 +22,7 @@ from momantu_bt.engine.ports import Inputs, Output, cell_of, inputs_of, outputs_
 from momantu_bt.engine.role import Role
 from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Status
 from momantu_bt.errors import MomantuError
-from momantu_bt.failure import FAILED, SCRIPT_ERROR, Failure, FailureValue
+from momantu_bt.failure import FAILED, SCRIPT_ERROR, Failure, FailureValue, checked_code
 from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue import NODES, NodeSpec
 from momantu_bt.tree.model import Node, Reference
@@ -260,10 +260,14 @@ class TreeNode:
         return FAILURE
 
     def fail(self, code: str, message: str, cause: FailureValue | None = None) -> Status:
-        """Fail with a failure of this node; the previous value is reused when it is the same."""
+        """Fail with a failure of this node; the previous value is reused when it is the same.
+
+        Raises:
+            ValueError: the code is not upper-case words joined by underscores.
+        """
         value = self._raised
         if value is None or (code, message, cause) != (value.code, value.message, value.cause):
-            value = self._raised = self.own(FailureValue(code, message, cause=cause))
+            value = self._raised = self.own(FailureValue(checked_code(code), message, cause=cause))
         self.failure = value
         return FAILURE
 

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from enum import Enum
 from typing import Any
 
+from momantu_bt.failure import CODE
 from momantu_bt.formats.names import nearest
 from momantu_bt.formats.units import UnitError, in_unit, quantity
 from momantu_bt.values.kinds import CodeText
@@ -97,7 +98,7 @@ def _plain_number(text: str) -> Any:
 
 def to_text(value: Any, type_: type[str]) -> Any:
     """Convert to a text."""
-    if isinstance(value, str):
+    if isinstance(value, str) and (type_ is not CodeText or CODE.fullmatch(value)):
         return value
     if type_ is CodeText:
         raise ConversionError(f"{shown(value)} is not a failure code, such as NOT_FOUND")

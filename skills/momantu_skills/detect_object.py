@@ -21,6 +21,7 @@ with lazily():
     from momantu_skills.gaze import surveys
     from momantu_skills.perception.camera import pictures
     from momantu_skills.perception.geometry import regions
+    from momantu_skills.perception.objects import matching
 
 
 LOOKS = 3
@@ -127,15 +128,21 @@ class DetectObject(Skill):
         )
 
     def _not_found(self, things: tuple[DetectedObject, ...]) -> Failure:
-        seen = [
-            f"{t.category} {' x '.join(f'{1000 * size:.0f}' for size in t.size)} mm" for t in things
-        ]
-        there = f"there: {', '.join(seen)}" if seen else "nothing stands there"
+        seen = [_measured(thing) for thing in things]
+        why = [", ".join(matching.misfits(thing, self.object)) for thing in things]
+        told = (f"{thing}, {reason}" for thing, reason in zip(seen, why, strict=True))
+        there = f"there: {'; '.join(told)}" if seen else "nothing stands there"
         return Failure(
             "OBJECT_NOT_FOUND",
             f"no {self.object.category} as asked on {self.on}; {there}",
             seen=seen,
+            misfits=why,
         )
+
+
+def _measured(thing: DetectedObject) -> str:
+    """The object in words, such as "bottle 63 x 63 x 200 mm"."""
+    return f"{thing.category} {' x '.join(f'{1000 * size:.0f}' for size in thing.size)} mm"
 
 
 def _asked_of(things: Sequence[DetectedObject], accepted: float) -> DetectedObject | None:

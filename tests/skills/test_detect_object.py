@@ -105,6 +105,8 @@ def test_what_is_not_there_is_not_found_and_what_is_there_is_told(detect: Detect
     assert result.failure is not None
     seen = sorted(text.split()[0] for text in result.failure.data["seen"])
     assert seen == ["bottle", "bowl", "box", "can", "mug"]
+    can_told = next(t for t in result.explain().split("; ") if "can " in t and "narrow" in t)
+    assert "mm too narrow (asked 70 ± 7 mm)" in can_told
 
 
 def test_an_empty_table_is_said_to_be_empty(detect: Detect) -> None:

@@ -12,6 +12,7 @@ from momantu_bt.tree.check.guards import check_guards
 from momantu_bt.tree.check.handlers import check_handlers
 from momantu_bt.tree.check.keys.flow_check import check_keys
 from momantu_bt.tree.check.nodes import check_node, check_tree_ports, with_named_inputs
+from momantu_bt.tree.check.reactive import check_reactive
 from momantu_bt.tree.check.root_keys import ROBOT_KEY, report_broken_services, root_keys
 from momantu_bt.tree.check.signatures import Context
 from momantu_bt.tree.check.surroundings import look_up_surroundings
@@ -92,6 +93,7 @@ def _check(context: Context, world: str | None, robot: str | None) -> None:
     if order is not None and all(shallow):
         check_parallel(context, order)
         check_handlers(context, order)
+        check_reactive(context, order)
         check_guards(context, order, frozenset({ROBOT_KEY, *context.registry.services}))
         check_keys(context, order, root_keys(context))
         report_broken_services(context)

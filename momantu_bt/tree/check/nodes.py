@@ -248,15 +248,16 @@ def _check_key(
 
 def check_literal(context: Context, value: Literal, place: Place, port: Port) -> None:
     """Check a literal against a port: its type, its unit, and the names that are valid."""
+    if port.type is CodeText and isinstance(value.value, str) and not CODE.fullmatch(value.value):
+        hint = "upper-case words joined by underscores, such as NOT_FOUND"
+        context.problems.error("bad-code", place, f"{value.value!r} is not a failure code", hint)
+        return
     try:
         found = convert(value.value, port)
     except ConversionError as error:
         message = f"{port.name!r}: {error}"
         context.problems.error("wrong-value", place, message)
         return
-    if port.type is CodeText and not CODE.fullmatch(found):
-        hint = "upper-case words joined by underscores, such as NOT_FOUND"
-        context.problems.error("bad-code", place, f"{found!r} is not a failure code", hint)
     check_named(context, found, place, port)
 
 

@@ -283,6 +283,7 @@ def test_a_broken_node_is_told_also_with_children_and_beside_a_node(calm, tree, 
         ),
         ("def step(self): pass", "TypeError: step() returned None; expected one of RUNNING"),
         ("def step(self): return self.shown", "step() returned <Status.IDLE"),
+        ("def step(self): return self.fail('no way', 'x')", "'no way' is not upper-case words"),
     ],
 )
 def test_a_node_that_raises_or_returns_no_status_is_named(calm, monkeypatch, method, said):

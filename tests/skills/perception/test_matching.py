@@ -5,10 +5,11 @@ from __future__ import annotations
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from momantu_skills.perception.objects.matching import MatchConfig, score
+from momantu_skills.perception.objects.matching import MatchConfig, misfits, score
 from momantu_skills.perception.objects.shapes import Shape
 
-from momantu_bt.messages import ObjectClass
+from momantu_bt.geometry import Pose, Transform
+from momantu_bt.messages import DetectedObject, ObjectClass
 
 CAN = ObjectClass("can", diameter=0.07, height=0.13)
 ACCEPTED = MatchConfig().accepted
@@ -76,3 +77,45 @@ def test_width_and_depth_are_in_no_order(turned: bool) -> None:
     assert score(measured(*size, "box", "box"), asked) == 1.0
     alone = ObjectClass("box", width=0.1)
     assert score(measured(*size, "box", "box"), alone) == 1.0
+
+
+def seen(category: str, x: float, y: float, z: float, shape: str = "cylinder") -> DetectedObject:
+    pose = Pose(Transform((0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0)), "odom", 0.0)
+    return DetectedObject(category, pose, (x, y, z), shape, 0.3, 0.7)
+
+
+@pytest.mark.parametrize(
+    ("thing", "asked", "why"),
+    [
+        (
+            seen("bottle", 0.063, 0.063, 0.2),
+            ObjectClass("bottle", diameter=0.054),
+            ["9 mm too wide (asked 54 ± 6 mm)"],
+        ),
+        (
+            seen("can", 0.05, 0.05, 0.16),
+            CAN,
+            ["30 mm too high (asked 130 ± 13 mm)", "20 mm too narrow (asked 70 ± 7 mm)"],
+        ),
+        (seen("mug", 0.07, 0.07, 0.13), ObjectClass("can"), ["no can by its shape"]),
+        (seen("can", 0.076, 0.076, 0.142), CAN, ["all sizes differ a little: it matches by 30 %"]),
+        (
+            seen("box", 0.06, 0.09, 0.2, "box"),
+            ObjectClass("carton", width=0.09, depth=0.07, height=0.1),
+            ["100 mm too high (asked 100 ± 10 mm)", "10 mm too narrow (asked 70 ± 7 mm)"],
+        ),
+    ],
+)
+def test_what_does_not_fit_is_told_with_how_much(
+    thing: DetectedObject, asked: ObjectClass, why: list[str]
+) -> None:
+    assert misfits(thing, asked) == why
+
+
+@given(st.floats(0.01, 0.2), st.floats(0.02, 0.4))
+def test_a_size_is_told_exactly_if_it_alone_refuses_the_object(
+    diameter: float, high: float
+) -> None:
+    told = misfits(seen("can", diameter, diameter, high), CAN)
+    refused = score(can(diameter, high), CAN) == 0.0
+    assert refused == any("asked" in words for words in told)

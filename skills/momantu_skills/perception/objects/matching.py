@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from momantu_bt.messages import ObjectClass
+from momantu_bt.messages import DetectedObject, ObjectClass
 from momantu_skills.perception.objects.shapes import Shape
 
 KNOWN = ("can", "bottle", "mug", "bowl", "box")
@@ -36,8 +36,8 @@ def score(shape: Shape, asked: ObjectClass, config: MatchConfig | None = None) -
     """
     config = config or MatchConfig()
     squares: list[float] = []
-    for measured, told in _sizes(shape, asked):
-        tolerance = max(config.absolute, config.relative * told)
+    for _, measured, told in _sizes(shape.size, shape.kind, asked):
+        tolerance = _tolerance(told, config)
         if abs(measured - told) > tolerance:
             return 0.0
         squares.append(((measured - told) / tolerance) ** 2)
@@ -50,17 +50,48 @@ def same_category(shape: Shape, asked: ObjectClass) -> bool:
     return asked.category not in KNOWN or shape.category == asked.category
 
 
-def _sizes(shape: Shape, asked: ObjectClass) -> Iterator[tuple[float, float]]:
-    """Pairs of (measured, given) for the given sizes."""
-    across = sorted(shape.size[:2])
+def misfits(
+    thing: DetectedObject, asked: ObjectClass, config: MatchConfig | None = None
+) -> list[str]:
+    """Why a measured object is not the requested one: "6 mm too wide (asked 57 ± 6 mm)".
+
+    Only sizes that are out of tolerance are told; if none is, the category or the sum of the
+    differences decided.
+    """
+    config = config or MatchConfig()
+    found: list[str] = []
+    for words, measured, told in _sizes(thing.size, thing.shape, asked):
+        tolerance = _tolerance(told, config)
+        if abs(measured - told) > tolerance:
+            much = f"{1000 * abs(measured - told):.0f} mm {words[measured < told]}"
+            found.append(f"{much} (asked {1000 * told:.0f} ± {1000 * tolerance:.0f} mm)")
+    if found:
+        return list(dict.fromkeys(found))
+    if asked.category in KNOWN and thing.category != asked.category:
+        return [f"no {asked.category} by its shape"]
+    return [f"all sizes differ a little: it matches by {100 * thing.score:.0f} %"]
+
+
+def _tolerance(told: float, config: MatchConfig) -> float:
+    return max(config.absolute, config.relative * told)
+
+
+_WIDE, _HIGH = ("too wide", "too narrow"), ("too high", "too low")
+
+
+def _sizes(
+    size: tuple[float, float, float], kind: str, asked: ObjectClass
+) -> Iterator[tuple[tuple[str, str], float, float]]:
+    """The words for too much and too little, the measured and the given size, for each size."""
+    across = sorted(size[:2])
     if asked.height is not None:
-        yield shape.size[2], asked.height
+        yield _HIGH, size[2], asked.height
     if asked.diameter is not None:
-        yield across[1], asked.diameter
-        if shape.kind == "box":
-            yield across[0], asked.diameter
-    flat = sorted(size for size in (asked.width, asked.depth) if size is not None)
+        yield _WIDE, across[1], asked.diameter
+        if kind == "box":
+            yield _WIDE, across[0], asked.diameter
+    flat = sorted(told for told in (asked.width, asked.depth) if told is not None)
     if len(flat) == 2:
-        yield from zip(across, flat, strict=True)
+        yield from ((_WIDE, *pair) for pair in zip(across, flat, strict=True))
     elif flat:
-        yield min(across, key=lambda size: abs(size - flat[0])), flat[0]
+        yield _WIDE, min(across, key=lambda side: abs(side - flat[0])), flat[0]
