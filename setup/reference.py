@@ -47,6 +47,7 @@ PUBLIC = (
     "momantu_bt.symptom",
     "momantu_bt.testing",
     "momantu_bt.world",
+    "momantu_skills.toolbox",
 )
 """Modules whose names plug-ins may import; every other module is private."""
 ROOT = Path(__file__).resolve().parent.parent

@@ -1,7 +1,8 @@
-"""The tutorial works: its files are saved and its commands run, in order, in an empty folder."""
+"""The tutorials work: files are saved and commands run, in order, in an empty folder."""
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import subprocess
@@ -21,9 +22,9 @@ exec "{python}" -m pip install -q --no-deps --no-index --no-build-isolation \
 """
 
 
-def steps() -> list[tuple[str, str]]:
+def steps(page: str) -> list[tuple[str, str]]:
     """(path, text) of each file to save and ("", line) of each command, in order."""
-    text = (ROOT / "docs" / "tutorial.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8")
     found: list[tuple[str, str]] = []
     for block in BLOCK.finditer(text):
         language, body = block.groups()
@@ -61,14 +62,11 @@ def environment(tmp_path: Path) -> dict[str, str]:
     }
 
 
-@pytest.mark.slow
-def test_every_command_of_the_tutorial_succeeds(
-    tmp_path: Path, environment: dict[str, str]
-) -> None:
-    folder = tmp_path / "empty"
+def followed(page: str, folder: Path, environment: dict[str, str]) -> str:
+    """Save every file of a page and run its commands; returns all that they printed."""
     folder.mkdir()
     told = ""
-    for path, text in steps():
+    for path, text in steps(page):
         if path:
             file = folder / path
             file.write_text(text, encoding="utf-8")
@@ -78,12 +76,33 @@ def test_every_command_of_the_tutorial_succeeds(
         )
         assert done.returncode == 0, f"{text}\n{done.stdout}\n{done.stderr}"
         told += done.stdout + done.stderr
+    return told
+
+
+@pytest.mark.slow
+def test_every_command_of_the_tutorial_succeeds(
+    tmp_path: Path, environment: dict[str, str]
+) -> None:
+    folder = tmp_path / "empty"
+    told = followed("tutorial", folder, environment)
     assert (folder / "report.json").is_file()
     assert "no node is called 'check_turn'" in told
     assert "ok    turn" in told
 
 
 def test_the_tutorial_saves_and_runs_something() -> None:
-    found = steps()
+    found = steps("tutorial")
     assert {path for path, _ in found} > {"first.yaml", "look_round.yaml", "test_look_round.py"}
     assert len([line for path, line in found if not path]) > 10
+
+
+@pytest.mark.slow
+def test_the_button_is_touched(tmp_path: Path, environment: dict[str, str]) -> None:
+    folder = tmp_path / "empty"
+    told = followed("touch_the_button", folder, environment)
+    assert "ok    touch_button" in told
+    assert re.search(r"touch_button: felt \d+ N after 0\.0\d+ m", told)
+    report = json.loads((folder / "run" / "report.json").read_text(encoding="utf-8"))
+    assert report["status"] == "SUCCESS"
+    assert 8.0 < report["blackboard"]["force"] < 150.0
+    assert "before the button" in (folder / "run" / "run.mcap").read_bytes().decode("latin-1")
