@@ -26,6 +26,8 @@ OF_THE_READER = {
     "src/door/door.py",
     "mounted.py",
     "test_look_round.py",
+    "touch_button/src/touch_button_skill/touch_button.py",
+    "touch_button/tests/test_touch_button.py",
     "turn/src/turn_skill/turn.py",
     "turn/tests/test_speed.py",
 }
