@@ -16,15 +16,19 @@ _LEAST_LIKE = 0.6
 """Names with at least this ratio of difflib count as near."""
 
 
-def nearest(word: str, candidates: Iterable[str]) -> str | None:
-    """The known name that is nearest to a mistyped one."""
-    return next(iter(_equally_near(word, candidates)), None)
+def nearest(word: str, candidates: Iterable[str], least: float = _LEAST_LIKE) -> str | None:
+    """The known name that is nearest to a mistyped one.
+
+    least: the least likeness that counts as near, from 0 to 1 (the same but for capitals). One of
+    two names that begins with the other is near in any case.
+    """
+    return next(iter(_equally_near(word, candidates, least)), None)
 
 
-def valid_names(word: str, candidates: Iterable[str], what: str) -> str:
+def valid_names(word: str, candidates: Iterable[str], what: str, least: float = _LEAST_LIKE) -> str:
     """A hint with the nearest names; without any, it lists all names ("Places: a, b")."""
     names = list(dict.fromkeys(candidates))
-    near = _equally_near(word, names)
+    near = _equally_near(word, names, least)
     if near:
         *others, last = near
         said = f"{', '.join(others)} or {last}" if others else last
@@ -33,16 +37,24 @@ def valid_names(word: str, candidates: Iterable[str], what: str) -> str:
     return f"{what}: {', '.join(listed)}" if names else f"there are no {what}"
 
 
-def _equally_near(word: str, candidates: Iterable[str]) -> list[str]:
+def _equally_near(word: str, candidates: Iterable[str], least: float) -> list[str]:
     """The known names that are nearest to a mistyped one; several if they are equally near."""
     folded = {_folded(name): name for name in candidates}
     exact = folded.get(_folded(word))
     if exact is not None:
         return [exact]
     compared = islice(folded, _MOST_COMPARED)
-    close = difflib.get_close_matches(_folded(word), compared, n=_MOST_MEANT, cutoff=_LEAST_LIKE)
+    cutoff = min(least, _LEAST_LIKE)
+    close = difflib.get_close_matches(_folded(word), compared, n=_MOST_MEANT, cutoff=cutoff)
+    close = [name for name in close if _likeness(word, name) >= least or _begins(word, name, least)]
     best = _likeness(word, close[0]) if close else 0.0
     return [folded[name] for name in close if _likeness(word, name) == best]
+
+
+def _begins(word: str, folded: str, least: float) -> bool:
+    """Whether one of two names is the beginning of the other, unless only the same name counts."""
+    shown = _folded(word)
+    return least < 1.0 and (folded.startswith(shown) or shown.startswith(folded))
 
 
 def _folded(name: str) -> str:

@@ -70,7 +70,16 @@ def _rebuild(recording: Recording, registry: Registry) -> Rebuilt:
         if tree is None:
             texts = ", ".join(recording.files) or "none"
             raise RebuildError(f"it has no text of its tree {about['tree']}; its texts: {texts}")
-        document = load(str(tree), having, world=world, values=values).document
+        substituted = "substitution" in recording.kinds.values()
+        others = [paths[name] for name, kind in recording.kinds.items() if kind == "tree"]
+        document = load(
+            str(tree),
+            having,
+            world=world,
+            values=values,
+            include=[each for each in others if each != tree],
+            tolerant=substituted,
+        ).document
         substitution = Substitution()
         for name, kind in recording.kinds.items():
             if kind == "substitution":

@@ -25,7 +25,8 @@ class RunOptions:
     world: a name, a file, `"none"`, an open world (which stays open), or None for the tree's own.
     robot: a name or a file, or None for the world's default.
     seed: selects the variation of the episode. values: initial keys of the root's board, as with
-    `--set`. substitute: a file of rules that replace nodes.
+    `--set`. substitute: a file of rules that replace nodes. include: further tree files, or folders
+    of them, that have trees which the tree runs.
     faults: the faults to inject.
     max_time: simulated time after which the run fails with TIMEOUT, s.
     realtime: do not run faster than real time.
@@ -43,6 +44,7 @@ class RunOptions:
     seed: int = 0
     values: Mapping[str, Any] = field(default_factory=dict)
     substitute: Path | None = None
+    include: tuple[Path, ...] = ()
     faults: tuple[Fault, ...] = ()
     max_time: float = 600.0
     realtime: bool = False

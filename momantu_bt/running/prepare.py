@@ -9,11 +9,14 @@ from typing import Any
 
 from momantu_bt.robot import RobotDescription
 from momantu_bt.running.options import RunOptions
+from momantu_bt.tree.check.elsewhere import missing_for_a_run
+from momantu_bt.tree.check.signatures import Context
 from momantu_bt.tree.files.given_text import TreeText
 from momantu_bt.tree.load import load
 from momantu_bt.tree.model import Document
+from momantu_bt.tree.problems import Problems, TreeError
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.substitute.substitution import Substitution, load_substitution
+from momantu_bt.tree.substitute.substitution import Substitution, load_substitution, reached
 from momantu_bt.world import Site, World
 
 
@@ -43,11 +46,36 @@ def prepare(
     world = options.world_name
     if options.world is not None and not isinstance(options.world, str):
         having = with_world(having, options.world)
-    document = load(tree, having, world=world, robot=options.robot, values=options.values).document
+    document = load(
+        tree,
+        having,
+        world=world,
+        robot=options.robot,
+        values=options.values,
+        include=options.include,
+        tolerant=options.substitute is not None,
+    ).document
     substitution = Substitution()
     if options.substitute is not None:
         substitution = load_substitution(options.substitute, document, having, world)
+    refuse_missing(document, having, substitution)
     return Prepared(document, options, having, substitution)
+
+
+def refuse_missing(document: Document, registry: Registry, substitution: Substitution) -> None:
+    """Refuse a run that may need a node or a tree that stands elsewhere.
+
+    Raises:
+        TreeError: there is such a node; the exception says of each what to do.
+    """
+    reachable = (
+        (node, bool(substitution.of(node)))
+        for node in reached(document, substitution.results)
+        if not substitution.replaces(node)
+    )
+    missing = missing_for_a_run(Context(document, registry, Problems()), reachable)
+    if missing:
+        raise TreeError(missing, document.source)
 
 
 def with_world(registry: Registry, world: World) -> Registry:

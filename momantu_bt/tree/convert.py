@@ -112,7 +112,7 @@ def _read_again(
     again = source.document(outside)
     if again is not None:
         again.trees = {**again.trees, **outside}
-        resolve(again, problems)
+        resolve(again)
     return again, problems
 
 

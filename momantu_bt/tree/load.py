@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +11,7 @@ from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.places import Place
 from momantu_bt.formats.problems import errors
 from momantu_bt.tree.check.checker import Checked, check
+from momantu_bt.tree.files.further import add_trees
 from momantu_bt.tree.files.given_text import TreeText
 from momantu_bt.tree.files.includes import read_project
 from momantu_bt.tree.files.lookup import TreeNotFound, find
@@ -33,12 +34,15 @@ def load(
     world: str | None = None,
     robot: str | None = None,
     values: Mapping[str, Any] | None = None,
+    include: Sequence[Path] = (),
+    tolerant: bool = False,
 ) -> Checked:
     """Find, read and check a tree.
 
     tree: a path, the name of a bundled tree, or a text. values: keys of the root's board, in
     addition to those in the file or in their place (`--set`, `--values`), not converted ("66 mm");
-    `Given` also has their places.
+    `Given` also has their places. include: further files, or folders of files, with trees
+    that the tree runs. tolerant: nodes, trees and keys that stand elsewhere are warnings.
 
     Raises:
         TreeNotFound: there is no such file.
@@ -46,24 +50,31 @@ def load(
     """
     having = registry if registry is not None else Registry.installed()
     found = tree if isinstance(tree, TreeText) else find(tree)
-    document, problems = read_file(found, having)
+    document, problems = read_file(found, having, include)
     _override(document, values or {}, problems)
-    checked = check(document, having, world=world, robot=robot, reading=problems)
+    checked = check(document, having, world=world, robot=robot, reading=problems, tolerant=tolerant)
     if errors(checked.problems):
         raise TreeError(checked.problems, document.source)
     return checked
 
 
-def read_file(path: Path | TreeText, registry: Registry | None = None) -> tuple[Document, Problems]:
+def read_file(
+    path: Path | TreeText, registry: Registry | None = None, include: Sequence[Path] = ()
+) -> tuple[Document, Problems]:
     """Read a tree, YAML or XML, and the files that it includes, without checking them.
 
     registry: has the skills whose port types are needed to read XML; by default those installed.
+    include: further files, or folders, for the trees that these files lack.
 
     Raises:
         TreeNotFound: the file cannot be opened.
         TreeError: the file is neither YAML nor XML, or has no tree.
     """
-    return read_project(path, registry if registry is not None else Registry.installed())
+    having = registry if registry is not None else Registry.installed()
+    document, problems = read_project(path, having)
+    if include:
+        add_trees(document, problems, include, having)
+    return document, problems
 
 
 def read_values(path: Path) -> Given:

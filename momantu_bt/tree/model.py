@@ -191,8 +191,9 @@ class Document:
     """A tree file with everything it includes.
 
     trees: the file's own and those of the files it includes; `Tree.place.file` tells them apart.
-    values: initial keys of the root's board. models: of leaves, as the file has them. source: the
-    text, by file, for error displays.
+    values: initial keys of the root's board. models: of leaves, as the file has them.
+    further_models: those of the files that it includes. source: the text, by file, for error
+    displays.
     header_comments: those above and beside the first keys of the file; value_comments: those of
     `values`, by key; comments: those after the last tree.
     """
@@ -204,6 +205,7 @@ class Document:
     values: dict[str, Literal] = field(default_factory=dict)
     includes: tuple[Include, ...] = ()
     models: tuple[NodeModel, ...] = ()
+    further_models: tuple[NodeModel, ...] = field(default=(), compare=False)
     value_places: dict[str, Place] = field(default_factory=dict, compare=False)
     world_place: Place | None = field(default=None, compare=False)
     source: dict[str, str] = field(default_factory=dict, compare=False)

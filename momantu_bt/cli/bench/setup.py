@@ -27,6 +27,7 @@ from momantu_bt.faults.tree_file import tree_faults
 from momantu_bt.formats.names import valid_names
 from momantu_bt.robots.plugins import ROBOTS
 from momantu_bt.running.launch import check_world
+from momantu_bt.running.prepare import refuse_missing
 from momantu_bt.tree.check.named_world import world_of
 from momantu_bt.tree.files.lookup import find
 from momantu_bt.tree.files.settings import Given
@@ -66,6 +67,7 @@ def plan_of(tree: str, seeds: Sequence[int], how: HowToRun) -> tuple[Plan, Docum
         "robot": ROBOTS.absolute(how.robot),
     }
     document = load(place, registry, values=how.values, **told).document
+    refuse_missing(document, registry, Substitution())
     check_world(document, how.world, skills_in(document), registry)
     if WORLDS.is_path(document.world or ""):
         # on another machine, an episode has the tree in another folder

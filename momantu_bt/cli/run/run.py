@@ -15,7 +15,7 @@ import typer
 from momantu_bt import collector
 from momantu_bt.cli.shared import streams
 from momantu_bt.cli.shared.notices import notice
-from momantu_bt.cli.shared.options import Robot
+from momantu_bt.cli.shared.options import Include, Robot
 from momantu_bt.errors import TRACEBACK, ExitCode, InputError, MomantuError
 from momantu_bt.formats.files import check_writable
 from momantu_bt.lazy import lazily
@@ -80,6 +80,7 @@ def run(
     substitute: Annotated[
         Path | None, typer.Option(help="A YAML file of rules that replace nodes, for tests.")
     ] = None,
+    include: Include = None,
     break_: Annotated[
         list[str] | None,
         typer.Option("--break", metavar="NODE", help="Stop before a node: its name, type or line."),
@@ -118,6 +119,7 @@ def run(
         seed=seed,
         values=given.given_values(set_ or [], values),
         substitute=substitute,
+        include=tuple(include or ()),
         faults=tuple(spec.parse_fault(text) for text in fault or []),
         max_time=max_time,
         realtime=realtime,

@@ -1,4 +1,4 @@
-"""Options that `bench` and `compare` share."""
+"""Options that several verbs share."""
 
 from __future__ import annotations
 
@@ -13,6 +13,10 @@ Jobs: TypeAlias = Annotated[
 ]
 Robot: TypeAlias = Annotated[
     str | None, typer.Option(help="A robot's name or file. Default: the world's own.")
+]
+Include: TypeAlias = Annotated[
+    list[Path] | None,
+    typer.Option(help="A file, or a folder of files, with trees that the tree runs."),
 ]
 Values: TypeAlias = Annotated[Path | None, typer.Option(help="A YAML file of values.")]
 MaxTime: TypeAlias = Annotated[

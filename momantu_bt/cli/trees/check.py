@@ -5,11 +5,13 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
+from momantu_bt.cli.shared.options import Include
 from momantu_bt.errors import ExitCode, InputError
 from momantu_bt.faults.tree_file import tree_beside, tree_faults
 from momantu_bt.formats.problems import Problem
@@ -18,6 +20,13 @@ from momantu_bt.tree.load import Checked, TreeError, TreeNotFound, load
 from momantu_bt.tree.problems import report
 from momantu_bt.tree.show.problem_pages import explanation
 from momantu_bt.tree.show.sarif import sarif
+
+
+class Undeclared(StrEnum):
+    """What `check` makes of nodes that no plug-in offers and no model declares."""
+
+    ERROR = "error"
+    WARN = "warn"
 
 
 def check(
@@ -30,6 +39,11 @@ def check(
     robot: Annotated[
         str | None, typer.Option(help="Check against this robot: a name or file.")
     ] = None,
+    include: Include = None,
+    undeclared: Annotated[
+        Undeclared,
+        typer.Option(help="What nodes, trees and keys that stand elsewhere are."),
+    ] = Undeclared.ERROR,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,
     as_sarif: Annotated[
         bool, typer.Option("--sarif", help="Print SARIF 2.1.0, for editors and code reviews.")
@@ -40,6 +54,8 @@ def check(
 ) -> ExitCode:
     """Say everything that is wrong with tree files: all errors at once, each with its place.
 
+    Nodes of other programs: models in the file (`TreeNodesModel`) declare them; --undeclared warn
+    accepts the others, too; `momantu-bt skills stub` writes plug-ins for them.
     A file of faults, such as my_tree.faults.yaml, is checked against the tree beside it.
 
     Exit code 0: they can run (there may be warnings); 2: they cannot.
@@ -48,6 +64,7 @@ def check(
       momantu-bt check trees/bring_object.yaml
       momantu-bt check bring_object --world my_flat.yaml --robot my_robot/
       momantu-bt check --json my_tree.yaml
+      momantu-bt check their_tree.xml --undeclared warn --include their_trees/
       momantu-bt check --explain read-before-write
     """
     if explain is not None:
@@ -57,7 +74,8 @@ def check(
         raise InputError("name at least one tree file; see momantu-bt check --help")
     if as_json and as_sarif:
         raise InputError("choose one of --json and --sarif")
-    findings = [_checked(tree, world, robot, quiet=as_json or as_sarif) for tree in trees]
+    how = _How(world, robot, tuple(include or ()), undeclared is Undeclared.WARN)
+    findings = [_checked(tree, how, quiet=as_json or as_sarif) for tree in trees]
     fine = all(finding.ok for finding in findings)
     if as_json:
         _print_json({"ok": fine, "trees": [finding.as_dict() for finding in findings]})
@@ -85,12 +103,28 @@ class _FileChecked:
         return {"tree": self.tree, "ok": self.ok, **message, "problems": problems}
 
 
-def _checked(tree: str, world: str | None, robot: str | None, *, quiet: bool) -> _FileChecked:
+@dataclass(frozen=True, slots=True)
+class _How:
+    """What trees are checked against; see `load`."""
+
+    world: str | None
+    robot: str | None
+    include: tuple[Path, ...]
+    tolerant: bool
+
+
+def _checked(tree: str, how: _How, *, quiet: bool) -> _FileChecked:
     """Check one file, and unless quiet print the findings."""
     try:
         if is_faults_file(Path(tree)):
             return _checked_faults(Path(tree), quiet=quiet)
-        checked = load(tree, world=world, robot=robot)
+        checked = load(
+            tree,
+            world=how.world,
+            robot=how.robot,
+            include=how.include,
+            tolerant=how.tolerant,
+        )
     except (TreeNotFound, TreeError) as error:
         if not quiet:
             typer.echo(error.printed(), err=True)

@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from momantu_bt.cli.shared.options import Include
 from momantu_bt.drawing.boxes import pictures
 from momantu_bt.drawing.difference import difference
 from momantu_bt.drawing.dot import dot
@@ -34,6 +35,7 @@ def show(
         str | None, typer.Argument(help="Another one: print the changes from the first to it.")
     ] = None,
     world: Annotated[str | None, typer.Option(help="Check against this world.")] = None,
+    include: Include = None,
     as_svg: Annotated[bool, typer.Option("--svg", help="Draw an SVG picture.")] = False,
     as_dot: Annotated[bool, typer.Option("--dot", help="Print it for Graphviz.")] = False,
     as_mermaid: Annotated[bool, typer.Option("--mermaid", help="Print a Mermaid chart.")] = False,
@@ -46,7 +48,8 @@ def show(
 ) -> ExitCode:
     """Print a tree in plain words, with what is wrapped around each node, and its wires.
 
-    The tree is checked first; exit code 2: it has errors, and they are shown instead.
+    The tree is checked first; exit code 2: it has errors, and they are shown instead. Nodes and
+    trees that stand elsewhere are no errors here.
     With two trees, what was added (+), removed (-) and changed (~) on the way from the first to
     the second, whichever spelling each is written in; exit code 0: they say the same; 1: they
     differ.
@@ -62,10 +65,10 @@ def show(
     if other is not None and kinds:
         raise typer.BadParameter(f"the difference of two trees is text; leave --{kinds[0]} out")
     registry = Registry.installed()
-    document = load(tree, registry, world=world).document
+    document = _read(tree, registry, world, include)
     code = ExitCode.SUCCESS
     if other is not None:
-        found = difference(document, load(other, registry, world=world).document)
+        found = difference(document, _read(other, registry, world, include))
         text = "".join(f"{line.mark} {INDENT * line.depth}{line.text}\n" for line in found)
         code = ExitCode.FAILURE if found else ExitCode.SUCCESS
     elif kinds:
@@ -75,6 +78,11 @@ def show(
         text = "".join(f"{line}\n" for line in _words(document, found_wires, world))
     _write(text, output)
     return code
+
+
+def _read(tree: str, registry: Registry, world: str | None, include: list[Path] | None) -> Document:
+    further = tuple(include or ())
+    return load(tree, registry, world=world, include=further, tolerant=True).document
 
 
 def _picture(kind: str, document: Document, registry: Registry, with_wires: bool) -> str:

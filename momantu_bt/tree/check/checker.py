@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from momantu_bt.formats.places import Place
 from momantu_bt.formats.problems import Problem
 from momantu_bt.tree.check.conditions import check_conditions
+from momantu_bt.tree.check.elsewhere import report_elsewhere, with_trees_elsewhere
 from momantu_bt.tree.check.guards import check_guards
 from momantu_bt.tree.check.handlers import check_handlers
 from momantu_bt.tree.check.keys.flow_check import check_keys
@@ -47,19 +48,22 @@ def check(
     world: str | None = None,
     robot: str | None = None,
     reading: Problems | None = None,
+    tolerant: bool = False,
 ) -> Checked:
     """Check a document, without changing it.
 
     world, robot: names from the command line, instead of the file's world and the world's robot.
     reading: problems that were found while reading the file; the result includes them.
+    tolerant: nodes, trees and keys that stand elsewhere are warnings and not errors.
     """
     problems = reading if reading is not None else Problems()
-    context = Context(_concerned(document), registry, problems)
+    whole, elsewhere = with_trees_elsewhere(document)
+    context = Context(_concerned(whole), registry, problems, tolerant)
     context.document = with_named_inputs(context)
     with suppress(TooManyProblems):  # the last of them says that there are more
-        _check(context, world, robot)
-    named = replace(document, trees={**document.trees, **context.document.trees})
-    return Checked(named, problems.sorted())
+        _check(context, world, robot, elsewhere)
+    trees = {n: tree for n, tree in context.document.trees.items() if n not in elsewhere}
+    return Checked(replace(document, trees={**document.trees, **trees}), problems.sorted())
 
 
 def _concerned(document: Document) -> Document:
@@ -73,7 +77,9 @@ def _concerned(document: Document) -> Document:
     return replace(document, trees={name: tree for name, tree in trees.items() if name in kept})
 
 
-def _check(context: Context, world: str | None, robot: str | None) -> None:
+def _check(
+    context: Context, world: str | None, robot: str | None, elsewhere: frozenset[str]
+) -> None:
     document = context.document
     if document.main not in document.trees:
         message = "no tree is left to run: those that there are cannot be read"
@@ -81,12 +87,15 @@ def _check(context: Context, world: str | None, robot: str | None) -> None:
         return
     look_up_surroundings(context, world, robot)
     for tree in document.trees.values():
+        if tree.name in elsewhere:
+            continue
         check_tree_ports(context, tree)
         _check_tree_name(context, tree)
         for node in tree.root.walk():
             check_node(context, node)
             check_conditions(context, node)
         check_given_names(context, tree)
+    report_elsewhere(context, elsewhere)
     check_unused(context)
     shallow = [check_nesting(context, tree) for tree in document.trees.values()]
     order = callees_first(context)

@@ -12,7 +12,7 @@ from momantu_bt.messages import VALUE_TYPES
 from momantu_bt.skill import MISSING, Port
 from momantu_bt.tree.catalogue import AUTOREMAP, MODIFIERS
 from momantu_bt.tree.check.names import check_named
-from momantu_bt.tree.check.signatures import Context, Signature, known_type, report_unknown_node
+from momantu_bt.tree.check.signatures import Context, Signature, known_type
 from momantu_bt.tree.model import (
     FIRST_INPUT,
     Document,
@@ -59,9 +59,7 @@ def _type_names() -> list[str]:
 def check_node(context: Context, node: Node) -> None:
     """Check one node: its name, its children and its ports."""
     signature = context.signature(node)
-    if signature is None:
-        if node.type:
-            report_unknown_node(context, node)
+    if signature is None or signature.unknown:
         return
     _check_children(context, node, signature)
     _check_switch(context, node, signature)

@@ -6,15 +6,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from momantu_bt.formats.names import nearest, valid_names
 from momantu_bt.formats.places import Place
 from momantu_bt.plugins import PluginError, installed_names
 from momantu_bt.robot import RobotDescription
 from momantu_bt.skill import Port, Skill
-from momantu_bt.tree.catalogue import AUTOREMAP, NODES, SUBTREE, NodeSpec, is_ours
-from momantu_bt.tree.catalogue.nodes import DOCTOR, why_broken
+from momantu_bt.tree.catalogue import AUTOREMAP, NODES, SUBTREE, NodeSpec
+from momantu_bt.tree.check.declared import declared_spec, models_of, used_spec
 from momantu_bt.tree.language import is_xml
-from momantu_bt.tree.model import BROKEN, Document, Node, Reference, Scope, Tree
+from momantu_bt.tree.model import BROKEN, Document, Node, NodeModel, Reference, Scope, Tree
 from momantu_bt.tree.problems import Problems
 from momantu_bt.tree.registry import Registry
 from momantu_bt.values.types import parse_type
@@ -27,7 +26,9 @@ _AUTOREMAP_PORT = Port(AUTOREMAP, "in", bool, "whether keys of one name are one 
 class Signature:
     """One kind of node. said: its name in the file. first: the input that a bare value sets.
 
-    spec: set for a built-in node. skill: set for a skill. Both are None for a subtree.
+    spec: set for a built-in node, a plug-in node and a node that only a file's model declares.
+    skill: set for a skill. Both are None for a subtree. unknown: nothing is known but what the node
+    itself shows.
     """
 
     said: str
@@ -35,6 +36,7 @@ class Signature:
     first: str | None
     spec: NodeSpec | None = None
     skill: type[Skill] | None = None
+    unknown: bool = False
 
     @property
     def one_of(self) -> tuple[tuple[str, ...], ...]:
@@ -49,29 +51,56 @@ class Signature:
 
 @dataclass(slots=True)
 class Context:
-    """One check of one document. site, description: None without a world or robot."""
+    """One check of one document. site, description: None without a world or robot.
+
+    tolerant: what stands elsewhere (nodes, trees, keys) is a warning and not an error.
+    """
 
     document: Document
     registry: Registry
     problems: Problems
+    tolerant: bool = False
     site: Site | None = None
     description: RobotDescription | None = None
     _skills: dict[str, type[Skill] | None] = field(default_factory=dict)
     _trees: dict[str, Signature] = field(default_factory=dict)
     _xml_files: dict[str, bool] = field(default_factory=dict)
+    _models: dict[str, NodeModel] | None = None
+    _declared: dict[str, NodeSpec] = field(default_factory=dict)
 
     def signature(self, node: Node) -> Signature | None:
-        """The signature of this node; None if it is unknown or broken."""
+        """The signature of this node; None if it is broken."""
         spec = NODES.get(node.type)
         if spec is not None:
             said = node.type if self.in_xml(node.place) else spec.yaml[0]
             return Signature(said, spec.ports, spec.first, spec=spec)
         if node.type == SUBTREE:
-            return self._call_signature(node, self.document.trees[node.target or ""])
-        skill = None if node.type == BROKEN else self.skill(node.type)
-        if skill is None:
+            tree = self.document.trees.get(node.target or "")
+            if tree is not None:
+                return self._call_signature(node, tree)
+            spec = used_spec(node)
+            return Signature(node.target or "", spec.ports, None, spec=spec, unknown=True)
+        if node.type == BROKEN:
             return None
-        return Signature(node.type, skill.ports, _first(skill.ports), skill=skill)
+        skill = self.skill(node.type)
+        if skill is not None:
+            return Signature(node.type, skill.ports, _first(skill.ports), skill=skill)
+        declared = self.declared(node.type)
+        spec = declared or used_spec(node)
+        return Signature(node.type, spec.ports, spec.first, spec=spec, unknown=declared is None)
+
+    def declared(self, name: str) -> NodeSpec | None:
+        """What a model of the file says of a node; None without a model."""
+        if name not in self._declared and name in self.models:
+            self._declared[name] = declared_spec(self.models[name])
+        return self._declared.get(name)
+
+    @property
+    def models(self) -> dict[str, NodeModel]:
+        """The models of nodes that the document has."""
+        if self._models is None:
+            self._models = models_of(self.document)
+        return self._models
 
     def _call_signature(self, node: Node, tree: Tree) -> Signature:
         """The signature of a subtree; for an open tree, with all keys that this node gives."""
@@ -83,6 +112,11 @@ class Context:
             if name and name not in ports:
                 ports[name] = Port(name, "inout", object, "")
         return Signature(tree.name, ports, declared.first)
+
+    def tell_elsewhere(self, code: str, place: Place, message: str, hint: str = "") -> None:
+        """Report something that may stand elsewhere: an error, or a warning if tolerant."""
+        tell = self.problems.warning if self.tolerant else self.problems.error
+        tell(code, place, message, hint)
 
     def in_xml(self, place: Place) -> bool:
         """Whether the file of a place is XML, so that messages use XML's words."""
@@ -136,36 +170,6 @@ class Context:
 
 def _first(ports: Mapping[str, Port]) -> str | None:
     return next((name for name, port in ports.items() if port.direction == "in"), None)
-
-
-def report_unknown_node(context: Context, node: Node) -> None:
-    """Report that no node has this name, or why the skill of this name cannot be used."""
-    name = node.type
-    broken = _why_broken(context, name)
-    if broken is not None:
-        context.problems.error("broken-plugin", node.place, broken, DOCTOR)
-        return
-    xml = context.in_xml(node.place)
-    spellings = [_tag(type_) if xml else spec.yaml[0] for type_, spec in NODES.items()]
-    skills = [*context.document.trees, *context.registry.skills]
-    near = nearest(name, [*skills, *spellings])
-    hint = f"did you mean {near}?" if near else valid_names(name, skills, "trees and skills")
-    context.problems.error("unknown-node", node.place, f"no node is called {name!r}", hint)
-
-
-def _tag(type_: str) -> str:
-    """The tag of a node of the language in XML."""
-    return f"momantu:{type_}" if is_ours(type_) else type_
-
-
-def _why_broken(context: Context, name: str) -> str | None:
-    """Why the plug-in of this name cannot be used; None if it can."""
-    try:
-        if name in context.registry.skills:
-            context.registry.skills[name]
-    except PluginError as error:
-        return str(error)
-    return why_broken(name)
 
 
 def known_type(text: str) -> Any:

@@ -33,7 +33,7 @@ def reached(document: Document, starts: Iterable[str]) -> set[str]:
     found = set(waiting)
     while waiting:
         for name in calls(document.trees[waiting.pop()]):
-            if name not in found:
+            if name not in found and name in document.trees:
                 found.add(name)
                 waiting.append(name)
     return found

@@ -206,6 +206,7 @@ class _Project:
             for name, tree in other.trees.items():
                 self._report_duplicate(name, tree, main.trees.get(name))
                 main.trees.setdefault(name, tree)
+            main.further_models += (*other.models, *other.further_models)
         main.source = self.source
-        resolve(main, self.problems)
+        resolve(main)
         return main

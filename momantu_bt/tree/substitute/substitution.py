@@ -100,7 +100,8 @@ def reached(document: Document, replaced: Mapping[int, tuple[Result, ...]]) -> I
     """
     waiting, seen = [document.main], {document.main}
     while waiting:
-        stack = [document.trees[waiting.pop(0)].root]
+        tree = document.trees.get(waiting.pop(0))
+        stack = [] if tree is None else [tree.root]
         while stack:
             node = stack.pop()
             if node.disabled:
@@ -167,7 +168,9 @@ def _result(context: Context, rule: Rule, node: Node) -> Result:
             outputs[name] = convert(value, outs[name])
         except ConversionError as error:
             context.problems.error("wrong-value", place, f"{name!r} of {said}: {error}")
-    for name in outs:
+    optional = signature is not None and signature.spec is not None
+    needed = [name for name, port in outs.items() if port.direction == "out" or not optional]
+    for name in needed:
         if rule.status == "SUCCESS" and name in node.ports and name not in rule.outputs:
             message = f"{said} in line {node.place.line} writes {name!r}, and the rule gives none"
             hint = f"write `outputs: {{{name}: …}}`"

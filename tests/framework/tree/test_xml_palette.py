@@ -6,12 +6,12 @@ from momantu_bt.cli import main
 from momantu_bt.skill import MISSING, Port
 from momantu_bt.tree.catalogue import NODES, Dialect, of_dialect
 from momantu_bt.tree.files.xml.format import read
-from momantu_bt.tree.files.xml.models import our_type
 from momantu_bt.tree.files.xml.palette import palette
 from momantu_bt.tree.model import Literal, NodeModel
 from momantu_bt.tree.plugins import SKILLS
 from momantu_bt.tree.registry import Registry
 from momantu_bt.values.convert import convert
+from momantu_bt.values.cpp_types import our_type
 from momantu_bt.values.types import label, parse_type
 
 TREE = '<BehaviorTree ID="Main"><AlwaysSuccess/></BehaviorTree></root>'

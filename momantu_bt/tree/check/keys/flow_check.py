@@ -7,9 +7,11 @@ result is what is known after the tree's success and after its failure.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import TypeGuard
 
 from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.places import Place, within
+from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue import NODES, PRE_CONDITIONS, SUBTREE, NodeSpec
 from momantu_bt.tree.catalogue.flow import After, Walk, as_written
 from momantu_bt.tree.catalogue.known import NEVER, Key, Known, literal_type, meet
@@ -177,11 +179,7 @@ class _KeyCheck:
     def inside(self, node: Node, before: Known) -> After:
         signature = self.context.signature(node)
         if signature is None:
-            for value in node.ports.values():
-                # an unknown node may read or write: do not report the keys that it names as unread
-                for reference in references(value):
-                    self.reads.see(reference)
-            return After(before, before)
+            return self.elsewhere(node, before)
         self.reads.inputs(node, signature, self.at_any_tick(node, before))
         spec = signature.spec
         if spec is not None and spec.switch:
@@ -201,6 +199,19 @@ class _KeyCheck:
         if spec.kind is not Kind.LEAF:
             before = self.handed_on(node, signature, spec, before)
         return spec.flow(self.walk, node, before)
+
+    def elsewhere(self, node: Node, before: Known) -> After:
+        """What is known after something that is not here: it may read and write what it names."""
+        found: dict[str, Key] = {}
+        for name, value in node.ports.items():
+            for reference in references(value):
+                self.reads.see(reference)
+                if value is reference and reference.scope is Scope.LOCAL and reference.key:
+                    place = node.port_places.get(name, node.place)
+                    found[reference.key] = Key(object, place)
+        self.reads.given.update(found)
+        after = before.having_all(found)
+        return After(after, after)
 
     def subtree(self, call: Call, before: Known) -> After:
         """Check a node that runs a tree: its needs, and which shared keys have a value then."""
@@ -236,14 +247,14 @@ class _KeyCheck:
         after = before
         for name, value in node.ports.items():
             port = signature.ports.get(name)
-            if port is None or port.direction != "out" or not isinstance(value, Reference):
+            if not _writes(port, signature) or not isinstance(value, Reference):
                 continue
             on_root = value.scope is Scope.ROOT
             if (on_root and self.tree.name != self.context.document.main) or value.fields:
                 continue
             place = node.port_places.get(name, node.place)
             self.reads.given.add(value.key)
-            if not on_root:
+            if not on_root and port.direction == "out":
                 self.reads.written.append(Written(value.key, place, signature.said))
             given = node.ports.get(copies.get(name, ""))
             type_ = literal_type(given) if isinstance(given, Literal) else port.type
@@ -381,6 +392,12 @@ def _choices(node: Node, output: str, spec: NodeSpec) -> tuple[Literal, ...]:
     if not isinstance(listed, Literal) or not isinstance(listed.value, list):
         return ()
     return tuple(Literal(value) for value in listed.value)
+
+
+def _writes(port: Port | None, signature: Signature) -> TypeGuard[Port]:
+    """Whether a node itself writes what one of its ports is wired to; a subtree's nodes do it."""
+    own = "inout" if signature.spec is not None else "out"
+    return port is not None and port.direction in ("out", own)
 
 
 def _reference(variable: str) -> Reference:

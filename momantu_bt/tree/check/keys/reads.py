@@ -102,7 +102,7 @@ class KeyReads:
             if reference.key not in self.root_keys:
                 message = f"the root's board has no key {reference.key!r}"
                 hint = valid_names(reference.key, sorted(self.root_keys), "keys")
-                self.context.problems.error("unknown-key", place, message, hint)
+                self.context.tell_elsewhere("unknown-key", place, message, hint)
             return self.root_keys.get(reference.key)
         key = before.get(reference.key)
         if key is None:
@@ -126,6 +126,8 @@ class KeyReads:
         else:
             message = f"nothing writes {shown} before it is read here"
             hint = valid_names(name, sorted(before.keys or {}), "keys that have a value here")
+            self.context.tell_elsewhere("read-before-write", place, message, hint)
+            return
         self.context.problems.error("read-before-write", place, message, hint)
 
     def of_call(self, call: Call, inside: TreeKeys, before: Known) -> None:
@@ -162,8 +164,10 @@ class KeyReads:
             self.context.problems.warning("read-before-write", place, message, hint)
         else:
             hint = valid_names(name, sorted(keys.written), "keys that something writes")
+            if not hint.startswith("did you mean"):
+                hint = f"give it a value: --set {name}=…, or <momantu:Value key={name!r}>"
             message = f"nothing writes {shown}, which is read here"
-            self.context.problems.error("read-before-write", place, message, hint)
+            self.context.tell_elsewhere("read-before-write", place, message, hint)
 
     def _shared(
         self, reference: Reference, before: Known, place: Place, port: Port, said: str

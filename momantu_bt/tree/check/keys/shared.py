@@ -145,7 +145,8 @@ def _own_keys(context: Context, node: Node, keys: TreeKeys, on_root: set[str]) -
         local = {each.key for each in _references(value) if each.scope is Scope.LOCAL}
         keys.mentioned |= local
         port = ports.get(name)
-        if port is None or port.direction == "out":
+        by_itself = ("out", "inout") if spec is not None else ("out",)
+        if port is None or port.direction in by_itself:
             # an unknown node may write what it names
             keys.written |= local if removed is None else set()
             root = {each.key for each in _references(value) if each.scope is Scope.ROOT}

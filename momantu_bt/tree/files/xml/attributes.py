@@ -137,7 +137,8 @@ class AttributeWriter:
         if spec is not None:
             return spec.ports[name].type if name in spec.ports else object
         if node.type == SUBTREE:
-            declared = self.document.trees[node.target or ""].ports.get(name)
+            tree = self.document.trees.get(node.target or "")
+            declared = None if tree is None else tree.ports.get(name)
             try:
                 return object if declared is None else parse_type(declared.type_name)
             except KeyError:

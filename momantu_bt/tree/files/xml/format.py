@@ -42,7 +42,7 @@ def read(text: str, file: str, registry: Registry | None = None) -> tuple[Docume
         document = None
     if document is None:
         raise TreeError(errors(problems.sorted()), {file: text})
-    resolve(document, problems)
+    resolve(document)
     return document, problems
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass, field
 
 from momantu_bt.formats.names import nearest, valid_names
@@ -20,22 +19,13 @@ from momantu_bt.tree.model import (
     Template,
 )
 from momantu_bt.tree.problems import Problems
+from momantu_bt.values.cpp_types import our_type
 from momantu_bt.values.types import parse_type
 
 PORTS = {"input_port": "in", "output_port": "out", "inout_port": "inout"}
 """Elements of a model, and the direction they mean."""
 _PORT_WORDS = ("name", "type", "default", "description")
 _METADATA = "MetadataFields"
-_CPP = {
-    "std::string": "text",
-    "BT::StringView": "text",
-    "double": "number",
-    "float": "number",
-    "BT::AnyTypeAllowed": "any",
-    "BT::Any": "any",
-}
-_CPP_INT = re.compile(r"(unsigned )?(int|short|char|long|long long|unsigned)|u?int\d+_t|size_t")
-_CPP_LIST = re.compile(r"std::(?:vector|deque|list)<([^<>,]+)(?:,.*)?>")
 
 
 @dataclass(slots=True)
@@ -152,20 +142,6 @@ def _of_tree(port: PortDeclaration, element: Element, problems: Problems) -> Por
     return PortDeclaration(
         port.name, port.direction, type_name, port.place, value, port.doc, port.comments
     )
-
-
-def our_type(name: str) -> str:
-    """Our name of a type; `any` for a C++ type that we do not have."""
-    name = name.strip()
-    listed = _CPP_LIST.fullmatch(name)
-    if listed is not None:
-        inner = our_type(listed[1])
-        return "any" if inner == "any" else f"list of {inner}"
-    if name in _CPP:
-        return _CPP[name]
-    if _CPP_INT.fullmatch(name):
-        return "int"
-    return name if name and not re.search(r"[:<>]", name) else "any"
 
 
 def _default(port: str, type_name: str, default: Attribute, problems: Problems) -> PortValue | None:

@@ -12,14 +12,14 @@ from momantu_bt.tree.files.scalars import CannotWrite, literal, port_text
 from momantu_bt.tree.files.syntax import OURS
 from momantu_bt.tree.files.xml.attributes import AttributeWriter, is_name, plain
 from momantu_bt.tree.files.xml.header import FORMAT
-from momantu_bt.tree.files.xml.models import PORTS, our_type
+from momantu_bt.tree.files.xml.models import PORTS
 from momantu_bt.tree.files.xml.nodes import ONCE, PORT
 from momantu_bt.tree.files.xml.ports import CATCH, PREFIX
 from momantu_bt.tree.files.xml.text import above, attribute, beside, escaped
 from momantu_bt.tree.language import VERSION
 from momantu_bt.tree.model import Document, Handler, Literal, Node, NodeModel, PortDeclaration, Tree
 from momantu_bt.tree.registry import Registry
-from momantu_bt.values.types import parse_type
+from momantu_bt.values.cpp_types import model_type
 
 __all__ = ["CannotWrite", "write"]
 
@@ -103,20 +103,13 @@ def _tree_port(port: PortDeclaration) -> list[str]:
     if port.type_name != "any":
         words += attribute("type", port.type_name)
     if port.default is not None:
-        text = plain(port.default, port.name, _type(port.type_name))
+        text = plain(port.default, port.name, model_type(port.type_name))
         shown = port_text(port.default)
         words += (
             attribute(f"{PREFIX}default", shown) if text is None else attribute("default", text)
         )
     comments = [*above(port.comments, _STEP * 3)]
     return [*comments, _port(port, words) + beside(port.comments)]
-
-
-def _type(name: str) -> object:
-    try:
-        return parse_type(our_type(name))
-    except KeyError:
-        return object
 
 
 def _port(port: PortDeclaration, words: str) -> str:

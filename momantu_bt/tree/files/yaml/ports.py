@@ -6,6 +6,7 @@ from momantu_bt.formats.names import nearest
 from momantu_bt.formats.places import Place
 from momantu_bt.formats.yaml.values import Entries, Items, Raw, Scalar
 from momantu_bt.tree.catalogue import NODES, SPELLED, SUBTREE, Kind, NodeSpec
+from momantu_bt.tree.catalogue.synonyms import in_spelling, meant_type
 from momantu_bt.tree.files.port_values import drop_duplicates, port_value, reported_braces
 from momantu_bt.tree.files.yaml.reading import Reading, said
 from momantu_bt.tree.files.yaml.scripts import read_script
@@ -68,5 +69,10 @@ def is_empty(value: Raw) -> bool:
 
 def _near_control(node: Node) -> str | None:
     """The node that an unknown name with a list probably means."""
+    if node.type in (SUBTREE, *NODES):
+        return None
+    meant = meant_type(node.type)
+    if meant is not None and NODES[meant].kind is Kind.CONTROL:
+        return in_spelling(meant, xml=False)
     controls = [name for name, spec in SPELLED.items() if spec.kind is Kind.CONTROL]
-    return None if node.type in (SUBTREE, *NODES) else nearest(node.type, controls)
+    return nearest(node.type, controls)
