@@ -10,7 +10,7 @@ from momantu_bt.tree.language import AGAIN
 from momantu_bt.tree.model import Node
 
 _LIKE = 0.75
-"""Names of nodes count as near from this likeness on; `else` is not `release`."""
+"""Names of nodes count as near from this likeness on; half a word in common is not enough."""
 _PARTS = {
     "then": "the child that runs if the condition holds",
     "else": "the child that runs if the condition does not hold",
