@@ -83,6 +83,11 @@ class MapPicture:
         return 1.0 - darkness if self.negate else darkness
 
 
+def picture_file(path: Path) -> Path:
+    """The picture that a map's YAML file names; raises MapError if that file is broken."""
+    return path.parent / str(_read_yaml(path)["image"])
+
+
 def read_map(path: Path) -> MapPicture:
     """The map that a map_server YAML file describes.
 

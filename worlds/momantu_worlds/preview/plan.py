@@ -33,6 +33,10 @@ BENEATH = 12
 """px; of a surface's name beneath its edge."""
 ARROW = 0.28
 """m; length of the mark that tells which way a place looks."""
+CUT = 1.8
+"""m; what begins above this is left out of meshes, so that a ceiling hides no room."""
+MOST_TRIANGLES = 60_000
+"""A mesh of more triangles is drawn as its convex outline."""
 
 
 def draw_plan(scenario: Scenario, width: int) -> Image.Image:
@@ -79,7 +83,9 @@ def _bodies(canvas: Canvas, scenario: Scenario) -> None:
     ]
     for body, part, points in sorted(parts, key=lambda entry: float(entry[2][:, 2].max())):
         shape = _outline(points)
-        if isinstance(part.geometry, Picture):
+        if isinstance(part.geometry, Mesh) and len(part.geometry.triangles) <= MOST_TRIANGLES:
+            _mesh(canvas, part, points)
+        elif isinstance(part.geometry, Picture):
             canvas.polygon(shape, (20, 20, 20), (255, 255, 255))
         elif float(points[:, 2].min()) >= scenario.robot.height:
             canvas.polygon(shape, None, ABOVE)
@@ -87,6 +93,15 @@ def _bodies(canvas: Canvas, scenario: Scenario) -> None:
             canvas.polygon(shape, DARK, DARK)
         else:
             canvas.polygon(shape, rgb(part.color), rgb(part.color, 0.55))
+
+
+def _mesh(canvas: Canvas, part: Part, points: Array) -> None:
+    """The triangles of a mesh below the cut, the highest last; points: its vertices in the map."""
+    assert isinstance(part.geometry, Mesh)
+    corners = points[part.geometry.triangles]
+    shown = corners[corners[:, :, 2].min(axis=1) < CUT]
+    for triangle in shown[np.argsort(shown[:, :, 2].max(axis=1), kind="stable")]:
+        canvas.polygon(triangle[:, :2], rgb(part.color), rgb(part.color, 0.8))
 
 
 def part_points(body: Body, part: Part) -> Array:

@@ -1,4 +1,4 @@
-"""`momantu-bt worlds import`: import a Gazebo world as a world file."""
+"""`momantu-bt worlds import`: a Gazebo world or a floor plan as a world file."""
 
 from __future__ import annotations
 
@@ -12,12 +12,18 @@ import typer
 from momantu_bt.errors import ExitCode, InputError
 from momantu_bt.formats.files import OutputError
 from momantu_bt.world import WorldError
+from momantu_worlds.floor_plan.importing import import_floor_plan
 from momantu_worlds.sdf.deviations import Deviation, Outcome
 from momantu_worlds.sdf.importing import Import, import_world
 
+YAML = (".yaml", ".yml")
+
 
 def import_sdf(
-    file: Annotated[Path, typer.Argument(help="A Gazebo world: FILE.world or FILE.sdf.")],
+    file: Annotated[
+        Path,
+        typer.Argument(help="A Gazebo world, FILE.world or FILE.sdf; or a floor plan, MAP.yaml."),
+    ],
     output: Annotated[Path, typer.Option("--output", "-o", help="The world file to write.")],
     models: Annotated[
         list[Path] | None,
@@ -30,10 +36,16 @@ def import_sdf(
         bool,
         typer.Option("--heed-up-axis", help="Apply <up_axis> of COLLADA files; Gazebo does not."),
     ] = False,
+    height: Annotated[
+        float, typer.Option(min=0.1, max=20.0, help="Of the walls of a floor plan, m.")
+    ] = 2.5,
     force: Annotated[bool, typer.Option("--force", help="Overwrite the world file.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,
 ) -> ExitCode:
-    """Turn a Gazebo world into a world file, and list the differences.
+    """Turn a Gazebo world or a floor plan into a world file, and list the differences.
+
+    A floor plan is a map of map_server: a YAML file beside a PGM, PNG or BMP picture. Walls stand
+    where it is occupied, and the robot gets it as its map; tables and objects are yours to add.
 
     Models are looked for in --models, in GAZEBO_MODEL_PATH and GZ_SIM_RESOURCE_PATH, and beside
     the file; nothing is downloaded. Meshes become GLB files in a folder beside the world file.
@@ -41,17 +53,23 @@ def import_sdf(
 
     Examples:
       momantu-bt worlds import office.world --models ~/gazebo_models -o office.yaml
+      momantu-bt worlds import map.yaml -o building.yaml --height 3
       momantu-bt worlds preview office.yaml -o office.png
       momantu-bt run trees/bring_object.yaml --world office.yaml
     """
-    if output.suffix.lower() not in (".yaml", ".yml"):
+    if output.suffix.lower() not in YAML:
         raise OutputError(f"{output} ends with neither .yaml nor .yml")
+    if output.exists() and file.exists() and output.samefile(file):
+        raise OutputError(f"{output} is the map itself; choose another name for the world")
     if output.exists() and not force:
         raise OutputError(f"{output} is there already; --force overwrites it")
     if not output.parent.is_dir():
         raise OutputError(f"{output} cannot be written: there is no folder {output.parent}")
     try:
-        found = import_world(file, output, models or (), heed_up=heed_up_axis)
+        if file.suffix.lower() in YAML:
+            found = import_floor_plan(file, output, height)
+        else:
+            found = import_world(file, output, models or (), heed_up=heed_up_axis)
         count = found.write(output)
     except WorldError as error:
         raise InputError(str(error)) from None
@@ -66,9 +84,10 @@ def import_sdf(
 def _print(found: Import, output: Path, assets: int) -> None:
     world = found.world
     loose = sum(not body.still for body in world.bodies)
+    lights = "" if world.light is None else f", {len(world.light.suns + world.light.bulbs)} lights"
     typer.echo(
         f"wrote {output}: {len(world.bodies)} bodies ({loose} loose), {assets} meshes, "
-        f"{len(world.site.surfaces)} surfaces, {len(world.light.suns + world.light.bulbs)} lights"
+        f"{len(world.site.surfaces)} surfaces{lights}"
     )
     for outcome, title in ((Outcome.DROPPED, "Left out"), (Outcome.CHANGED, "Different")):
         listed = [deviation for deviation in found.deviations if deviation.outcome is outcome]

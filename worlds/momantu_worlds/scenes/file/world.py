@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, PrivateAttr
 
+from momantu_bt.formats.maps import picture_file
 from momantu_bt.geometry import Pose2D
 from momantu_worlds.scenes.file.bodies import BodyNote
 from momantu_worlds.scenes.file.building import (
@@ -78,9 +79,15 @@ class WorldFile(Part):
         return tuple(dict.fromkeys(self.beside(use.file) for use in uses if use is not None))
 
     def files(self) -> tuple[Path, ...]:
-        """The world file itself and all files that it names: meshes, its own map."""
-        maps = () if self.site.map is None else (self.beside(self.site.map),)
-        return (self._file, *self.mesh_files(), *maps)
+        """The world file itself and all files that it names: meshes, its own map and its picture.
+
+        Raises:
+            MapError: the map is missing or broken.
+        """
+        if self.site.map is None:
+            return (self._file, *self.mesh_files())
+        map_file = self.beside(self.site.map)
+        return (self._file, *self.mesh_files(), map_file, picture_file(map_file))
 
     @property
     def sought(self) -> str | None:

@@ -81,6 +81,13 @@ def propose(bodies: Sequence[ImportedBody], start: Pose2D | None) -> Proposal:
     )
 
 
+def propose_places(floor: FreeFloor) -> Proposal:
+    """A start and places on the largest region of a floor, where nothing is known but the floor."""
+    region = _region((), floor)
+    start = _start(floor, region, ())
+    return Proposal(start, _clear(floor, start), {}, _places(floor, region, start), {})
+
+
 def _sides(top: Top, floor: FreeFloor) -> list[tuple[float, int]]:
     """Directions from which a robot can stand at a top, with their regions, the best first."""
     found = []

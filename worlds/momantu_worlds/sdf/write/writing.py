@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -23,15 +24,20 @@ DECIMALS = 6
 
 @dataclass(frozen=True, slots=True)
 class Imported:
-    """The input of the writer of a world file."""
+    """The input of the writer of a world file.
+
+    light: None for daylight. map: the robot's floor plan, relative to the world file; None: it is
+    drawn from the bodies.
+    """
 
     name: str
     source: str
     robot: str | None
     bodies: Sequence[ImportedBody]
     ground: Ground
-    light: Lighting
+    light: Lighting | None
     site: Proposal
+    map: str | None = None
 
 
 def world_text(imported: Imported, deviations: Iterable[Deviation]) -> str:
@@ -47,7 +53,7 @@ def world_text(imported: Imported, deviations: Iterable[Deviation]) -> str:
     lines += [
         *_floor(imported.ground, bare=not imported.bodies),
         *_start(imported),
-        *_light(imported.light),
+        *(() if imported.light is None else _light(imported.light)),
     ]
     if imported.bodies:
         lines.append(
@@ -56,7 +62,7 @@ def world_text(imported: Imported, deviations: Iterable[Deviation]) -> str:
         lines.append("bodies:")
     for body in imported.bodies:
         lines += _body(body, imported.site.surfaces.get(body.name))
-    lines += ["", *_site(imported.site)]
+    lines += ["", *_site(imported)]
     return "\n".join(lines) + "\n"
 
 
@@ -135,9 +141,12 @@ def _part(part: Part) -> Iterator[str]:
         yield "collision: false"
 
 
-def _site(site: Proposal) -> Iterator[str]:
+def _site(imported: Imported) -> Iterator[str]:
+    site = imported.site
     yield "# What the robot is told. All of it was guessed from shapes: correct it."
     yield "site:"
+    if imported.map is not None:
+        yield f"  map: {_text(imported.map)}"
     yield "  places:"
     for name, pose in site.places.items():
         yield f"    {name}: {_planar(pose)}"
@@ -184,6 +193,11 @@ def _number(value: float) -> str:
     """Decimals without an exponent and without zeros at the end."""
     text = f"{value:.{DECIMALS}f}".rstrip("0").rstrip(".")
     return "0" if text in ("", "-0") else text
+
+
+def _text(value: str) -> str:
+    """A text as YAML reads it back, whatever stands in it."""
+    return json.dumps(value, ensure_ascii=False)
 
 
 def _comment(text: str) -> str:

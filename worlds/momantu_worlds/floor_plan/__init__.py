@@ -1,0 +1,1 @@
+"""A world from a floor plan in map_server's format."""
