@@ -55,7 +55,7 @@ def rectangles(occupied: NDArray[np.bool_]) -> list[Rectangle]:
 def _grown(free: NDArray[np.bool_], row: int, column: int) -> Rectangle:
     """The widest run of cells from a cell, then as many rows as it reaches down."""
     width = _run(free[row, column:])
-    height = _run(free[row:, column : column + width].all(axis=1))
+    height = _run(np.logical_and.reduce(free[row:, column : column + width], axis=1))
     return Rectangle(row, column, row + height, column + width)
 
 
