@@ -164,8 +164,9 @@ class _Builder:
         values: dict[str, PortValue] = dict(model.ports)
         autoremap = values.pop(AUTOREMAP, Literal(False)) == Literal(True)
         if not autoremap:  # with it, a key that is not given is the outer one, default or not
-            defaults = {n: d.default for n, d in tree.ports.items() if d.default is not None}
-            values = {**defaults, **values}
+            for name, declared in tree.ports.items():
+                if declared.default is not None:
+                    values.setdefault(name, declared.default)
         wires = {k: cell_of(v, board) for k, v in values.items() if _is_wire(v)}
         inner = Board(
             self.context.writes, board, wires, path=f"{path}/{tree.name}/", autoremap=autoremap

@@ -23,6 +23,7 @@ from momantu_bt.tree.registry import Registry
 
 BUNDLED = sorted(bundled().values())
 CASES = Path(__file__).parent.parent / "engine" / "conformance_cases.jsonl"
+MEANING = CASES.with_name("conformance_meaning.jsonl")
 
 
 def _through_xml(document: Document, registry: Registry | None = None) -> Document:
@@ -99,12 +100,12 @@ def test_any_comment_survives(text: str) -> None:
 
 
 @functools.cache
-def _cases() -> list[dict[str, Any]]:
-    return [json.loads(line) for line in CASES.read_text(encoding="utf-8").splitlines()]
+def _cases(file: Path = CASES) -> list[dict[str, Any]]:
+    return [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines()]
 
 
 def test_recorded_trees_survive_from_xml() -> None:
-    for case in _cases():
+    for case in [*_cases(), *_cases(MEANING)]:
         document, _ = xml_format.read(case["xml"], "t.yaml")
         again, problems = yaml_format.read(yaml_writer.write(document), "t.yaml")
         assert problems.sorted() == []
@@ -118,6 +119,14 @@ def test_recorded_trees_run_the_same_in_yaml(tmp_path: Path, case: dict[str, Any
     report = _run(tmp_path / "t.yaml", yaml_writer.write(document))
     values = [report.blackboard.get(f"v{i}") for i in range(6)]
     assert (report.status, report.ticks, values) == (case["status"], case["ticks"], case["v"])
+
+
+def test_recorded_trees_leave_the_same_keys_in_yaml(tmp_path: Path) -> None:
+    for case in _cases(MEANING):
+        document, _ = xml_format.read(case["xml"], "t.xml")
+        report = _run(tmp_path / "t.yaml", yaml_writer.write(document))
+        assert report.ticks == case["ticks"], case["id"]
+        assert report.blackboard == pytest.approx(case["keys"]), case["id"]
 
 
 def _run(path: Path, text: str) -> Report:

@@ -156,3 +156,13 @@ def test_given_names_may_stand_twice_where_the_dialect_allows_it(check: Check) -
     model = '<SubTree ID="Main"/>'
     found = check(files(USE_OTHER + sub + twice, "<AlwaysSuccess/>", model=model))
     assert shown(found) == [("duplicate-name", "error", 3)]
+
+
+def test_an_enum_of_a_program_is_told_by_its_name(check: Check) -> None:
+    text = (
+        '<root BTCPP_format="4"><BehaviorTree ID="Main"><Sequence><Script code="color := 1"/>'
+        '<ScriptCondition code="color == RED"/></Sequence></BehaviorTree></root>'
+    )
+    (problem,) = check(text)
+    assert problem.code == "read-before-write"
+    assert "RED is an enum of a C++ program" in problem.hint

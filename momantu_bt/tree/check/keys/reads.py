@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import TypeAlias
@@ -21,6 +22,8 @@ from momantu_bt.values.convert import convert
 from momantu_bt.values.kinds import ScriptText, ValueType
 from momantu_bt.values.types import label
 from momantu_bt.values.words import ConversionError
+
+_CAPITALS = re.compile(r"[A-Z][A-Z0-9_]+")
 
 Demand: TypeAlias = tuple[str, str | Port]
 """What a value must be: a name, ("names", "place"), or a number with a unit, ("number", port)."""
@@ -126,6 +129,7 @@ class KeyReads:
         else:
             message = f"nothing writes {shown} before it is read here"
             hint = valid_names(name, sorted(before.keys or {}), "keys that have a value here")
+            hint = _enum_hint(name) or hint
             self.context.tell_elsewhere("read-before-write", place, message, hint)
             return
         self.context.problems.error("read-before-write", place, message, hint)
@@ -166,6 +170,7 @@ class KeyReads:
             hint = valid_names(name, sorted(keys.written), "keys that something writes")
             if not hint.startswith("did you mean"):
                 hint = f"give it a value: --set {name}=…, or <momantu:Value key={name!r}>"
+            hint = _enum_hint(name) or hint
             message = f"nothing writes {shown}, which is read here"
             self.context.tell_elsewhere("read-before-write", place, message, hint)
 
@@ -282,6 +287,16 @@ _NUMBER = Port("", "in", float, "")
 def _origin(key: Key, place: Place) -> str:
     """Where a key's value comes from, in words; empty for what the run itself publishes."""
     return "" if key.place is NOWHERE else f"it comes from {key.place.seen_from(place)}"
+
+
+def _enum_hint(name: str) -> str:
+    """A hint for a name in capitals, which may be an enum that a program registers in C++."""
+    if not _CAPITALS.fullmatch(name):
+        return ""
+    return (
+        f"if {name} is an enum of a C++ program: those are not known here; write its number, or "
+        f"give the main tree the value {name} and read it elsewhere as @{name}"
+    )
 
 
 def references(value: PortValue) -> list[Reference]:
