@@ -7,17 +7,22 @@ from dataclasses import fields, is_dataclass
 from enum import StrEnum
 from pathlib import Path
 
-from momantu_bt.formats.problems import errors
+from momantu_bt.formats.places import Place
+from momantu_bt.formats.problems import Problem, errors
+from momantu_bt.formats.xml.difference import first_difference
+from momantu_bt.tree.catalogue import SUBTREE
 from momantu_bt.tree.check.nodes import with_named_inputs
 from momantu_bt.tree.check.signatures import Context
-from momantu_bt.tree.files.resolve import resolve
+from momantu_bt.tree.files.comments import set_comments_apart
+from momantu_bt.tree.files.includes import read_project
 from momantu_bt.tree.files.scalars import CannotWrite
+from momantu_bt.tree.files.syntax import OURS
+from momantu_bt.tree.files.text import read_text
 from momantu_bt.tree.files.xml import writer as xml_writer
 from momantu_bt.tree.files.xml.format import XmlSource
 from momantu_bt.tree.files.yaml import writer as yaml_writer
 from momantu_bt.tree.files.yaml.format import YamlSource
 from momantu_bt.tree.language import is_xml
-from momantu_bt.tree.load import read_file
 from momantu_bt.tree.model import Document, Node
 from momantu_bt.tree.problems import Problems, TreeError
 from momantu_bt.tree.registry import Registry
@@ -57,18 +62,45 @@ def document_spelling(document: Document) -> Spelling:
     return Spelling.XML if xml else Spelling.YAML
 
 
-def read_right(path: Path, registry: Registry) -> Document:
-    """Read a tree file and check its syntax; its nodes need not be installed.
+def read_right(path: Path, registry: Registry) -> tuple[Document, list[Problem]]:
+    """Read a tree file whole; its nodes need not be known, nor the files that it includes.
+
+    Returns with it the problems of included files of a YAML file: trees of files that are not read
+    count as nodes, unless `subtree:` names them. An XML file always says what a tree is.
 
     Raises:
         TreeNotFound: the file cannot be read.
-        TreeError: the file has syntax errors.
+        TreeError: the file has errors after which something of it would be lost.
+        CannotWrite: it has something that a document cannot hold; the place says where.
     """
-    document, problems = read_file(path, registry)
-    found = problems.sorted()
-    if errors(found):
-        raise TreeError(found, document.source)
-    return document
+    text = read_text(path, str(path))
+    if is_xml(str(path), text):
+        return _read_xml(text, str(path), registry), []
+    document, problems = read_project(path, registry, resolving=False)
+    if problems.lost():
+        raise TreeError(problems.lost(), document.source)
+    return document, [each for each in errors(problems.sorted()) if each.code == "include"]
+
+
+def _read_xml(text: str, file: str, registry: Registry) -> Document:
+    problems = Problems(most=None)
+    document = XmlSource.of(text, file, registry, problems).document({})
+    if document is None:
+        raise TreeError(errors(problems.sorted()), {file: text})
+    try:
+        again = xml_writer.write(document, registry)
+    except CannotWrite:
+        again = ""
+    difference = first_difference(text, again) if again else None
+    kept = OURS in text and not problems.lost()
+    if (again and difference is None) or kept:
+        return document
+    if problems.lost():
+        raise TreeError(problems.lost(), document.source)
+    line, what = difference or (1, "the whole file")
+    error = CannotWrite(f"{what} has no place in a tree file of ours")
+    error.place = Place(file, line, 1)
+    raise error
 
 
 def write(document: Document, to: Spelling, registry: Registry) -> str:
@@ -79,41 +111,56 @@ def write(document: Document, to: Spelling, registry: Registry) -> str:
     """
     document = _named(document, registry)
     writing = yaml_writer.write if to is Spelling.YAML else xml_writer.write
-    text = writing(document, registry)
-    again, problems = _read_again(text, to, document, registry)
-    wrong = errors(problems.sorted())
-    if again is None or wrong:
-        said = f": {wrong[0].message}" if wrong else ""
-        raise CannotWrite(f"{to.upper()} has no room for this tree{said}")
+    from_xml = document_spelling(document) is Spelling.XML
+    text, again = "", document
+    for _ in range(_MOST_PASSES if to is Spelling.YAML and from_xml else 1):
+        text = writing(document, registry)
+        again = _read_again(text, to, document, registry)
+        if not (from_xml and set_comments_apart(document, again)):
+            break
     if meaning(_named(again, registry)) != meaning(document):
         raise CannotWrite(f"{to.upper()} would say something else than this tree")
+    if from_xml:
+        _check_kept(document, again, to, registry)
     return text
+
+
+_MOST_PASSES = 8
+"""How often comments are moved. Comments that get another place in YAML may change others'."""
+
+
+def _check_kept(document: Document, again: Document, to: Spelling, registry: Registry) -> None:
+    """Refuse to write when something would be lost that only XML says."""
+    before, after = (xml_writer.write(each, registry) for each in (document, again))
+    difference = first_difference(before, after)
+    if difference is not None:
+        raise CannotWrite(f"{to.upper()} would lose {difference[1]}")
 
 
 def _named(document: Document, registry: Registry) -> Document:
     """The document with the ports of bare values named, where the skill is known."""
-    return with_named_inputs(Context(document, registry, Problems()))
+    return with_named_inputs(Context(document, registry, Problems(most=None)))
 
 
-def _read_again(
-    text: str, to: Spelling, document: Document, registry: Registry
-) -> tuple[Document | None, Problems]:
-    problems = Problems()
+def _read_again(text: str, to: Spelling, document: Document, registry: Registry) -> Document:
+    problems = Problems(most=None)
     outside = {n: t for n, t in document.trees.items() if t.place.file != document.file}
     file = document.file
     source: YamlSource | XmlSource
     try:
         if to is Spelling.YAML:
-            source = YamlSource.of(text, file, problems)
+            source = YamlSource.of(text, file, registry, problems)
         else:
             source = XmlSource.of(text, file, registry, problems)
     except TreeError as error:
         raise CannotWrite(f"{to.upper()} has no room for it: {error}") from None
     again = source.document(outside)
-    if again is not None:
-        again.trees = {**again.trees, **outside}
-        resolve(again)
-    return again, problems
+    wrong = problems.lost() if again is not None else errors(problems.sorted())
+    if again is None or wrong:
+        said = f": {wrong[0].message}" if wrong else ""
+        raise CannotWrite(f"{to.upper()} has no room for this tree{said}")
+    again.trees = {**again.trees, **outside}
+    return again
 
 
 def meaning(document: Document) -> object:
@@ -121,9 +168,11 @@ def meaning(document: Document) -> object:
 
     The types are needed as `true == 1 == 1.0` in Python. For each tree there is a flat list of
     nodes in file order with the number of their children, so that very deep trees can be compared.
+    What the model of a tree says is in its ports.
     """
-    nodes = {name: [_node(n) for n in tree.root.walk()] for name, tree in document.trees.items()}
-    return (_typed(document, leaving=("trees",)), _trees(document), nodes)
+    nodes = {name: [_node(n) for n in tree.nodes()] for name, tree in document.trees.items()}
+    others = [m for m in document.models if m.kind != SUBTREE or m.name not in document.trees]
+    return (_typed(document, leaving=("trees", "models")), _typed(others), _trees(document), nodes)
 
 
 def _trees(document: Document) -> object:

@@ -12,9 +12,9 @@ from momantu_bt.tree.problems import Problems
 VERSION = 1
 """The version of the language, the value of `momantu_bt:`."""
 
-TREE_NAME = re.compile(r"[^\W\d][\w.-]*(?: [\w.-]+)*")
+TREE_NAME = re.compile(r"[^\s$/\\\x00-\x1f\x7f](?:[^$/\\\x00-\x1f\x7f]*[^\s$/\\\x00-\x1f\x7f])?")
 """Valid names of trees; as in BehaviorTree.CPP they may have more than letters."""
-TREE_NAME_HINT = "letters, digits, `_`, `-`, `.` and single spaces, a letter first"
+TREE_NAME_HINT = "any text on one line without `$`, `/` and backslash, no space at its ends"
 
 _STARTS = (
     "A-Z_a-z\u00c0-\u00d6\u00d8-\u00f6\u00f8-\u02ff\u0370-\u037d\u037f-\u1fff\u200c-\u200d"

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 
 from momantu_bt.errors import MomantuError
 from momantu_bt.formats.places import Place
-from momantu_bt.formats.problems import Problem, Severity, in_order, show
+from momantu_bt.formats.problems import Problem, Severity, errors, in_order, show
 
 MOST_PROBLEMS = 500
 """Most problems of one file that are kept."""
@@ -36,12 +37,31 @@ class TooManyProblems(TreeError):
 class Problems:
     """A list of problems without duplicates.
 
-    An error after the first MOST_PROBLEMS problems raises TooManyProblems, as nobody reads more;
-    warnings after them are dropped.
+    An error after the first `most` problems (None: any number) raises TooManyProblems, as nobody
+    reads more; warnings after them are dropped.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, most: int | None = MOST_PROBLEMS) -> None:
+        self._most = most
         self._found: dict[Problem, None] = {}
+        self._kept: set[Problem] = set()
+        self._keeping = False
+
+    @contextmanager
+    def keeping(self) -> Iterator[None]:
+        """Within it, errors are about texts that the model keeps.
+
+        They say that the tree cannot run, not that the file cannot be written again.
+        """
+        before, self._keeping = self._keeping, True
+        try:
+            yield
+        finally:
+            self._keeping = before
+
+    def lost(self) -> list[Problem]:
+        """The errors after which the model lacks something that the file has."""
+        return [each for each in errors(self.sorted()) if each not in self._kept]
 
     def error(self, code: str, place: Place, message: str, hint: str = "") -> None:
         """Add an error."""
@@ -56,10 +76,12 @@ class Problems:
         self._add(Problem(code, message, place, hint, Severity.HINT))
 
     def _add(self, problem: Problem) -> None:
-        if len(self._found) < MOST_PROBLEMS:
+        if self._keeping and problem not in self._found:
+            self._kept.add(problem)
+        if self._most is None or len(self._found) < self._most:
             self._found[problem] = None
         elif problem.severity is Severity.ERROR and problem not in self._found:
-            message = f"more than {MOST_PROBLEMS} problems; from here on, nothing is looked at"
+            message = f"more than {self._most} problems; from here on, nothing is looked at"
             self._found[Problem("too-large", message, problem.place)] = None
             raise TooManyProblems(self._found, {})
 

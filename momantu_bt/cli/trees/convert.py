@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from momantu_bt.cli.shared.notices import notice
 from momantu_bt.errors import ExitCode, InputError
 from momantu_bt.formats.files import OutputError, check_writable, write_whole
 from momantu_bt.tree.convert import (
@@ -49,7 +50,9 @@ def convert(
         _check(output, force)
     registry = Registry.installed()
     try:
-        document = read_right(find(tree), registry)
+        document, unread = read_right(find(tree), registry)
+        for problem in unread:
+            notice(f"{problem.place}: {problem.message}; its trees are taken for nodes")
         spelling = to or _wanted(document, output)
         if output is not None:
             _move_includes(document, output)

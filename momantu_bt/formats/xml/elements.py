@@ -11,6 +11,8 @@ from momantu_bt.formats.places import Place
 class Attribute:
     """One attribute. name: without prefix. space: its namespace, "" without a prefix.
 
+    said: the name as written, with its prefix.
+
     place: of the value without its quotes. Its length is that of the value, unless the file writes
     the value with entities.
     """
@@ -20,6 +22,7 @@ class Attribute:
     value: str
     name_place: Place
     place: Place
+    said: str = ""
 
 
 @dataclass(slots=True)
@@ -28,9 +31,11 @@ class Element:
 
     place: of the tag's name.
 
-    text: the text inside it before its first child. text_place: the place of the first character
-    of text directly inside it. comments: those before it and on its line. end_comments: those
-    inside it, after its last child.
+    text: the text inside it before its first child. tail: the text after it, before the next tag.
+    text_place: the place of the first character of text directly inside it. comments: those before
+    it, and those after it on its line (`Beside`); of an element with children, those after its
+    start tag. end_comments: those inside it, after its last child. prefixes: the namespaces that
+    it declares.
     """
 
     name: str
@@ -40,9 +45,11 @@ class Element:
     attributes: list[Attribute]
     children: list[Element] = field(default_factory=list)
     text: str = ""
+    tail: str = ""
     text_place: Place | None = None
     comments: tuple[str, ...] = ()
     end_comments: tuple[str, ...] = ()
+    prefixes: dict[str, str] = field(default_factory=dict)
 
     def get(self, name: str, space: str = "") -> Attribute | None:
         """The attribute of a name, or None."""

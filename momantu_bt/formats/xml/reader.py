@@ -80,7 +80,7 @@ class _Scan:
     stack: list[Element] = field(default_factory=list)
     waiting: list[str] = field(default_factory=list)
     ended: tuple[int, Element | None] = (0, None)
-    """The line in which the last tag ended, and its element."""
+    """The line in which the last tag ended, and the element that a comment beside it is about."""
 
     def __post_init__(self) -> None:
         self.starts = [0, *(match.end() for match in re.finditer("\n", self.text))]
@@ -157,7 +157,9 @@ class _Scan:
         element = Element(
             tag.localname, tag.namespace or "", match[1], self.place(*match.span(1)), []
         )
-        written = [m for m in self.attributes(match.end()) if not _declares_prefix(m[1])]
+        every = list(self.attributes(match.end()))
+        written = [m for m in every if not _declares_prefix(m[1])]
+        element.prefixes = {m[1]: m[2] or m[3] or "" for m in every if _declares_prefix(m[1])}
         self.count(1 + len(written), element.place)
         if len(written) > self.rules.most_attributes:
             raise _bound(element.place, f"more than {self.rules.most_attributes} attributes")
@@ -171,9 +173,10 @@ class _Scan:
                     str(value),
                     self.place(*found.span(1)),
                     self.place(*at),
+                    found[1],
                 )
             )
-        element.text = str(made.text or "")
+        element.text, element.tail = str(made.text or ""), str(made.tail or "")
         return element
 
     def attributes(self, position: int) -> Iterator[re.Match[str]]:
@@ -201,22 +204,27 @@ class _Scan:
         element = self.stack.pop()
         element.end_comments = tuple(self.waiting)
         self.waiting = []
-        self.ended = (self.line(end), element)
+        if element.children or element.end_comments:
+            self.ended = (0, None)  # a comment beside it belongs to what follows
+            return
+        inside = tuple(str(text) for text in element.comments if isinstance(text, Beside))
+        element.comments = element.comments[: len(element.comments) - len(inside)]
+        element.end_comments = inside
+        self.ended = (0, None) if inside else (self.line(end), element)
 
     def line(self, position: int) -> int:
         return bisect_right(self.starts, position)
 
     def comment(self, start: int, end: int) -> None:
-        inside = self.text[start + 4 : end - 3]
-        lines = [line.strip() for line in inside.strip().split("\n")]
-        if len(lines) == 1:
-            lines = [show_dashes(inside.removeprefix(" ").rstrip())]
+        inside = show_dashes(self.text[start + 4 : end - 3])
+        several = "\n" in inside.strip()
+        text = inside.strip() if several else inside.removeprefix(" ").rstrip()
         self.count(1, self.place(start, end))
         line, element = self.ended
-        if element is not None and line == self.line(start):
-            element.comments += tuple(Beside(text) for text in lines)
+        if element is not None and line == self.line(start) and not several and not self.waiting:
+            element.comments += (Beside(text),)
         else:
-            self.waiting.extend(lines)
+            self.waiting.append(text)
 
     def inner_text(self, start: int, end: int, kind: str) -> None:
         if not self.stack:

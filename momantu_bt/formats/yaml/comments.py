@@ -12,7 +12,10 @@ _COMMENT = re.compile(r"(?<!\S)#([^\r\n]*)")
 
 @dataclass(frozen=True, slots=True)
 class Comment:
-    """A comment in the file, without its `#`. beside: it follows something on the same line."""
+    """A comment in the file, without its `#`. beside: it follows something on the same line.
+
+    A line that begins with `#|` continues the comment in the line above it.
+    """
 
     line: int
     column: int
@@ -38,7 +41,14 @@ def comments(text: str, spans: list[tuple[int, int]]) -> list[Comment]:
         for match in _COMMENT.finditer(text, position, start):
             line = bisect_right(starts, match.start())
             before = text[starts[line - 1] : match.start()]
-            words = match[1].removeprefix(" ").rstrip()
-            found.append(Comment(line, len(before) + 1, words, bool(before.strip())))
+            words, beside = match[1].removeprefix(" ").rstrip(), bool(before.strip())
+            last = found[-1] if found else None
+            if last is not None and words.startswith("|") and match[1].startswith("|"):
+                height = last.text.count("\n") + 1
+                if line == last.line + height and not beside and not last.beside:
+                    joined = f"{last.text}\n{match[1][1:].rstrip()}"
+                    found[-1] = Comment(last.line, last.column, joined, False)
+                    continue
+            found.append(Comment(line, len(before) + 1, words, beside))
         position = end
     return found

@@ -37,8 +37,8 @@ XML_CONDITIONS: Mapping[str, str] = {
 }
 """BehaviorTree.CPP's attributes for the conditions."""
 
-NODE_KEYS = ("name", "note", "disabled")
-"""Modifiers that are neither decorators nor conditions."""
+NODE_KEYS = ("name", "note", "disabled", "attributes", "xml")
+"""Modifiers that are neither decorators nor conditions. The last two keep what only XML says."""
 
 WORDS_OF_TREES = ("again", "any", "child", "children", "try", "catch", "then", "else", "do")
 """Words that can be in the place of a node's name in YAML but are not nodes."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os.path
 from collections.abc import Iterator
+from contextlib import nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
@@ -43,8 +44,12 @@ class Source(Protocol):
         ...
 
 
-def read_project(tree: Path | TreeText, registry: Registry) -> tuple[Document, Problems]:
+def read_project(
+    tree: Path | TreeText, registry: Registry, *, resolving: bool = True
+) -> tuple[Document, Problems]:
     """Read a tree file, or a text, and all that it includes. A text includes as a file here would.
+
+    resolving: whether every tree that a node runs must be known, and every included file read.
 
     Included files must lie in the project. The project is the nearest folder above `path` that has
     `.git` or `pyproject.toml`, or else the file's own folder. Includes give only their trees.
@@ -54,7 +59,7 @@ def read_project(tree: Path | TreeText, registry: Registry) -> tuple[Document, P
         TreeError: a file is neither YAML nor XML, holds no tree, or has too many problems.
     """
     path = Path.cwd() / tree.shown if isinstance(tree, TreeText) else tree
-    project = _Project(registry, Problems(), project_folder(path))
+    project = _Project(registry, Problems(), project_folder(path), resolving)
     try:
         return project.read(path, tree if isinstance(tree, TreeText) else None)
     except TooManyProblems as error:
@@ -86,6 +91,7 @@ class _Project:
     registry: Registry
     problems: Problems
     folder: Path
+    resolving: bool
     documents: dict[Path, Document] = field(default_factory=dict)
     visible: dict[Path, dict[str, Tree]] = field(default_factory=dict)
     source: dict[str, str] = field(default_factory=dict)
@@ -104,14 +110,17 @@ class _Project:
             if include is None:
                 self.close(stack.pop(), stack[-1] if stack else None)
                 continue
-            target = self.target(top, include, stack)
+            with nullcontext() if self.resolving else self.problems.keeping():
+                target = self.target(top, include, stack)
             if target is not None and target in self.visible:
                 top.visible |= self.visible[target]
             elif target is not None:
                 self.enter(target, include, stack)
-        if self.broken:
+        if self.broken and self.resolving:
             raise TreeError(self.broken, self.source)
-        if main not in self.documents:
+        found = self.documents.get(main)
+        nothing = found is not None and not found.trees and not found.includes
+        if found is None or (nothing and self.resolving):
             raise TreeError(errors(self.problems.sorted()), self.source)
         return self.whole(self.documents.pop(main)), self.problems
 
@@ -125,7 +134,7 @@ class _Project:
         if is_xml(shown, text):
             source = XmlSource.of(text, shown, self.registry, self.problems)
         else:
-            source = YamlSource.of(text, shown, self.problems)
+            source = YamlSource.of(text, shown, self.registry, self.problems)
         return _Open(path, shown, source, iter(source.includes()))
 
     def enter(self, target: Path, include: Include, stack: list[_Open]) -> None:
@@ -146,6 +155,8 @@ class _Project:
 
     def target(self, top: _Open, include: Include, stack: list[_Open]) -> Path | None:
         """The included file's real path; None, and a problem, if it cannot be included."""
+        if include.package is not None or not include.path:
+            return None  # its reader has reported it
         try:
             wanted = (top.path.parent / include.path).resolve()
             exists = wanted.is_file()
@@ -208,5 +219,6 @@ class _Project:
                 main.trees.setdefault(name, tree)
             main.further_models += (*other.models, *other.further_models)
         main.source = self.source
-        resolve(main)
+        if self.resolving:
+            resolve(main)
         return main

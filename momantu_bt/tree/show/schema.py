@@ -12,7 +12,7 @@ from typing import Any, TypeAlias
 from momantu_bt.failure import CODE, ENGINE_CODES
 from momantu_bt.skill import Port, Skill
 from momantu_bt.tree.catalogue import CONDITIONS, FORCED, MODIFIERS, SPELLED, Kind, NodeSpec
-from momantu_bt.tree.files.yaml.words import COMPANIONS
+from momantu_bt.tree.files.yaml.words import COMPANIONS, NODE, RUNS
 from momantu_bt.tree.language import AGAIN, ANY, TREE_NAME
 from momantu_bt.tree.show.schema_values import SCRIPT, Names, value_schema
 
@@ -57,11 +57,12 @@ def tree_schema(skills: Mapping[str, type[Skill]], names: Names | None = None) -
 def _header() -> Schema:
     return {
         "momantu_bt": {"const": 1, "description": "the version of the language"},
-        "include": {"type": "array", "items": {"type": "string"}},
+        "include": {"type": "array", "items": {"type": ["string", "object"]}},
         "world": {"type": "string", "description": "the world that the tree is meant for"},
         "main": {"type": "string", "description": "the tree to run"},
         "values": {"type": "object", "description": "the first keys of the root's board"},
-        "models": {"type": "array", "description": "what an XML file says of nodes for a palette"},
+        "models": {"type": ["array", "null"], "description": "what an XML file says of nodes"},
+        "xml": {"type": "object", "description": "what only an XML file says, kept for it"},
         "trees": {
             "type": "object",
             "propertyNames": {"pattern": _TREE_NAME},
@@ -79,6 +80,9 @@ def _tree() -> Schema:
         "inouts": {"$ref": "#/$defs/declarations"},
         "open": {"type": "boolean", "description": "takes any key as a port"},
         "doc": {"type": "string"},
+        "metadata": {"type": ["object", "array", "null"], "description": "of the tree's model"},
+        "tree": {"type": "object", "description": "attributes of the tree's element in XML"},
+        "nodes": {"type": "array", "items": _NODE},
     }
     return {"anyOf": [_BARE, _NODES, {"allOf": [{"properties": header}, _MAPPING]}]}
 
@@ -121,6 +125,10 @@ def _mapping(skills: Mapping[str, type[Skill]], names: Names) -> Schema:
     """One node key, its modifiers, and the keys beside it. Other keys are the file's trees."""
     keys: Schema = {name: _built_in(spec, names) for name, spec in SPELLED.items()}
     keys |= {name: _skill(skill, names) for name, skill in skills.items()}
+    keys[NODE] = {"type": "string", "description": "a node by its name or its type in XML"}
+    keys[RUNS] = {"type": "string", "description": "a tree by its name, of this file or another"}
+    keys["ports"] = {"type": "object", "description": f"ports of `{NODE}:` or `{RUNS}:`"}
+    keys["children"] = {**_NODES, "description": f"children of `{NODE}:` or `{RUNS}:`"}
     for companions in COMPANIONS.values():
         keys |= {name: _companion(name) for name in companions}
     keys |= _modifiers(names)
@@ -203,6 +211,8 @@ def _modifiers(names: Names) -> Schema:
     found: Schema = {
         "name": {"type": ["string", "number"], "description": "the node's own name"},
         "note": {"type": ["string", "number"], "description": "a remark for people"},
+        "attributes": {"type": "object", "description": "attributes as XML has them"},
+        "xml": {"type": "object", "description": "what only XML says of the node"},
         "disabled": {"type": "boolean", "description": "skipped, with all below it"},
         "force": {"enum": list(FORCED), "description": "the result, whatever happens"},
     }

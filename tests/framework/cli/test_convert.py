@@ -82,10 +82,11 @@ def test_what_one_spelling_cannot_say_is_refused_with_its_place(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     source = tmp_path / "groot.xml"
-    leaf = '<root BTCPP_format="4"><BehaviorTree ID="M"><sequence/></BehaviorTree></root>'
-    source.write_text(leaf, encoding="utf-8")
+    text = '<root BTCPP_format="4">\n<BehaviorTree ID="M"><Go/></BehaviorTree>\n<Palette/></root>'
+    source.write_text(text, encoding="utf-8")
     assert main(["convert", str(source)]) == 2
-    assert "sequence" in capsys.readouterr().err
+    shown = capsys.readouterr().err
+    assert f"{source}:3:2: error: a tree file has no <Palette>" in shown
 
 
 def test_nesting_that_yaml_does_not_allow_is_refused(

@@ -313,4 +313,4 @@ def test_a_file_whose_only_tree_has_no_name(write: Write) -> None:
     path = write(main_xml=xml("", include="parts.xml"), parts_xml=xml(include="more.xml"))
     with pytest.raises(TreeError) as refused:
         load(str(path), Registry())
-    assert "no-trees" in {problem.code for problem in refused.value.problems}
+    assert "bad-name" in {problem.code for problem in refused.value.problems}

@@ -218,11 +218,11 @@ def test_models_of_leaves_are_kept(document: Callable[[str], Document]) -> None:
         + '<Condition ID="Is"><output_port name="x"/></Condition></TreeNodesModel></root>'
     )
     go, is_ = found.models
-    assert (go.name, go.kind, go.editable, go.metadata) == (
+    assert (go.name, go.kind, go.editable, go.facts) == (
         "Go",
         "Action",
         True,
-        (("a", "b"), ("c", "d")),
+        {"a": "b", "c": "d"},
     )
     port = go.ports[0]
     assert (port.name, port.direction, port.type_name) == ("to", "in", "Pose")
@@ -278,7 +278,7 @@ def test_comments(document: Callable[[str], Document]) -> None:
     assert tree.root.comments == ("a",)
     assert tree.root.children[0].comments == ("beside",)
     assert tree.root.end_comments == ("last",)
-    assert found.comments == ("end", "after")
+    assert (found.comments, found.after_comments) == (("end",), ("after",))
 
 
 GROOT = '<root BTCPP_format="4" project_name="P" main_tree_to_execute="A">\n'
@@ -335,7 +335,7 @@ def test_one_tree_is_the_main_one(document: Callable[[str], Document]) -> None:
             "",
             "",
         ),
-        (whole("<say text='x'/>").replace('"4"', '"«3»"'), "wrong-version", "3 are not read", ""),
+        (whole("<say text='x'/>").replace('"4"', '"«3»"'), "wrong-version", "format 3", "--from 3"),
         (whole("<say text='x'/>", " main_tree_to_execute='«Man»'"), "unknown-tree", "", "Main?"),
         (whole("<say text='x'/>", " «main_tre»='Main'"), "unknown-key", "", "main_tree_to_execute"),
         (whole("<say text='x'/>", " «momantu:wrld»='rooms'"), "unknown-key", "", "world?"),

@@ -27,7 +27,7 @@ def test_each_skill_with_each_port(registry: Registry) -> None:
     found = models(palette(registry.skills))
     for name, skill in registry.skills.items():
         model = found[name]
-        assert (model.kind, model.metadata[0][0]) == ("Action", "doc")
+        assert (model.kind, [*model.facts]) == ("Action", ["doc"])
         shown = {port.name: port for port in model.ports}
         assert set(shown) == set(skill.ports)
         for port in skill.ports.values():

@@ -202,7 +202,7 @@ def test_every_node_knows_its_place() -> None:
         ("momantu_bt: 1\nvalues: {a: «$b»}\ntrees: {A: {wait: 1}}\n", "wire-inside", ""),
         ("momantu_bt: 1\nvalues: «3»\ntrees: {A: {wait: 1}}\n", "wrong-value", "{key: value}"),
         ("momantu_bt: 1\ntrees: {«wait»: {wait: 1}}\n", "bad-name", "another name"),
-        ("momantu_bt: 1\ntrees: {«my tree!»: {wait: 1}}\n", "bad-name", "single spaces"),
+        ("momantu_bt: 1\ntrees: {«my/tree»: {wait: 1}}\n", "bad-name", "one line"),
         ("momantu_bt: 1\ntrees: {«A»: {inputs: {a: int}}}\n", "no-node", ""),
         ("momantu_bt: 1\ntrees: {A: {wait: 1, disabled: «yes»}}\n", "wrong-value", "true?"),
         ("momantu_bt: 1\ntrees: {A: {wait: 1, force: «sucess»}}\n", "wrong-value", "success?"),

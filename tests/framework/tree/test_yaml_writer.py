@@ -142,10 +142,7 @@ def test_a_long_list_has_an_item_a_line() -> None:
 def test_what_yaml_has_no_words_for_is_refused() -> None:
     place = Place("t.yaml", 1, 1)
     for node in (
-        Node("retry", place),
-        Node("Sequence?$", place),
         Node("Recover", place, children=[Node("AlwaysSuccess", place)]),
-        Node("IfThenElse", place, children=[Node("AlwaysSuccess", place)]),
         Node("pick", place, ports={"at": Literal(float("inf"))}),
     ):
         text = "momantu_bt: 1\ntrees: {Main: succeed}"

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from momantu_bt.formats.units import UnitError, in_unit
@@ -15,9 +17,9 @@ from momantu_bt.tree.files.xml.ports import DESCRIPTION, DISABLED, NOTE, PREFIX,
 from momantu_bt.tree.files.xml.text import attribute, fits_in_xml
 from momantu_bt.tree.files.xml.values import WireError, attribute_value
 from momantu_bt.tree.model import (
-    Document,
     Literal,
     Node,
+    PortDeclaration,
     PortValue,
     Reference,
     Scope,
@@ -80,9 +82,13 @@ def _type(value: PortValue) -> type:
 
 @dataclass(frozen=True, slots=True)
 class AttributeWriter:
-    """Writes attributes. registry: its skills' port types tell texts from numbers."""
+    """Writes attributes.
 
-    document: Document
+    trees: the ports of each known tree; registry: the skills. The types of their ports tell texts
+    from numbers.
+    """
+
+    trees: Mapping[str, Mapping[str, PortDeclaration]]
     registry: Registry
     _skills: dict[str, Any] = field(default_factory=dict)
 
@@ -92,16 +98,39 @@ class AttributeWriter:
         Raises:
             CannotWrite: one has no spelling in XML.
         """
-        words = [attribute("ID", node.target or "")] if node.type == SUBTREE else []
+        return "".join(attribute(name, text) for name, text in self.pairs(node))
+
+    def pairs(self, node: Node) -> list[tuple[str, str]]:
+        """The name and the text of each attribute. Those that the file keeps come last.
+
+        Raises:
+            CannotWrite: one has no spelling in XML.
+        """
+        kept = node.attributes
+        found = [("ID", node.target or "")] if node.type == SUBTREE else []
         if node.name is not None:
-            words.append(attribute("name", node.name))
-        words += [self._port(node, name, value) for name, value in node.ports.items()]
-        words += [attribute(XML_CONDITIONS[key], text) for key, text in node.conditions.items()]
+            found.append(("name", node.name))
+        for name, value in node.ports.items():
+            if xml_name(node, name) not in kept:
+                found += self._port(node, name, value)
+        found += [(XML_CONDITIONS[key], text) for key, text in node.conditions.items()]
         if node.note is not None:
-            words.append(attribute(DESCRIPTION, node.note))
+            found.append((DESCRIPTION, node.note))
         if node.disabled:
-            words.append(attribute(PREFIX + DISABLED, "true"))
-        return "".join(words)
+            found.append((PREFIX + DISABLED, "true"))
+        return [*(pair for pair in found if pair[0] not in kept), *kept.items()]
+
+    def keep(self, node: Node, written: Mapping[str, str]) -> None:
+        """Give the node those attributes of its element that would be written in another way.
+
+        written: the attributes of the element; without those that say what the node is.
+        """
+        ours: dict[str, str] = {}
+        for name, value in node.ports.items():
+            with suppress(CannotWrite):
+                ours.update(self._port(node, name, value))
+        ours.update(self.pairs(replace(node, ports={})))
+        node.attributes = {name: text for name, text in written.items() if ours.get(name) != text}
 
     def apart(self, node: Node) -> list[tuple[str, str]]:
         """Ports whose names cannot be attribute names, and their values in YAML."""
@@ -111,14 +140,14 @@ class AttributeWriter:
             if not _has_attribute(node, name)
         ]
 
-    def _port(self, node: Node, name: str, value: PortValue) -> str:
+    def _port(self, node: Node, name: str, value: PortValue) -> list[tuple[str, str]]:
         if not _has_attribute(node, name):
-            return ""
+            return []
         spec = NODES.get(node.type)
-        shown = name if spec is None else spec.xml.get(name, name)
+        shown = xml_name(node, name)
         type_ = self._type(node, name)
         if type_ is ScriptText:
-            return attribute(shown, _script(node, value))
+            return [(shown, _script(node, value))]
         reserved = not shown or _is_reserved(shown)
         if name == AUTOREMAP and node.type == SUBTREE:
             reserved = False
@@ -128,17 +157,15 @@ class AttributeWriter:
         if spec is not None and names_key(spec, name):
             text = _bare_key(value, text)
         if text is not None:
-            return attribute(shown, text)
-        ours = attribute(PREFIX + name, port_text(value))
-        return _milliseconds(spec, name, value) + ours
+            return [(shown, text)]
+        return [*_milliseconds(spec, name, value), (PREFIX + name, port_text(value))]
 
     def _type(self, node: Node, name: str) -> ValueType:
         spec = NODES.get(node.type)
         if spec is not None:
             return spec.ports[name].type if name in spec.ports else object
         if node.type == SUBTREE:
-            tree = self.document.trees.get(node.target or "")
-            declared = None if tree is None else tree.ports.get(name)
+            declared = self.trees.get(node.target or "", {}).get(name)
             try:
                 return object if declared is None else parse_type(declared.type_name)
             except KeyError:
@@ -154,6 +181,12 @@ class AttributeWriter:
                 self._skills[name] = {}
         found: dict[str, Port] = self._skills[name]
         return found
+
+
+def xml_name(node: Node, port: str) -> str:
+    """The name of a port's plain attribute; empty for a port that BehaviorTree.CPP lacks."""
+    spec = NODES.get(node.type)
+    return port if spec is None else spec.xml.get(port, port)
 
 
 def _has_attribute(node: Node, name: str) -> bool:
@@ -174,18 +207,18 @@ def _script(node: Node, value: PortValue) -> str:
     raise CannotWrite(f"a script of {node.type} that is a wire")
 
 
-def _milliseconds(spec: NodeSpec | None, name: str, value: PortValue) -> str:
+def _milliseconds(spec: NodeSpec | None, name: str, value: PortValue) -> list[tuple[str, str]]:
     """Our time in BehaviorTree.CPP's milliseconds too, if that is a whole number of them."""
     if spec is None or name != "duration" or "msec" not in spec.ports:
-        return ""
+        return []
     seconds = value.value if isinstance(value, Literal) else None
     if isinstance(seconds, str):
         try:
             seconds = in_unit(seconds, "s")
         except UnitError:
-            return ""
+            return []
     if isinstance(seconds, bool) or not isinstance(seconds, int | float):
-        return ""
+        return []
     whole = round(seconds * 1000.0)
     exact = round(seconds * 1000.0, 6) == whole
-    return attribute(spec.xml.get("msec", "msec"), str(whole)) if exact else ""
+    return [(spec.xml.get("msec", "msec"), str(whole))] if exact else []

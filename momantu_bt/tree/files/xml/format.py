@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from momantu_bt.formats.problems import errors
-from momantu_bt.formats.xml.elements import Attribute, Element, Parsed
+from momantu_bt.formats.xml.elements import Element, Parsed
 from momantu_bt.formats.xml.reader import XmlSyntaxError
 from momantu_bt.tree.files.resolve import resolve
 from momantu_bt.tree.files.syntax import OURS, parse
@@ -18,6 +18,8 @@ from momantu_bt.tree.files.xml.header import (
     report_unknown_attribute,
 )
 from momantu_bt.tree.files.xml.models import read_models
+from momantu_bt.tree.files.xml.parts import give_models, keep_parts
+from momantu_bt.tree.files.xml.tags import settle_tags
 from momantu_bt.tree.files.xml.trees import TreesReader
 from momantu_bt.tree.model import Document, Include, Tree
 from momantu_bt.tree.problems import Problems, TooManyProblems, TreeError
@@ -40,7 +42,7 @@ def read(text: str, file: str, registry: Registry | None = None) -> tuple[Docume
         document = source.document({})
     except TooManyProblems:
         document = None
-    if document is None:
+    if document is None or not (document.trees or document.includes):
         raise TreeError(errors(problems.sorted()), {file: text})
     resolve(document)
     return document, problems
@@ -69,25 +71,29 @@ class XmlSource:
         found = []
         for element in self.parsed.root.children:
             if element.name == "include" and not element.space:
-                path = self._include_path(element)
-                if path is not None:
-                    found.append(Include(path.value, path.place))
+                found.append(self._include(element))
         return tuple(found)
 
-    def _include_path(self, element: Element) -> Attribute | None:
-        path = element.get("path")
-        for each in element.attributes:
-            if each.name == "ros_pkg":
+    def _include(self, element: Element) -> Include:
+        path, package = element.get("path"), element.get("ros_pkg")
+        kept = [each for each in element.attributes if each not in (path, package)]
+        with self.problems.keeping():
+            for each in kept:
+                report_unknown_attribute(each, ["path", "ros_pkg"], "<include>", self.problems)
+            if package is not None:
                 message = "files of ROS packages cannot be found here"
                 hint = "copy the file beside this one and write path alone"
-                self.problems.error("include", each.name_place, message, hint)
-                return None
-            if each is not path:
-                report_unknown_attribute(each, ["path"], "<include>", self.problems)
-        if path is None:
-            message, hint = "<include> without a path", 'write <include path="other.xml"/>'
-            self.problems.error("include", element.place, message, hint)
-        return path
+                self.problems.error("include", package.name_place, message, hint)
+            elif path is None:
+                message, hint = "<include> without a path", 'write <include path="other.xml"/>'
+                self.problems.error("include", element.place, message, hint)
+        return Include(
+            "" if path is None else path.value,
+            element.place if path is None else path.place,
+            None if package is None else package.value,
+            tuple((each.said, each.value) for each in kept),
+            element.comments,
+        )
 
     def document(self, outside: Mapping[str, Tree], *, included: bool = False) -> Document | None:
         """The file's own trees. outside: trees of the files that it includes.
@@ -103,35 +109,21 @@ class XmlSource:
         trees = TreesReader(models, self.registry, self.problems).trees(root, outside)
         if not trees and not self.includes() and not outside:
             message, hint = "the file has no tree", 'write <BehaviorTree ID="Name">'
-            self.problems.error("no-trees", root.place, message, hint)
-            return None
+            with self.problems.keeping():
+                self.problems.error("no-trees", root.place, message, hint)
         main = "" if included else main_tree(root, trees, outside, self.problems)
         document = Document(self.file, main, trees)
+        named = root.get("main_tree_to_execute")
+        document.main_named = named is not None
+        if named is not None and named.value != main:
+            document.missing_main = named.value
         document.includes = self.includes()
-        document.models = tuple(models.leaves)
+        give_models(document, models)
         world = root.get("world", OURS)
         if world is not None:
             document.world, document.world_place = world.value, world.place
         read_values(document, root, self.problems)
-        self._comments(document, root)
+        settle_tags(document)
+        keep_parts(document, self.parsed)
         document.source = {self.file: self.text}
         return document
-
-    def _comments(self, document: Document, root: Element) -> None:
-        """Give comments outside all trees to the header, to the last value, or to the end."""
-        above, below = root.comments, tuple[str, ...]()
-        for element in root.children:
-            inside = [each.comments for each in element.children if each.name != "Value"]
-            if element.name == "include":
-                above += element.comments
-            elif element.name == "Values":
-                above += element.comments
-                last = next(reversed(document.values), None)
-                if last is not None:
-                    before = document.value_comments.get(last, ())
-                    document.value_comments[last] = before + element.end_comments
-            elif element.name == "TreeNodesModel":
-                models = [text for texts in inside for text in texts]
-                below += (*element.comments, *models, *element.end_comments)
-        document.header_comments = above
-        document.comments = (*below, *root.end_comments, *self.parsed.comments)

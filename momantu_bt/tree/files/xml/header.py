@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from momantu_bt.formats.names import valid_names
+from momantu_bt.formats.names import nearest, valid_names
 from momantu_bt.formats.xml.elements import Attribute, Element
 from momantu_bt.tree.files.syntax import OURS
 from momantu_bt.tree.language import VERSION
@@ -17,8 +17,7 @@ FORMAT = "4"
 _ROOT = "root"
 _PARTS = ("BehaviorTree", "TreeNodesModel", "include")
 _OF_ROOT = ("BTCPP_format", "main_tree_to_execute", "project_name")
-_SCHEMA = "http://www.w3.org/2001/XMLSchema-instance"
-_CHANGED = "words such as SubTree, `_autoremap` and `${key}` mean other things"
+_OLD = "3"
 
 
 def is_root(root: Element, problems: Problems) -> bool:
@@ -37,8 +36,9 @@ def check_header(root: Element, problems: Problems) -> None:
         if each.space == OURS:
             if each.name not in ("world", "version"):
                 report_unknown_attribute(each, ["world", "version"], "<root>", problems)
-        elif each.space != _SCHEMA and each.name not in _OF_ROOT:
-            report_unknown_attribute(each, list(_OF_ROOT), "<root>", problems)
+        elif not each.space and each.name not in _OF_ROOT and _is_slip(each.name):
+            with problems.keeping():
+                report_unknown_attribute(each, list(_OF_ROOT), "<root>", problems)
     ours = root.get("version", OURS)
     if ours is not None and ours.value != str(VERSION):
         message = "this version of the language is not known"
@@ -56,14 +56,21 @@ def main_tree(
     first = next(iter(known), "")
     if named is not None and named.value in known:
         return named.value
-    if named is not None:
-        hint = valid_names(named.value, known, "trees")
-        problems.error("unknown-tree", named.place, f"no tree is called {named.value!r}", hint)
-    elif len(trees or known) > 1:
-        message = f"the file does not say which of {', '.join(trees or known)} to run"
-        hint = f'write <root … main_tree_to_execute="{first}">'
-        problems.error("no-main", root.place, message, hint)
+    with problems.keeping():
+        if named is not None:
+            hint = valid_names(named.value, known, "trees")
+            message = f"no tree is called {named.value!r}"
+            problems.error("unknown-tree", named.place, message, hint)
+        elif len(trees or known) > 1:
+            message = f"the file does not say which of {', '.join(trees or known)} to run"
+            hint = f'write <root … main_tree_to_execute="{first}">'
+            problems.error("no-main", root.place, message, hint)
     return first
+
+
+def _is_slip(name: str) -> bool:
+    """Whether an attribute is almost one that means something. Others are kept."""
+    return name.startswith("main") or nearest(name, _OF_ROOT) is not None
 
 
 def report_unknown_attribute(
@@ -80,14 +87,18 @@ def report_unknown_attribute(
 
 def _check_format(root: Element, problems: Problems) -> None:
     version = root.get("BTCPP_format")
+    place = root.place if version is None else version.place
+    hint = f"convert it with `momantu-bt convert --from {_OLD} {place.file} -o NEW.xml`"
     if version is None:
-        message = "the file does not say which version of BehaviorTree.CPP it is for"
-        hint = f'write <root BTCPP_format="{FORMAT}">; files without it are of version 3, where '
-        problems.error("no-version", root.place, message, hint + _CHANGED)
+        message = f"without BTCPP_format this is format {_OLD} of BehaviorTree.CPP"
+        hint += f'; if it is not, write <root BTCPP_format="{FORMAT}">'
+        problems.error("no-version", place, message, hint)
+    elif version.value == _OLD:
+        message = f"this is format {_OLD} of BehaviorTree.CPP"
+        problems.error("wrong-version", place, message, hint)
     elif version.value != FORMAT:
-        message = f"trees of BehaviorTree.CPP {version.value} are not read"
-        hint = f"version 4 is; in version 3 {_CHANGED}"
-        problems.error("wrong-version", version.place, message, hint)
+        message = f"format {version.value} of BehaviorTree.CPP is not known"
+        problems.error("wrong-version", place, message, f"known: {FORMAT}, and {_OLD} to convert")
 
 
 def _check_part(element: Element, problems: Problems) -> None:

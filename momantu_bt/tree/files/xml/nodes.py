@@ -24,6 +24,7 @@ from momantu_bt.tree.catalogue import (
 )
 from momantu_bt.tree.files.queue import Put, into_handler
 from momantu_bt.tree.files.syntax import OURS
+from momantu_bt.tree.files.xml.attributes import AttributeWriter
 from momantu_bt.tree.files.xml.ports import CATCH, PREFIX, PortReader
 from momantu_bt.tree.language import ANY, handler_codes
 from momantu_bt.tree.model import BROKEN, Handler, Node, PortDeclaration
@@ -45,6 +46,10 @@ class NodeReader:
     problems: Problems
     _waiting: deque[tuple[Element, Put]] = field(default_factory=deque)
     _skills: dict[str, Mapping[str, Port] | None] = field(default_factory=dict)
+    _writer: AttributeWriter = field(init=False)
+
+    def __post_init__(self) -> None:
+        self._writer = AttributeWriter(self.trees, self.registry)
 
     def read(self, element: Element, put: Put) -> None:
         """Read one node and all below it, and give it to `put`; BROKEN if it cannot be read."""
@@ -56,28 +61,53 @@ class NodeReader:
     def _node(self, element: Element) -> Node:
         node = Node(BROKEN, element.place)
         node.comments, node.end_comments = element.comments, element.end_comments
-        type_ = self._type(element)
-        if type_ is None:
-            return node
-        node.type = type_
+        node.text, node.tail = element.text.strip(), element.tail.strip()
         self._refuse_text(element)
-        spec = NODES.get(type_)
-        if type_ == SUBTREE:
-            self._target(node, element)
-        reader = PortReader(node, element, self.problems)
-        skill = self._ports_of(type_) if spec is None and type_ != SUBTREE else None
-        if spec is not None:
-            reader.of_spec(spec)
-        elif type_ == SUBTREE:
-            reader.of_tree(self.trees.get(node.target or "", {}))
-        else:
-            reader.of_skill(skill)
+        reader = self.named(node, element)
+        if node.type == BROKEN:
+            for child in element.children:
+                self._waiting.append((child, node.children.append))
+            return node
         ports = [e for e in element.children if e.space == OURS and e.name == PORT]
         for each in ports:
             self._port_apart(reader, each)
         element.children = [each for each in element.children if each not in ports]
-        self._inside(node, element, spec, leaf=type_ == SUBTREE or skill is not None)
+        self._inside(node, element, NODES.get(node.type))
         return node
+
+    def named(self, node: Node, element: Element) -> PortReader:
+        """Give a node what the tag and the attributes of its element say."""
+        kept = {each.said: each.value for each in element.attributes if each.space != OURS}
+        type_ = self._type(element)
+        if type_ is None:
+            node.tag, node.attributes = element.said, kept
+            return PortReader(node, element, self.problems)
+        node.type = type_
+        if type_ == SUBTREE:
+            self._target(node, element)
+        elif element.name in EXPLICIT and not element.space:
+            node.tag = element.name
+            kept.pop("ID")
+        else:
+            node.tag = ""
+        reader = self.ports(node, element)
+        if node.type == BROKEN:
+            node.tag, node.attributes = element.said, kept
+        else:
+            self._writer.keep(node, kept)
+        return reader
+
+    def ports(self, node: Node, element: Element) -> PortReader:
+        """Read the attributes of a node whose type is known."""
+        reader = PortReader(node, element, self.problems)
+        spec = NODES.get(node.type)
+        if spec is not None:
+            reader.of_spec(spec)
+        elif node.type == SUBTREE:
+            reader.of_tree(self.trees.get(node.target or "", {}))
+        elif node.type != BROKEN:
+            reader.of_skill(self._ports_of(node.type))
+        return reader
 
     def _port_apart(self, reader: PortReader, element: Element) -> None:
         name = element.get("name")
@@ -92,12 +122,17 @@ class NodeReader:
         if element.text_place is not None:
             message = f"text inside <{element.said}> means nothing"
             hint = "what a node takes stands in its attributes"
-            self.problems.error("not-a-node", element.text_place, message, hint)
+            with self.problems.keeping():
+                self.problems.error("not-a-node", element.text_place, message, hint)
 
     # what it is
 
     def _type(self, element: Element) -> str | None:
         """The canonical type; None if a problem was reported."""
+        with self.problems.keeping():
+            return self._type_of(element)
+
+    def _type_of(self, element: Element) -> str | None:
         if element.space == OURS:
             return self._own_type(element)
         if element.space:
@@ -132,10 +167,11 @@ class NodeReader:
 
     def _explicit_type(self, element: Element) -> str | None:
         identity = element.get("ID")
-        if identity is not None and is_ours(identity.value.removeprefix(PREFIX)):
-            return identity.value.removeprefix(PREFIX)
         if identity is not None and identity.value:
-            return identity.value
+            name = identity.value.removeprefix(PREFIX)
+            if is_ours(name) and name == identity.value:
+                return self._unknown(element, f'did you mean ID="{PREFIX}{name}"?')
+            return name if is_ours(name) else identity.value
         message = f"<{element.name}> does not say which node it is"
         hint = f'write <{element.name} ID="name" …/>'
         self.problems.error("not-a-node", element.place, message, hint)
@@ -145,7 +181,8 @@ class NodeReader:
         identity = element.get("ID")
         if identity is None or not identity.value:
             message, hint = "<SubTree> does not say which tree", 'write <SubTree ID="Name" …/>'
-            self.problems.error("not-a-node", element.place, message, hint)
+            with self.problems.keeping():
+                self.problems.error("not-a-node", element.place, message, hint)
             node.type = BROKEN
         else:
             node.target = identity.value
@@ -162,12 +199,8 @@ class NodeReader:
 
     # what is inside it
 
-    def _inside(self, node: Node, element: Element, spec: NodeSpec | None, *, leaf: bool) -> None:
+    def _inside(self, node: Node, element: Element, spec: NodeSpec | None) -> None:
         inside = element.children
-        if leaf and inside:
-            message = f"{node.target or node.type} takes no children"
-            self.problems.error("children", inside[0].place, message)
-            return
         catches = [each for each in inside if _is_handler(each)]
         if spec is not None and spec.handlers:
             inside = [each for each in inside if not _is_handler(each)]
@@ -192,7 +225,8 @@ class NodeReader:
         if count < spec.children[0]:
             missing = spec.positions[count] if count < len(spec.positions) else "another"
             message = f"<{element.said}> has {count or 'no'} children; `{missing}` is missing"
-            self.problems.error("missing-child", element.place, message)
+            with self.problems.keeping():
+                self.problems.error("missing-child", element.place, message)
 
     def _handler(self, node: Node, element: Element, spec: NodeSpec) -> None:
         self._refuse_text(element)

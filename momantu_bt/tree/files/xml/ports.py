@@ -43,8 +43,6 @@ CATCH = "Catch"
 DISABLED, NOTE, DESCRIPTION = "disabled", "note", "_description"
 _CONDITIONS = {theirs: ours for ours, theirs in XML_CONDITIONS.items()}
 RESERVED = ("ID", "name", DESCRIPTION, AUTOREMAP, *_CONDITIONS)
-_EDITORS = ("_uid", "_fullpath", "_collapsed", "__shared_blackboard")
-"""What editors store for themselves. It says nothing about the tree."""
 _BOOLS = {"true": True, "1": True, "false": False, "0": False}
 
 TypeOf = Callable[[str], ValueType]
@@ -97,13 +95,16 @@ class PortReader:
         for attribute in self.element.attributes:
             if attribute.space == OURS:
                 self._own(attribute)
-            elif attribute.space:
-                message = f"{attribute.name!r} of the namespace {attribute.space!r} has no meaning"
-                self._error("unknown-port", attribute.name_place, message, "remove it")
-            elif attribute.name.startswith("_") or attribute.name in RESERVED:
-                self._reserved(attribute)
-            else:
-                self._port(attribute, type_of)
+                continue
+            with self.problems.keeping():
+                if attribute.space:
+                    message = f"{attribute.name!r} of the namespace {attribute.space!r}"
+                    message += " has no meaning"
+                    self._error("unknown-port", attribute.name_place, message, "remove it")
+                elif attribute.name.startswith("_") or attribute.name in RESERVED:
+                    self._reserved(attribute)
+                else:
+                    self._port(attribute, type_of)
 
     # not ports
 
@@ -119,14 +120,20 @@ class PortReader:
             self._keep(name, attribute, self._flag(attribute))
         elif name == "ID" and self.element.name in (SUBTREE, *EXPLICIT):
             return
-        elif name not in _EDITORS:
-            self._unknown_reserved(attribute)
+        else:
+            self._report_slip(attribute)
 
-    def _unknown_reserved(self, attribute: Attribute) -> None:
+    def _report_slip(self, attribute: Attribute) -> None:
+        """Report an attribute that is almost one with a meaning.
+
+        Others that begin with `_` are what editors and other programs keep for themselves.
+        """
         known = [*_CONDITIONS, DESCRIPTION]
         known += [AUTOREMAP] if self.node.target is not None else []
         near = nearest(attribute.name, known)
-        hint = f"did you mean {near}?" if near else f"known: {', '.join(known)}"
+        if near is None and attribute.name != "ID":
+            return
+        hint = f"did you mean {near}?" if near else "remove it"
         message = f"no attribute is called {attribute.name!r}"
         self._error("unknown-modifier", attribute.name_place, message, hint)
 

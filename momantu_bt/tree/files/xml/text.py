@@ -26,8 +26,8 @@ def attribute(name: str, text: str) -> str:
     return f' {name}="{escaped(text)}"'
 
 
-def escaped(text: str) -> str:
-    """A text for an attribute, or for use between tags.
+def escaped(text: str, *, between: bool = False) -> str:
+    """A text for an attribute, or with `between` for use between tags.
 
     Raises:
         CannotWrite: XML has no such character.
@@ -35,7 +35,8 @@ def escaped(text: str) -> str:
     found = NOT_TEXT.search(text)
     if found is not None:
         raise CannotWrite(f"the character U+{ord(found[0]):04X} cannot stand in XML")
-    return "".join(_ESCAPES.get(character, character) for character in text)
+    kept = '\n\t"' if between else ""
+    return "".join(c if c in kept else _ESCAPES.get(c, c) for c in text)
 
 
 def above(comments: Sequence[str], pad: str, *, every: bool = False) -> list[str]:

@@ -13,12 +13,11 @@ from momantu_bt.tree.files.syntax import OURS
 from momantu_bt.tree.files.xml.header import report_unknown_attribute
 from momantu_bt.tree.files.xml.models import Models
 from momantu_bt.tree.files.xml.nodes import NodeReader
+from momantu_bt.tree.files.xml.ports import DESCRIPTION
 from momantu_bt.tree.language import TREE_NAME, TREE_NAME_HINT
 from momantu_bt.tree.model import Node, PortDeclaration, Tree
 from momantu_bt.tree.problems import Problems
 from momantu_bt.tree.registry import Registry
-
-_EDITORS = ("_fullpath", "_uid", "_description")
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,11 +32,10 @@ class TreesReader:
         """The file's own trees. outside: trees of the files that it includes."""
         elements = [e for e in root.children if e.name == "BehaviorTree" and not e.space]
         named: list[tuple[str, Element]] = []
-        for element in elements:
-            name = self._name(element)
-            if name is not None:
-                named.append((name, element))
+        for number, element in enumerate(elements, 1):
+            named.append((self._name(element, number), element))
         ports = {name: dict(tree.ports) for name, tree in outside.items()}
+        ports |= self.models.trees
         ports |= {name: self.models.trees.get(name, {}) for name, _ in named}
         reader = NodeReader(ports, self.registry, self.problems)
         trees: dict[str, Tree] = {}
@@ -50,16 +48,18 @@ class TreesReader:
         self._report_models_of_nothing(root, {**outside, **trees})
         return trees
 
-    def _name(self, element: Element) -> str | None:
+    def _name(self, element: Element, number: int) -> str:
+        """The name of a tree; without an ID, the one that BehaviorTree.CPP gives it."""
         identity = element.get("ID")
         if identity is None:
             message, hint = "a tree needs a name", 'write <BehaviorTree ID="Name">'
-            self.problems.error("bad-name", element.place, message, hint)
-            return None
+            with self.problems.keeping():
+                self.problems.error("bad-name", element.place, message, hint)
+            return f"BehaviorTree_{number}"
         if not TREE_NAME.fullmatch(identity.value):
             message = f"{identity.value!r} cannot be the name of a tree"
-            self.problems.error("bad-name", identity.place, message, TREE_NAME_HINT)
-            return None
+            with self.problems.keeping():
+                self.problems.error("bad-name", identity.place, message, TREE_NAME_HINT)
         return identity.value
 
     def _tree(
@@ -67,26 +67,42 @@ class TreesReader:
     ) -> Tree:
         tree = Tree(name, Node("", element.place), _place(element), ports)
         tree.open = name not in self.models.trees
-        tree.comments = element.comments
+        tree.unnamed = element.get("ID") is None
+        tree.comments, tree.end_comments = element.comments, element.end_comments
         self._attributes(tree, element)
+        with self.problems.keeping():
+            self._count(name, element)
+        for number, child in enumerate(element.children):
+            reader.read(child, into_tree(tree) if not number else tree.further.append)
+        return tree
+
+    def _count(self, name: str, element: Element) -> None:
+        """Report a number of nodes other than one."""
         if not element.children:
             message = f"the tree {name!r} has no node"
             self.problems.error("no-node", element.place, message)
-            return tree
         for extra in element.children[1:]:
             message = f"the tree {name!r} has {len(element.children)} nodes at its root; it has one"
             self.problems.error("children", extra.place, message, "put them into a <Sequence>")
-        reader.read(element.children[0], into_tree(tree))
-        tree.root.end_comments += element.end_comments
-        return tree
 
     def _attributes(self, tree: Tree, element: Element) -> None:
+        """Give a tree its description and what programs keep for themselves; report slips."""
         for each in element.attributes:
-            if each.name == "doc" and each.space == OURS:
+            if each.space == OURS and each.name == "doc":
                 tree.doc = each.value
-            elif each.name != "ID" and (each.space or each.name not in _EDITORS):
+            elif each.space == OURS:
                 known = ["ID", "momantu:doc"]
                 report_unknown_attribute(each, known, "<BehaviorTree>", self.problems)
+            elif each.name == DESCRIPTION and each.value:
+                tree.doc = each.value
+            elif each.name != "ID":
+                tree.attributes[each.said] = each.value
+                near = None if each.space else nearest(each.name, ["ID", DESCRIPTION])
+                if near is not None:
+                    with self.problems.keeping():
+                        report_unknown_attribute(
+                            each, ["ID", DESCRIPTION], "<BehaviorTree>", self.problems
+                        )
 
     def _model_others(self, outside: Mapping[str, Tree]) -> None:
         """Use models of trees in other files. An editor's project file has such models."""
@@ -105,7 +121,8 @@ class TreesReader:
                     hint = valid_names(identity.value, known, "trees")
                     slipped = nearest(identity.value, known) is not None
                     tell = self.problems.error if slipped else self.problems.warning
-                    tell("unknown-tree", identity.place, message, hint)
+                    with self.problems.keeping():
+                        tell("unknown-tree", identity.place, message, hint)
 
 
 def _report_twice(problems: Problems, name: str, first: Place, second: Place) -> None:

@@ -2,29 +2,32 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import zip_longest
 from typing import TypeAlias
 
-from momantu_bt.tree.catalogue import EXPLICIT, NODES, SUBTREE, is_ours
-from momantu_bt.tree.files.scalars import CannotWrite, literal, port_text
+from momantu_bt.tree.catalogue import NODES, SUBTREE
+from momantu_bt.tree.files.scalars import CannotWrite, literal
 from momantu_bt.tree.files.syntax import OURS
-from momantu_bt.tree.files.xml.attributes import AttributeWriter, is_name, plain
+from momantu_bt.tree.files.xml.attributes import AttributeWriter
 from momantu_bt.tree.files.xml.header import FORMAT
-from momantu_bt.tree.files.xml.models import PORTS
-from momantu_bt.tree.files.xml.nodes import ONCE, PORT
-from momantu_bt.tree.files.xml.ports import CATCH, PREFIX
+from momantu_bt.tree.files.xml.model_writer import model_lines, tree_model_lines
+from momantu_bt.tree.files.xml.nodes import PORT
+from momantu_bt.tree.files.xml.parts import usual_order
+from momantu_bt.tree.files.xml.ports import CATCH, DESCRIPTION, PREFIX
+from momantu_bt.tree.files.xml.tags import Tags
 from momantu_bt.tree.files.xml.text import above, attribute, beside, escaped
 from momantu_bt.tree.language import VERSION
-from momantu_bt.tree.model import Document, Handler, Literal, Node, NodeModel, PortDeclaration, Tree
+from momantu_bt.tree.model import BROKEN, Document, Handler, Include, Node, Tree
 from momantu_bt.tree.registry import Registry
-from momantu_bt.values.cpp_types import model_type
 
 __all__ = ["CannotWrite", "write"]
 
 _STEP = "  "
-_TAGS = {direction: tag for tag, direction in PORTS.items()}
+_OURS = re.compile(rf"^ *</?{PREFIX}|^ *<[^!].* {PREFIX}")
+"""A line that uses our prefix. Texts with it inside attributes count too; they do no harm."""
 
 
 def write(document: Document, registry: Registry | None = None) -> str:
@@ -35,23 +38,48 @@ def write(document: Document, registry: Registry | None = None) -> str:
     Raises:
         CannotWrite: something in it has no spelling in XML.
     """
-    nodes = _NodeWriter(document, AttributeWriter(document, registry or Registry()))
+    ports = {name: tree.ports for name, tree in document.trees.items()}
+    attributes = AttributeWriter(ports, registry or Registry())
+    nodes = _NodeWriter(Tags.of(document), attributes)
     own = [tree for tree in document.trees.values() if tree.place.file == document.file]
-    body = [_STEP + f"<include{attribute('path', include.path)}/>" for include in document.includes]
-    body += _values(document)
-    for tree in own:
-        body += ["", *_tree(tree, nodes)] if body else _tree(tree, nodes)
-    body += _models(document, own)
-    end = above(document.comments, _STEP, every=True)
+    body = _body(document, own, nodes)
     lines = ['<?xml version="1.0" encoding="UTF-8"?>']
     lines += above(document.header_comments, "", every=True)
-    lines += [_root(document, body), *body, *end, "</root>"]
-    return "\n".join(lines) + "\n"
+    lines += [_root(document, body), *body, *above(document.comments, _STEP, every=True), "</root>"]
+    return "\n".join([*lines, *above(document.after_comments, "", every=True)]) + "\n"
+
+
+def _body(document: Document, own: list[Tree], nodes: _NodeWriter) -> list[str]:
+    """All parts of the file in their order."""
+    parts = {
+        "include": iter([_include(include) for include in document.includes]),
+        "values": iter([_values(document)]),
+        "tree": iter([_tree(tree, nodes) for tree in own]),
+        "models": iter([_models(document, own)]),
+    }
+    body: list[str] = []
+    for part in document.order or usual_order(document):
+        lines = next(parts[part], [])
+        apart = body and part in ("tree", "models")
+        body += ["", *lines] if apart else lines
+    for rest in parts.values():  # an order that names too few of them
+        body += [line for lines in rest for line in lines if document.order]
+    return body
+
+
+def _include(include: Include) -> list[str]:
+    words = "" if include.package is None else attribute("ros_pkg", include.package)
+    words += attribute("path", include.path) if include.path or not include.attributes else ""
+    words += "".join(attribute(name, text) for name, text in include.attributes)
+    return [*above(include.comments, _STEP, every=True), f"{_STEP}<include{words}/>"]
 
 
 def _root(document: Document, body: list[str]) -> str:
-    words = attribute("BTCPP_format", FORMAT) + attribute("main_tree_to_execute", document.main)
-    if document.world is not None or any(PREFIX in line for line in body):
+    words = attribute("BTCPP_format", FORMAT)
+    if document.main_named:
+        words += attribute("main_tree_to_execute", document.missing_main or document.main)
+    words += "".join(attribute(name, text) for name, text in document.attributes.items())
+    if document.world is not None or any(_OURS.search(line) for line in body):
         words += attribute("xmlns:momantu", OURS) + attribute(f"{PREFIX}version", str(VERSION))
     if document.world is not None:
         words += attribute(f"{PREFIX}world", document.world)
@@ -72,76 +100,28 @@ def _values(document: Document) -> list[str]:
 
 
 def _tree(tree: Tree, nodes: _NodeWriter) -> list[str]:
-    words = attribute("ID", tree.name)
-    if tree.doc:
-        words += attribute(f"{PREFIX}doc", tree.doc)
+    words = "" if tree.unnamed else attribute("ID", tree.name)
+    words += attribute(DESCRIPTION, tree.doc) if tree.doc else ""
+    words += "".join(attribute(name, text) for name, text in tree.attributes.items())
     lines = [*above(tree.comments, _STEP), f"{_STEP}<BehaviorTree{words}>{beside(tree.comments)}"]
-    return [*lines, *nodes.lines(tree.root, _STEP * 2), f"{_STEP}</BehaviorTree>"]
-
-
-# models
+    for root in (tree.root, *tree.further):
+        lines += nodes.lines(root, _STEP * 2)
+    lines += above(tree.end_comments, _STEP * 2, every=True)
+    return [*lines, f"{_STEP}</BehaviorTree>"]
 
 
 def _models(document: Document, own: list[Tree]) -> list[str]:
-    lines = [line for model in document.models for line in _node_model(model)]
+    kept = {model.name for model in document.models if model.kind == SUBTREE}
+    lines = [line for model in document.models for line in model_lines(model)]
     for tree in own:
-        if not tree.open:
-            ports = [line for port in tree.ports.values() for line in _tree_port(port)]
-            lines += _model(f"<SubTree{attribute('ID', tree.name)}", ports)
-    return ["", f"{_STEP}<TreeNodesModel>", *lines, f"{_STEP}</TreeNodesModel>"] if lines else []
-
-
-def _model(start: str, inside: list[str]) -> list[str]:
-    name = start[1:].partition(" ")[0]
-    if not inside:
-        return [f"{_STEP * 2}{start}/>"]
-    return [f"{_STEP * 2}{start}>", *inside, f"{_STEP * 2}</{name}>"]
-
-
-def _tree_port(port: PortDeclaration) -> list[str]:
-    words = attribute("name", port.name)
-    if port.type_name != "any":
-        words += attribute("type", port.type_name)
-    if port.default is not None:
-        text = plain(port.default, port.name, model_type(port.type_name))
-        shown = port_text(port.default)
-        words += (
-            attribute(f"{PREFIX}default", shown) if text is None else attribute("default", text)
-        )
-    comments = [*above(port.comments, _STEP * 3)]
-    return [*comments, _port(port, words) + beside(port.comments)]
-
-
-def _port(port: PortDeclaration, words: str) -> str:
-    tag = _TAGS[port.direction]
-    if port.doc and port.doc != " ".join(port.doc.split()):
-        words, inside = words + attribute(f"{PREFIX}doc", port.doc), ""
-    else:
-        inside = escaped(port.doc)
-    return _STEP * 3 + f"<{tag}{words}" + (f">{inside}</{tag}>" if inside else "/>")
-
-
-def _node_model(model: NodeModel) -> list[str]:
-    inside: list[str] = []
-    for port in model.ports:
-        words = attribute("name", port.name)
-        words += attribute("type", port.type_name) if port.type_name else ""
-        if isinstance(port.default, Literal):
-            words += attribute("default", str(port.default.value))
-        inside += [*above(port.comments, _STEP * 3), _port(port, words) + beside(port.comments)]
-    if model.metadata:
-        pairs = (f"{_STEP * 4}<Metadata{_pair(*pair)}/>" for pair in model.metadata)
-        inside += [f"{_STEP * 3}<MetadataFields>", *pairs, f"{_STEP * 3}</MetadataFields>"]
-    start = f"<{model.kind}{attribute('ID', model.name)}"
-    if model.editable is not None:
-        start += attribute("editable", "true" if model.editable else "false")
-    return _model(start, inside)
-
-
-def _pair(name: str, value: str) -> str:
-    if not is_name(name):
-        raise CannotWrite(f"{name!r} cannot be the name of an attribute")
-    return attribute(name, value)
+        if not tree.open and tree.name not in kept:
+            lines += tree_model_lines(tree)
+    lines += above(document.models_end_comments, _STEP * 2, every=True)
+    words = "".join(attribute(name, text) for name, text in document.models_attributes.items())
+    if not lines and not document.order:
+        return []
+    start = f"{_STEP}<TreeNodesModel{words}>{beside(document.models_comments)}"
+    return [*above(document.models_comments, _STEP), start, *lines, f"{_STEP}</TreeNodesModel>"]
 
 
 # nodes
@@ -153,7 +133,7 @@ _Piece: TypeAlias = "str | tuple[Node, str]"
 class _NodeWriter:
     """Writes nodes with a stack, not by recursion."""
 
-    document: Document
+    tags: Tags
     attributes: AttributeWriter
 
     def lines(self, root: Node, pad: str) -> list[str]:
@@ -177,13 +157,18 @@ class _NodeWriter:
         remarks = {key: texts for key, texts in node.port_comments.items() if key not in cases}
         yield from above(node.comments, pad)
         yield from above([text for texts in remarks.values() for text in texts], pad, every=True)
-        tag, identity = self._tag(node)
+        if node.type == BROKEN and node.tag is None:
+            return
+        tag, name = self.tags.written(node)
+        identity = "" if name is None else attribute("ID", name)
         start = f"{pad}<{tag}{identity}{self.attributes.of(node)}"
         apart = self.attributes.apart(node)
         if not (node.children or node.handlers or node.end_comments or apart):
-            yield f"{start}/>{beside(node.comments)}"
+            text = escaped(node.text, between=True)
+            end = f">{text}</{tag}>" if text else "/>"
+            yield f"{start}{end}{escaped(node.tail, between=True)}{beside(node.comments)}"
             return
-        yield f"{start}>{beside(node.comments)}"
+        yield f"{start}>{escaped(node.text, between=True)}{beside(node.comments)}"
         for name, text in apart:
             words = f"{PREFIX}{PORT}{attribute('name', name)}"
             yield f"{pad}{_STEP}<{words}>{escaped(text)}</{PREFIX}{PORT}>"
@@ -193,7 +178,7 @@ class _NodeWriter:
         for handler in node.handlers:
             yield from self._handler(handler, pad + _STEP)
         yield from above(node.end_comments, pad + _STEP, every=True)
-        yield f"{pad}</{tag}>"
+        yield f"{pad}</{tag}>{escaped(node.tail, between=True)}"
 
     def _handler(self, handler: Handler, pad: str) -> Iterator[_Piece]:
         tag = f"{PREFIX}{CATCH}"
@@ -205,17 +190,3 @@ class _NodeWriter:
             yield f"{start}>{beside(handler.comments)}"
             yield handler.node, pad + _STEP
             yield f"{pad}</{tag}>"
-
-    def _tag(self, node: Node) -> tuple[str, str]:
-        """The tag, and the attribute that says what the node is if the tag cannot."""
-        if is_ours(node.type):
-            return PREFIX + node.type, ""
-        if node.type in NODES or node.type == SUBTREE:
-            return node.type, ""
-        taken = (*EXPLICIT, *ONCE, *self.document.trees)
-        if is_name(node.type) and node.type not in taken:
-            return node.type, ""
-        if node.type in self.document.trees:
-            raise CannotWrite(f"{node.type} is the name of a tree and of another node")
-        kinds = {0: "Action", 1: "Decorator"}
-        return kinds.get(len(node.children), "Control"), attribute("ID", node.type)

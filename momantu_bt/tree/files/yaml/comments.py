@@ -13,11 +13,12 @@ from dataclasses import dataclass, field, replace
 from momantu_bt.formats.places import Place, lines_of
 from momantu_bt.formats.text import Beside
 from momantu_bt.formats.yaml.comments import Comment
-from momantu_bt.formats.yaml.values import Entries, Raw
+from momantu_bt.formats.yaml.values import Entries, Items, Raw
+from momantu_bt.tree.files.yaml.models import add_comment
 from momantu_bt.tree.model import Document, Node, PortDeclaration, Tree
 
-_FIRST_KEYS = ("momantu_bt", "world", "main", "include")
-_PORT_KEYS = ("inputs:", "outputs:", "inouts:", "doc:", "open:")
+_FIRST_KEYS = ("momantu_bt", "world", "main", "include", "xml")
+_PORT_KEYS = ("inputs:", "outputs:", "inouts:", "doc:", "open:", "metadata:", "tree:")
 _DASH = 2
 """The columns of `- `: an item's name stands so far to the right of its list."""
 
@@ -55,9 +56,12 @@ class _Attacher:
 
     def collect(self, raw: Raw) -> None:
         document = self.document
-        for key, _ in raw.entries if isinstance(raw, Entries) else []:
+        for key, value in raw.entries if isinstance(raw, Entries) else []:
             if key.text in _FIRST_KEYS:
                 self.add(key.place, _adder(document, "header_comments"))
+            elif key.text == "models":
+                self.add(key.place, _adder(document, "models_comments"))
+                self.models(value)
         for name, place in document.value_places.items():
             self.add(place, _named_adder(document.value_comments, name))
         for tree in document.trees.values():
@@ -72,6 +76,22 @@ class _Attacher:
             anchor = _Anchor(place.line, place.column, above, beside or above, of)
             self.anchors.append(anchor)
 
+    def models(self, raw: Raw) -> None:
+        items = raw.items if isinstance(raw, Items) else []
+        if len(items) != len(self.document.models):
+            return  # some of them are wrong
+        for number, item in enumerate(items):
+            self.add(item.place, self.model_adder(number, None))
+            entries = item.entries if isinstance(item, Entries) else []
+            listed = [value for key, value in entries if key.text == "ports"]
+            ports = listed[0].items if listed and isinstance(listed[0], Items) else []
+            if len(ports) == len(self.document.models[number].ports):
+                for at, port in enumerate(ports):
+                    self.add(port.place, self.model_adder(number, at))
+
+    def model_adder(self, number: int, port: int | None) -> Put:
+        return lambda text: add_comment(self.document, number, port, text)
+
     def tree(self, tree: Tree) -> None:
         self.add(tree.place, _adder(tree, "comments"))
         for declaration in tuple(tree.ports.values()):
@@ -80,13 +100,13 @@ class _Attacher:
                 self.add(declaration.place, _adder(tree, "comments"))
             else:
                 self.add(declaration.place, _declaration_adder(tree, declaration))
-        for node in tree.root.walk():
+        for node in tree.nodes():
             for child in node.children:
                 self.parents[id(child)] = node
             for handler in node.handlers:
                 if handler.node is not None:
                     self.parents[id(handler.node)] = node
-        for node in tree.root.walk():
+        for node in tree.nodes():
             self.node(node)
 
     def node(self, node: Node) -> None:

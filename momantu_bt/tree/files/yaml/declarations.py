@@ -8,6 +8,7 @@ from momantu_bt.tree.files.port_values import drop_duplicates, is_key, mapping, 
 from momantu_bt.tree.files.yaml.words import PORTS
 from momantu_bt.tree.model import Literal, PortDeclaration, Reference, Template, Tree
 from momantu_bt.tree.problems import Problems
+from momantu_bt.values.cpp_types import our_type
 
 _DECLARATION = ("type", "default", "doc")
 
@@ -45,7 +46,8 @@ def _declaration(
     key: Scalar, raw: Raw, direction: str, problems: Problems
 ) -> PortDeclaration | None:
     if isinstance(raw, Scalar) and isinstance(raw.value, str):
-        return PortDeclaration(key.text, direction, raw.value, raw.place)
+        ours, written = _type(raw.value)
+        return PortDeclaration(key.text, direction, ours, raw.place, written_type=written)
     if not isinstance(raw, Entries):
         hint = "write `name: text` or `name: {type: text, default: …}`"
         problems.error("wrong-value", raw.place, f"{key.text!r} needs a type", hint)
@@ -63,14 +65,23 @@ def _declaration(
         hint = "such as `type: text` or `type: list of int`"
         problems.error("wrong-value", type_.place, "`type` is the name of a type", hint)
     default = having.get("default")
+    ours, written = _type(type_.text if isinstance(type_, Scalar) else "any")
     return PortDeclaration(
         key.text,
         direction,
-        type_.text if isinstance(type_, Scalar) else "any",
+        ours,
         type_.place if type_ is not None else raw.place,
         None if default is None else _default(default, problems),
         words(having["doc"], problems, "`doc`") if "doc" in having else "",
+        written_type=written,
     )
+
+
+def _type(name: str) -> tuple[str, str]:
+    """Our name of a type, and the name that is written if it is one of C++."""
+    ours = our_type(name)
+    known = ours != name and (ours != "any" or "::" in name)
+    return (ours, name) if known else (name, "")
 
 
 def _default(raw: Raw, problems: Problems) -> Literal | Reference | None:

@@ -15,18 +15,21 @@ from momantu_bt.tree.files.port_values import drop_duplicates, is_key, mapping, 
 from momantu_bt.tree.files.syntax import compose_with_comments
 from momantu_bt.tree.files.yaml.comments import attach
 from momantu_bt.tree.files.yaml.models import read_models
+from momantu_bt.tree.files.yaml.parts import read_document_xml, read_include, settle_order
 from momantu_bt.tree.files.yaml.trees import read_trees
 from momantu_bt.tree.language import VERSION
 from momantu_bt.tree.model import Document, Include, Literal, Tree
 from momantu_bt.tree.problems import Problems, TooManyProblems, TreeError
+from momantu_bt.tree.registry import Registry
 
-_TOP = ("momantu_bt", "include", "world", "main", "values", "trees", "models")
+_TOP = ("momantu_bt", "include", "world", "main", "values", "trees", "models", "xml")
 
 
-def read(text: str, file: str) -> tuple[Document, Problems]:
+def read(text: str, file: str, registry: Registry | None = None) -> tuple[Document, Problems]:
     """Read one tree file, without the files that it includes.
 
     The document holds BROKEN nodes where problems were found. file: the file name in places.
+    registry: the skills; the types of their ports are needed for attributes in XML's spelling.
 
     Raises:
         TreeError: the text is not YAML, has no trees, or has too many problems. Nothing else is
@@ -34,10 +37,10 @@ def read(text: str, file: str) -> tuple[Document, Problems]:
     """
     problems = Problems()
     try:
-        document = YamlSource.of(text, file, problems).document({})
+        document = YamlSource.of(text, file, registry or Registry(), problems).document({})
     except TooManyProblems:
         document = None
-    if document is None:
+    if document is None or not (document.trees or document.includes):
         raise TreeError(errors(problems.sorted()), {file: text})
     return document, problems
 
@@ -50,13 +53,14 @@ class YamlSource:
     file: str
     raw: Raw
     remarks: list[Comment]
+    registry: Registry
     problems: Problems
 
     @classmethod
-    def of(cls, text: str, file: str, problems: Problems) -> YamlSource:
+    def of(cls, text: str, file: str, registry: Registry, problems: Problems) -> YamlSource:
         """Parse a text; TreeError when it is not YAML."""
         try:
-            return cls(text, file, *compose_with_comments(text, file), problems)
+            return cls(text, file, *compose_with_comments(text, file), registry, problems)
         except YamlSyntaxError as error:
             raise TreeError([error.problem], {file: text}) from None
 
@@ -71,11 +75,8 @@ class YamlSource:
         found: list[Include] = []
         for value in listed[:1]:
             for item in value.items if isinstance(value, Items) else [value]:
-                if isinstance(item, Scalar) and item.text and isinstance(item.value, str):
-                    found.append(Include(item.text, item.place))
-                else:
-                    hint = "write `include: [other.yaml]`"
-                    self.problems.error("include", item.place, "a file's name is expected", hint)
+                include = read_include(item, self.problems)
+                found += [] if include is None else [include]
         return tuple(found)
 
     def document(self, outside: Mapping[str, Tree], *, included: bool = False) -> Document | None:
@@ -84,10 +85,14 @@ class YamlSource:
         included: whether another file includes this one; then it need not name a tree to run.
         Returns None, with the problem reported, if there is nothing to read.
         """
-        document = _Reader(self.file, self.problems, outside, included).document(self.raw)
+        reader = _Reader(self.file, self.registry, self.problems, outside, included)
+        document = reader.document(self.raw)
         if document is not None:
             document.includes = self.includes()
             document.source = {self.file: self.text}
+            models = isinstance(self.raw, Entries) and self.raw.entries
+            named = {key.text for key, _ in models} if models else set()
+            settle_order(document, has_models="models" in named)
             if self.remarks:
                 attach(document, self.raw, self.text, self.remarks)
         return document
@@ -96,6 +101,7 @@ class YamlSource:
 @dataclass(slots=True)
 class _Reader:
     file: str
+    registry: Registry
     problems: Problems
     outside: Mapping[str, Tree]
     included: bool
@@ -115,16 +121,31 @@ class _Reader:
                     "unknown-key", key.place, f"a tree file has no {key.text!r}", hint
                 )
         self.version(having.get("momantu_bt"), raw.place)
-        trees = read_trees(having.get("trees"), raw.place, self.outside, self.problems)
-        if trees is None:
-            return None
-        main = "" if self.included else self.main(having.get("main"), trees)
-        document = Document(self.file, main, trees)
-        self.world(document, having.get("world"))
-        self.values(document, having.get("values"))
+        document = Document(self.file, "", {})
+        if "xml" in having:
+            read_document_xml(document, having["xml"][1], self.problems)
         if "models" in having:
             document.models = read_models(having["models"][1], self.problems)
+        entry = having.get("trees")
+        read_trees(entry, document, self.outside, self.registry, self.problems)
+        self.report_no_tree(document, entry, raw.place)
+        if not self.included:
+            self.main(document, having.get("main"))
+        self.world(document, having.get("world"))
+        self.values(document, having.get("values"))
         return document
+
+    def report_no_tree(
+        self, document: Document, entry: tuple[Scalar, Raw] | None, place: Place
+    ) -> None:
+        """Report a file without a tree, unless it has includes, or is an included palette."""
+        palette = bool(document.models) and self.included
+        if document.trees or (entry is None and (self.outside or palette)):
+            return
+        where = entry[0].place if entry is not None else Place(place.file, place.line, 1)
+        hint = "write `trees:` and under it `Name:`"
+        with self.problems.keeping():
+            self.problems.error("no-trees", where, "the file has no tree", hint)
 
     def version(self, entry: tuple[Scalar, Raw] | None, place: Place) -> None:
         if entry is None:
@@ -142,25 +163,28 @@ class _Reader:
                 f"known: {VERSION}",
             )
 
-    def main(self, entry: tuple[Scalar, Raw] | None, trees: dict[str, Tree]) -> str:
+    def main(self, document: Document, entry: tuple[Scalar, Raw] | None) -> None:
+        trees = document.trees
         known = {**trees, **self.outside}
-        first = next(iter(known))
+        first = document.main = next(iter(known), "")
+        document.main_named = entry is not None
         if entry is None:
             if len(trees or known) > 1:
-                self.problems.error(
-                    "no-main",
-                    known[first].place,
-                    "the file does not say which tree to run",
-                    f"write `main: {first}`",
-                )
-            return first
+                message = "the file does not say which tree to run"
+                with self.problems.keeping():
+                    self.problems.error(
+                        "no-main", known[first].place, message, f"write `main: {first}`"
+                    )
+            return
         raw = entry[1]
         name = raw.text if isinstance(raw, Scalar) else ""
         if name not in known:
             hint = valid_names(name, known, "trees")
-            self.problems.error("unknown-tree", raw.place, f"no tree is called {name!r}", hint)
-            return first
-        return name
+            with self.problems.keeping():
+                self.problems.error("unknown-tree", raw.place, f"no tree is called {name!r}", hint)
+            document.missing_main = name
+        else:
+            document.main = name
 
     def world(self, document: Document, entry: tuple[Scalar, Raw] | None) -> None:
         if entry is None:

@@ -11,6 +11,7 @@ from momantu_bt.tree.catalogue import MODIFIERS, NODES, SPELLED, SUBTREE
 from momantu_bt.tree.files.scalars import CannotWrite, port_text
 from momantu_bt.tree.files.yaml.lines import STEP, WIDTH, above, beside, is_nested, signed, spread
 from momantu_bt.tree.files.yaml.scripts import script_spelling, script_text
+from momantu_bt.tree.files.yaml.words import NAMED
 from momantu_bt.tree.language import AGAIN
 from momantu_bt.tree.model import FIRST_INPUT, Literal, Node, PortValue
 from momantu_bt.tree.registry import Registry
@@ -104,12 +105,18 @@ class LeafWriter:
         spec = NODES.get(node.type)
         if spec is not None:
             return spec.yaml[0]
-        name = node.target if node.type == SUBTREE else node.type
+        if not self.can_be_key(node):
+            raise CannotWrite(f"no node in YAML is called {node.target or node.type!r}")
+        return scalar(node.target or node.type)
+
+    def can_be_key(self, node: Node) -> bool:
+        """Whether the name of a skill or of a tree can be the key of its node."""
         tree = node.type == SUBTREE
-        words = (*SPELLED, *NODES, *MODIFIERS, SUBTREE, AGAIN)
-        if not name or "$" in name or name in words or (name in self.trees) is not tree:
-            raise CannotWrite(f"no node in YAML is called {name!r}")
-        return scalar(name)
+        name = node.target if tree else node.type
+        words = (*SPELLED, *NODES, *MODIFIERS, *NAMED, SUBTREE, AGAIN)
+        if not name or "$" in name or name.startswith("_") or name in words:
+            return False
+        return (name in self.trees) is tree
 
 
 def _text(value: PortValue) -> str:

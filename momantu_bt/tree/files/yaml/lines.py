@@ -21,7 +21,7 @@ def above(comments: Sequence[str], pad: str, *, every: bool = False) -> list[str
     own = [c for c in comments if every or not isinstance(c, Beside)]
     # if several stand beside one line, one of them stays there
     own += [] if every else [c for c in comments if isinstance(c, Beside)][1:]
-    return [f"{pad}{signed(line)}" for comment in own for line in comment.split("\n")]
+    return [f"{pad}{line}" for comment in own for line in signed_lines(comment)]
 
 
 def beside(comments: Sequence[str]) -> str:
@@ -41,6 +41,12 @@ def spread(value: PortValue, lead: str, text: str, comments: Sequence[str]) -> l
     else:
         entries = [f"- {literal(item)}" for item in nested]
     return [lead + beside(comments), *(pad + entry for entry in entries)]
+
+
+def signed_lines(text: str) -> list[str]:
+    """The lines of a comment. All but the first begin with `#|`, so that they stay one comment."""
+    first, *others = text.split("\n")
+    return [signed(first), *(f"#|{line}" for line in others)]
 
 
 def signed(text: str) -> str:

@@ -7,6 +7,7 @@ from momantu_bt.formats.yaml.values import Entries, Raw, Scalar
 from momantu_bt.tree.catalogue import FORCED, MODIFIERS, NODES, PRE_CONDITIONS, SPELLED, NodeSpec
 from momantu_bt.tree.catalogue.nodes import DOCTOR, why_broken
 from momantu_bt.tree.files.port_values import words
+from momantu_bt.tree.files.yaml.kept import is_kept, read_kept
 from momantu_bt.tree.files.yaml.ports import is_empty, read_port, read_ports
 from momantu_bt.tree.files.yaml.reading import Reading, said
 from momantu_bt.tree.files.yaml.scripts import read_script
@@ -22,8 +23,11 @@ def near_modifier(name: str) -> str | None:
 def modified(node: Node, modifiers: list[tuple[Scalar, Raw]], reading: Reading) -> Node:
     """The node with its modifiers, inside the modifiers that are decorators."""
     outer = node
+    read_kept(node, modifiers, reading)
     for key, value in modifiers:
         kind = MODIFIERS.get(key.text)
+        if is_kept(key):
+            continue
         if kind == "decorator":
             outer = _decorated(outer, key, value, reading.problems)
         elif kind == "condition":

@@ -11,10 +11,12 @@ from momantu_bt.tree.files.port_values import drop_duplicates
 from momantu_bt.tree.files.queue import Put
 from momantu_bt.tree.files.yaml.branches import read_branches, read_switch
 from momantu_bt.tree.files.yaml.children import read_control, read_decorator, read_handlers, split
+from momantu_bt.tree.files.yaml.kept import is_kept
 from momantu_bt.tree.files.yaml.modifiers import modified, near_modifier
+from momantu_bt.tree.files.yaml.named import read_named
 from momantu_bt.tree.files.yaml.ports import read_leaf
 from momantu_bt.tree.files.yaml.reading import Reading
-from momantu_bt.tree.files.yaml.words import COMPANIONS, SWITCH
+from momantu_bt.tree.files.yaml.words import COMPANIONS, NAMED, SWITCH
 from momantu_bt.tree.language import AGAIN
 from momantu_bt.tree.model import Node
 
@@ -57,18 +59,32 @@ class NodeReader:
             return self.reading.broken("no-node", raw.place, message, hint)
         key, value = chosen
         beside = [(k, v) for k, v in raw.entries if k is not key]
-        companions = COMPANIONS.get(key.text, ())
-        node = self._named(key, value, [(k, v) for k, v in beside if k.text in companions])
+        companions = {**COMPANIONS, **NAMED}.get(key.text, ())
+        others = [(k, v) for k, v in beside if k.text in companions]
+        if key.text in NAMED:
+            node = read_named(key, value, raw.entries, self.reading)
+        else:
+            node = self._named(key, value, others)
         modifiers = [(k, v) for k, v in beside if k.text not in companions]
         return modified(node, modifiers, self.reading)
 
     def _node_key(self, raw: Entries) -> tuple[Scalar, Raw] | None:
-        companions = {name for key, _ in raw.entries for name in COMPANIONS.get(key.text, ())}
-        own = [e for e in raw.entries if e[0].text not in MODIFIERS and e[0].text not in companions]
+        every = {**COMPANIONS, **NAMED}
+        companions = {name for key, _ in raw.entries for name in every.get(key.text, ())}
+        own = [
+            entry
+            for entry in raw.entries
+            if entry[0].text not in MODIFIERS
+            and entry[0].text not in companions
+            and not is_kept(entry[0])
+        ]
         if not own:
             nodes = [e for e in raw.entries if _has_child(e[1]) and e[0].text in MODIFIERS]
             return nodes[-1] if nodes else None
         known = self.reading.is_known
+        named = [e for e in own if e[0].text in NAMED]
+        if named and not any(known(key.text) for key, _ in own):
+            return named[0]
         surely = [e for e in own if known(e[0].text) or not near_modifier(e[0].text)]
         return (surely or own)[0]
 

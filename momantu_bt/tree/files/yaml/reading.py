@@ -10,16 +10,23 @@ from momantu_bt.formats.places import Place
 from momantu_bt.formats.yaml.values import Items, Raw
 from momantu_bt.tree.catalogue import NODES, SPELLED
 from momantu_bt.tree.files.queue import Put
+from momantu_bt.tree.files.xml.nodes import NodeReader as AttributeReader
 from momantu_bt.tree.model import BROKEN, Node
 from momantu_bt.tree.problems import Problems
 
 
 @dataclass(slots=True)
 class Reading:
-    """Takes problems, and values at node positions. trees: names of the document's trees."""
+    """Takes problems, and values at node positions.
+
+    trees: names of the document's trees. attributes: reads attributes in XML's spelling. explicit:
+    whether the file's nodes usually have explicit tags in XML.
+    """
 
     trees: Collection[str]
     problems: Problems
+    attributes: AttributeReader
+    explicit: bool = False
     waiting: deque[tuple[Raw, Put]] = field(default_factory=deque)
 
     def is_known(self, name: str) -> bool:

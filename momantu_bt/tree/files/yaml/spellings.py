@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from momantu_bt.formats.text import Beside
 from momantu_bt.formats.yaml.writer import scalar
 from momantu_bt.tree.catalogue import FORCED, NODES, Kind
 from momantu_bt.tree.files.scalars import port_text
@@ -17,8 +18,9 @@ def is_short(node: Node) -> bool:
     """Whether it may stand in braces: a leaf with only ports, or a decorator around one."""
     spec = NODES.get(node.type)
     if spec is not None and spec.kind is Kind.DECORATOR:
-        below = node.children[0] if len(node.children) == 1 else node
-        return not _says_more(node) and not below.children and is_short(below)
+        if len(node.children) != 1 or node.children[0].children:
+            return False
+        return not _says_more(node) and is_short(node.children[0])
     leaf = not node.children and (spec is None or spec.kind is Kind.LEAF)
     return leaf and not _says_more(node) and not node.handlers
 
@@ -32,7 +34,13 @@ def _says_more(node: Node) -> bool:
 def has_modifiers(node: Node) -> bool:
     """Whether it has modifiers as keys beside its own key, or is a modifier of its child."""
     named = node.name is not None or node.note is not None or node.disabled
-    return bool(named or node.conditions or can_be_modifier(node))
+    return bool(named or node.conditions or says_xml(node) or can_be_modifier(node))
+
+
+def says_xml(node: Node) -> bool:
+    """Whether it has keys for what only XML says."""
+    words = node.tag is not None or node.text or node.tail
+    return bool(words or node.attributes or node.comments_apart)
 
 
 def can_be_modifier(node: Node) -> bool:
@@ -41,6 +49,9 @@ def can_be_modifier(node: Node) -> bool:
     if spec is None or not (spec.modifier or node.type in FORCE) or len(node.children) != 1:
         return False
     if node.name is not None or node.note is not None or node.disabled or node.conditions:
+        return False
+    beside = any(isinstance(comment, Beside) for comment in node.comments)
+    if says_xml(node) or beside or above(node.children[0].comments, ""):
         return False
     values = list(node.ports.values())
     fits = not values or (list(node.ports) == [spec.first] and not _is_nothing(values[0]))
