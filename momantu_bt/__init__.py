@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from momantu_bt.robot import CAMERA_CARRIER, Robot
     from momantu_bt.running.api import run
     from momantu_bt.service import Service, ServiceContext
+    from momantu_bt.session import Session, open_session
     from momantu_bt.skill import In, Needs, Out, Run, Skill, compute
     from momantu_bt.world import Site, World
 
@@ -35,11 +36,13 @@ _HOMES = {
     "Service": "service",
     "ServiceContext": "service",
     "Site": "world",
+    "Session": "session",
     "Skill": "skill",
     "Transform": "geometry",
     "World": "world",
     "as_behaviour": "py_trees_bridge.mount",
     "compute": "skill",
+    "open_session": "session",
     "run": "running.api",
 }
 
@@ -56,6 +59,7 @@ __all__ = [
     "Run",
     "Service",
     "ServiceContext",
+    "Session",
     "Site",
     "Skill",
     "Transform",
@@ -63,6 +67,7 @@ __all__ = [
     "__version__",
     "as_behaviour",
     "compute",
+    "open_session",
     "run",
 ]
 

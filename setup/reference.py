@@ -43,6 +43,7 @@ PUBLIC = (
     "momantu_bt.robots",
     "momantu_bt.detector",
     "momantu_bt.service",
+    "momantu_bt.session",
     "momantu_bt.skill",
     "momantu_bt.symptom",
     "momantu_bt.testing",
