@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from momantu_bt.errors import ExitCode, MomantuError
-from momantu_bt.geometry import Pose2D
+from momantu_bt.geometry import Pose2D, Transform
+from momantu_bt.marker import Marker
 from momantu_bt.messages import ObjectClass
 
 if TYPE_CHECKING:
@@ -146,6 +147,19 @@ class View(Protocol):
 
     def close(self) -> None:
         """Stop serving. Calling it twice is safe."""
+        ...
+
+
+@runtime_checkable
+class MarkerView(Protocol):
+    """A view that also shows what skills draw."""
+
+    def draw(self, name: str, marker: Marker, map_from_frame: Transform) -> None:
+        """Show a marker; it replaces an earlier one of that name."""
+        ...
+
+    def erase(self, name: str) -> None:
+        """Show a marker no longer."""
         ...
 
 

@@ -222,7 +222,7 @@ def _watch(
             add(film.FilmObserver(opened), f"the film {video}", lambda: lost.append(str(video)))
         if shown.view_port is not None and run.world is not None:
             scene = run.world.open_view(shown.view_port)
-            add(film.ViewObserver(scene), "the view")
+            add(film.ViewObserver(scene, run), "the view")
             typer.echo(f"view: {scene.url}")
         if not shown.quiet:
             add(_display(shown.terminal), "the display")

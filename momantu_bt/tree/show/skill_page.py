@@ -19,6 +19,8 @@ def as_text(name: str, skill: type[Skill]) -> str:
     lines = [f"{name}: {_doc(skill)}", *port_lines(skill)]
     lines += ["", f"Uses      {', '.join(sorted(skill.uses)) or 'no actuator'}"]
     lines += [f"Needs     {', '.join(skill.needs) or 'no service'}"]
+    if skill.calls:
+        lines += [f"Calls     {', '.join(_called(skill))}"]
     if skill.failures:
         lines += ["", "Fails with"]
         lines += [f"  {code}: {sentence}" for code, sentence in skill.failures.items()]
@@ -36,6 +38,7 @@ def as_data(name: str, skill: type[Skill]) -> dict[str, Any]:
         "one_of": [list(group) for group in skill.one_of],
         "uses": sorted(skill.uses),
         "needs": list(skill.needs),
+        "calls": _called(skill),
         "failures": dict(skill.failures),
         "examples": {heading.lower(): example for heading, example in _examples(name, skill)},
     }
@@ -54,7 +57,14 @@ def as_markdown(name: str, skill: type[Skill]) -> str:
     uses = ", ".join(f"`{use}`" for use in sorted(skill.uses)) or "no actuator"
     needs = ", ".join(f"`{need}`" for need in skill.needs)
     parts.append(f"It commands {uses}" + (f" and needs the service {needs}." if needs else "."))
+    if skill.calls:
+        parts.append(f"It calls the skills {', '.join(f'`{name}`' for name in _called(skill))}.")
     return "\n\n".join(parts) + "\n"
+
+
+def _called(skill: type[Skill]) -> list[str]:
+    """Names of the skills that it calls."""
+    return [each if isinstance(each, str) else each.__name__ for each in skill.calls]
 
 
 def port_lines(owner: type[Skill] | NodeSpec) -> Iterator[str]:

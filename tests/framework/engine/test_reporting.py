@@ -10,6 +10,7 @@ import pytest
 from momantu_bt.geometry import Transform
 from momantu_bt.marker import Axes, Box, Line, Marker, Points, Text
 from momantu_bt.page.data import page_data
+from momantu_bt.record.film import ViewObserver
 from momantu_bt.record.reader import read_record
 from momantu_bt.record.text.changes import ChangeLines
 from momantu_bt.replay.run_text import run_lines
@@ -135,6 +136,48 @@ def test_the_page_has_a_lane_of_lines_and_shapes_on_its_map(run_yaml, tmp_path):
     edges = [s for s in shapes if s.get("closed") and len(s["points"]) == 3]
     assert [a["end"] for a in edges[:-1]] == [b["begin"] for b in edges[1:]]
     assert not any(s.get("text") == "hand" for s in shapes)
+
+
+class Scene:
+    """A view that keeps what it shows."""
+
+    url = ""
+
+    def __init__(self):
+        self.shown, self.erased = {}, []
+
+    def update(self):
+        pass
+
+    def close(self):
+        pass
+
+    def draw(self, name, marker, map_from_frame):
+        self.shown[name] = map_from_frame
+
+    def erase(self, name):
+        self.erased.append(name)
+        del self.shown[name]
+
+
+class Waits(Skill):
+    """Draw once, and wait."""
+
+    def run(self, robot) -> Run:
+        """Draw in a frame that is known, in one that is not, and something that goes."""
+        self.frames.set_map_from_odom(Transform((1.0, 0.0, 0.0)), self.clock.now())
+        self.draw(Axes("stays", Transform()), Axes("lost", Transform(), frame="nowhere"))
+        self.draw(Axes("goes", Transform(), seconds=0.1))
+        for _ in range(10):
+            yield "waiting"
+
+
+def test_a_view_shows_markers_where_they_are_believed_and_erases_old_ones(run_yaml):
+    scene = Scene()
+    run_yaml("trees: {Main: [waits]}", Waits, watch=lambda run: [ViewObserver(scene, run)])
+    assert [name.split("/")[1] for name in scene.shown] == ["stays"]
+    assert [name.split("/")[1] for name in scene.erased] == ["goes"]
+    assert next(iter(scene.shown.values())).position[0] == 1.0
 
 
 @pytest.mark.parametrize(

@@ -102,6 +102,17 @@ def test_how_examples_are_spelled() -> None:
     assert not any("share" in line for line in lines)
 
 
+def test_the_skills_that_it_calls_are_told() -> None:
+    class Calling(Skill):
+        """Calls others."""
+
+        calls = ("dock", Speak)
+
+    assert "Calls     dock, Speak" in as_text("calling", Calling)
+    assert "It calls the skills `dock`, `Speak`." in as_markdown("calling", Calling)
+    assert as_data("calling", Calling)["calls"] == ["dock", "Speak"]
+
+
 def test_a_range_is_told_and_kept() -> None:
     class Ranged(Skill):
         """Has a range."""

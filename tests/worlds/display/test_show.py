@@ -16,8 +16,9 @@ from momantu_worlds.scenes.geometry.bodies import Body
 from momantu_worlds.testing import plain_episode
 
 from momantu_bt.geometry import Transform
+from momantu_bt.marker import Axes, Box, Line, Points, Text
 from momantu_bt.messages import BaseVelocity
-from momantu_bt.world import TreeLine, WorldError
+from momantu_bt.world import MarkerView, TreeLine, WorldError
 
 LINES = [TreeLine(0, "Bring", "RUNNING"), TreeLine(1, "navigate", "RUNNING")]
 PORT = 18923
@@ -104,6 +105,27 @@ def test_bodies_that_come_and_go_are_shown_while_they_are_there(simulator):
     view.update()
     assert "crate" in view.shown
     simulator.remove("crate")
+    view.close()
+
+
+def test_markers_are_shown_replaced_and_erased(simulator):
+    view = open_view(simulator, plain_episode(), PORT + 3)
+    corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0)]
+    markers = [
+        Line("line", corners, closed=True),
+        Points("points", [*corners, (float("nan"), 0, 0)]),
+        Points("nothing", [(float("nan"), 0, 0)]),
+        Box("box", Transform((1, 1, 1)), (0.1, 0.2, 0.3), color=(1, 0, 0, 0.5)),
+        Axes("axes", Transform((0, 0, 1))),
+        Text("text", (0, 0, 1), "here"),
+    ]
+    for marker in (*markers, markers[0]):
+        view.draw(f"1 node/{marker.name}", marker, Transform((1.0, 0.0, 0.0)))
+    assert sorted(view.marked) == sorted(f"1 node/{marker.name}" for marker in markers)
+    view.erase("1 node/line")
+    view.erase("1 node/line")
+    assert "1 node/line" not in view.marked
+    assert isinstance(view, MarkerView)
     view.close()
 
 

@@ -11,7 +11,9 @@ import numpy as np
 import viser
 
 from momantu_bt.geometry import Transform
+from momantu_bt.marker import Marker
 from momantu_bt.world import WorldError
+from momantu_worlds.display.markers import drawn
 from momantu_worlds.display.shapes import ColoredMesh, body_meshes, link_meshes, still_meshes
 from momantu_worlds.scenes.geometry.bodies import Body, Episode, Picture
 
@@ -51,6 +53,7 @@ class BrowserView:
         for name, link in simulator.model.links.items():
             self._links[name] = self._frame(f"/robot/{name}", link_meshes(link))
         self._sent: dict[str, Transform] = {}
+        self._markers: dict[str, Any] = {}
         self._guests: set[str] = set()
         self.update()
 
@@ -74,6 +77,24 @@ class BrowserView:
             for name, frame in self._links.items():
                 self._put(f"link {name}", frame, truth.link(name))
         self._server.flush()
+
+    def draw(self, name: str, marker: Marker, map_from_frame: Transform) -> None:
+        """Show a marker; it replaces an earlier one of that name."""
+        self.erase(name)
+        handle = drawn(self._server.scene, f"/markers/{name}", marker, map_from_frame)
+        if handle is not None:
+            self._markers[name] = handle
+
+    def erase(self, name: str) -> None:
+        """Show a marker no longer."""
+        handle = self._markers.pop(name, None)
+        if handle is not None:
+            handle.remove()
+
+    @property
+    def marked(self) -> tuple[str, ...]:
+        """Names of the markers that are shown now."""
+        return tuple(self._markers)
 
     def close(self) -> None:
         """Stop serving; safe to call twice."""
