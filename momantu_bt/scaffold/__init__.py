@@ -8,6 +8,7 @@ import re
 import shutil
 import tempfile
 import unicodedata
+from collections.abc import Mapping
 from pathlib import Path
 from string import Template
 
@@ -45,15 +46,31 @@ def new_skill(name: str, into: Path) -> Path:
     """
     words = _words(name)
     _check_name(name, words["package"])
-    target = into / name
+    files = {}
+    for path, template in FILES.items():
+        text = (_HERE / f"{template}.txt").read_text(encoding="utf-8")
+        files[Template(path).substitute(words)] = Template(text).substitute(words)
+    return make_package(into / name, files)
+
+
+def make_package(target: Path, files: Mapping[str, str]) -> Path:
+    """Write a package whole, or nothing. files: texts by their paths in the folder.
+
+    Raises:
+        CannotCreate: the folder is there already, or cannot be made.
+    """
+    into = target.parent
     if target.exists():
         raise CannotCreate(f"{target} is there already; choose another name, or --into a folder")
     if not into.is_dir():
         raise CannotCreate(f"there is no folder {into}")
     draft: Path | None = None
     try:
-        draft = Path(tempfile.mkdtemp(prefix=f".{name}-", dir=into))
-        _fill(draft, words)
+        draft = Path(tempfile.mkdtemp(prefix=f".{target.name}-", dir=into))
+        for path, text in files.items():
+            file = draft / path
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(text, encoding="utf-8")
         draft.chmod(0o755)
         draft.rename(target)
     except OSError as error:
@@ -74,12 +91,9 @@ def _check_name(name: str, package: str) -> None:
         raise CannotCreate(f"a Python package called {package!r} is there already")
 
 
-def _fill(folder: Path, words: dict[str, str]) -> None:
-    for path, template in FILES.items():
-        file = folder / Template(path).substitute(words)
-        file.parent.mkdir(parents=True, exist_ok=True)
-        text = (_HERE / f"{template}.txt").read_text(encoding="utf-8")
-        file.write_text(Template(text).substitute(words), encoding="utf-8")
+def toml_key(name: str) -> str:
+    """A name as a key in TOML, in quotes where it must be."""
+    return name if _BARE.fullmatch(name) else f'"{name}"'
 
 
 def _words(name: str) -> dict[str, str]:
@@ -88,7 +102,7 @@ def _words(name: str) -> dict[str, str]:
     package = f"{module.rstrip('_')}_skill"
     return {
         "name": name,
-        "entry": name if _BARE.fullmatch(name) else f'"{name}"',
+        "entry": toml_key(name),
         "module": module,
         "package": package,
         "distribution": re.sub("_+", "-", package).strip("-"),

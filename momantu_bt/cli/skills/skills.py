@@ -13,6 +13,7 @@ from momantu_bt.cli.skills.new import new
 from momantu_bt.cli.skills.pages import pages
 from momantu_bt.cli.skills.palette import print_palette
 from momantu_bt.cli.skills.schema import schema
+from momantu_bt.cli.skills.stub import stubs
 from momantu_bt.cli.skills.test import promises
 from momantu_bt.tree.catalogue import SPELLED
 from momantu_bt.tree.plugins import SKILLS
@@ -67,4 +68,5 @@ def show_one(
 skills.command("new", help=help_of(new))(new)
 skills.command("pages", help=help_of(pages))(pages)
 skills.command("schema", help=help_of(schema))(schema)
+skills.command("stub", help=help_of(stubs))(stubs)
 skills.command("test", help=help_of(promises))(promises)
