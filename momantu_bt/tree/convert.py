@@ -14,6 +14,7 @@ from momantu_bt.tree.catalogue import SUBTREE
 from momantu_bt.tree.check.nodes import with_named_inputs
 from momantu_bt.tree.check.signatures import Context
 from momantu_bt.tree.files.comments import set_comments_apart
+from momantu_bt.tree.files.given_text import TreeText
 from momantu_bt.tree.files.includes import read_project
 from momantu_bt.tree.files.scalars import CannotWrite
 from momantu_bt.tree.files.syntax import OURS
@@ -62,8 +63,8 @@ def document_spelling(document: Document) -> Spelling:
     return Spelling.XML if xml else Spelling.YAML
 
 
-def read_right(path: Path, registry: Registry) -> tuple[Document, list[Problem]]:
-    """Read a tree file whole; its nodes need not be known, nor the files that it includes.
+def read_right(given: Path | TreeText, registry: Registry) -> tuple[Document, list[Problem]]:
+    """Read a tree whole; its nodes need not be known, nor the files that it includes.
 
     Returns with it the problems of included files of a YAML file: trees of files that are not read
     count as nodes, unless `subtree:` names them. An XML file always says what a tree is.
@@ -73,10 +74,11 @@ def read_right(path: Path, registry: Registry) -> tuple[Document, list[Problem]]
         TreeError: the file has errors after which something of it would be lost.
         CannotWrite: it has something that a document cannot hold; the place says where.
     """
-    text = read_text(path, str(path))
-    if is_xml(str(path), text):
-        return _read_xml(text, str(path), registry), []
-    document, problems = read_project(path, registry, resolving=False)
+    shown = given.shown if isinstance(given, TreeText) else str(given)
+    text = given.text if isinstance(given, TreeText) else read_text(given, shown)
+    if is_xml(shown, text):
+        return _read_xml(text, shown, registry), []
+    document, problems = read_project(given, registry, resolving=False)
     if problems.lost():
         raise TreeError(problems.lost(), document.source)
     return document, [each for each in errors(problems.sorted()) if each.code == "include"]

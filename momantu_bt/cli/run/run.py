@@ -15,7 +15,7 @@ import typer
 from momantu_bt import collector
 from momantu_bt.cli.shared import streams
 from momantu_bt.cli.shared.notices import notice
-from momantu_bt.cli.shared.options import Include, Robot
+from momantu_bt.cli.shared.options import TREE, Include, Robot
 from momantu_bt.errors import TRACEBACK, ExitCode, InputError, MomantuError
 from momantu_bt.formats.files import check_writable
 from momantu_bt.lazy import lazily
@@ -49,7 +49,7 @@ VIEW_PORT = 8080
 
 
 def run(
-    tree: Annotated[str, typer.Argument(help="A tree file, or the name of a bundled tree.")],
+    tree: Annotated[str, typer.Argument(help=TREE)],
     world: Annotated[
         str | None, typer.Option(help="A world's name or file, or none. Default: the tree's own.")
     ] = None,
@@ -161,7 +161,7 @@ class _Shown:
 def _run(tree: str, options: RunOptions, shown: _Shown) -> Report:
     """Check the arguments, run, and print how it ended."""
     with collector.paused():
-        prepared = preparing.prepare(tree, options)
+        prepared = preparing.prepare(given.given_tree(tree), options)
     stops = _breakpoints(shown, prepared)
     if shown.video is not None:
         check_writable(shown.video, regular=True)

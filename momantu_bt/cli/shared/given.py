@@ -1,4 +1,4 @@
-"""Read the values of `--values` and `--set`; `--set` wins."""
+"""What a command line gives: a tree, also on standard input, and values; `--set` wins."""
 
 from __future__ import annotations
 
@@ -6,8 +6,21 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from momantu_bt.errors import InputError
+from momantu_bt.tree.files.given_text import TreeText
 from momantu_bt.tree.files.settings import Given
+from momantu_bt.tree.files.text import read_text
 from momantu_bt.tree.load import read_values
+
+STDIN, SHOWN = Path("/dev/stdin"), "<stdin>"
+
+
+def given_tree(tree: str) -> str | TreeText:
+    """A tree argument: `-` is a text in YAML or XML on standard input.
+
+    Raises:
+        TreeNotFound, TreeError: standard input cannot be read, or is not text.
+    """
+    return TreeText(read_text(STDIN, SHOWN), SHOWN) if tree == "-" else tree
 
 
 def given_values(settings: Sequence[str], file: Path | None) -> Given:

@@ -41,6 +41,8 @@ Kept: TypeAlias = Annotated[
     str, typer.Option(help="Which episodes leave a record: failures, all or none.")
 ]
 
+TREE = "A tree file, the name of a bundled tree, or - for standard input."
+"""Help of the argument that is a tree."""
 OUT = Path("runs/bench")
 """The default folder for results, with a folder for each tree."""
 RECORD = ("failures", "all", "none")

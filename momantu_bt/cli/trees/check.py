@@ -11,6 +11,7 @@ from typing import Annotated, Any
 
 import typer
 
+from momantu_bt.cli.shared.given import given_tree
 from momantu_bt.cli.shared.options import Include
 from momantu_bt.errors import ExitCode, InputError
 from momantu_bt.faults.tree_file import tree_beside, tree_faults
@@ -31,7 +32,8 @@ class Undeclared(StrEnum):
 
 def check(
     trees: Annotated[
-        list[str] | None, typer.Argument(help="Tree files, or names of bundled trees.")
+        list[str] | None,
+        typer.Argument(help="Tree files, names of bundled trees, or - for standard input."),
     ] = None,
     world: Annotated[
         str | None, typer.Option(help="Check against this world; `none` means without one.")
@@ -119,7 +121,7 @@ def _checked(tree: str, how: _How, *, quiet: bool) -> _FileChecked:
         if is_faults_file(Path(tree)):
             return _checked_faults(Path(tree), quiet=quiet)
         checked = load(
-            tree,
+            given_tree(tree),
             world=how.world,
             robot=how.robot,
             include=how.include,

@@ -9,7 +9,9 @@ from typing import Annotated
 
 import typer
 
+from momantu_bt.cli.shared.given import given_tree
 from momantu_bt.cli.shared.notices import notice
+from momantu_bt.cli.shared.options import TREE
 from momantu_bt.errors import ExitCode, InputError
 from momantu_bt.formats.files import OutputError, check_writable, write_whole
 from momantu_bt.tree.convert import (
@@ -20,13 +22,14 @@ from momantu_bt.tree.convert import (
     spelling_of,
     write,
 )
+from momantu_bt.tree.files.given_text import TreeText
 from momantu_bt.tree.files.lookup import find
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.registry import Registry
 
 
 def convert(
-    tree: Annotated[str, typer.Argument(help="A tree file, or the name of a bundled tree.")],
+    tree: Annotated[str, typer.Argument(help=TREE)],
     output: Annotated[
         Path | None, typer.Option("--output", "-o", help="Write to this file, not to the terminal.")
     ] = None,
@@ -50,7 +53,9 @@ def convert(
         _check(output, force)
     registry = Registry.installed()
     try:
-        document, unread = read_right(find(tree), registry)
+        source = given_tree(tree)
+        found = source if isinstance(source, TreeText) else find(source)
+        document, unread = read_right(found, registry)
         for problem in unread:
             notice(f"{problem.place}: {problem.message}; its trees are taken for nodes")
         spelling = to or _wanted(document, output)

@@ -8,7 +8,8 @@ from typing import Annotated
 
 import typer
 
-from momantu_bt.cli.shared.options import Include
+from momantu_bt.cli.shared.given import given_tree
+from momantu_bt.cli.shared.options import TREE, Include
 from momantu_bt.drawing.boxes import pictures
 from momantu_bt.drawing.difference import difference
 from momantu_bt.drawing.dot import dot
@@ -30,7 +31,7 @@ DRAWINGS = {"svg": svg, "dot": dot, "mermaid": mermaid}
 
 
 def show(
-    tree: Annotated[str, typer.Argument(help="A tree file, or the name of a bundled tree.")],
+    tree: Annotated[str, typer.Argument(help=TREE)],
     other: Annotated[
         str | None, typer.Argument(help="Another one: print the changes from the first to it.")
     ] = None,
@@ -82,7 +83,7 @@ def show(
 
 def _read(tree: str, registry: Registry, world: str | None, include: list[Path] | None) -> Document:
     further = tuple(include or ())
-    return load(tree, registry, world=world, include=further, tolerant=True).document
+    return load(given_tree(tree), registry, world=world, include=further, tolerant=True).document
 
 
 def _picture(kind: str, document: Document, registry: Registry, with_wires: bool) -> str:
