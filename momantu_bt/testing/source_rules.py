@@ -58,16 +58,26 @@ def codes(skill: type[Skill]) -> Iterator[Problem]:
 
 
 def calls(skill: type[Skill]) -> Iterator[Problem]:
-    """Skills that it calls by a name which `calls` does not have."""
+    """Skills that it calls by a name which `calls` does not have, or without `yield from`."""
     for module, method in methods(skill):
         for node in ast.walk(method):
-            if not (isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute)):
+            if isinstance(node, ast.Expr | ast.Assign) and _is_call(node.value):
+                message = "`self.call(…)` alone does nothing: write `yield from self.call(…)`"
+                yield Problem("call-not-run", message, module.place(node))
+            if not (isinstance(node, ast.Call) and _is_call(node) and node.args):
                 continue
-            name = getattr(node.args[0], "value", None) if node.args else None
-            own = node.func.attr == "call" and getattr(node.func.value, "id", "") == "self"
-            if own and isinstance(name, str) and name not in skill.calls:
+            name = getattr(node.args[0], "value", None)
+            if isinstance(name, str) and name not in skill.calls:
                 message = f"calls {name!r}, which `calls` does not declare"
                 yield Problem("undeclared-call", message, module.place(node))
+
+
+def _is_call(node: ast.AST) -> bool:
+    """Whether it is `self.call(…)`."""
+    called = getattr(node, "func", None)
+    return getattr(called, "attr", "") == "call" and (
+        getattr(getattr(called, "value", None), "id", "") == "self"
+    )
 
 
 def _raised_code(node: ast.AST) -> str | None:

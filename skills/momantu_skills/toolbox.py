@@ -255,9 +255,9 @@ class Arm:
         """Move the hand straight until something pushes back with `force` N, at least 3.
 
         by: the longest way, as in `line`. speed: m/s; 0.01 if None. The arm brakes within 0.1 s,
-        so a stiff obstacle is pushed with more than `force`: with a wall of stone, 8 N and Fetch in
-        simulation, 49 N at 0.01 m/s, 31 N at 0.005 m/s, 92 N at 0.02 m/s. Then the arm rests
-        against it with about 1 N. Nothing felt is no failure; see `Contact.felt`.
+        so a stiff obstacle is pushed with more than `force`: a rigid one, in simulation, with 49 N
+        at 0.01 m/s, 31 N at 0.005 m/s and 92 N at 0.02 m/s where `force` was 8 N. Then the arm
+        rests against it with less than `force`. Nothing felt is no failure; see `Contact.felt`.
 
         The force is measured at the wrist. A robot without such a sensor estimates it from joint
         efforts: that tells a contact, but not its exact force.

@@ -285,6 +285,8 @@ def test_a_skill_that_calls_another_is_rehearsed_with_it(
     assert check_skill(skill(lines), halts=2) == []
     undeclared = {**lines, 'calls = ("reset_pose",)': "pass"}
     assert "undeclared-call" in rules(check_skill(skill(undeclared), halts=2))
+    idle = {**lines, "# begin": 'self.call("reset_pose", pose="home")'}
+    assert rules(check_skill(skill(idle), halts=2)) == {"call-not-run"}
     unused = {**lines, 'uses = {"base", "arm", "head"}': 'uses = {"base"}'}
     assert rules(check_skill(skill(unused), halts=2)) == {"undeclared-actuator"}
 
