@@ -47,6 +47,9 @@ VERBS = {
     "skills": Verb(
         "momantu_bt.cli.skills.skills", "List skills, or show one with its ports and failure codes."
     ),
+    "services": Verb(
+        "momantu_bt.cli.services.services", "List services, or show one with the keys it publishes."
+    ),
     "worlds": Verb(
         "momantu_bt.cli.worlds", "List worlds, or show one with its places and surfaces."
     ),

@@ -1,4 +1,4 @@
-"""A package for a new skill: a skill that works, its entry point, a test that passes, a README."""
+"""A package for a new skill or service: one that works, entry points, a passing test, a README."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pathlib import Path
 from string import Template
 
 from momantu_bt.errors import MomantuError
-from momantu_bt.tree.plugins import SKILLS
+from momantu_bt.tree.plugins import SERVICES, SKILLS, bad_service_name
 from momantu_bt.tree.skill_objection import bad_skill_name
 
 FILES = {
@@ -23,10 +23,21 @@ FILES = {
     "src/${package}/${module}.py": "skill.py",
     "tests/test_${module}.py": "test_skill.py",
 }
-"""Files of the package, and their templates beside this module."""
+"""Files of a skill's package, and their templates beside this module."""
+SERVICE_FILES = {
+    "pyproject.toml": "service_pyproject.toml",
+    "README.md": "service_README.md",
+    "src/${package}/__init__.py": "init.py",
+    "src/${package}/${module}.py": "service.py",
+    "tests/test_${module}.py": "test_service.py",
+}
+"""The same of a service's."""
 
-_IMPORTED = ("Failure", "In", "Out", "Robot", "Run", "Skill")
-"""Names that the skill's module imports."""
+_IMPORTED = (
+    *("Failure", "In", "Out", "Robot", "Run", "Skill"),
+    *("Any", "Field", "Mapping", "Service", "ServiceContext", "Tunables"),
+)
+"""Names that the modules of skills and services import."""
 _HERE = Path(__file__).parent
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 """A key that TOML takes without quotes."""
@@ -46,11 +57,25 @@ def new_skill(name: str, into: Path) -> Path:
     """
     words = _words(name)
     _check_name(name, words["package"])
-    files = {}
-    for path, template in FILES.items():
-        text = (_HERE / f"{template}.txt").read_text(encoding="utf-8")
-        files[Template(path).substitute(words)] = Template(text).substitute(words)
-    return make_package(into / name, files)
+    return make_package(into / name, _filled(FILES, words))
+
+
+def new_service(name: str, into: Path) -> Path:
+    """Make the package of a service called `name`; returns its folder, `into/name`.
+
+    Raises:
+        CannotCreate: the name is not allowed for a service or is taken, or the folder cannot be
+            made.
+    """
+    wrong = bad_service_name(name)
+    if wrong is not None:
+        raise CannotCreate(wrong.replace("; give the entry point another name", ""))
+    words = _words(name, "service")
+    taken = SERVICES.installed().get(name)
+    if taken is not None:
+        raise CannotCreate(f"a service called {name!r} is installed already: {taken.value}")
+    _check_package(words["package"])
+    return make_package(into / name, _filled(SERVICE_FILES, words))
 
 
 def make_package(target: Path, files: Mapping[str, str]) -> Path:
@@ -87,6 +112,10 @@ def _check_name(name: str, package: str) -> None:
     taken = SKILLS.installed().get(name)
     if taken is not None:
         raise CannotCreate(f"a skill called {name!r} is installed already: {taken.value}")
+    _check_package(package)
+
+
+def _check_package(package: str) -> None:
     if importlib.util.find_spec(package) is not None:
         raise CannotCreate(f"a Python package called {package!r} is there already")
 
@@ -96,10 +125,19 @@ def toml_key(name: str) -> str:
     return name if _BARE.fullmatch(name) else f'"{name}"'
 
 
-def _words(name: str) -> dict[str, str]:
-    """What the names in the templates stand for."""
+def _filled(templates: Mapping[str, str], words: dict[str, str]) -> dict[str, str]:
+    """The texts of a package's files by their paths. templates: the template of each path."""
+    files = {}
+    for path, template in templates.items():
+        text = (_HERE / f"{template}.txt").read_text(encoding="utf-8")
+        files[Template(path).substitute(words)] = Template(text).substitute(words)
+    return files
+
+
+def _words(name: str, what: str = "skill") -> dict[str, str]:
+    """What the names in the templates stand for. what: the kind of plug-in."""
     module = module_name(name)
-    package = f"{module.rstrip('_')}_skill"
+    package = f"{module.rstrip('_')}_{what}"
     return {
         "name": name,
         "entry": toml_key(name),

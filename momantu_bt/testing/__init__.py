@@ -11,6 +11,7 @@ from momantu_bt.testing.description import small_robot
 from momantu_bt.testing.example_world import ExampleWorld
 from momantu_bt.testing.eye_in_hand import eye_in_hand_robot
 from momantu_bt.testing.robot import ScriptedRobot
+from momantu_bt.testing.service_check import assert_service, check_service
 from momantu_bt.testing.skill_run import SkillResult, run_skill
 from momantu_bt.testing.world import ManualClock, ScriptedWorld, scripted_site
 
@@ -21,7 +22,9 @@ __all__ = [
     "ScriptedRobot",
     "ScriptedWorld",
     "SkillResult",
+    "assert_service",
     "assert_skill",
+    "check_service",
     "check_skill",
     "eye_in_hand_robot",
     "run_skill",

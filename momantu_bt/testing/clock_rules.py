@@ -16,6 +16,7 @@ import numpy as np
 
 from momantu_bt.formats.places import NOWHERE, Place
 from momantu_bt.formats.problems import Problem
+from momantu_bt.service import Service
 from momantu_bt.skill import Skill
 from momantu_bt.testing.source import family, reached
 
@@ -42,7 +43,7 @@ _SEEDED = frozenset(
 _TYPES = frozenset({"numpy.random.Generator", "numpy.random.BitGenerator"})
 
 
-def clocks_in_source(skill: type[Skill]) -> Iterator[Problem]:
+def clocks_in_source(skill: type[Skill | Service]) -> Iterator[Problem]:
     """Calls in the skill's modules that read another clock or draw unseeded random numbers."""
     for module in reached(skill):
         names = _imports(module.tree)
@@ -103,7 +104,7 @@ class ClockWatch:
     package's own modules count. The shared random generators must not change at all.
     """
 
-    def __init__(self, skill: type[Skill]) -> None:
+    def __init__(self, skill: type[Skill | Service]) -> None:
         self._tops = {kind.__module__.partition(".")[0] for kind in family(skill)}
         self._found: dict[tuple[str, str], Place] = {}
         self._before: tuple[Any, Any] = (None, None)

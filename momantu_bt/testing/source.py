@@ -12,6 +12,7 @@ from functools import cache
 from pathlib import Path
 
 from momantu_bt.formats.places import Place
+from momantu_bt.service import Service
 from momantu_bt.skill import Skill
 
 MOST_MODULES = 500
@@ -32,12 +33,12 @@ class Module:
         return Place(str(self.path), getattr(node, "lineno", 1))
 
 
-def family(skill: type[Skill]) -> tuple[type, ...]:
-    """The skill's class and all that it inherits from, without Skill and object, nearest first."""
-    return tuple(kind for kind in skill.__mro__ if kind not in (Skill, object))
+def family(skill: type[Skill | Service]) -> tuple[type, ...]:
+    """The class and all that it inherits from, nearest first; without Skill, Service, object."""
+    return tuple(kind for kind in skill.__mro__ if kind not in (Skill, Service, object))
 
 
-def classes(skill: type[Skill]) -> list[tuple[Module, ast.ClassDef]]:
+def classes(skill: type[Skill | Service]) -> list[tuple[Module, ast.ClassDef]]:
     """The class statements of a skill and of its base classes, except Skill."""
     found: list[tuple[Module, ast.ClassDef]] = []
     for kind in family(skill):
@@ -49,7 +50,9 @@ def classes(skill: type[Skill]) -> list[tuple[Module, ast.ClassDef]]:
     return found
 
 
-def methods(skill: type[Skill]) -> list[tuple[Module, ast.FunctionDef | ast.AsyncFunctionDef]]:
+def methods(
+    skill: type[Skill | Service],
+) -> list[tuple[Module, ast.FunctionDef | ast.AsyncFunctionDef]]:
     """The methods that a skill has: its own, and those that it inherits.
 
     A base's method that a nearer class replaces counts only if some `super()` can reach it.
@@ -77,7 +80,7 @@ def _asked_of_bases(method: ast.AST, family: set[str]) -> set[str]:
     }
 
 
-def reached(skill: type[Skill]) -> list[Module]:
+def reached(skill: type[Skill | Service]) -> list[Module]:
     """The modules of the skill and its base classes, and all that they import, also indirectly.
 
     From each package only its own modules are followed. Imports inside functions count too. The

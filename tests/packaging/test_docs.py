@@ -49,7 +49,7 @@ def test_the_worked_skill_passes_its_own_tests(
     for block in blocks(ROOT / "docs" / "writing_a_skill.md", "python"):
         exec(block, page.__dict__)
     tests = [value for name, value in vars(page).items() if name.startswith("test_")]
-    assert len(tests) == 6
+    assert len(tests) == 8
     for test in tests:
         test(*([run_tree] if "run_tree" in signature(test).parameters else []))
 

@@ -2,13 +2,25 @@
 
 from __future__ import annotations
 
+from importlib.metadata import EntryPoint
+from pathlib import Path
 from typing import Annotated
 
 import pytest
 from pydantic import Field, ValidationError
 
+from momantu_bt import plugins
 from momantu_bt.descriptions.quantities import Angle, LinearSpeed, Size
-from momantu_bt.descriptions.tunables import Tunable, Tunables, configured, groups_of, tunables_of
+from momantu_bt.descriptions.reading import DescriptionError, Reading
+from momantu_bt.descriptions.tunables import (
+    TUNABLES,
+    Tunable,
+    Tunables,
+    configured,
+    groups_of,
+    tunable_problems,
+    tunables_of,
+)
 
 
 class Lamp(Tunables):
@@ -64,3 +76,28 @@ def test_each_is_told_with_unit_default_range_and_meaning() -> None:
         Tunable("share", "", "0.5", "above 0.1, below 1", "of it"),
     ]
     assert list(groups_of(Patrol)) == [("lamp", Lamp)]
+
+
+@pytest.mark.parametrize(
+    ("services", "line", "said"),
+    [
+        ("    odd: {speed: 3}", 3, "the service 'odd' declares no tunables"),
+        ("    patroll: {speed: 3}", 3, "no service or skill 'patroll' has tunables; did you mean"),
+        ("    patrol:\n      sped: 3", 4, "did you mean"),
+        ("    patrol:\n      speed: 3 kg", 4, "'3 kg' is a mass"),
+    ],
+)
+def test_a_file_that_sets_a_service_wrongly(
+    monkeypatch: pytest.MonkeyPatch, services: str, line: int, said: str
+) -> None:
+    entries = {
+        "momantu_bt.services": [EntryPoint("odd", "a:B", "momantu_bt.services")],
+        TUNABLES.name: [EntryPoint("patrol", f"{__name__}:Patrol", TUNABLES.name)],
+    }
+    monkeypatch.setattr(plugins, "entry_points", lambda group: entries.get(group, []))
+    monkeypatch.setattr(EntryPoint, "load", lambda entry: Patrol)
+    text = f"site:\n  services:\n{services}\n"
+    reading = Reading(Path("w.yaml"), text, DescriptionError)
+    (problem,) = tunable_problems(reading, ("site", "services"))
+    assert problem.place.line == line
+    assert said in problem.message + str(DescriptionError(Path("w.yaml"), text, [problem]))

@@ -1,0 +1,1 @@
+"""`momantu-bt services` and its sub-verbs."""
