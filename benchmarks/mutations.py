@@ -39,9 +39,10 @@ from momantu_bt.tree.registry import Registry
 
 @dataclass
 class Tally:
-    """Verdicts of one kind of slip, and what was missed or told elsewhere."""
+    """Verdicts of one kind of slip, the errors of each one that was found, and what was not."""
 
     verdicts: Counter[str] = field(default_factory=Counter)
+    errors: list[int] = field(default_factory=list)
     told: list[str] = field(default_factory=list)
 
     @property
@@ -77,6 +78,8 @@ def corpus(trees: Iterable[GoodTree], most: int | None = None) -> dict[str, Tall
         for mutant in made(tree, most):
             verdict = judge(tree, mutant)
             tally = tallies[mutant.kind]
+            if verdict in ("right", "elsewhere"):
+                tally.errors.append(len(errors(tree.problems(mutant.text)[1])))
             tally.verdicts[verdict] += 1
             if verdict in ("missed", "elsewhere"):
                 place = f"{tree.path.name}:{mutant.line}"
@@ -133,8 +136,13 @@ def main() -> None:
     total = Tally()
     for kind, tally in tallies.items():
         total.verdicts += tally.verdicts
+        total.errors += tally.errors
         print(_row(kind, tally))
     print(_row("all", total))
+    counts = sorted(total.errors)
+    few = sum(count <= 3 for count in counts) / len(counts)
+    middle = counts[len(counts) // 2]
+    print(f"errors of one slip: median {middle}, at most 3 in {few:.1%}, most {counts[-1]}")
     if asked.missed:
         print("\n".join(line for tally in tallies.values() for line in tally.told))
     pairs = [several(tree, 40, seed=0) for tree in trees]

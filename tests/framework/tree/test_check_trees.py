@@ -2,6 +2,8 @@
 
 from collections.abc import Callable
 
+import pytest
+
 from momantu_bt.formats.problems import Problem, Severity
 from momantu_bt.tree.check.trees import MAX_NESTING
 
@@ -187,3 +189,30 @@ def test_a_handler_of_the_rest_can_pass_on_anything(fine: Fine) -> None:
 
 def test_the_code_of_a_node_type_is_passed_on_bare(fine: Fine) -> None:
     fine(_passed_on("NO_PLAN", inner="reset_pose.NO_PLAN"))
+
+
+OUT = "Sub:\n  inputs: {a: text}\n"
+
+
+@pytest.mark.parametrize(
+    ("slip", "code", "line", "hint"),
+    [
+        (
+            ("  Sub:\n    inputs: {a: text}\n  ", "Sub:\n  inputs: {a: text}\n"),
+            "unknown-key",
+            8,
+            "trees",
+        ),
+        (("trees:\n  Main", "tress:\n  Main"), "unknown-key", 4, "did you mean trees?"),
+    ],
+)
+def test_one_wrong_indentation_is_one_error(
+    check: Callable[[str], list[Problem]], slip: tuple[str, str], code: str, line: int, hint: str
+) -> None:
+    text = (
+        "momantu_bt: 1\nworld: rooms\nmain: Main\ntrees:\n  Main:\n    - Sub: {a: x}\n"
+        "    - Sub: {a: y}\n  Sub:\n    inputs: {a: text}\n    say: $a\n"
+    )
+    (problem,) = check(text.replace(*slip))
+    assert (problem.code, problem.place.line) == (code, line)
+    assert hint in problem.hint

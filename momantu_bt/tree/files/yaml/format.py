@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from momantu_bt.formats.names import valid_names
+from momantu_bt.formats.names import nearest, valid_names
 from momantu_bt.formats.places import Place
 from momantu_bt.formats.problems import errors
 from momantu_bt.formats.yaml.comments import Comment
@@ -114,13 +114,9 @@ class _Reader:
             return None
         drop_duplicates(raw, self.problems)
         having = {key.text: (key, value) for key, value in raw.entries}
-        for key, _ in raw.entries:
-            if key.text not in _TOP:
-                hint = valid_names(key.text, _TOP, "keys of a tree file")
-                self.problems.error(
-                    "unknown-key", key.place, f"a tree file has no {key.text!r}", hint
-                )
         self.version(having.get("momantu_bt"), raw.place)
+        if self.unknown_keys(raw):
+            return None
         document = Document(self.file, "", {})
         if "xml" in having:
             read_document_xml(document, having["xml"][1], self.problems)
@@ -146,6 +142,23 @@ class _Reader:
         hint = "write `trees:` and under it `Name:`"
         with self.problems.keeping():
             self.problems.error("no-trees", where, "the file has no tree", hint)
+
+    def unknown_keys(self, raw: Entries) -> bool:
+        """Report unknown keys; whether one of them holds a part of the file.
+
+        All else would then be told again where that part is used. Of several, the first is told.
+        """
+        for key, value in raw.entries:
+            if key.text in _TOP:
+                continue
+            hint = valid_names(key.text, _TOP, "keys of a tree file")
+            holds = isinstance(value, Entries | Items)
+            if holds and nearest(key.text, _TOP) is None:
+                hint = "if it is a tree, indent it and what belongs to it, under `trees:`"
+            self.problems.error("unknown-key", key.place, f"a tree file has no {key.text!r}", hint)
+            if holds:
+                return True
+        return False
 
     def version(self, entry: tuple[Scalar, Raw] | None, place: Place) -> None:
         if entry is None:
