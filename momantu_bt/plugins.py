@@ -7,6 +7,7 @@ kind, which says what such a plug-in must be.
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -17,7 +18,7 @@ from types import MappingProxyType
 from typing import Any, Generic, TypeAlias, TypeVar
 
 from momantu_bt.errors import MomantuError, words_of
-from momantu_bt.formats.names import nearest
+from momantu_bt.formats.names import nearest, valid_names
 from momantu_bt.importing import importing
 
 PREFIX = "momantu_bt."
@@ -118,11 +119,12 @@ class Group(Mapping[str, T]):
         except KeyboardInterrupt:
             raise
         except BaseException as error:  # other people's code: it may raise anything
-            reason = f"cannot be loaded: {words_of(error)}"
+            reason = f"cannot be loaded: {words_of(error)}{_cure(entry, error)}"
         else:
             if objection is None:
                 return plugin
-            reason = f"is broken: {objection}"
+            missing = "; write MODULE:NAME in the entry point" if not entry.attr else ""
+            reason = f"is broken: {objection}{missing}"
         raise PluginError(f"the {self.what} {name!r} ({_origin(entry)}) {reason}")
 
     def is_path(self, name: str) -> bool:
@@ -201,6 +203,19 @@ def _installed(find: Callable[[str], Iterable[EntryPoint]], group: str) -> _Foun
     for entry in sorted(find(group), key=lambda e: (e.name, e.value)):
         found.setdefault(entry.name, {}).setdefault(entry.value, entry)
     return {name: tuple(entries.values()) for name, entries in found.items()}
+
+
+def _cure(entry: EntryPoint, error: BaseException) -> str:
+    """What to do about an entry point whose module or name does not exist; else empty."""
+    absent = error.name if isinstance(error, ModuleNotFoundError) else None
+    if absent is not None and f"{entry.module}.".startswith(f"{absent}."):
+        return "; is the entry point spelt as the module, and the package installed again?"
+    module = sys.modules.get(entry.module)
+    if isinstance(error, AttributeError) and module is not None and entry.attr:
+        names = [name for name in vars(module) if not name.startswith("_")]
+        if entry.attr.partition(".")[0] not in names:
+            return f"; {valid_names(entry.attr, names, 'its names')}"
+    return ""
 
 
 def _origin(entry: EntryPoint) -> str:

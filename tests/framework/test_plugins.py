@@ -243,3 +243,21 @@ def test_the_public_names_are_completed():
 
     assert dir(momantu_bt) == sorted(momantu_bt.__all__)
     assert {"run", "Skill", "Service"} <= set(dir(momantu_bt))
+
+
+@pytest.mark.parametrize(
+    ("value", "said"),
+    [
+        ("no_such_pkg.a:Good", "'no_such_pkg'; is the entry point spelt as the module"),
+        ("{good}:Goood", "did you mean Good?"),
+        ("{good}", "module is not a subclass of momantu_bt.Skill; write MODULE:NAME"),
+        ("json:loads", "function is not a subclass of momantu_bt.Skill"),
+    ],
+)
+def test_a_wrong_entry_point_says_what_would_be_right(
+    entries: list[EntryPoint], module, value: str, said: str
+) -> None:
+    entries.append(entry("ill", value.replace("{good}", module(GOOD))))
+    with pytest.raises(PluginError) as error:
+        SKILLS.load("ill")
+    assert said in str(error.value)
