@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from momantu_bt.engine.encode import encode
-from momantu_bt.engine.skills.calls import callees
 from momantu_bt.engine.skills.services import ServiceCycleError, in_order
 from momantu_bt.engine.skills.session import Session
 from momantu_bt.engine.status import RUNNING
@@ -25,6 +24,7 @@ from momantu_bt.testing.robot import ScriptedRobot
 from momantu_bt.testing.skill_run import SkillResult, run_skill
 from momantu_bt.testing.world import ScriptedWorld
 from momantu_bt.tree.registry import Registry
+from momantu_bt.tree.skill_calls import callees
 from momantu_bt.world import TICK, World
 
 STILL = 1.0

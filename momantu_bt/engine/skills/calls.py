@@ -1,8 +1,8 @@
-"""Skills that skills call: which ones, their robot, and one call from its inputs to its outputs."""
+"""Skills that skills call: their robot, and one call from its inputs to its outputs."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
@@ -16,54 +16,8 @@ from momantu_bt.marker import Marker
 from momantu_bt.messages import ActuatorGoal, RobotState
 from momantu_bt.robot import Robot, RobotDescription, SensorReading
 from momantu_bt.skill import Compute, Host, Skill
+from momantu_bt.tree.skill_calls import undeclared_uses, undeclared_uses_text
 from momantu_bt.values.admit import admit
-
-
-def callees_of(kind: type[Skill], skill_of: Callable[[str], type[Skill]]) -> dict[str, type[Skill]]:
-    """The skills that one calls, by their names.
-
-    Raises:
-        KeyError: no skill has one of the names. PluginError: it is broken.
-    """
-    found: dict[str, type[Skill]] = {}
-    for each in kind.calls:
-        if isinstance(each, str):
-            found[each] = skill_of(each)
-        else:
-            found[each.__name__] = each
-    return found
-
-
-def callees(
-    kinds: Iterable[type[Skill]], skill_of: Callable[[str], type[Skill]]
-) -> dict[str, type[Skill]]:
-    """The skills that these call, also indirectly, by their names; raises as `callees_of`."""
-    found: dict[str, type[Skill]] = {}
-    waiting = list(kinds)
-    while waiting:
-        new = callees_of(waiting.pop(0), skill_of)
-        waiting += [kind for name, kind in new.items() if name not in found]
-        found = {**new, **found}
-    return found
-
-
-def undeclared_uses(
-    caller: type[Skill], called: type[Skill], description: RobotDescription
-) -> tuple[str, ...]:
-    """Actuators of a called skill that the caller's `uses` lacks, as `uses` writes them.
-
-    Raises:
-        KeyError: the robot has no such actuator.
-    """
-    having = {description.resolve_use(use) for use in caller.uses}
-    wanted = ((use, description.resolve_use(use)) for use in sorted(called.uses))
-    return tuple(use for use, actuator in wanted if actuator not in (None, *having))
-
-
-def undeclared_uses_text(caller: str, called: str, uses: Sequence[str]) -> str:
-    """What is wrong if a caller's `uses` lacks some, and what to do."""
-    names = ", ".join(map(repr, uses))
-    return f"{caller} calls {called}, which commands {names}: add {names} to its `uses`"
 
 
 class SkillHost(Host):

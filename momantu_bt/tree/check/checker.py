@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from momantu_bt.formats.places import Place
 from momantu_bt.formats.problems import Problem
+from momantu_bt.tree.check.calls import check_calls
 from momantu_bt.tree.check.conditions import check_conditions
 from momantu_bt.tree.check.elsewhere import report_elsewhere, with_trees_elsewhere
 from momantu_bt.tree.check.guards import check_guards
@@ -97,6 +98,7 @@ def _check(
         check_given_names(context, tree)
     report_elsewhere(context, elsewhere)
     check_unused(context)
+    check_calls(context)
     shallow = [check_nesting(context, tree) for tree in document.trees.values()]
     order = callees_first(context)
     if order is not None and all(shallow):

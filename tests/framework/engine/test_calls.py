@@ -6,8 +6,13 @@ import pytest
 
 from momantu_bt.failure import CALL_FAILED, Failure
 from momantu_bt.messages import BaseVelocity, GripperCommand
+from momantu_bt.record.reader import read_record
+from momantu_bt.replay.recheck import recheck
+from momantu_bt.running.calls import CallError, check_calls
 from momantu_bt.skill import In, Needs, Out, Run, Skill, compute
 from momantu_bt.testing import ScriptedRobot, run_skill
+from momantu_bt.tree.problems import TreeError
+from momantu_bt.tree.registry import Registry
 
 CLOSED: list[str] = []
 
@@ -239,6 +244,36 @@ def test_in_a_tree_services_start_and_the_chain_names_the_called_skill(run_tree)
     ],
 )
 def test_a_call_that_cannot_be_is_found_before_the_run(run_tree, kind, said):
-    with pytest.raises(Exception, match="twice calls") as caught:
+    with pytest.raises(TreeError) as caught:
         run_tree("momantu_bt: 1\ntrees: {Main: [twice]}\n", skills={"twice": kind, "roll": Roll})
     assert said in str(caught.value)
+    assert "broken-plugin" in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("kind", "said"),
+    [(made(calls=("rol",)), "did you mean roll"), (made(uses=set()), "add 'base'")],
+)
+def test_python_that_skips_the_check_is_stopped_too(kind, said):
+    registry = Registry({"twice": kind, "roll": Roll})
+    description = ScriptedRobot().description
+    with pytest.raises(CallError, match=said):
+        check_calls({"twice": kind}, registry, description)
+
+
+def test_a_replay_ticks_the_tree_of_a_recorded_call_again(run_yaml, tmp_path):
+    class Quiet(Twice):
+        """Roll twice, and say and draw something."""
+
+        def run(self, robot):
+            """Roll."""
+            self.log("now")
+            yield from super().run(robot)
+
+    run_yaml("trees: {Main: [quiet]}", Quiet, Roll, record=tmp_path / "r")
+    recording = read_record(tmp_path / "r")
+    registry = Registry({"quiet": Quiet, "roll": Roll})
+    result = recheck(recording, registry)
+    assert result.difference is None
+    phases = [step.phase for tick in recording.ticks for step in tick.steps]
+    assert "roll/rolling" in phases
