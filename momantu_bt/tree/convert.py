@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import fields, is_dataclass
 from enum import StrEnum
 from pathlib import Path
 
+from momantu_bt.errors import InputError
 from momantu_bt.formats.places import Place
 from momantu_bt.formats.problems import Problem, errors
 from momantu_bt.formats.xml.difference import first_difference
+from momantu_bt.formats.xml.reader import XmlSyntaxError
 from momantu_bt.tree.catalogue import SUBTREE
 from momantu_bt.tree.check.nodes import with_named_inputs
 from momantu_bt.tree.check.signatures import Context
-from momantu_bt.tree.files.comments import set_comments_apart
+from momantu_bt.tree.files.comments import set_comments_apart, set_odd_comments_apart
 from momantu_bt.tree.files.given_text import TreeText
 from momantu_bt.tree.files.includes import read_project
 from momantu_bt.tree.files.scalars import CannotWrite
@@ -21,6 +24,7 @@ from momantu_bt.tree.files.syntax import OURS
 from momantu_bt.tree.files.text import read_text
 from momantu_bt.tree.files.xml import writer as xml_writer
 from momantu_bt.tree.files.xml.format import XmlSource
+from momantu_bt.tree.files.xml.format3 import from_format_3
 from momantu_bt.tree.files.yaml import writer as yaml_writer
 from momantu_bt.tree.files.yaml.format import YamlSource
 from momantu_bt.tree.language import is_xml
@@ -33,6 +37,7 @@ __all__ = [
     "Spelling",
     "document_spelling",
     "meaning",
+    "read_format_3",
     "read_right",
     "spelling_of",
     "write",
@@ -84,6 +89,30 @@ def read_right(given: Path | TreeText, registry: Registry) -> tuple[Document, li
     return document, [each for each in errors(problems.sorted()) if each.code == "include"]
 
 
+def read_format_3(
+    given: Path | TreeText, registry: Registry
+) -> tuple[Document, list[tuple[Place, str]]]:
+    """Read a file of BehaviorTree.CPP 3, and remarks on what means something else in version 4.
+
+    Raises:
+        TreeNotFound, TreeError, CannotWrite: as `read_right`.
+        FormatError: the file is not of version 3.
+    """
+    file = given.shown if isinstance(given, TreeText) else str(given)
+    text = given.text if isinstance(given, TreeText) else read_text(given, file)
+    if not is_xml(file, text) or re.search(r"<root\b[^>]*BTCPP_format\s*=\s*[\"']4", text):
+        raise FormatError(f"{file} is not of format 3 of BehaviorTree.CPP; leave --from out")
+    try:
+        text, remarks = from_format_3(text, file)
+    except XmlSyntaxError as error:
+        raise TreeError([error.problem], {file: text}) from None
+    return _read_xml(text, file, registry), remarks
+
+
+class FormatError(InputError):
+    """A file is of another format than `--from` says."""
+
+
 def _read_xml(text: str, file: str, registry: Registry) -> Document:
     problems = Problems(most=None)
     document = XmlSource.of(text, file, registry, problems).document({})
@@ -115,6 +144,8 @@ def write(document: Document, to: Spelling, registry: Registry) -> str:
     writing = yaml_writer.write if to is Spelling.YAML else xml_writer.write
     from_xml = document_spelling(document) is Spelling.XML
     text, again = "", document
+    if from_xml:
+        set_odd_comments_apart(document)
     for _ in range(_MOST_PASSES if to is Spelling.YAML and from_xml else 1):
         text = writing(document, registry)
         again = _read_again(text, to, document, registry)

@@ -18,6 +18,7 @@ from momantu_bt.tree.convert import (
     CannotWrite,
     Spelling,
     document_spelling,
+    read_format_3,
     read_right,
     spelling_of,
     write,
@@ -37,6 +38,10 @@ def convert(
         Spelling | None,
         typer.Option(help="yaml or xml. Default: OUTPUT's ending, or the other one."),
     ] = None,
+    from_format: Annotated[
+        str | None,
+        typer.Option("--from", metavar="3", help="The file is of BehaviorTree.CPP 3, not 4."),
+    ] = None,
     force: Annotated[bool, typer.Option("--force", help="Overwrite OUTPUT.")] = False,
 ) -> ExitCode:
     """Write a tree file in the other spelling, YAML or BehaviorTree.CPP's XML. Nothing is lost.
@@ -48,16 +53,15 @@ def convert(
       momantu-bt convert trees/bring_object.yaml
       momantu-bt convert from_groot.xml -o trees/mine.yaml
       momantu-bt convert mine.yaml --to yaml -o mine.yaml --force
+      momantu-bt convert --from 3 old.xml -o new.xml
     """
+    if from_format not in (None, "3"):
+        raise InputError(f"--from {from_format}: 3 is known, for files of BehaviorTree.CPP 3")
     if output is not None:
         _check(output, force)
     registry = Registry.installed()
     try:
-        source = given_tree(tree)
-        found = source if isinstance(source, TreeText) else find(source)
-        document, unread = read_right(found, registry)
-        for problem in unread:
-            notice(f"{problem.place}: {problem.message}; its trees are taken for nodes")
+        document = _read(tree, registry, old=from_format is not None)
         spelling = to or _wanted(document, output)
         if output is not None:
             _move_includes(document, output)
@@ -70,6 +74,21 @@ def convert(
         write_whole(output, text)
         typer.echo(f"wrote {output}")
     return ExitCode.SUCCESS
+
+
+def _read(tree: str, registry: Registry, *, old: bool) -> Document:
+    """Read a file, and say what the result does not have as the file meant it."""
+    source = given_tree(tree)
+    found = source if isinstance(source, TreeText) else find(source)
+    if old:
+        document, remarks = read_format_3(found, registry)
+        for place, message in remarks:
+            notice(f"{place}: {message}")
+        return document
+    document, unread = read_right(found, registry)
+    for problem in unread:
+        notice(f"{problem.place}: {problem.message}; its trees are taken for nodes")
+    return document
 
 
 def _check(output: Path, force: bool) -> None:

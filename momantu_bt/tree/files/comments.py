@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import TypeAlias
 
@@ -9,6 +10,21 @@ from momantu_bt.formats.text import Beside
 from momantu_bt.tree.model import Document, Node, Tree
 
 _Slots: TypeAlias = "tuple[tuple[str, ...], ...]"
+_LINE_ENDS = re.compile("[\x85\u2028\u2029]")
+"""What YAML takes for the end of a line, and so of a comment, and XML does not."""
+
+
+def set_odd_comments_apart(document: Document) -> None:
+    """Set `comments_apart` where comments have characters that YAML's comments cannot have."""
+    document.comments_apart = _is_odd(_of_document(document))
+    for tree in document.trees.values():
+        tree.comments_apart = tree.comments_apart or _is_odd(_of_tree(tree))
+        for node in tree.nodes():
+            node.comments_apart = node.comments_apart or _is_odd(_of_node(node))
+
+
+def _is_odd(slots: _Slots) -> bool:
+    return any(_LINE_ENDS.search(text) for texts in slots for text in texts)
 
 
 def set_comments_apart(document: Document, again: Document) -> bool:

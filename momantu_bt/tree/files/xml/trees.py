@@ -35,7 +35,6 @@ class TreesReader:
         for number, element in enumerate(elements, 1):
             named.append((self._name(element, number), element))
         ports = {name: dict(tree.ports) for name, tree in outside.items()}
-        ports |= self.models.trees
         ports |= {name: self.models.trees.get(name, {}) for name, _ in named}
         reader = NodeReader(ports, self.registry, self.problems)
         trees: dict[str, Tree] = {}

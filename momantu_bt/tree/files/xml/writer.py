@@ -118,7 +118,7 @@ def _models(document: Document, own: list[Tree]) -> list[str]:
             lines += tree_model_lines(tree)
     lines += above(document.models_end_comments, _STEP * 2, every=True)
     words = "".join(attribute(name, text) for name, text in document.models_attributes.items())
-    if not lines and not document.order:
+    if not lines and "models" not in document.order:
         return []
     start = f"{_STEP}<TreeNodesModel{words}>{beside(document.models_comments)}"
     return [*above(document.models_comments, _STEP), start, *lines, f"{_STEP}</TreeNodesModel>"]

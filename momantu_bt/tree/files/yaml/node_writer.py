@@ -321,7 +321,7 @@ def _has_its_children(node: Node, spec: NodeSpec) -> bool:
     """Whether the node's own word in YAML has a place for each of its children."""
     count = len(node.children)
     if spec.switch:
-        return count == spec.switch + 1
+        return count == spec.switch + 1 and bool(node.ports)
     if spec.handlers:
         return True  # what it lacks is reported where it is written
     if spec.yaml[0] in COMPANIONS:
