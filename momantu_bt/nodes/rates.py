@@ -22,7 +22,7 @@ from momantu_bt.tree.catalogue.codes import and_also
 from momantu_bt.tree.catalogue.flow import again, around
 from momantu_bt.tree.catalogue.spec import Dialect, decorator, input_port
 
-SLOWEST = 0.001
+SLOWEST = 1e-9
 """Lowest valid rate, Hz; a period is 1 / rate."""
 
 

@@ -70,7 +70,7 @@ def test_defaults_of_built_in_nodes_are_within_their_bounds() -> None:
         ("{wait: {msec: «-1»}}", "at least 0"),
         ("{succeed: , timeout: «-1 min»}", "at least 0.001 s"),
         ("{succeed: , delay: «-0.1»}", "at least 0 s"),
-        ("{succeed: , rate_controller: «0»}", "at least 0.001 Hz"),
+        ("{succeed: , rate_controller: «0»}", "at least 1e-09 Hz"),
         ("{succeed: , distance_controller: «-1 m»}", "at least 0 m"),
         ("{recovery_node: {number_of_retries: «-1», children: [succeed, succeed]}}", "at least 0"),
     ],
