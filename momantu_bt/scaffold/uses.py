@@ -105,7 +105,8 @@ def _declared(declaration: PortDeclaration, leaf: StubLeaf) -> StubPort:
         direction = "out" if declaration.name in leaf.results else "in"
     if direction == "out":
         return StubPort(port.name, "out", type_, doc)
-    if declaration.default is None:
+    always = len(leaf.given.get(port.name, ())) == leaf.uses
+    if declaration.default is None and always:
         return StubPort(port.name, "in", type_, doc)
     default = "None"
     if default_key(declaration) is None and isinstance(declaration.default, Literal):

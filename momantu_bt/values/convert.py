@@ -140,6 +140,10 @@ _HOLDERS = (kinds.Items, kinds.Table)
 """Kinds with parts: a value of the right class may still have parts that do not fit."""
 
 
+_WORDS = (kinds.Number, kinds.Text, kinds.Truth)
+"""Kinds of which a text can have several, separated by `;`."""
+
+
 def _to_items(value: Any, kind: kinds.Items, unit: str | None) -> tuple[Any, ...]:
     found = _list(value, kind)
     return _each(found, (kind.item,) * len(found), unit)
@@ -155,6 +159,10 @@ def _to_fixed(value: Any, kind: kinds.Fixed, unit: str | None) -> tuple[Any, ...
 def _list(value: Any, kind: ValueKind) -> list[Any] | tuple[Any, ...]:
     if isinstance(value, list | tuple):
         return value
+    items = kind.items if isinstance(kind, kinds.Fixed) else (getattr(kind, "item", None),)
+    if isinstance(value, str) and ";" in value and isinstance(items[0], _WORDS):
+        # as BehaviorTree.CPP writes lists
+        return [_item(text, items[0]) for text in value.removesuffix(";").split(";")]
     raise ConversionError(f"{shown(value)} is not a list; expected {label(kind.type)}: [a, b]")
 
 

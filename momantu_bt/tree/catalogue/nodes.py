@@ -129,6 +129,20 @@ def is_ours(name: str) -> bool:
     return name in BUILT_IN and NODES[name].dialect is Dialect.OURS
 
 
+FOREIGN = "other:"
+"""Begins the type of another program's node that has the name of one of ours."""
+
+
+def theirs(name: str) -> str:
+    """The type of another program's node; XML writes our own nodes with a prefix."""
+    return FOREIGN + name if is_ours(name) else name
+
+
+def said_type(type_: str) -> str:
+    """The name of a node's type in messages."""
+    return type_.removeprefix(FOREIGN)
+
+
 def why_broken(name: str) -> str | None:
     """Why a plug-in's node or behaviour cannot be used; None if it can or does not exist.
 

@@ -10,6 +10,7 @@ from momantu_bt.skill import MISSING, Port
 from momantu_bt.tree.catalogue.codes import UNKNOWN, Codes, Failing
 from momantu_bt.tree.catalogue.flow import After, Flow, Walk, as_written
 from momantu_bt.tree.catalogue.known import Key, Known
+from momantu_bt.tree.catalogue.nodes import theirs
 from momantu_bt.tree.catalogue.spec import Kind, NodeSpec
 from momantu_bt.tree.catalogue.words import AUTOREMAP, SUBTREE
 from momantu_bt.tree.model import Document, Literal, Node, NodeModel, PortDeclaration
@@ -26,7 +27,7 @@ _CHILDREN: Mapping[Kind, tuple[int, int | None]] = {
 
 def models_of(document: Document) -> dict[str, NodeModel]:
     """The models of nodes in a file and in the files that it includes; the file's own count."""
-    return {each.name: each for each in _models(document) if each.kind != SUBTREE}
+    return {theirs(each.name): each for each in _models(document) if each.kind != SUBTREE}
 
 
 def tree_models_of(document: Document) -> dict[str, NodeModel]:

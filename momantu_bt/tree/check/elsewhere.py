@@ -10,7 +10,7 @@ from momantu_bt.formats.places import Place
 from momantu_bt.formats.problems import Problem
 from momantu_bt.plugins import PluginError
 from momantu_bt.tree.catalogue import AUTOREMAP, NODES, SUBTREE
-from momantu_bt.tree.catalogue.nodes import DOCTOR, why_broken
+from momantu_bt.tree.catalogue.nodes import DOCTOR, said_type, why_broken
 from momantu_bt.tree.check.declared import tree_models_of
 from momantu_bt.tree.check.signatures import Context
 from momantu_bt.tree.check.suggest import known_names, suggestion
@@ -119,7 +119,7 @@ def _report_unknown(context: Context, nodes: list[Node]) -> None:
         for node in nodes:
             context.problems.error("broken-plugin", node.place, broken, DOCTOR)
         return
-    message = f"no node is called {first.type!r}"
+    message = f"no node is called {said_type(first.type)!r}"
     if context.tolerant:
         hint = suggestion(context, first) or f"`{STUB} FILE` writes a plug-in for it"
         context.problems.warning("unknown-node", first.place, message + _more(nodes), hint)
@@ -159,7 +159,8 @@ def _report_declared(context: Context, declared: dict[str, Place]) -> None:
     """Say in one hint which nodes and trees are declared by the file and offered by nobody."""
     if not declared:
         return
-    shown = ", ".join([*declared][:_MOST_NAMED]) + (", …" if len(declared) > _MOST_NAMED else "")
+    shown = ", ".join([said_type(name) for name in declared][:_MOST_NAMED])
+    shown += ", …" if len(declared) > _MOST_NAMED else ""
     message = f"the file declares {shown}; no installed plug-in or file here has it"
     if len(declared) > 1:
         message = f"the file declares {shown}; no installed plug-in or file here has them"
@@ -194,7 +195,7 @@ def missing_for_a_run(context: Context, reached: Iterable[tuple[Node, bool]]) ->
         if not absent or name in found:
             continue
         what = "tree" if node.type == SUBTREE else "node"
-        message = f"nothing here has the {what} {name!r}, which the run may need"
+        message = f"nothing here has the {what} {said_type(name)!r}, which the run may need"
         if sometimes:
             message += ": the rules replace it only so many times"
         hint = (

@@ -10,7 +10,7 @@ from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.places import Place
 from momantu_bt.messages import VALUE_TYPES
 from momantu_bt.skill import MISSING, Port
-from momantu_bt.tree.catalogue import AUTOREMAP, MODIFIERS
+from momantu_bt.tree.catalogue import AUTOREMAP, MODIFIERS, NODES
 from momantu_bt.tree.check.names import check_named
 from momantu_bt.tree.check.signatures import Context, Signature, known_type
 from momantu_bt.tree.model import (
@@ -205,7 +205,9 @@ def _report_missing(context: Context, node: Node, port: Port, signature: Signatu
     hint = f"{name}: {label(port.type)}{f' in {port.unit}' if port.unit else ''}"
     if port.doc:
         hint += f", {port.doc}"
-    context.problems.error("missing-input", node.place, message, hint)
+    by_model = signature.spec is not None and node.type not in NODES
+    tell = context.tell_elsewhere if by_model else context.problems.error
+    tell("missing-input", node.place, message, hint)
 
 
 def _check_port(context: Context, node: Node, name: str, signature: Signature) -> None:

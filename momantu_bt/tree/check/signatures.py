@@ -11,6 +11,7 @@ from momantu_bt.plugins import PluginError, installed_names
 from momantu_bt.robot import RobotDescription
 from momantu_bt.skill import Port, Skill
 from momantu_bt.tree.catalogue import AUTOREMAP, NODES, SUBTREE, NodeSpec
+from momantu_bt.tree.catalogue.nodes import said_type
 from momantu_bt.tree.check.declared import declared_spec, models_of, used_spec
 from momantu_bt.tree.language import is_xml
 from momantu_bt.tree.model import BROKEN, Document, Node, NodeModel, Reference, Scope, Tree
@@ -87,7 +88,8 @@ class Context:
             return Signature(node.type, skill.ports, _first(skill.ports), skill=skill)
         declared = self.declared(node.type)
         spec = declared or used_spec(node)
-        return Signature(node.type, spec.ports, spec.first, spec=spec, unknown=declared is None)
+        said = said_type(node.type)
+        return Signature(said, spec.ports, spec.first, spec=spec, unknown=declared is None)
 
     def declared(self, name: str) -> NodeSpec | None:
         """What a model of the file says of a node; None without a model."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from momantu_bt.formats.names import nearest, valid_names
 from momantu_bt.tree.catalogue import NODES
+from momantu_bt.tree.catalogue.nodes import said_type
 from momantu_bt.tree.catalogue.synonyms import in_spelling, meant_type
 from momantu_bt.tree.check.signatures import Context
 from momantu_bt.tree.language import AGAIN
@@ -40,6 +41,8 @@ _IN_YAML = {
 def suggestion(context: Context, node: Node) -> str:
     """What to write instead of an unknown node's name; empty if nothing is near enough."""
     name, xml = node.type, context.in_xml(node.place)
+    if name != said_type(name):
+        return f'did you mean ID="momantu:{said_type(name)}"?'
     part = name.lower()
     if part in _PARTS:
         where = _IN_XML[part] if xml else _IN_YAML.get(part, "")

@@ -100,7 +100,7 @@ def check_unused(context: Context) -> None:
 def check_given_names(context: Context, tree: Tree) -> None:
     """Check that names given with `name:` are unique in a tree; records and statistics use them.
 
-    BehaviorTree.CPP does not require this, so for an open tree it is only a warning.
+    BehaviorTree.CPP does not require this, so in XML and for an open tree it is only a warning.
     """
     first: dict[str, Node] = {}
     for node in tree.root.walk():
@@ -109,7 +109,7 @@ def check_given_names(context: Context, tree: Tree) -> None:
         if node.name in first:
             message = f"two nodes of {tree.name} are named {node.name!r}"
             hint = f"the first is in line {first[node.name].place.line}"
-            if tree.open:
+            if tree.open or context.in_xml(tree.place):
                 context.problems.warning("duplicate-name", node.place, message, hint)
             else:
                 context.problems.error("duplicate-name", node.place, message, hint)

@@ -183,3 +183,38 @@ def test_undeclared_nodes_and_trees_can_be_replaced_too(
     run = ["run", str(file), "--world", "none", "--substitute", str(rules)]
     assert main([*run, "--record", str(record)]) == 0, capsys.readouterr().err
     assert main(["replay", str(record), "--check"]) == 0, capsys.readouterr().err
+
+
+TWO_JOBS = """momantu_bt: 1
+world: four_rooms
+include: [bring_object.yaml]
+main: TwoJobs
+trees:
+  TwoJobs:
+    - BringObject:
+        object: {category: can, diameter: 70 mm, height: 130 mm}
+        from: table_a
+        to: table_b
+        tag_id: 1
+        tag_edge: 150 mm
+    - BringObject:
+        {object: {category: can}, from: table_b, to: table_a, tag_id: 2, tag_edge: 15 cm}
+"""
+
+
+def test_bring_object_is_a_subtree_of_another_tree(tmp_path: Path, capsys: Out) -> None:
+    folder = Path(__file__).resolve().parents[3] / "trees"
+    text = (folder / "bring_object.yaml").read_text(encoding="utf-8")
+    (tmp_path / "bring_object.yaml").write_text(text, encoding="utf-8")
+    file, rules = tmp_path / "two.yaml", tmp_path / "rules.yaml"
+    file.write_text(TWO_JOBS, encoding="utf-8")
+    assert main(["check", str(file)]) == 0
+    wanted = ["Fold", "Take", "Put"]
+    lines = "".join(f"  - {{node: {name}, status: SUCCESS, delay: 1 s}}\n" for name in wanted)
+    rules.write_text(f"momantu_bt: 1\nsubstitute:\n{lines}", encoding="utf-8")
+    capsys.readouterr()
+    assert main(["run", str(file), "--world", "none", "--substitute", str(rules)]) == 0
+    assert capsys.readouterr().out.count("Put at $to") == 4  # it starts and ends, in both jobs
+    file.write_text(TWO_JOBS.replace("from: table_b", "from: tabel_b"), encoding="utf-8")
+    assert main(["check", str(file)]) == 2
+    assert "two.yaml:14" in capsys.readouterr().err

@@ -155,7 +155,7 @@ def test_given_names_may_stand_twice_where_the_dialect_allows_it(check: Check) -
     assert shown(found) == [("duplicate-name", "warning", 3)]
     model = '<SubTree ID="Main"/>'
     found = check(files(USE_OTHER + sub + twice, "<AlwaysSuccess/>", model=model))
-    assert shown(found) == [("duplicate-name", "error", 3)]
+    assert shown(found) == [("duplicate-name", "warning", 3)]
 
 
 def test_an_enum_of_a_program_is_told_by_its_name(check: Check) -> None:

@@ -130,9 +130,7 @@ class KeyReads:
             message = f"nothing writes {shown} before it is read here"
             hint = valid_names(name, sorted(before.keys or {}), "keys that have a value here")
             hint = _enum_hint(name) or hint
-            self.context.tell_elsewhere("read-before-write", place, message, hint)
-            return
-        self.context.problems.error("read-before-write", place, message, hint)
+        self.context.tell_elsewhere("read-before-write", place, message, hint)
 
     def of_call(self, call: Call, inside: TreeKeys, before: Known) -> None:
         """Check the keys that a tree needs, and the attributes that it never mentions."""

@@ -22,6 +22,7 @@ from momantu_bt.tree.catalogue import (
     is_ours,
     of_dialect,
 )
+from momantu_bt.tree.catalogue.nodes import theirs
 from momantu_bt.tree.files.queue import Put, into_handler
 from momantu_bt.tree.files.syntax import OURS
 from momantu_bt.tree.files.xml.attributes import AttributeWriter
@@ -169,9 +170,8 @@ class NodeReader:
         identity = element.get("ID")
         if identity is not None and identity.value:
             name = identity.value.removeprefix(PREFIX)
-            if is_ours(name) and name == identity.value:
-                return self._unknown(element, f'did you mean ID="{PREFIX}{name}"?')
-            return name if is_ours(name) else identity.value
+            ours = is_ours(name) and name != identity.value
+            return name if ours else theirs(identity.value)
         message = f"<{element.name}> does not say which node it is"
         hint = f'write <{element.name} ID="name" …/>'
         self.problems.error("not-a-node", element.place, message, hint)

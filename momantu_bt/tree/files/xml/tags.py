@@ -6,6 +6,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 from momantu_bt.tree.catalogue import EXPLICIT, NODES, SUBTREE, Kind, is_ours
+from momantu_bt.tree.catalogue.nodes import said_type
 from momantu_bt.tree.files.xml.attributes import is_name
 from momantu_bt.tree.files.xml.nodes import ONCE
 from momantu_bt.tree.files.xml.ports import PREFIX
@@ -49,7 +50,9 @@ class Tags:
         if node.type == SUBTREE:
             return SUBTREE, None
         tag = self.usual(node) if node.tag is None else node.tag
-        name = PREFIX + node.type if is_ours(node.type) else node.type
+        name = PREFIX + node.type if is_ours(node.type) else said_type(node.type)
+        if name != node.type and not is_ours(node.type):
+            tag = tag or self._kind(node)
         return (tag, name) if tag else (name, None)
 
     def _kind(self, node: Node) -> str:

@@ -96,7 +96,8 @@ class TreesReader:
                 tree.doc = each.value
             elif each.name != "ID":
                 tree.attributes[each.said] = each.value
-                near = None if each.space else nearest(each.name, ["ID", DESCRIPTION])
+                slip = not each.space and each.name != DESCRIPTION
+                near = nearest(each.name, ["ID", DESCRIPTION]) if slip else None
                 if near is not None:
                     with self.problems.keeping():
                         report_unknown_attribute(
