@@ -218,3 +218,17 @@ def test_bring_object_is_a_subtree_of_another_tree(tmp_path: Path, capsys: Out) 
     file.write_text(TWO_JOBS.replace("from: table_b", "from: tabel_b"), encoding="utf-8")
     assert main(["check", str(file)]) == 2
     assert "two.yaml:14" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("text", "right"), [("1.500", True), ("01", True), ("fast", False)])
+def test_a_text_given_to_a_tree_is_checked_where_a_number_is_read(
+    check, text: str, right: bool
+) -> None:
+    inside = '<RateController hz="{speed}"><AlwaysSuccess/></RateController>'
+    found = check(
+        '<root BTCPP_format="4" main_tree_to_execute="Main">\n'
+        f'<BehaviorTree ID="Main"><SubTree ID="Part" speed="{text}"/></BehaviorTree>\n'
+        f'<BehaviorTree ID="Part">{inside}</BehaviorTree></root>'
+    )
+    assert graver(found) == [] if right else found[0].code == "wrong-value"
+    assert right or (found[0].place.line, "at 'hz'" in found[0].message) == (2, True)

@@ -19,7 +19,7 @@ from momantu_bt.tree.check.nodes import autoremaps
 from momantu_bt.tree.check.signatures import Context, Signature
 from momantu_bt.tree.model import BROKEN, Literal, Node, PortValue, Reference, Scope, Template, Tree
 from momantu_bt.values.convert import convert
-from momantu_bt.values.kinds import ScriptText, ValueType
+from momantu_bt.values.kinds import Number, ScriptText, ValueType, kind_of, without_none
 from momantu_bt.values.types import label
 from momantu_bt.values.words import ConversionError
 
@@ -241,6 +241,8 @@ class KeyReads:
                     ),
                 )
             )
+        if self._takes_number(value, before, port):
+            demands.add(("text", Port(port.name, "in", port.type, "", unit=port.unit)))
         if node.type == SUBTREE:
             demands |= self.demands.get((node.target or "", name), set())
             if isinstance(value, Literal):
@@ -254,18 +256,40 @@ class KeyReads:
                 demands = {demand for demand in demands if demand[0] == "names"}
             for literal in key.literals:
                 self._check_demands(literal, key.place, demands)
-        elif demands and value.key in self.tree.ports and not root:
+        elif root or not demands:
+            return
+        elif value.key in self.tree.ports or self._is_open(value, before):
             self.demands.setdefault((self.tree.name, value.key), set()).update(demands)
+
+    def _is_open(self, value: Reference, before: Known) -> bool:
+        """Whether a key comes from whoever runs this tree, which declares no type for it."""
+        return self.tree.open and value.key not in self.tree.ports and not before.get(value.key)
+
+    def _takes_number(self, value: PortValue, before: Known, port: Port) -> bool:
+        """Whether a number is read here from a key that may hold a text from outside."""
+        kinds = without_none(kind_of(port.type))
+        numbers = all(isinstance(kind, Number) for kind in kinds)
+        return numbers and isinstance(value, Reference) and self._is_open(value, before)
 
     def _check_demands(self, value: Literal, place: Place, demands: set[Demand]) -> None:
         items = value.value if isinstance(value.value, list) else [value.value]
-        for _, what in sorted(demands, key=repr):
+        for kind, what in sorted(demands, key=repr):
             for item in items:
-                if isinstance(what, Port):
+                if isinstance(what, Port) and kind == "text":
+                    self._check_text(item, place, what)
+                elif isinstance(what, Port):
                     self._check_number(item, place, what)
                 elif isinstance(item, str):
                     where = within(place, item, self.context.document.source)
                     check_name(self.context, item, where if item != value.value else place, what)
+
+    def _check_text(self, value: object, place: Place, port: Port) -> None:
+        """Check a text that a port for numbers reads inside an open tree, such as `1.500`."""
+        try:
+            convert(value if isinstance(value, str) else 0, port)
+        except ConversionError as error:
+            message = f"the tree reads it as a number, at {port.name!r}: {error}"
+            self.context.problems.error("wrong-value", place, message)
 
     def _check_number(self, value: object, place: Place, port: Port) -> None:
         """Check a quantity or a number; other values are checked by their type."""
