@@ -6,6 +6,7 @@ Quaternions are unit quaternions `(w, x, y, z)` of right-handed rotations. Array
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -183,6 +184,9 @@ class Transform:
         return hash((self.position.tobytes(), self.quaternion.tobytes()))
 
 
+_POSE_TEXT = "a pose: numbers x;y;yaw in m and rad, or x;y;z;qx;qy;qz;qw"
+
+
 @dataclass(frozen=True, slots=True)
 class Pose2D:
     """A pose on the floor: x, y in metres and yaw in rad, in a frame that the user states."""
@@ -192,6 +196,31 @@ class Pose2D:
     yaw: float = field(
         default=0.0, metadata={"unit": "rad", "least": -2 * math.pi, "most": 2 * math.pi}
     )
+
+    @classmethod
+    def from_text(cls, text: str) -> Pose2D:
+        """A pose of the map, from numbers with `;` between them.
+
+        `x;y`, `x;y;yaw`, `x;y;z;qx;qy;qz;qw`, or Nav2's `stamp;map;x;y;z;qx;qy;qz;qw`; m and rad.
+
+        Raises:
+            ValueError: the text is none of these; the message says what is wrong.
+        """
+        words = [word.strip() for word in text.split(";")]
+        if len(words) == 9:
+            if words[1] not in ("", "map"):
+                raise ValueError(f"{text!r} is in the frame {words[1]!r}; expected map")
+            del words[:2]
+        try:
+            numbers = [float(word) for word in words]
+        except ValueError:
+            raise ValueError(f"{text!r} is not {_POSE_TEXT}") from None
+        if len(numbers) not in (2, 3, 7) or not all(map(math.isfinite, numbers)):
+            raise ValueError(f"{text!r} is not {_POSE_TEXT}")
+        if len(numbers) < 7:
+            return cls(*numbers)
+        x, y, z, qx, qy, qz, qw = numbers
+        return cls.from_transform(Transform((x, y, z), (qw, qx, qy, qz)))
 
     def transform(self, z: float = 0.0) -> Transform:
         """The pose as a rigid transform, at height z, m."""
@@ -223,6 +252,35 @@ class Pose2D:
     def distance_to(self, other: Pose2D) -> float:
         """Distance between the two positions, m."""
         return math.hypot(self.x - other.x, self.y - other.y)
+
+
+Path: TypeAlias = tuple[Pose2D, ...]
+"""Poses of the map, one after the other; x points along the path, at the end to the goal's side."""
+
+
+def path_lengths(path: Sequence[Pose2D]) -> list[float]:
+    """The length of a path from its start to each of its poses, m."""
+    lengths = [0.0] if path else []
+    for before, after in itertools.pairwise(path):
+        lengths.append(lengths[-1] + before.distance_to(after))
+    return lengths
+
+
+def nearest_index(
+    path: Sequence[Pose2D], pose: Pose2D, first: int = 0, within: float = math.inf
+) -> int:
+    """The index of the pose of a path that is nearest to `pose`; the path is not empty.
+
+    It is searched from `first` on, as far as `within` m along the path.
+    """
+    best, way = first, 0.0
+    for index in range(first + 1, len(path)):
+        way += path[index - 1].distance_to(path[index])
+        if way > within:
+            break
+        if path[index].distance_to(pose) < path[best].distance_to(pose):
+            best = index
+    return best
 
 
 @dataclass(frozen=True, slots=True)

@@ -208,6 +208,39 @@ class SupportPlane:
     obstacles: tuple[tuple[float, float, float, float], ...] = ()
 
 
+@dataclass(frozen=True, slots=True)
+class TrackingFeedback:
+    """How the base follows a path, as Nav2's message has it; poses are in the map.
+
+    position_tracking_error: m, positive to the left of the path. heading_tracking_error: rad,
+    positive when the base is turned to the right of the path. distance_to_goal: m, straight.
+    speed: m/s. remaining_path_length: m.
+    """
+
+    position_tracking_error: float = field(metadata={"unit": "m"})
+    heading_tracking_error: float = field(metadata={"unit": "rad"})
+    current_path_index: int
+    robot_pose: Pose2D
+    distance_to_goal: float = field(metadata={"unit": "m"})
+    speed: float = field(metadata={"unit": "m/s"})
+    remaining_path_length: float = field(metadata={"unit": "m"})
+
+
+@dataclass(frozen=True, slots=True)
+class WaypointStatus:
+    """What became of one goal of a list, as Nav2's message has it.
+
+    waypoint_status: 0 pending, 1 completed, 2 skipped, 3 failed. waypoint_pose: a pose of the map,
+    or a place's name.
+    """
+
+    waypoint_status: int
+    waypoint_index: int
+    waypoint_pose: Pose2D | str
+    error_code: int = 0
+    error_msg: str = ""
+
+
 VALUE_TYPES: dict[str, type] = {
     "any": object,
     "text": str,
@@ -219,6 +252,8 @@ VALUE_TYPES: dict[str, type] = {
     "object_class": ObjectClass,
     "detected_object": DetectedObject,
     "plane": SupportPlane,
+    "tracking_feedback": TrackingFeedback,
+    "waypoint_status": WaypointStatus,
 }
 """Names that tree files use for the types of inputs and outputs; `list of X` is a tuple of X.
 

@@ -42,9 +42,10 @@ class _Missing:
 MISSING: Any = _Missing()
 """The default of an input that a tree must give."""
 
-NAMES = ("place", "surface", "named_pose", "category")
+NAMES = ("place", "surface", "named_pose", "category", "goal")
 """What a text input may name, so that the checker knows the valid values.
 
+`goal` is a place, or a pose of the map written as text; see `Pose2D.from_text`.
 It may also be an entry point group, such as `momantu_bt.detectors`; the input then names a plug-in
 of that group.
 """
@@ -111,6 +112,7 @@ class Port:
 
     least, most: bounds of a number, in the port's unit. endless: -1 is valid too and means
     "without end". frame: "map" for a pose that must lie on the site's map, or None.
+    may_be_empty, ignored: see `In`.
     """
 
     name: str
@@ -125,6 +127,8 @@ class Port:
     most: float | None = None
     endless: bool = False
     frame: str | None = None
+    may_be_empty: bool = False
+    ignored: bool = False
 
     @property
     def bounded(self) -> bool:
@@ -165,7 +169,11 @@ class _PortDescriptor:
         least: float | None = None,
         most: float | None = None,
         frame: str | None = None,
+        may_be_empty: bool = False,
+        ignored: bool = False,
     ) -> None:
+        if may_be_empty and default is MISSING:
+            raise TypeError("may_be_empty=True needs a default, for a key without a value")
         if names is not None and names not in NAMES and "." not in names:
             valid = f"{', '.join(NAMES)}, or the name of an entry point group"
             raise TypeError(f"names={names!r}; valid: {valid}")
@@ -173,6 +181,7 @@ class _PortDescriptor:
             raise TypeError(f"least={least:g} is more than most={most:g}")
         self.default, self.doc, self.unit, self.live = default, doc, unit, live
         self.names, self.least, self.most, self.frame = names, least, most, frame
+        self.may_be_empty, self.ignored = may_be_empty, ignored
         self.name = ""
 
     def __set_name__(self, owner: type, name: str) -> None:
@@ -221,20 +230,36 @@ def In(
     least: float | None = None,
     most: float | None = None,
     frame: str | None = None,
+    may_be_empty: bool = False,
+    ignored: bool = False,
 ) -> Any:
     """Declare an input. Without a default it is required. live: read again on each tick.
 
     unit: SI unit that numbers in trees are converted to. names: see `NAMES`.
     least, most: bounds of a number, in `unit`; the checker rejects a tree that exceeds them.
     frame: "map" for a pose2d in the map; the checker rejects one outside the map.
+    may_be_empty: the key that the tree gives may have no value yet; the input then is its default.
+    ignored: the skill does not read it; trees made for other systems may give it.
     """
     return _InDescriptor(
-        default, doc=doc, unit=unit, live=live, names=names, least=least, most=most, frame=frame
+        default,
+        doc=doc,
+        unit=unit,
+        live=live,
+        names=names,
+        least=least,
+        most=most,
+        frame=frame,
+        may_be_empty=may_be_empty,
+        ignored=ignored,
     )
 
 
 def Out(*, doc: str, unit: str | None = None, live: bool = False) -> Any:
-    """Declare an output. It is written on SUCCESS, or with `live` on each assignment."""
+    """Declare an output. It is written on SUCCESS, or with `live` on each assignment.
+
+    With `live`, what the skill has assigned is written also when it fails.
+    """
     return _OutDescriptor(doc=doc, unit=unit, live=live)
 
 
@@ -395,6 +420,8 @@ def _declared_ports(cls: type) -> dict[str, Port]:
             value.least,
             value.most,
             frame=value.frame,
+            may_be_empty=value.may_be_empty,
+            ignored=value.ignored,
         )
         if isinstance(port.default, int | float) and not port.allows(port.default):
             raise TypeError(f"port {cls.__name__}.{name}: the default is not {port.bounds}")

@@ -23,6 +23,7 @@ from momantu_bt.skill import Clock, Host, Skill
 T = TypeVar("T")
 
 PERSON, POSITION, SPEED = "a person", "odometry's position", "odometry's speed"
+POSE, TURNING, TRANSFORM = "the robot's pose", "odometry's speed and turn", "a transform"
 """Names of questions. Published values use their blackboard keys, which have no spaces."""
 
 

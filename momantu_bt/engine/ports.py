@@ -129,10 +129,26 @@ def inputs_of(ports: Mapping[str, Port], values: Mapping[str, PortValue], board:
         if port.direction != "in":
             continue
         if name in values:
-            readers[name] = reader(port, values[name], board)
+            given = reader(port, values[name], board)
+            readers[name] = _perhaps(given, port) if port.may_be_empty else given
         elif port.default is not MISSING:
             readers[name] = _default_reader(port)
     return Inputs(readers)
+
+
+def _perhaps(given: Reader, port: Port) -> Reader:
+    """A reader of an input whose key may have no value: the input then is the port's default."""
+    default = _default_reader(port)
+
+    def read() -> Any:
+        try:
+            return given()
+        except Failure as failure:
+            if failure.value.code == INPUT_MISSING:
+                return default()
+            raise
+
+    return read
 
 
 def _default_reader(port: Port) -> Reader:

@@ -18,7 +18,8 @@ class SkillLeaf(TreeNode):
     """RUNNING at each `yield`, SUCCESS when `run` returns, FAILURE when it raises.
 
     Inputs are read at the start (live ones on each tick); outputs are written on SUCCESS (live ones
-    when assigned). A halt closes the generator and stops the actuators that the skill owns.
+    when assigned, also before a FAILURE). A halt closes the generator and stops the actuators that
+    the skill owns.
     slow_steps: ticks in which the skill took longer than SLOW_STEP of wall time outside `compute`.
     slowest: the longest of them, s.
     """
@@ -75,6 +76,7 @@ class SkillLeaf(TreeNode):
         if status is SUCCESS:
             self._write(session, list(self.outputs))
             return SUCCESS
+        self._write(session, self._live_out)
         failure = session.failure or FailureValue(FAILED, "failed without a reason")
         self.fail_with(self.own(failure))
         return FAILURE

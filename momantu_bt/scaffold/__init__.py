@@ -42,7 +42,7 @@ _HERE = Path(__file__).parent
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 """A key that TOML takes without quotes."""
 _HUMP = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
-"""Where a word begins inside a name such as `FollowPath`."""
+"""Where a word begins inside a name such as `DockRobot`."""
 
 
 class CannotCreate(MomantuError):
@@ -149,7 +149,7 @@ def _words(name: str, what: str = "skill") -> dict[str, str]:
 
 
 def module_name(name: str) -> str:
-    """The name of a Python module for a plug-in of any name: `follow_path` for `FollowPath`."""
+    """The name of a Python module for a plug-in of any name: `dock_robot` for `DockRobot`."""
     plain = unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode()
     snake = re.sub(r"\W+", "_", _HUMP.sub("_", plain)).lower()
     if not snake.strip("_") or snake[0].isdigit():
@@ -158,7 +158,7 @@ def module_name(name: str) -> str:
 
 
 def class_name(name: str) -> str:
-    """The name of a skill's class: `TurnRound` for `turn_round`, `FollowPath` for itself."""
+    """The name of a skill's class: `TurnRound` for `turn_round`, `DockRobot` for itself."""
     title = name
     if not (name.isidentifier() and name[0].isupper()):
         title = "".join(part.capitalize() for part in module_name(name).split("_"))

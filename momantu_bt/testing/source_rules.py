@@ -127,5 +127,5 @@ def _unused(skill: type[Skill]) -> Iterator[Problem]:
     for port in skill.ports.values():
         if port.direction == "out" and port.name not in given:
             yield Problem("output-never-given", f"no line gives the output {port.name!r}")
-        elif port.direction == "in" and port.name not in read:
+        elif port.direction == "in" and not port.ignored and port.name not in read:
             yield Problem("input-never-read", f"no line reads the input {port.name!r}")

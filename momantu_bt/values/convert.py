@@ -226,6 +226,8 @@ def _to_array(value: Any) -> Any:
 def _to_dataclass(value: Any, kind: kinds.Record, unit: str | None) -> Any:
     if isinstance(value, kind.type):
         return value
+    if isinstance(value, str) and hasattr(kind.type, "from_text"):
+        return _from_text(value, kind)
     if not isinstance(value, Mapping):
         raise unfit(value, kind.type, unit)
     parts = parts_of(kind.type)
@@ -252,6 +254,14 @@ def _port_of(part: kinds.Part) -> Port:
     return Port(
         part.name, "in", part.kind.type, "", unit=part.unit, least=part.least, most=part.most
     )
+
+
+def _from_text(value: str, kind: kinds.Record) -> Any:
+    """Convert a text as the dataclass itself reads it, such as `Pose2D.from_text`."""
+    try:
+        return kind.type.from_text(value)
+    except ValueError as error:
+        raise ConversionError(str(error)) from None
 
 
 def _refuse_unknown_fields(

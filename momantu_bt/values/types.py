@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from functools import reduce
+from operator import or_
+
 from momantu_bt.messages import VALUE_TYPES
 from momantu_bt.values import kinds
 from momantu_bt.values.kinds import ValueKind, ValueType, kind_of, without_none
@@ -10,7 +13,7 @@ _LIST_OF = "list of "
 
 
 def parse_type(text: str) -> ValueType:
-    """The Python type for a name in tree files, such as `text`, `pose2d` or `list of number`.
+    """The Python type for a name in tree files: `text`, `list of number`, `pose2d or text`.
 
     Raises:
         KeyError: no type has this name; its argument is the unknown part of the name.
@@ -19,9 +22,11 @@ def parse_type(text: str) -> ValueType:
     depth = 0
     while text.startswith(_LIST_OF):
         text, depth = text[len(_LIST_OF) :].strip(), depth + 1
-    if text not in VALUE_TYPES:
-        raise KeyError(text)
-    found: ValueType = VALUE_TYPES[text]
+    options = [option.strip() for option in text.split(" or ")]
+    unknown = [option for option in options if option not in VALUE_TYPES]
+    if unknown:
+        raise KeyError(unknown[0])
+    found: ValueType = reduce(or_, (VALUE_TYPES[option] for option in options))
     for _ in range(depth):
         found = tuple[found, ...]
     return found

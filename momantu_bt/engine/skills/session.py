@@ -155,6 +155,16 @@ class Session:
             if value is not MISSING:
                 values[port.name] = self._admitted(value, port)
 
+    def _keep_live_outputs(self) -> None:
+        """Keep the live outputs of a skill that fails; drop those that do not fit."""
+        values = {} if self.skill is None else self.skill.port_values
+        for port in self._live:
+            if port.name in values:
+                try:
+                    values[port.name] = self._admitted(values[port.name], port)
+                except Failure:
+                    del values[port.name]
+
     def _finish(self) -> None:
         self._generator = None
         try:
@@ -181,6 +191,7 @@ class Session:
         generator, self._generator = self._generator, None
         self._waiting = None
         self.failure = failure
+        self._keep_live_outputs()
         if generator is not None:
             try:
                 generator.close()

@@ -115,6 +115,8 @@ def _start(document: Document) -> Place:
 
 
 def _check_tree_name(context: Context, tree: Tree) -> None:
+    if context.in_xml(tree.place) or not tree.name[:1].islower():
+        return  # in XML a tree is run by <SubTree>; a name spelled like a tree means the tree
     if tree.name in context.registry.skills:
         message = f"{tree.name!r} is the name of an installed skill"
         hint = f"rename the tree, and each node that runs it; a node {tree.name} could mean both"

@@ -48,6 +48,12 @@ def check_name(context: Context, name: str, place: Place, kind: str) -> None:
     if kind == "category":
         _check_category(context, name, place)
         return
+    also = ""
+    if kind == "goal":
+        if ";" in name:
+            _check_pose_text(context, name, place)
+            return
+        kind, also = "place", "; or write a pose of the map as x;y;yaw"
     valid = context.names_of(kind)
     if valid is None or name in valid:
         return
@@ -60,7 +66,17 @@ def check_name(context: Context, name: str, place: Place, kind: str) -> None:
     where = "the robot" if kind == "named_pose" else "the world"
     message = f"{where} has no {one} {name!r}"
     code = f"unknown-{one.replace(' ', '-')}"
-    context.problems.error(code, place, message, valid_names(name, valid, several))
+    context.problems.error(code, place, message, valid_names(name, valid, several) + also)
+
+
+def _check_pose_text(context: Context, text: str, place: Place) -> None:
+    """Check a pose that is written as a text, such as `1.5;2;0`."""
+    try:
+        pose = Pose2D.from_text(text)
+    except ValueError as error:
+        context.problems.error("wrong-value", place, str(error))
+        return
+    _check_on_map(context, pose, place)
 
 
 def _check_category(context: Context, name: str, place: Place) -> None:

@@ -24,7 +24,7 @@ from momantu_bt.values.kinds import (
 
 WIDEST = 76
 """The most characters of one line of an example."""
-_NAMED = {"place": "table_a", "surface": "table_a", "named_pose": "home"}
+_NAMED = {"place": "table_a", "surface": "table_a", "named_pose": "home", "goal": "table_a"}
 _QUANTITIES = {"m": "10 cm", "rad": "30 deg", "s": "2 s"}
 
 
@@ -89,8 +89,10 @@ def _in_yaml(value: Any) -> str:
 
 
 def _value(port: Port) -> Any:
-    if port.names in _NAMED:
-        return _NAMED[port.names]
+    named = _NAMED.get(port.names or "")
+    if named is not None:
+        listed = isinstance(without_none(kind_of(port.type))[0], Items)
+        return [named] if listed else named
     match without_none(kind_of(port.type))[0]:
         case Choice(values=(first, *_)):
             return first

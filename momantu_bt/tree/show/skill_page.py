@@ -98,7 +98,7 @@ def pages(skills: Mapping[str, type[Skill]]) -> dict[str, str]:
 
 def kind(port: Port) -> str:
     """A port's type, what it names, its unit and its range, in words."""
-    words = label(port.type)
+    words = label(port.type) + (" (ignored)" if port.ignored else "")
     if port.names is not None and "." in port.names:
         words += f", a plug-in of `{port.names}`"
     elif port.names is not None:

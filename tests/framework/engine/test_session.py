@@ -353,3 +353,58 @@ def test_live_outputs_that_fit_are_given_as_the_port_takes_them():
     assert result.status == "SUCCESS"
     assert result.outputs == {"place": 3.0}
     assert type(result.outputs["place"]) is float
+
+
+class Reports(Skill):
+    """Report a number, then fail."""
+
+    path: str = In("none", may_be_empty=True, doc="a key that may have no value")
+    number: int = Out(doc="a code", live=True)
+    late: int = Out(doc="written on SUCCESS only")
+
+    failures = {"BROKEN": "it breaks"}
+    said = ""
+
+    def run(self, robot) -> Run:
+        Reports.said = self.path
+        self.number = 205
+        self.late = 1
+        raise Failure("BROKEN", "it broke")
+        yield ""
+
+
+class Reads(Skill):
+    """Remember what is read."""
+
+    number: int = In(doc="a code")
+    late: int = In(0, may_be_empty=True, doc="it may be missing")
+    seen = ()
+
+    def run(self, robot) -> Run:
+        Reads.seen = (self.number, self.late)
+        return
+        yield ""
+
+
+def test_a_failing_skill_writes_its_live_outputs_alone(run_yaml) -> None:
+    report = run_yaml(
+        """
+trees:
+  Main:
+    fallback:
+      - reports: {path: $later, number: $code, late: $late}
+      - reads: {number: $code, late: $late}
+      - set: {key: later, value: x}
+values: {code: 0}
+""",
+        Reports,
+        Reads,
+    )
+    assert report.status == "SUCCESS", report.failure
+    assert Reads.seen == (205, 0)
+    assert Reports.said == "none"  # nothing has written $later yet
+
+
+def test_an_input_that_may_be_empty_needs_a_default() -> None:
+    with pytest.raises(TypeError, match="needs a default"):
+        In(may_be_empty=True, doc="x")

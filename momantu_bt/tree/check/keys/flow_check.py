@@ -84,7 +84,8 @@ class _KeyCheck:
         if self.tree.name == self.context.document.main:
             seen = seen | self.reads.seen_on_root
         for written in self.reads.written:
-            if written.key not in seen and not mine.goes_out(written.key):
+            unread = written.key not in seen and not written.live
+            if unread and not mine.goes_out(written.key):
                 wire = self.context.wire(written.key, written.place)
                 message = f"nothing reads {wire}, which {written.said} writes"
                 self.context.problems.warning("unread-output", written.place, message)
@@ -255,7 +256,7 @@ class _KeyCheck:
             place = node.port_places.get(name, node.place)
             self.reads.given.add(value.key)
             if not on_root and port.direction == "out":
-                self.reads.written.append(Written(value.key, place, signature.said))
+                self.reads.written.append(Written(value.key, place, signature.said, port.live))
             given = node.ports.get(copies.get(name, ""))
             type_ = literal_type(given) if isinstance(given, Literal) else port.type
             choices = () if signature.spec is None else _choices(node, name, signature.spec)

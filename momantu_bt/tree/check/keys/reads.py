@@ -31,11 +31,15 @@ Demand: TypeAlias = tuple[str, str | Port]
 
 @dataclass(frozen=True, slots=True)
 class Written:
-    """A key that a node writes or watches. said: the node, in the file's words."""
+    """A key that a node writes or watches. said: the node, in the file's words.
+
+    live: it is written while the node runs, also for observers outside the tree.
+    """
 
     key: str
     place: Place
     said: str
+    live: bool = False
 
 
 @dataclass(slots=True)
@@ -66,6 +70,7 @@ class KeyReads:
         """Check all inputs of a node. Those that may be empty count as read and need no value."""
         lenient = signature.spec.may_be_empty if signature.spec is not None else ()
         self.seen.update(name for name in lenient if name not in node.ports)
+        lenient += tuple(p.name for p in signature.ports.values() if p.may_be_empty)
         if node.type == SUBTREE:
             self.given.update(r.key for value in node.ports.values() for r in references(value))
         for name, value in node.ports.items():

@@ -10,6 +10,7 @@ import numpy as np
 from momantu_bt.failure import Failure
 from momantu_bt.geometry import Pose2D
 from momantu_skills.navigation.drive.vehicle import Vehicle
+from momantu_skills.navigation.map.fields import Field
 from momantu_skills.navigation.plan.goals import Stand
 from momantu_skills.navigation.plan.planner import UNREACHED, Plan, plan
 
@@ -82,8 +83,10 @@ def first_choice(vehicle: Vehicle, stands: list[Stand], side: int) -> Stand | No
     return free[side % len(free)] if free else None
 
 
-def choose(vehicle: Vehicle, stands: list[Stand], side: int) -> Route:
+def choose(vehicle: Vehicle, stands: list[Stand], side: int, start: Pose2D | None = None) -> Route:
     """Return a route to the `side`-th best stand that is free and can be reached.
+
+    start: where the route begins (map); by default where the base is.
 
     Raises:
         Failure: GOAL_BLOCKED, PATH_BLOCKED or NO_PATH.
@@ -98,29 +101,29 @@ def choose(vehicle: Vehicle, stands: list[Stand], side: int) -> Route:
         )
     turn = side % len(free)
     for stand in (free[turn:] + free[:turn])[:TRIED]:
-        route = route_to(vehicle, stand.pose)
+        route = route_to(vehicle, stand.pose, start)
         if route is not None:
             return route
-    raise no_way(vehicle, free[turn].pose)
+    raise no_way(vehicle, free[turn].pose, start)
 
 
-def route_to(vehicle: Vehicle, stand: Pose2D) -> Route | None:
+def route_to(vehicle: Vehicle, stand: Pose2D, start: Pose2D | None = None) -> Route | None:
     """Return the cheapest path to a stand through a lead-in on its axis; None if there is none."""
     for distance in LEAD_IN:
         lead_in = stand @ Pose2D(-distance, 0.0, 0.0)
         wanted = vehicle.config.margin if distance else -math.inf
         if vehicle.room(lead_in, whole=False) < wanted:
             continue
-        found = _planned(vehicle, lead_in)
+        found = planned(vehicle, lead_in, start)
         if found is not None:
             return Route(stand, lead_in, found)
     return None
 
 
-def no_way(vehicle: Vehicle, stand: Pose2D) -> Failure:
+def no_way(vehicle: Vehicle, stand: Pose2D, start: Pose2D | None = None) -> Failure:
     """Return PATH_BLOCKED if the map without sensed obstacles has a path, else NO_PATH."""
-    pose = vehicle.pose()
-    known = _planned(vehicle, stand, known=True)
+    pose = start or vehicle.pose()
+    known = planned(vehicle, stand, start, known=True)
     where = f"({stand.x:.2f}, {stand.y:.2f})"
     data = {"from": [pose.x, pose.y], "to": [stand.x, stand.y], "radius": planning_radius(vehicle)}
     if known is not None:
@@ -128,9 +131,23 @@ def no_way(vehicle: Vehicle, stand: Pose2D) -> Failure:
     return Failure("NO_PATH", f"the map has no way wide enough to {where}", **data)
 
 
-def _planned(vehicle: Vehicle, goal: Pose2D, *, known: bool = False) -> Plan | None:
-    """Plan the cheapest path from the base's position; see `planner.plan`."""
+def planned(
+    vehicle: Vehicle,
+    goal: Pose2D,
+    start: Pose2D | None = None,
+    *,
+    known: bool = False,
+    weight: Field | None = None,
+) -> Plan | None:
+    """Plan the cheapest path from `start`, by default the base's position; see `planner.plan`."""
     config, radius = vehicle.config, planning_radius(vehicle)
     return plan(
-        vehicle.costmap, vehicle.pose(), goal, radius, config.comfort, config.planner, known=known
+        vehicle.costmap,
+        start or vehicle.pose(),
+        goal,
+        radius,
+        config.comfort,
+        config.planner,
+        known=known,
+        weight=weight,
     )

@@ -15,7 +15,6 @@ from momantu_bt.service import Localization, PlanningScene
 from momantu_bt.skill import Run, Skill
 from momantu_skills.navigation.config import NavigationConfig
 from momantu_skills.navigation.control.footprint import discs, half_width
-from momantu_skills.navigation.map.maps import read_grid
 from momantu_skills.navigation.map.sensing import Rays, obstacles_and_floor
 from momantu_skills.perception.camera.aiming import aim
 
@@ -55,14 +54,18 @@ class Vehicle:
         scene: PlanningScene,
         config: NavigationConfig,
         top: float = 0.0,
+        *,
+        shared: costmap.Costmap | None = None,
+        gazes: bool = True,
     ) -> None:
-        """top: height of the surface that the base drives up to, m; the arm may reach over it."""
-        site, description = skill.site, robot.description
-        if site.map_file is None:
-            raise ValueError(f"site {site.name!r} has no map_file to drive in")
-        overhang = None if site.overhang_file is None else read_grid(site.overhang_file)
+        """Start with an empty costmap, or with one that other vehicles see and clear too.
+
+        top: height of the surface that the base drives up to, m; the arm may reach over it.
+        gazes: turn a head to the floor ahead while driving; the skill must use CAMERA_CARRIER.
+        """
+        description = robot.description
         self.config, self.limits = config, description.base
-        self.costmap = costmap.Costmap(read_grid(site.map_file), overhang, config)
+        self.costmap = costmap.of_site(skill.site, config) if shared is None else shared
         self.localization = localization
         self._skill, self._robot, self._scene = skill, robot, scene
         self._frames, self._clock = skill.frames, skill.clock
@@ -76,9 +79,8 @@ class Vehicle:
         self._base_from_laser: Transform | None = None
         self._sees = any(isinstance(s, CameraSensor) for s in description.sensors.values())
         resolved = description.resolve_use(CAMERA_CARRIER) if self._sees else None
-        self._head = None if description.eye_in_hand else resolved
+        self._head = None if description.eye_in_hand or not gazes else resolved
         self._gaze = self._gaze_goal()
-        self._looked: Pose2D | None = None
         self._hits = np.zeros((0, 2))
         self.blocked_for = 0.0
         self.blocked_total = 0.0
@@ -135,10 +137,11 @@ class Vehicle:
     def _look_due(self, pose: Pose2D) -> bool:
         if not self._sees:
             return False
-        if self._looked is None:
+        looked = self.costmap.looked
+        if looked is None:
             return True
-        turned = abs((self._looked.inverse() @ pose).yaw)
-        way = self._looked.distance_to(pose) / self.config.depth_every
+        turned = abs((looked.inverse() @ pose).yaw)
+        way = looked.distance_to(pose) / self.config.depth_every
         return way + turned / TURN_BETWEEN_LOOKS > 1.0
 
     def _see_depth(self, pose: Pose2D) -> None:
@@ -148,7 +151,7 @@ class Vehicle:
             image, self._frames, self._robot.description, state, self._scene, self.config
         )
         self.costmap.see_depth(_moved(pose, obstacles), _moved(pose, floor))
-        self._looked = pose
+        self.costmap.looked = pose
 
     def _gaze_goal(self) -> JointPositions | None:
         """Return where a head looks while driving; None for a camera on the arm or a fixed one."""

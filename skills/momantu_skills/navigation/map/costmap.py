@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from momantu_bt.formats.maps import FREE, OCCUPIED
 from momantu_bt.geometry import Array, Pose2D
+from momantu_bt.world import Site
 from momantu_skills.navigation.config import NavigationConfig
 from momantu_skills.navigation.map.fields import Field, clearance, sample
-from momantu_skills.navigation.map.maps import GridMap
+from momantu_skills.navigation.map.maps import GridMap, read_grid
 from momantu_skills.navigation.map.sensing import Rays
 
 FAR = 1.0
@@ -30,7 +31,8 @@ class Costmap:
     """Layers over the map's grid: map, overhang, laser, depth. All coordinates are in the map.
 
     field: (rows, columns) distance to the nearest blocked cell, at most `FAR`, m. frame: (x, y,
-    resolution) of the grid, as the compiled kernels take it.
+    resolution) of the grid, as the compiled kernels take it. looked: where the base stood at the
+    newest depth picture; None before the first.
     """
 
     def __init__(self, grid: GridMap, overhang: GridMap | None, config: NavigationConfig) -> None:
@@ -44,6 +46,22 @@ class Costmap:
         self._depth = np.zeros(grid.cells.shape, dtype=np.uint8)
         self.known_field = np.minimum(clearance(self.known, grid.resolution), np.float32(FAR))
         self.field = self.known_field.copy()
+        self.looked: Pose2D | None = None
+
+    def clear(self, where: NDArray[np.bool_] | None = None) -> None:
+        """Clear what was seen, everywhere or in the cells `where` (rows, columns); look again."""
+        cells = np.ones(self.known.shape, dtype=np.bool_) if where is None else where
+        self._laser[cells] = 0
+        self._depth[cells] = 0
+        self.looked = None
+        self.refresh()
+
+    def square(self, x: float, y: float, edge: float) -> NDArray[np.bool_]:
+        """The cells (rows, columns) in a square around a point of the map; edge: m."""
+        rows, columns = np.indices(self.known.shape)
+        off_x = self.frame[0] + (columns + 0.5) * self.frame[2] - x
+        off_y = self.frame[1] + (rows + 0.5) * self.frame[2] - y
+        return np.asarray((np.abs(off_x) <= edge / 2) & (np.abs(off_y) <= edge / 2))
 
     def clear_ahead(self, map_from_base: Pose2D) -> None:
         """Clear what was seen ahead of the base, which can be seen again; keep what lies behind."""
@@ -109,6 +127,14 @@ class Costmap:
         field = self.known_field if known else self.field
         x, y, yaw = float(pose.x), float(pose.y), float(pose.yaw)
         return float(room(field, self.frame, discs, x, y, yaw))
+
+
+def of_site(site: Site, config: NavigationConfig) -> Costmap:
+    """The costmap of a site, before anything was seen; ValueError if the site has no map."""
+    if site.map_file is None:
+        raise ValueError(f"site {site.name!r} has no map_file to drive in")
+    overhang = None if site.overhang_file is None else read_grid(site.overhang_file)
+    return Costmap(read_grid(site.map_file), overhang, config)
 
 
 def _square(row: int, column: int, reach: int, rows: int, columns: int) -> tuple[slice, slice]:

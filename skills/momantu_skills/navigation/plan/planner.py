@@ -47,13 +47,17 @@ def plan(
     costs: PlannerConfig,
     *,
     known: bool = False,
+    weight: Field | None = None,
 ) -> Plan | None:
     """The cheapest path for a disc of `radius` m, or None if there is none.
 
     known: use the map's layers only, to distinguish a blocked path from one that never existed.
+    weight: (rows, columns) factors on the cost of each metre, at least 1.
     """
     field = costmap.known_field if known else costmap.field
     slowness = _slowness(field, radius, comfort, costs)
+    if weight is not None:
+        slowness *= weight
     row, column = costmap.grid.index(goal.x, goal.y)
     start_row, start_column = costmap.grid.index(start.x, start.y)
     if not (costmap.grid.contains(goal.x, goal.y) and costmap.grid.contains(start.x, start.y)):

@@ -1,0 +1,1 @@
+"""Nav2's leaves that need no more than the robot's pose: selectors, conditions, paths, goals."""
