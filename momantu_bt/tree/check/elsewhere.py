@@ -10,6 +10,7 @@ from momantu_bt.formats.places import Place
 from momantu_bt.formats.problems import Problem
 from momantu_bt.plugins import PluginError
 from momantu_bt.tree.catalogue import AUTOREMAP, NODES, SUBTREE
+from momantu_bt.tree.catalogue.absent import why_absent
 from momantu_bt.tree.catalogue.nodes import DOCTOR, said_type, why_broken
 from momantu_bt.tree.check.declared import tree_models_of
 from momantu_bt.tree.check.signatures import Context
@@ -121,11 +122,15 @@ def _report_unknown(context: Context, nodes: list[Node]) -> None:
         return
     message = f"no node is called {said_type(first.type)!r}"
     if context.tolerant:
-        hint = suggestion(context, first) or f"`{STUB} FILE` writes a plug-in for it"
+        hint = (
+            why_absent(first.type)
+            or suggestion(context, first)
+            or f"`{STUB} FILE` writes a plug-in for it"
+        )
         context.problems.warning("unknown-node", first.place, message + _more(nodes), hint)
         return
     for node in nodes:
-        hint = suggestion(context, node)
+        hint = why_absent(node.type) or suggestion(context, node)
         if not hint and context.in_xml(node.place):
             hint = f"`{STUB} FILE` writes a plug-in for it; --undeclared warn accepts it"
         context.problems.error(

@@ -72,6 +72,9 @@ class Context:
     def signature(self, node: Node) -> Signature | None:
         """The signature of this node; None if it is broken."""
         spec = NODES.get(node.type)
+        own = self._own(node, None if spec is None else spec.ports)
+        if own is not None:
+            return Signature(node.type, own.ports, own.first, spec=own)
         if spec is not None:
             said = node.type if self.in_xml(node.place) else spec.yaml[0]
             return Signature(said, spec.ports, spec.first, spec=spec)
@@ -90,6 +93,23 @@ class Context:
         spec = declared or used_spec(node)
         said = said_type(node.type)
         return Signature(said, spec.ports, spec.first, spec=spec, unknown=declared is None)
+
+    def _own(self, node: Node, ports: Mapping[str, Port] | None) -> NodeSpec | None:
+        """The file's own model of a node, where it means another node than what is installed.
+
+        The node then has a port of the model that the installed node of this name lacks. ports: of
+        the installed node, or None for a skill.
+        """
+        model = self.models.get(node.type)
+        if model is None:
+            return None
+        if ports is None:
+            skill = self.skill(node.type)
+            if skill is None:
+                return None
+            ports = skill.ports
+        names = {port.name for port in model.ports} & node.ports.keys()
+        return self.declared(node.type) if names - ports.keys() else None
 
     def declared(self, name: str) -> NodeSpec | None:
         """What a model of the file says of a node; None without a model."""

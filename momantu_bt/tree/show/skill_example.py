@@ -14,6 +14,7 @@ from momantu_bt.tree.model import PortValue
 from momantu_bt.values.kinds import (
     Choice,
     Enumeration,
+    Items,
     Number,
     Record,
     Text,

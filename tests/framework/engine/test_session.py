@@ -394,7 +394,7 @@ trees:
     fallback:
       - reports: {path: $later, number: $code, late: $late}
       - reads: {number: $code, late: $late}
-      - set: {key: later, value: x}
+      - set: {key: $later, value: x}
 values: {code: 0}
 """,
         Reports,
