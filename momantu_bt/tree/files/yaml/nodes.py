@@ -71,17 +71,17 @@ class NodeReader:
     def _node_key(self, raw: Entries) -> tuple[Scalar, Raw] | None:
         every = {**COMPANIONS, **NAMED}
         companions = {name for key, _ in raw.entries for name in every.get(key.text, ())}
+        known = self.reading.is_known
         own = [
             entry
             for entry in raw.entries
             if entry[0].text not in MODIFIERS
             and entry[0].text not in companions
-            and not is_kept(entry[0])
+            and (not is_kept(entry[0]) or known(entry[0].text))
         ]
         if not own:
             nodes = [e for e in raw.entries if _has_child(e[1]) and e[0].text in MODIFIERS]
             return nodes[-1] if nodes else None
-        known = self.reading.is_known
         named = [e for e in own if e[0].text in NAMED]
         if named and not any(known(key.text) for key, _ in own):
             return named[0]
