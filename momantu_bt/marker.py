@@ -16,7 +16,7 @@ import numpy as np
 from momantu_bt.frames import ODOM
 from momantu_bt.geometry import Array, Transform
 
-__all__ = ["COLORS", "Axes", "Box", "Line", "Marker", "Points", "Text"]
+__all__ = ["COLORS", "Axes", "Box", "Grid", "Line", "Marker", "Points", "Text"]
 
 Rgba: TypeAlias = tuple[float, float, float, float]
 
@@ -114,6 +114,29 @@ class Text(Marker):
     position: tuple[float, float, float]
     text: str
     height: float = field(default=0.05, kw_only=True)
+
+
+@dataclass(frozen=True, eq=False)
+class Grid(Marker):
+    """Costs on the floor of its frame: values (rows, columns) from 0, free, to 1, blocked.
+
+    origin: (x, y) of the outer corner of the first cell, m; columns go along x, rows along y.
+    cell: size of a cell, m. A view in a browser shows grids; records do not keep them.
+    """
+
+    values: Array
+    origin: tuple[float, float]
+    cell: float
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        values = np.array(self.values, dtype=np.float32)
+        if values.ndim != 2:
+            raise ValueError(
+                f"the grid of marker {self.name!r} has shape {values.shape}, expected two dimensions"
+            )
+        values.flags.writeable = False
+        object.__setattr__(self, "values", values)
 
 
 def _rows(points: Array, name: str) -> Array:

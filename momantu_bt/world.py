@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from enum import Enum
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
@@ -150,16 +151,46 @@ class View(Protocol):
         ...
 
 
+class Layer(Enum):
+    """What a marker in a view shows; a person can hide each layer."""
+
+    SCAN = "laser scan"
+    PATH = "path"
+    COSTMAP = "costmap"
+    OBJECTS = "detections"
+    MARKERS = "other markers"
+
+
 @runtime_checkable
 class MarkerView(Protocol):
-    """A view that also shows what skills draw."""
+    """A view that also shows what the robot believes, and what skills draw."""
 
-    def draw(self, name: str, marker: Marker, map_from_frame: Transform) -> None:
+    def draw(
+        self, name: str, marker: Marker, map_from_frame: Transform, layer: Layer = Layer.MARKERS
+    ) -> None:
         """Show a marker; it replaces an earlier one of that name."""
         ...
 
     def erase(self, name: str) -> None:
         """Show a marker no longer."""
+        ...
+
+
+@runtime_checkable
+class TreeView(Protocol):
+    """A view that also shows the tree, and that can stay open when the run is over."""
+
+    def tell(self, headline: str, lines: Sequence[TreeLine]) -> None:
+        """Show what runs, and the tree's lines."""
+        ...
+
+    def end(self, text: str) -> None:
+        """The run is over, as the text says; from now on a person can close the view."""
+        ...
+
+    @property
+    def dismissed(self) -> bool:
+        """Whether a person has closed the view in the browser."""
         ...
 
 

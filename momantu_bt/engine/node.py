@@ -27,7 +27,7 @@ from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue import NODES, NodeSpec
 from momantu_bt.tree.model import Node, Reference
 from momantu_bt.tree.script import ScriptError
-from momantu_bt.tree.show.printing import text
+from momantu_bt.tree.show.printing import around, plan, text
 
 
 class BuildError(MomantuError):
@@ -153,6 +153,16 @@ class TreeNode:
     def role(self) -> Role:
         """Its role in displays."""
         return Role.PLAIN
+
+    @property
+    def plan(self) -> tuple[tuple[str, bool], ...]:
+        """Its children and handlers in displays; see `printing.plan`."""
+        return plan(self.model)
+
+    @property
+    def around(self) -> str:
+        """Its words if displays show it on its child's line; see `printing.around`."""
+        return around(self.model) if self.kids else ""
 
     @property
     def answered(self) -> tuple[int, ...]:

@@ -41,6 +41,16 @@ class Substituted(TreeNode):
         return Role.ACT
 
     @property
+    def plan(self) -> tuple[tuple[str, bool], ...]:
+        """Nothing: its one child, if any, is the node that it replaces."""
+        return ()
+
+    @property
+    def around(self) -> str:
+        """Nothing: it has a line of its own, whatever it replaces."""
+        return ""
+
+    @property
     def note(self) -> str:
         """Text that says that the node is replaced."""
         plain = self.is_itself and self.result is None and not self.replaced

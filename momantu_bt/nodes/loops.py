@@ -21,6 +21,7 @@ from momantu_bt.engine.decorator import Decorator
 from momantu_bt.engine.node import Parts
 from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Status
 from momantu_bt.failure import FAILED, FailureValue
+from momantu_bt.nodes.counting import count_text, written_count
 from momantu_bt.tree import model
 from momantu_bt.tree.catalogue.flow import After, Walk, again, around, as_child, perhaps
 from momantu_bt.tree.catalogue.known import NEVER, Known, meet
@@ -105,7 +106,7 @@ class Repeat(Decorator):
     @property
     def note(self) -> str:
         """The number of the current round."""
-        return f"round {self.count + 1}"
+        return count_text("round", self.count + 1, written_count(self.model, "cycles"))
 
     def clear(self) -> None:
         """Forget the rounds."""
@@ -154,7 +155,7 @@ class RetryUntilSuccessful(Decorator):
     @property
     def note(self) -> str:
         """The number of the current try."""
-        return f"try {self.count + 1}"
+        return count_text("try", self.count + 1, written_count(self.model, "attempts"))
 
     def clear(self) -> None:
         """Forget the tries."""

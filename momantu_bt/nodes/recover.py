@@ -25,6 +25,7 @@ from momantu_bt.engine.node import Parts, TreeNode
 from momantu_bt.engine.role import Role
 from momantu_bt.engine.status import FAILURE, RUNNING, SUCCESS, Status
 from momantu_bt.failure import FailureValue
+from momantu_bt.nodes.counting import count_text, written_count
 from momantu_bt.nodes.fallbacks import RoundRobin
 from momantu_bt.tree.catalogue.codes import NO_CODES, Codes, Failing
 from momantu_bt.tree.catalogue.flow import After, Walk, again, as_child
@@ -197,7 +198,9 @@ class Recover(Catching):
     @property
     def note(self) -> str:
         """The number of the try, or how it handles the failure before the next try."""
-        return f"try {self.count + 1}" if self.handling is None else super().note
+        if self.handling is not None:
+            return super().note
+        return count_text("try", self.count + 1, written_count(self.model, "attempts"))
 
     def clear(self) -> None:
         """Forget the tries."""

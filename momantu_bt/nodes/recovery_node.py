@@ -15,6 +15,7 @@ from momantu_bt.engine.causes import with_root_cause, with_tries
 from momantu_bt.engine.node import Parts, TreeNode
 from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, SUCCESS, Status
 from momantu_bt.failure import FailureValue
+from momantu_bt.nodes.counting import count_text, written_count
 from momantu_bt.tree.catalogue.flow import After, Walk, again, as_child
 from momantu_bt.tree.catalogue.known import Known, meet
 from momantu_bt.tree.catalogue.spec import Dialect, control, input_port
@@ -69,7 +70,9 @@ class RecoveryNode(TreeNode):
     def note(self) -> str:
         """The number of the try, and the failure from which it recovers."""
         doing = f", recovering from {self.recovering.code}" if self.recovering else ""
-        return f"try {self.retries + 1}{doing}"
+        retries = written_count(self.model, "number_of_retries", default=1)
+        most = None if retries is None else retries + 1
+        return count_text("try", self.retries + 1, most) + doing
 
     def clear(self) -> None:
         """Forget the tries."""

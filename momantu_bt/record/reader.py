@@ -125,7 +125,8 @@ def _first(raw: Mapping[str, list[tuple[float, bytes]]], topic: str) -> Any:
 
 
 def _node(data: Mapping[str, Any]) -> NodeInfo:
-    return NodeInfo(**{**data, "role": Role(data["role"])})
+    plan = tuple((str(prefix), bool(is_node)) for prefix, is_node in data.get("plan", ()))
+    return NodeInfo(**{**data, "role": Role(data["role"]), "plan": plan})
 
 
 class _Ticks:

@@ -17,7 +17,8 @@ class NodeInfo:
     """One node of the tree. type: the name of the built-in, the skill or the subtree.
 
     index: its number in file order. parent: the number of its parent. label: the node in one line,
-    as in the file. role: how displays show it.
+    as in the file. role: how displays show it. plan, around: its children and handlers, and the
+    words of a decorator, as `printing.plan` and `printing.around` have them.
     """
 
     index: int
@@ -28,6 +29,8 @@ class NodeInfo:
     parent: int | None
     label: str
     role: Role = Role.PLAIN
+    plan: tuple[tuple[str, bool], ...] = ()
+    around: str = ""
 
 
 @dataclass(frozen=True, slots=True)

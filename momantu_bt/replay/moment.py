@@ -43,6 +43,16 @@ class ShownNode:
         """Its role for a reader."""
         return self.info.role
 
+    @property
+    def plan(self) -> Sequence[tuple[str, bool]]:
+        """The prefixes of its children and handlers."""
+        return self.info.plan
+
+    @property
+    def around(self) -> str:
+        """Its words if it is shown on its child's line."""
+        return self.info.around
+
 
 @dataclass(frozen=True, slots=True)
 class Moment:

@@ -68,6 +68,8 @@ def launch(prepared: Prepared, watch: Watch | None = None) -> Report:
             recorder.begin(document, executor, options.recorded(), prepared.substitution.source)
         for observer in observers:
             executor.show_to(observer)
+        if executor.services.running:
+            options.stage(f"starting the services {', '.join(executor.services.running)}")
         started = time.perf_counter() - begun
         with executor.context.watchdog:
             ending = executor.run(interrupts)
@@ -105,6 +107,7 @@ def assemble(prepared: Prepared, stack: ExitStack) -> Executor:
 
 def _assembled(prepared: Prepared, stack: ExitStack) -> tuple[Executor, Stage, Recorder | None]:
     document, options, registry = prepared.document, prepared.options, prepared.registry
+    options.stage("loading the skills")
     kinds = {name: registry.skills[name] for name in skills_in(document, prepared.substitution)}
     called = called_skills(kinds, registry)
     needed = services_of(prepared, {**called, **kinds})
@@ -174,6 +177,7 @@ def open_world(
         return None
     entry = registry.worlds[name]
     description = registry.description(options.robot or entry.default_robot)
+    options.stage(f"opening the world {name} with the robot {description.name}")
     _check_uses({**called, **kinds}, description)
     check_calls({**called, **kinds}, registry, description)
     check_sensors(needed, description)

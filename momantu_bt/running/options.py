@@ -36,7 +36,8 @@ class RunOptions:
     the limit the process ends. inf: no limit.
     record: a new folder for the run's record.
     person: answers `ask` and `confirm`; by default nobody answers.
-    remark: called with messages for a person; they never influence the run.
+    remark: called with messages for a person; they never influence the run. stage: called with
+    what is being prepared, before the first tick.
     """
 
     world: str | World | None = None
@@ -54,6 +55,7 @@ class RunOptions:
     record: Path | None = None
     person: Person = field(default_factory=Scripted)
     remark: Callable[[str], None] = field(default=lambda text: None)
+    stage: Callable[[str], None] = field(default=lambda text: None)
 
     @property
     def world_name(self) -> str | None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import sys
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
@@ -21,16 +20,15 @@ from momantu_bt.formats.files import check_writable
 from momantu_bt.lazy import lazily
 
 with lazily():
-    from rich import console
-
-    from momantu_bt.cli.run import breakpoints, live, shield
+    from momantu_bt.cli.run import breakpoints, shield
+    from momantu_bt.cli.run import screen as screens
     from momantu_bt.cli.run import report_file as reports
     from momantu_bt.cli.run import terminal as terminals
     from momantu_bt.cli.shared import given
     from momantu_bt.engine import interrupts, person
     from momantu_bt.faults import spec
     from momantu_bt.record import film
-    from momantu_bt.record.text import changes, ending
+    from momantu_bt.record.text import ending
     from momantu_bt.running import launch as launching
     from momantu_bt.running import leftovers
     from momantu_bt.running import options as run_options
@@ -39,6 +37,7 @@ with lazily():
 if TYPE_CHECKING:
     from momantu_bt.cli.run.breakpoints import Breakpoints
     from momantu_bt.cli.run.report_file import ReportFile
+    from momantu_bt.cli.run.screen import Screen
     from momantu_bt.cli.run.terminal import Terminal
     from momantu_bt.engine.executor import Executor, Observer
     from momantu_bt.record.report import Report
@@ -167,19 +166,27 @@ def _run(tree: str, options: RunOptions, shown: _Shown) -> Report:
         check_writable(shown.video, regular=True)
     file = None if shown.report is None else reports.ReportFile(shown.report)
     lost: list[str] = []
-    try:
-        with leftovers.no_sudden_exit():
-            result = launching.launch(prepared, lambda run: _watch(run, shown, stops, lost, file))
-    except BaseException:
-        if file is not None:
-            file.withdraw()
-        raise
-    with interrupts.Interrupts() as late:
-        late.patient = True  # a signal comes too late to stop anything
-        result = replace(result, lost=(*result.lost, *lost))
-        if file is not None:
-            result = file.write(result)
-        _say_end(result, options, shown)
+    with ExitStack() as stack:
+        screen = screens.open_screen(prepared, shown.terminal, shown.view_port, quiet=shown.quiet)
+        stack.callback(screen.close)
+        prepared = replace(prepared, options=replace(prepared.options, stage=screen.stage))
+        try:
+            with leftovers.no_sudden_exit():
+                result = launching.launch(
+                    prepared, lambda run: _watch(run, shown, stops, lost, file, screen)
+                )
+        except BaseException:
+            if file is not None:
+                file.withdraw()
+            raise
+        with interrupts.Interrupts() as late:
+            late.patient = True  # a signal comes too late to stop anything
+            result = replace(result, lost=(*result.lost, *lost))
+            if file is not None:
+                result = file.write(result)
+            _say_end(result, options, shown)
+        if shown.terminal is not None and result.interrupted_by is None:
+            screen.keep_view(ending.ending_text(result))
     return result
 
 
@@ -200,6 +207,7 @@ def _watch(
     stops: Breakpoints | None,
     lost: list[str],
     report: ReportFile | None,
+    screen: Screen,
 ) -> list[Observer]:
     """The requested observers; if one cannot be opened, the others are closed.
 
@@ -214,36 +222,22 @@ def _watch(
             stack.callback(shielded.close)
             observers.append(shielded)
 
-        if (shown.video is not None or shown.view_port is not None) and run.world is None:
+        if shown.video is not None and run.world is None:
             raise InputError("--video and --view need a world; this run has none")
         if shown.video is not None and run.world is not None:
             video = shown.video
             opened = run.world.open_video(video.absolute(), run.built.root.model.place.file)
             add(film.FilmObserver(opened), f"the film {video}", lambda: lost.append(str(video)))
         if shown.view_port is not None and run.world is not None:
-            scene = run.world.open_view(shown.view_port)
-            add(film.ViewObserver(scene, run), "the view")
-            typer.echo(f"view: {scene.url}")
-        if not shown.quiet:
-            add(_display(shown.terminal), "the display")
+            add(screen.open_view(run.world, shown.view_port, run), "the view")
+        if screen.display is not None:
+            add(screen.display, "the display")
         if stops is not None:
             stops.attach(run)
         if report is not None:
             report.begin(run)
         stack.pop_all()
     return observers
-
-
-def _display(terminal: Terminal | None) -> Observer:
-    """A live tree on a terminal, plain lines elsewhere."""
-    out = sys.stdout  # a skill may redirect it
-    screen = console.Console(file=out)
-    if not screen.is_terminal or screen.is_dumb_terminal:
-        return changes.ChangeLines(lambda line: typer.echo(line, file=out))
-    display = live.LiveTree(screen)
-    if terminal is not None:
-        terminal.display = display
-    return display
 
 
 def _say_end(result: Report, options: RunOptions, shown: _Shown) -> None:

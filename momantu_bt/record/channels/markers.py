@@ -11,7 +11,7 @@ from momantu_bt.engine.events import Events
 from momantu_bt.engine.executor import Executor
 from momantu_bt.engine.outside import Drawn
 from momantu_bt.geometry import Array, Transform
-from momantu_bt.marker import COLORS, Axes, Box, Line, Marker, Points, Rgba, Text
+from momantu_bt.marker import COLORS, Axes, Box, Grid, Line, Marker, Points, Rgba, Text
 from momantu_bt.record.channels.channel import stamp_of, time_text
 from momantu_bt.record.channels.poses import pose_text
 from momantu_bt.record.codec import dumps
@@ -42,8 +42,11 @@ class Markers:
             f"{leaf.index} {leaf.name}/{marker.name}": marker
             for leaf, markers in self._drawn
             for marker in markers
+            if not isinstance(marker, Grid)  # too large to be kept for each of its changes
         }
         self._drawn.clear()
+        if not newest:
+            return
         entities = ",".join(_entity(name, marker, now) for name, marker in newest.items())
         channel = file.channel("/markers", "foxglove.SceneUpdate", SCENE)
         file.add(channel, stamp_of(now), f'{{"deletions":[],"entities":[{entities}]}}')

@@ -45,7 +45,7 @@ class Objects:
         cells = {cell.name: cell.value for cell, _ in run.context.writes}
         entities, gone = [], []
         for name, value in cells.items():
-            objects = _objects(value)
+            objects = objects_in(value)
             if objects or name in self._shown:
                 before = self._shown.get(name, [])
                 names = [name if len(objects) == 1 else f"{name}[{i}]" for i in range(len(objects))]
@@ -71,7 +71,7 @@ def _believed(run: Executor) -> HeldObject | None:
     return held if isinstance(held, HeldObject) and _drawable(held.object) else None
 
 
-def _objects(value: Any) -> list[DetectedObject]:
+def objects_in(value: Any) -> list[DetectedObject]:
     """The objects in a value that viewers can draw; they cannot draw NaN."""
     things = value if type(value) is tuple else (value,)
     return [thing for thing in things if type(thing) is DetectedObject and _drawable(thing)]

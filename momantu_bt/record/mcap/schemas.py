@@ -83,7 +83,8 @@ NODE = record(
         "parent": optional(COUNT),
         "label": TEXT,
         "role": {"enum": [role.value for role in Role]},
-    }
+    },
+    {"plan": array(row(TEXT, {"type": "boolean"})), "around": TEXT},
 )
 NODES = record({"nodes": array(NODE)})
 """`/nodes`, once."""

@@ -51,11 +51,15 @@ StatusChange: TypeAlias = tuple[ReportedNode, Status, str, FailureValue | None]
 class ChangeLines:
     """Says when a skill or a subtree starts and ends, and what a recovery does about a failure.
 
-    say: takes one line at a time.
+    say: takes one line at a time. say_trouble: takes the lines of failures and of what is done
+    about them, and what skills log; by default `say`.
     """
 
-    def __init__(self, say: Callable[[str], None]) -> None:
+    def __init__(
+        self, say: Callable[[str], None], say_trouble: Callable[[str], None] | None = None
+    ) -> None:
         self._say = say
+        self._say_trouble = say_trouble or say
         self._was_running: set[int] = set()
         self._notes: dict[int, str] = {}
 
@@ -86,7 +90,7 @@ class ChangeLines:
 
     def _tell_logs(self, now: float, logs: Iterable[tuple[ReportedNode, str]]) -> None:
         for node, text in logs:
-            self._line(now, node, f"  {node.name}: {text}")
+            self._line(now, node, f"  {node.name}: {text}", matters=True)
 
     def close(self) -> None:
         """Nothing is left to say."""
@@ -101,16 +105,17 @@ class ChangeLines:
         if status is IDLE and not running:
             return
         words = f"fails: {_reason(node, failure)}" if status is FAILURE else _WORDS[status.value]
-        self._line(now, node, f"{node.label} {words}")
+        self._line(now, node, f"{node.label} {words}", matters=status is FAILURE)
 
     def _tell_note(self, now: float, node: ReportedNode, note: str) -> None:
-        before = self._notes.get(node.index, "try 1")
+        before = self._notes.get(node.index, "")
         self._notes[node.index] = note
-        if note not in (before, "try 1", ""):
-            self._line(now, node, f"{node.name}: {note}")
+        if note not in (before, "", "try 1") and not note.startswith("try 1 of "):
+            self._line(now, node, f"{node.name}: {note}", matters=True)
 
-    def _line(self, now: float, node: ReportedNode, words: str) -> None:
-        self._say(f"{now:8.2f} s {'  ' * _level(node)}{words}")
+    def _line(self, now: float, node: ReportedNode, words: str, *, matters: bool = False) -> None:
+        say = self._say_trouble if matters else self._say
+        say(f"{now:8.2f} s {'  ' * _level(node)}{words}")
 
 
 def _parents_first(changes: Iterable[StatusChange]) -> Iterator[StatusChange]:

@@ -10,6 +10,9 @@ from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, SUCCESS, Status
 from momantu_bt.failure import FailureValue
 from momantu_bt.world import TreeLine
 
+_WIDEST = 60
+"""The most characters of the steps of a list that is not opened."""
+
 
 class Shown(Protocol):
     """A node as a person sees it: a `TreeNode`, or one of a record at some instant."""
@@ -45,6 +48,16 @@ class Shown(Protocol):
         ...
 
     @property
+    def plan(self) -> Sequence[tuple[str, bool]]:
+        """The prefixes of its children and handlers; see `printing.plan`."""
+        ...
+
+    @property
+    def around(self) -> str:
+        """Its words if it is shown on its child's line; see `printing.around`."""
+        ...
+
+    @property
     def kids(self) -> Sequence[Shown]:
         """Its children."""
         ...
@@ -53,47 +66,70 @@ class Shown(Protocol):
 def tree_lines(root: Shown) -> list[TreeLine]:
     """The root, and what is below each node that is running or has failed.
 
-    A node that has succeeded or has not begun takes one line, so that the picture stays small. A
-    tree shares the line of the node that runs it. A decorator shares the line of its child.
+    The structure is that of `momantu-bt show`: inner sequences, the role of each child, handlers
+    with their codes, and decorators in words on their child's line. A node that has succeeded or
+    has not begun takes one line, so that the picture stays small. A subtree shares the line of the
+    node that runs it.
     """
     lines: list[TreeLine] = []
 
-    def visit(node: Shown, depth: int) -> None:
-        inner = node
-        notes = [_note(node)]
-        while inner.role is Role.AROUND and inner.kids:
-            inner = inner.kids[0]
-            notes.append(_note(inner))
-        words = ", ".join([inner.label, *filter(None, notes)])
-        if node.shown is FAILURE and node.failure is not None:
-            words += f": {node.failure.code}"
-        lines.append(TreeLine(depth, words, node.shown.value))
-        if node.shown is RUNNING or node.shown is FAILURE or depth == 0:
-            for child in _below(inner):
-                if child.shown is not IDLE or inner.shown is RUNNING:
-                    visit(child, depth + 1)
+    def visit(node: Shown, depth: int, prefix: str) -> None:
+        inner, words = _line(node)
+        opened = node.shown is RUNNING or node.shown is FAILURE or depth == 0
+        if not opened and inner.role is Role.STEPS:
+            words = _steps(inner)
+        lines.append(TreeLine(depth, prefix + words, node.shown.value))
+        if opened:
+            for before, child in _below(inner):
+                if child is None and inner.shown is RUNNING:
+                    lines.append(TreeLine(depth + 1, f"{before}try again", IDLE.value))
+                elif child is not None and (child.shown is not IDLE or inner.shown is RUNNING):
+                    visit(child, depth + 1, before)
 
-    visit(root, 0)
+    visit(root, 0, "")
     return lines
 
 
+def _line(node: Shown) -> tuple[Shown, str]:
+    """The node inside all decorators, and its words with those of the decorators."""
+    inner, notes, around = node, [_note(node)], []
+    while inner.around and len(inner.kids) == 1:
+        around.append(inner.around)
+        inner = inner.kids[0]
+        notes.append(_note(inner))
+    words = inner.label
+    if around:
+        words += f"  ({', '.join(reversed(around))})"
+    words = ", ".join([words, *filter(None, notes)])
+    if node.shown is FAILURE and node.failure is not None:
+        words += f": {node.failure.code}"
+    return inner, words
+
+
+def _steps(node: Shown) -> str:
+    """What a list of steps that is not opened would do."""
+    words = ", then ".join(_line(child)[0].label for child in node.kids) or node.label
+    return words if len(words) <= _WIDEST else f"{words[: _WIDEST - 1]}…"
+
+
 def is_frame(role: Role, above: Role) -> bool:
-    """Whether a node only holds a list of steps, or all of a subtree.
+    """Whether a node is only the list of all steps of a subtree, whose line it shares.
 
     above: the role of its parent.
     """
-    return role is Role.STEPS or (role is Role.NAMED_STEPS and above is Role.TREE)
+    return above is Role.TREE and role in (Role.STEPS, Role.NAMED_STEPS)
 
 
-def _below(node: Shown) -> tuple[Shown, ...]:
-    """Children, without frames."""
-    found: list[Shown] = []
+def _below(node: Shown) -> list[tuple[str, Shown | None]]:
+    """Children with their prefixes; None for a handler that tries again. No frames."""
+    kids: list[Shown] = []
     for child in node.kids:
-        if is_frame(child.role, node.role):
-            found.extend(_below(child))
-        else:
-            found.append(child)
-    return tuple(found)
+        kids.extend(child.kids if is_frame(child.role, node.role) else (child,))
+    rest = iter(kids)
+    found: list[tuple[str, Shown | None]] = []
+    for prefix, is_node in node.plan:
+        found.append((prefix, next(rest, None) if is_node else None))
+    return [*found, *(("", child) for child in rest)]
 
 
 def _note(node: Shown) -> str:

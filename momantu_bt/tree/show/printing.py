@@ -11,6 +11,8 @@ from momantu_bt.tree.model import Document, Handler, Node, Tree
 
 _WIDEST = 96
 """The most characters of one node's text. Longer values are cut."""
+_MOST_CODES = 3
+"""The most codes of a handler that a display of a run names."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,8 +43,8 @@ def tree_lines(root: Node, depth: int = 0) -> Iterator[Line]:
             if node is not None:
                 stack.append((node, level + 1, ""))
             continue
-        inner, around = unwrap(item)
-        yield Line(level, (f"{role}: " if role else "") + text(inner, around), inner)
+        inner, outer = unwrap(item)
+        yield Line(level, (f"{role}: " if role else "") + text(inner, outer), inner)
         stack.extend((each, level + 1, its_role) for its_role, each in reversed(below(inner)))
 
 
@@ -54,35 +56,62 @@ def below(node: Node) -> list[tuple[str, Node | Handler]]:
     return children + [("", handler) for handler in node.handlers]
 
 
-def handler_text(handler: Handler) -> str:
-    """The codes of a handler: `on A or B`."""
-    return "on " + " or ".join("anything else" if c == "any" else c for c in handler.codes)
+def handler_text(handler: Handler, most: int | None = None) -> str:
+    """The codes of a handler: `on A or B`. most: of more codes than that, the rest is counted."""
+    codes = ["anything else" if c == "any" else c for c in handler.codes]
+    if most is not None and len(codes) > most:
+        codes[most - 1 :] = [f"{len(codes) - most + 1} more"]
+    return "on " + " or ".join(codes)
+
+
+def plan(node: Node) -> tuple[tuple[str, bool], ...]:
+    """A node's children and handlers as displays of a run name them, in the order of `below`.
+
+    Each has its prefix, such as `if: ` or `on SLIPPED → `, and whether it is a node; a handler
+    without one tries again. Empty if no child needs a prefix.
+    """
+    spec = NODES.get(node.type)
+    handled = spec is not None and spec.handlers
+    prefixes = [(f"{role}: " if role else "", True) for role, _ in below(node)]
+    if handled:
+        tries, handlers = len(node.children), node.handlers
+        prefixes[:tries] = [("try: ", True)] * tries
+        prefixes[tries:] = [
+            (f"{handler_text(h, _MOST_CODES)} → ", h.node is not None) for h in handlers
+        ]
+    return tuple(prefixes) if any(prefix for prefix, _ in prefixes) else ()
+
+
+def around(node: Node) -> str:
+    """The words of a decorator that stands on its child's line; empty for every other node."""
+    outer = _has_words(node) and len(node.children) == 1 and not node.conditions
+    return _in_words(node) if outer else ""
 
 
 def unwrap(node: Node) -> tuple[Node, list[Node]]:
     """A node without the decorators around it, and those decorators, outermost first."""
-    around: list[Node] = []
-    while _has_words(node) and len(node.children) == 1 and not node.conditions:
-        around.append(node)
+    outer: list[Node] = []
+    while around(node):
+        outer.append(node)
         node = node.children[0]
-    return node, around
+    return node, outer
 
 
-def text(node: Node, around: list[Node] | None = None) -> str:
+def text(node: Node, outer: list[Node] | None = None) -> str:
     """One node in one line: what it is, its ports, and the decorators around it."""
     words = title(node)
     ports = ", ".join(port_texts(node))
     if ports:
         words += f" {ports}" if len(ports) <= _WIDEST else f" {ports[: _WIDEST - 1]}…"
-    extras = extra_texts(node, around)
+    extras = extra_texts(node, outer)
     if extras:
         words += f"  ({', '.join(extras)})"
     return words
 
 
-def extra_texts(node: Node, around: list[Node] | None = None) -> list[str]:
+def extra_texts(node: Node, outer: list[Node] | None = None) -> list[str]:
     """The decorators of a node, innermost first, and its conditions, in words."""
-    extras = [_in_words(outer) for outer in reversed(around or [])]
+    extras = [_in_words(each) for each in reversed(outer or [])]
     extras += [f"{name} {script_text(script)}" for name, script in node.conditions.items()]
     return [*extras, "disabled"] if node.disabled else extras
 
@@ -132,6 +161,6 @@ def _has_words(node: Node) -> bool:
 
 
 def _in_words(node: Node) -> str:
-    around = NODES[node.type].around
-    assert around is not None
-    return around(node)
+    words = NODES[node.type].around
+    assert words is not None
+    return words(node)

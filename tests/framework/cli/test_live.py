@@ -119,7 +119,7 @@ def test_plain_lines_tell_the_story_in_order(start):
         "recover: SLIPPED: work ticks 3 (1 of 1)",
         "work ticks 3 starts",
         "work ticks 3 done",
-        "recover: try 2",
+        "recover: try 2 of 2",
         "work ticks 2, code SLIPPED starts",
         "work ticks 2, code SLIPPED done",
         "Take done",
@@ -140,5 +140,5 @@ def test_the_live_tree_draws_and_obeys_no_color(start, monkeypatch, color):
     drawn = out.getvalue()
     assert "s simulated" in drawn
     assert "coming to rest" in drawn
-    assert "recover: try 2" in drawn
+    assert "recover: try 2 of 2" in drawn
     assert ("\x1b[1;36m" in drawn) == color
