@@ -7,7 +7,13 @@ from collections.abc import Iterator, Sequence
 
 from momantu_bt.world import TreeLine
 
-_FOLDED = {"FAILURE": "failed", "SUCCESS": "done", "SKIPPED": "skipped", "IDLE": "not begun"}
+_FOLDED = {
+    "RUNNING": "running",
+    "FAILURE": "failed",
+    "SUCCESS": "done",
+    "SKIPPED": "skipped",
+    "IDLE": "not begun",
+}
 _FIRST = ("RUNNING", "FAILURE", "IDLE", "SUCCESS")
 """Which lines stay rather than others that are as near."""
 
@@ -24,7 +30,7 @@ def fitted(lines: Sequence[TreeLine], room: int) -> list[TreeLine]:
         found = list(_with_gaps(lines, set(order[:count])))
         if len(found) <= room:
             return found
-    return [lines[i] for i in order[: max(0, room)]]
+    return [lines[i] for i in sorted(order[: max(0, room)])]
 
 
 def _by_nearness(lines: Sequence[TreeLine]) -> list[int]:
@@ -74,11 +80,11 @@ def _with_gaps(lines: Sequence[TreeLine], kept: set[int]) -> Iterator[TreeLine]:
 
 
 def _gap(gap: Sequence[TreeLine]) -> Iterator[TreeLine]:
-    """The line for those left out; it counts the outermost ones."""
+    """The line for those left out."""
     if len(gap) == 1:
         yield gap[0]
     elif gap:
         depth = min(line.depth for line in gap)
-        counts = Counter(line.status for line in gap if line.depth == depth)
+        counts = Counter(line.status for line in gap)
         words = [f"{counts[status]} {word}" for status, word in _FOLDED.items() if counts[status]]
-        yield TreeLine(depth, f"… {', '.join(words) or f'{len(gap)} more'}", "IDLE")
+        yield TreeLine(depth, f"… {', '.join(words)}", "IDLE")

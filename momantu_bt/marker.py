@@ -133,7 +133,7 @@ class Grid(Marker):
         values = np.array(self.values, dtype=np.float32)
         if values.ndim != 2:
             raise ValueError(
-                f"the grid of marker {self.name!r} has shape {values.shape}, expected two dimensions"
+                f"the grid of marker {self.name!r} has shape {values.shape}, expected two sides"
             )
         values.flags.writeable = False
         object.__setattr__(self, "values", values)

@@ -62,7 +62,7 @@ def _labels(recording: Recording) -> dict[str, list[Any]]:
 
 
 def _nodes(recording: Recording) -> dict[str, list[Any]]:
-    """Columns by node. row, above: see `rows_above`. file: -1 where the record has it not."""
+    """Columns by node. row, above: see `rows_above`. prefix: its role, such as `try: `. file: -1 where the record has it not."""
     places = [node.place.rpartition(":") for node in recording.nodes]
     runs, failures = _counts(recording)
     own, above = _rows_above(recording.nodes)
@@ -71,6 +71,7 @@ def _nodes(recording: Recording) -> dict[str, list[Any]]:
         "type": [node.type for node in recording.nodes],
         "row": own,
         "above": above,
+        "prefix": _prefixes(recording.nodes),
         "file": [_file_number(file, list(recording.files)) for file, _, _ in places],
         "line": [int(line) if line.isdigit() else 0 for _, _, line in places],
         "runs": runs,
@@ -121,6 +122,16 @@ def _cameras(recording: Recording) -> list[dict[str, Any]]:
             images.append(f"data:image/{message['format']};base64,{message['data']}")
         found.append({"name": topic.removeprefix(_CAMERA), "times": times, "images": images})
     return found
+
+
+def _prefixes(nodes: Sequence[NodeInfo]) -> list[str]:
+    """What each node is for the one above it, as displays write it before its label."""
+    prefixes = [""] * len(nodes)
+    plans = [iter([prefix for prefix, is_node in node.plan if is_node]) for node in nodes]
+    for node in nodes:
+        if node.parent is not None:
+            prefixes[node.index] = next(plans[node.parent], "")
+    return prefixes
 
 
 def _rows_above(nodes: Sequence[NodeInfo]) -> tuple[list[int], list[int]]:

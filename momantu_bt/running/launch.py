@@ -7,7 +7,7 @@ import traceback
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
-from typing import TypeAlias
+from typing import TextIO, TypeAlias
 
 from momantu_bt import collector
 from momantu_bt.engine.build import skills_in
@@ -39,10 +39,15 @@ from momantu_bt.world import World, WorldError
 Watch: TypeAlias = Callable[[Executor], Sequence[Observer]]
 
 
-def launch(prepared: Prepared, watch: Watch | None = None) -> Report:
+def launch(
+    prepared: Prepared,
+    watch: Watch | None = None,
+    streams: tuple[TextIO, TextIO] | None = None,
+) -> Report:
     """Run a checked tree to its end.
 
-    watch: makes the observers after the world was opened; they are closed at the end.
+    watch: makes the observers after the world was opened; they are closed at the end. streams:
+    standard output and error as they should be after the run, if a display replaces them now.
 
     Raises:
         LaunchError: a tree with skills has no world, a service is not installed, the robot lacks
@@ -61,9 +66,10 @@ def launch(prepared: Prepared, watch: Watch | None = None) -> Report:
         executor, stage, recorder = _assembled(prepared, stack)
         remarks: list[str] = []
         executor.context.events.subscribe(Remarked, lambda event: remarks.append(event.text))
-        leftovers = Leftovers()
+        leftovers = Leftovers(streams)
         auditor = Auditor(executor.context, executor.world) if options.audit else None
         observers = [] if watch is None else list(watch(executor))
+        leftovers.expect_threads()
         if recorder is not None:
             recorder.begin(document, executor, options.recorded(), prepared.substitution.source)
         for observer in observers:

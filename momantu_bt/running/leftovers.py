@@ -11,6 +11,7 @@ import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TextIO
 
 GRACE = 0.2
 """Seconds of wall time that a thread has to end by itself after the run."""
@@ -19,13 +20,20 @@ LAST = 3.0
 
 
 class Leftovers:
-    """The process as it is before the first tick; `told` compares it with what it is later."""
+    """The process as it is before the first tick; `told` compares it with what it is later.
 
-    def __init__(self) -> None:
+    streams: standard output and error as they should be later, if a display replaces them now.
+    """
+
+    def __init__(self, streams: tuple[TextIO, TextIO] | None = None) -> None:
         self._threads = set(threading.enumerate())
         self._children = _children()
         self._folder = _folder()
-        self._out, self._err = sys.stdout, sys.stderr
+        self._out, self._err = streams or (sys.stdout, sys.stderr)
+
+    def expect_threads(self) -> None:
+        """The threads that there are now may last: they are those of observers."""
+        self._threads |= set(threading.enumerate())
 
     def told(self) -> list[str]:
         """Put back the working directory and the standard streams; say what else is left."""

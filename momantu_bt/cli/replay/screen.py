@@ -11,7 +11,7 @@ from rich.text import Text
 
 from momantu_bt.cli.run.live import line_text
 from momantu_bt.cli.shared.keyboard import Keyboard
-from momantu_bt.engine.status import RUNNING
+from momantu_bt.folding import fitted
 from momantu_bt.record.text.failure import failure_line
 from momantu_bt.record.text.lines import tree_lines
 from momantu_bt.replay.moment_text import board_lines, failures_of
@@ -69,12 +69,8 @@ def _header(stepper: Stepper) -> Text:
 
 
 def _tree(stepper: Stepper, room: int) -> list[Text]:
-    """As many lines of the tree as fit, around the deepest running node."""
-    lines = tree_lines(stepper.moment.root)
-    running = [n for n, line in enumerate(lines) if line.status == RUNNING.value]
-    at = max(running, key=lambda number: lines[number].depth, default=0)
-    start = min(max(0, at - room // 2), max(0, len(lines) - room))
-    return [line_text(line) for line in lines[start : start + room]]
+    """As many lines of the tree as fit."""
+    return [line_text(line) for line in fitted(tree_lines(stepper.moment.root), room)]
 
 
 def _board(stepper: Stepper) -> list[Text]:

@@ -61,7 +61,7 @@ class LiveTree:
         self._run: Executor | None = None
         self._waiting: _Redrawing | None = _Redrawing(self._redraw)
         self._live = self._new()
-        self._live.start()
+        self._live.start(refresh=True)
         self._waiting.start()
 
     def stage(self, text: str) -> None:
@@ -107,7 +107,8 @@ class LiveTree:
     def _take(self, run: Executor) -> None:
         rest = "  (coming to rest)" if run.settling else ""
         self._headline = f"{run.context.now:7.1f} s simulated{rest}"
-        self._lines = tree_lines(run.built.root)
+        if not run.settling or run.built.root.shown.completed:
+            self._lines = tree_lines(run.built.root)  # a run that was stopped: as it was before
 
     def _new(self) -> Live:
         return Live(

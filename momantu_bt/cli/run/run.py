@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
@@ -21,8 +22,8 @@ from momantu_bt.lazy import lazily
 
 with lazily():
     from momantu_bt.cli.run import breakpoints, shield
-    from momantu_bt.cli.run import screen as screens
     from momantu_bt.cli.run import report_file as reports
+    from momantu_bt.cli.run import screen as screens
     from momantu_bt.cli.run import terminal as terminals
     from momantu_bt.cli.shared import given
     from momantu_bt.engine import interrupts, person
@@ -166,6 +167,7 @@ def _run(tree: str, options: RunOptions, shown: _Shown) -> Report:
         check_writable(shown.video, regular=True)
     file = None if shown.report is None else reports.ReportFile(shown.report)
     lost: list[str] = []
+    outputs = sys.stdout, sys.stderr
     with ExitStack() as stack:
         screen = screens.open_screen(prepared, shown.terminal, shown.view_port, quiet=shown.quiet)
         stack.callback(screen.close)
@@ -173,7 +175,7 @@ def _run(tree: str, options: RunOptions, shown: _Shown) -> Report:
         try:
             with leftovers.no_sudden_exit():
                 result = launching.launch(
-                    prepared, lambda run: _watch(run, shown, stops, lost, file, screen)
+                    prepared, lambda run: _watch(run, shown, stops, lost, file, screen), outputs
                 )
         except BaseException:
             if file is not None:

@@ -13,8 +13,8 @@ from momantu_bt.cli.run.terminal import Terminal
 from momantu_bt.cli.run.waiting_page import WaitingPage
 from momantu_bt.engine.executor import Executor, Observer
 from momantu_bt.errors import InputError, MomantuError
-from momantu_bt.record.view import ViewObserver
 from momantu_bt.record.text.changes import ChangeLines
+from momantu_bt.record.view import ViewObserver
 from momantu_bt.running.prepare import Prepared
 from momantu_bt.tree.check.named_world import world_of
 from momantu_bt.tree.show.printing import tree_lines

@@ -1,4 +1,4 @@
-"""The page at the view's address while the run is prepared: what is being prepared, and for how long.
+"""The page at the view's address while the run is prepared: it says what is being prepared.
 
 It gives way to the view as soon as that serves the same address.
 """

@@ -19,7 +19,7 @@ function showTree() {
   if (rows.length) rows[0].item.tabIndex = 0;
   watch((tick) => {
     const [statuses, notes] = [statusJournal.at(tick), noteJournal.at(tick)];
-    for (const row of rows) paint(row, statuses[row.node], record.notes[notes[row.node]], labelAt(tick, row.node));
+    for (const row of rows) paint(row, statuses[row.node], record.notes[notes[row.node]], record.nodes.prefix[row.node] + labelAt(tick, row.node));
     if (follows) followRows(rows, body);
   });
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import io
 import itertools
+import threading
+import time
 
 import pytest
 from rich.console import Console
@@ -15,6 +17,7 @@ from momantu_bt.running.api import run
 from momantu_bt.skill import Failure, In, Run, Skill
 from momantu_bt.testing import ScriptedWorld
 from momantu_bt.tree.registry import Registry
+from momantu_bt.world import TreeLine
 
 TREE = """
 momantu_bt: 1
@@ -142,3 +145,101 @@ def test_the_live_tree_draws_and_obeys_no_color(start, monkeypatch, color):
     assert "coming to rest" in drawn
     assert "recover: try 2 of 2" in drawn
     assert ("\x1b[1;36m" in drawn) == color
+
+
+SCREENS = [(80, 24), (120, 40)]
+DEEP = """
+momantu_bt: 1
+main: Main
+trees:
+  Main:
+    - work: {ticks: 1}
+    - recover:
+        attempts: 3
+        try:
+          - sequence:
+              - work: {ticks: 2}
+              - work: {ticks: 4, code: SLIPPED}
+            name: inner
+        catch:
+          SLIPPED:
+            - work: {ticks: 2}
+            - work: {ticks: 1}
+    - work: {ticks: 2}
+      timeout: 1 min
+"""
+
+
+@pytest.fixture
+def screens(tmp_path, monkeypatch):
+    """Run DEEP on a terminal; every picture that was drawn, and what stands there at the end."""
+    monkeypatch.setattr("momantu_bt.cli.run.live.REFRESH", 0.0)
+
+    def drawn(width, height, text=DEEP):
+        Work.started = -2  # the third start of a skill slips
+        file = tmp_path / "deep.yaml"
+        file.write_text(text)
+        out = io.StringIO()
+        console = Console(file=out, force_terminal=True, width=width, height=height, no_color=True)
+        live = LiveTree(console)
+        pictures = []
+        original = live._picture
+
+        def picture():
+            page = Console(file=io.StringIO(), width=width, height=height)
+            page.print(original())
+            pictures.append(page.file.getvalue().splitlines())
+            return original()
+
+        live._live._get_renderable = picture
+        monkeypatch.setattr(live, "_picture", picture)
+        registry = Registry(skills={"work": Work})
+        run(file, world=ScriptedWorld(), registry=registry, watch=lambda _: [live])
+        before = len(out.getvalue())
+        live.close()
+        assert len(out.getvalue()) == before, "closing twice prints nothing more"
+        return pictures, out.getvalue()
+
+    return drawn
+
+
+@pytest.mark.parametrize("size", SCREENS)
+def test_a_picture_fits_and_shows_structure_tries_handlers_and_events(screens, size):
+    pictures, _ = screens(*size)
+    assert max(len(picture) for picture in pictures) < size[1]
+    assert max(len(line) for picture in pictures for line in picture) <= size[0]
+    lines = [line.strip() for picture in pictures for line in picture]
+    assert any("recover with 3 tries, try 1 of 3" in line for line in lines)
+    assert any("recover with 3 tries, try 2 of 3" in line for line in lines)
+    assert {"* try: sequence", "* inner: sequence"} <= set(lines)
+    assert "on SLIPPED → work ticks 2, then work ticks 1" in lines
+    assert "* on SLIPPED → sequence" in lines
+    assert "work ticks 2  (at most 1 min)" in lines
+    assert any("fails: SLIPPED, it slipped" in line for line in pictures[-3])
+
+
+@pytest.mark.parametrize("size", SCREENS)
+def test_after_the_end_all_events_and_the_tree_can_be_scrolled(screens, size):
+    many = DEEP.replace("  Main:\n", "  Main:\n" + "    - work: {ticks: 1}\n" * 30)
+    pictures, out = screens(*size, text=many)
+    assert max(len(picture) for picture in pictures) < size[1]
+    said = out[out.rindex("s simulated") - 20000 :] if len(out) > 20000 else out
+    assert said.count("work ticks 1 starts") >= 30
+    end = out[out.rindex("s simulated") :]
+    assert end.count("work ticks 1") == 31
+
+
+def test_while_it_is_prepared_the_tree_stands_with_what_is_prepared():
+    out = io.StringIO()
+    console = Console(file=out, force_terminal=True, width=80, height=24, no_color=True)
+    live = LiveTree(console, [TreeLine(0, "sequence", "IDLE"), TreeLine(1, "wait 1 s", "IDLE")])
+    assert "sequence" in out.getvalue()
+    live.stage("opening the world four_rooms with the robot fetch")
+    assert "preparing: opening the world four_rooms with the robot fetch … 0 s" in out.getvalue()
+    before = out.getvalue().count("wait 1 s")
+    deadline = time.monotonic() + 20.0
+    while out.getvalue().count("wait 1 s") == before:
+        assert time.monotonic() < deadline, "the picture is not drawn again"
+        time.sleep(0.05)
+    live.close()
+    assert not any(thread.name == "first picture" for thread in threading.enumerate())

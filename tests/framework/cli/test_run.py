@@ -51,7 +51,7 @@ def test_a_run_tells_each_change_and_ends_with_one_line(tree, capsys):
         "wait 0.1 s done",
         "Check k 1 fails: TOO_SMALL",
         "recover: TOO_SMALL: script $n += 1",
-        "recover: try 2",
+        "recover: try 2 of 2",
         "Check k 2 done",
     ]
     assert lines[-1].startswith("tree succeeded after 0.2 s simulated")

@@ -10,12 +10,13 @@ import pytest
 from momantu_bt.geometry import Transform
 from momantu_bt.marker import Axes, Box, Line, Marker, Points, Text
 from momantu_bt.page.data import page_data
-from momantu_bt.record.film import ViewObserver
 from momantu_bt.record.reader import read_record
 from momantu_bt.record.text.changes import ChangeLines
+from momantu_bt.record.view import ViewObserver
 from momantu_bt.replay.run_text import run_lines
 from momantu_bt.skill import Run, Skill
 from momantu_bt.testing import run_skill
+from momantu_bt.world import Layer
 
 SQUARE = [(0, 0, 0), (1, 0, 0), (1, 1, 0)]
 
@@ -152,7 +153,7 @@ class Scene:
     def close(self):
         pass
 
-    def draw(self, name, marker, map_from_frame):
+    def draw(self, name, marker, map_from_frame, layer=Layer.MARKERS):
         self.shown[name] = map_from_frame
 
     def erase(self, name):

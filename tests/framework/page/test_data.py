@@ -208,8 +208,16 @@ def test_a_frame_has_no_row_and_its_children_stand_in_its_place(recording):
     roles = {1: Role.TREE, 2: Role.NAMED_STEPS, 3: Role.STEPS, 4: Role.STEPS}
     nodes = tuple(replace(node, role=roles.get(node.index, node.role)) for node in run.nodes)
     shown = page_data(replace(run, nodes=nodes))["nodes"]
-    assert shown["row"] == [0, 1, 1, 0, 0, 5]
-    assert shown["above"] == [-1, 0, 0, -1, -1, 0]
+    assert shown["row"] == [0, 1, 1, 3, 4, 5]
+    assert shown["above"] == [-1, 0, 0, 0, 3, 3]
+
+
+def test_a_row_says_what_the_node_is_for_the_one_above(recording):
+    run = recording()
+    plan = (("try: ", True), ("on LOST → ", False), ("on SLIPPED → ", True))
+    nodes = tuple(replace(node, plan=plan if node.index == 3 else ()) for node in run.nodes)
+    shown = page_data(replace(run, nodes=nodes))["nodes"]
+    assert shown["prefix"] == ["", "", "", "", "try: ", "on SLIPPED → "]
 
 
 def test_labels_have_the_values_of_the_newest_start(recording):

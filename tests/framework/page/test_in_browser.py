@@ -226,7 +226,8 @@ def test_jumping_about_a_long_run_shows_what_going_through_it_would(browser, rec
 
 def test_frames_have_no_row_and_labels_follow_the_run(browser, recording, tmp_path):
     run = recording()
-    nodes = tuple(replace(n, role=Role.STEPS if n.index == 3 else n.role) for n in run.nodes)
+    roles = {0: Role.TREE, 3: Role.STEPS}
+    nodes = tuple(replace(n, role=roles.get(n.index, n.role)) for n in run.nodes)
     newer = replace(run.ticks[40], labels=((4, "pick object can_1"),))
     ticks = (*run.ticks[:40], newer, *run.ticks[41:])
     write_page(replace(run, nodes=nodes, ticks=ticks), tmp_path / "frames.html")

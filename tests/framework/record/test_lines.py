@@ -6,8 +6,9 @@ import itertools
 
 import pytest
 
-from momantu_bt.record.film import FilmObserver, ViewObserver
+from momantu_bt.record.film import FilmObserver
 from momantu_bt.record.text.lines import running_text, tree_lines
+from momantu_bt.record.view import ViewObserver
 from momantu_bt.running.api import run
 from momantu_bt.skill import Failure, In, Run, Skill
 from momantu_bt.testing import ScriptedWorld

@@ -80,7 +80,7 @@ def test_instants_are_printed_by_time_node_and_failure(folder, call):
     code, out, _ = call("replay", folder / "run", "--at", "1.2")
     assert code == 0
     assert out.startswith("-- 1.20 s, tick 24\n")
-    assert "    wait 0.3 s, round 2  RUNNING\n" in out
+    assert "    wait 0.3 s  (9 rounds), round 2 of 9  RUNNING\n" in out
     assert "  n = 1\n" in out
     _, out, _ = call("replay", folder / "run", "--failure", -1, "--json")
     data = json.loads(out)
@@ -211,7 +211,7 @@ def test_at_a_terminal_keys_step_through_it(folder):
     screen.wait_for("0.00 s of 1.50 s  tick 0").wait_for("? for the keys")
     screen.type("\x1b[C").wait_for("0.05 s of 1.50 s  tick 1").wait_for("Wait for 3")
     screen.type("f").wait_for("failure 1 of 2: condition: FAILED")
-    screen.type("t1.2\r").wait_for("tick 24").wait_for("wait 0.3 s, round 2")
+    screen.type("t1.2\r").wait_for("tick 24").wait_for("wait 0.3 s  (9 rounds), round 2 of 9")
     screen.type("b").wait_for("n = 1")
     screen.type("?").wait_for("q      leave")
     screen.type("?g++ ").wait_for("playing 4 x").wait_for("1.50 s of 1.50 s")

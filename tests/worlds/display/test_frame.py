@@ -2,9 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-from momantu_worlds.display.frame import HEAD, HEIGHT, SCENE, WIDTH, compose, shown
+from momantu_worlds.display.frame import HEAD, HEIGHT, SCENE, WIDTH, compose
 
 from momantu_bt.world import TreeLine
 
@@ -29,16 +27,3 @@ def test_each_line_of_the_tree_is_written():
     panels = [compose(*images, lines[:n], "1.0 s")[HEAD[1] :, SCENE[0] :] for n in (0, 1, 2)]
     inks = [int((panel.max(axis=2) > 60).sum()) for panel in panels]
     assert inks[0] < inks[1] < inks[2]
-
-
-@given(st.integers(0, 80), st.integers(1, 30), st.integers(0, 79))
-def test_what_runs_is_always_shown(count, room, running):
-    lines = [TreeLine(0, str(i), "RUNNING" if i == running else "IDLE") for i in range(count)]
-    part = shown(lines, room)
-    assert len(part) == min(count, room)
-    assert running >= count or any(line.status == "RUNNING" for line in part)
-    assert (
-        [int(line.text) for line in part] == list(range(int(part[0].text), int(part[-1].text) + 1))
-        if part
-        else True
-    )

@@ -11,6 +11,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from momantu_bt.folding import fitted
 from momantu_bt.world import TreeLine
 
 Image: TypeAlias = NDArray[np.uint8]
@@ -52,19 +53,9 @@ def compose(scene: Image, head: Image, lines: Sequence[TreeLine], headline: str)
     return picture
 
 
-def shown(lines: Sequence[TreeLine], room: int) -> list[TreeLine]:
-    """The lines that fit into `room`; if there are too many, those around the running node."""
-    if len(lines) <= room:
-        return list(lines)
-    running = [i for i, line in enumerate(lines) if line.status == "RUNNING"]
-    middle = running[-1] if running else 0
-    first = max(0, min(middle - room // 2, len(lines) - room))
-    return list(lines[first : first + room])
-
-
 def _tree(picture: Image, lines: Sequence[TreeLine], left: int, top: int) -> None:
     room = (HEIGHT - top) // LINE
-    for row, line in enumerate(shown(lines, room)):
+    for row, line in enumerate(fitted(lines, room)):
         color = COLORS.get(line.status, GREY)
         at = (left + 12 * line.depth, top + LINE * (row + 1) - 4)
         _write(picture, line.text, at, TEXT, color)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import socket
+from collections.abc import Sequence
 from contextlib import redirect_stdout
 from typing import TYPE_CHECKING, Any
 
@@ -12,8 +13,10 @@ import viser
 
 from momantu_bt.geometry import Transform
 from momantu_bt.marker import Marker
-from momantu_bt.world import WorldError
-from momantu_worlds.display.markers import drawn
+from momantu_bt.world import Layer, TreeLine, WorldError
+from momantu_worlds.display.following import Following
+from momantu_worlds.display.markers import UPRIGHT, drawn
+from momantu_worlds.display.panel import Panel
 from momantu_worlds.display.shapes import ColoredMesh, body_meshes, link_meshes, still_meshes
 from momantu_worlds.scenes.geometry.bodies import Body, Episode, Picture
 
@@ -24,12 +27,10 @@ HOST = "127.0.0.1"
 """Only browsers on this machine are served."""
 MOVED = 1e-4
 """m or quaternion units; smaller motions are not sent."""
-EYE = (-9.0, -9.0, 14.0)
-"""m from the middle of the floor: where a browser looks from at first."""
 
 
 class BrowserView:
-    """Implements `momantu_bt.world.View`."""
+    """Implements `View`, `MarkerView` and `TreeView` of `momantu_bt.world`."""
 
     def __init__(self, simulator: Simulator, episode: Episode, port: int) -> None:
         """See `open_view`."""
@@ -38,8 +39,12 @@ class BrowserView:
             self._server = viser.ViserServer(host=HOST, port=port, verbose=False)
         self._open = True
         self._server.scene.set_up_direction("+z")
-        self._server.initial_camera.position = EYE
-        self._server.initial_camera.look_at = (0.0, 0.0, 0.0)
+        self._server.scene.world_axes.visible = False
+        self._following = Following(self._server, simulator.truth.base())
+        self._layers = {
+            layer: self._server.scene.add_frame(_folder(layer), show_axes=False) for layer in Layer
+        }
+        self._panel = Panel(self._server.gui, self._show_layer)
         self._server.scene.add_light_ambient("/light", intensity=0.6)
         still = [body for body in episode.bodies if body.static]
         self._meshes("/still", still_meshes(still))
@@ -76,12 +81,15 @@ class BrowserView:
                 self._put(f"body {name}", frame, truth.pose(name))
             for name, frame in self._links.items():
                 self._put(f"link {name}", frame, truth.link(name))
+            self._following.move(truth.base(), follows=self._panel.follows)
         self._server.flush()
 
-    def draw(self, name: str, marker: Marker, map_from_frame: Transform) -> None:
+    def draw(
+        self, name: str, marker: Marker, map_from_frame: Transform, layer: Layer = Layer.MARKERS
+    ) -> None:
         """Show a marker; it replaces an earlier one of that name."""
         self.erase(name)
-        handle = drawn(self._server.scene, f"/markers/{name}", marker, map_from_frame)
+        handle = drawn(self._server.scene, f"{_folder(layer)}/{name}", marker, map_from_frame)
         if handle is not None:
             self._markers[name] = handle
 
@@ -95,6 +103,28 @@ class BrowserView:
     def marked(self) -> tuple[str, ...]:
         """Names of the markers that are shown now."""
         return tuple(self._markers)
+
+    def tell(self, headline: str, lines: Sequence[TreeLine]) -> None:
+        """Show what runs, and the tree's lines."""
+        self._panel.tell(headline, lines)
+
+    @property
+    def told(self) -> str:
+        """What runs and the tree as they are shown now, as HTML."""
+        return self._panel.text
+
+    def end(self, text: str) -> None:
+        """Say how the run ended, and offer to close the view."""
+        self._panel.end(text)
+        self._server.flush()
+
+    @property
+    def dismissed(self) -> bool:
+        """Whether a person has closed the view in the browser."""
+        return self._panel.dismissed
+
+    def _show_layer(self, layer: Layer, visible: bool) -> None:
+        self._layers[layer].visible = visible
 
     def close(self) -> None:
         """Stop serving; safe to call twice."""
@@ -147,8 +177,9 @@ class BrowserView:
                 )
 
 
-UPRIGHT = Transform((0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0))
-"""viser's images have y down and z into the picture; ours have y up and z out of it."""
+def _folder(layer: Layer) -> str:
+    """The path in the scene below which a layer's markers are."""
+    return f"/layers/{layer.name.lower()}"
 
 
 def _close(a: Transform, b: Transform) -> bool:

@@ -114,6 +114,7 @@ class _Watch:
     def planned(self, route: Route) -> None:
         """Take over a new plan; count a longer path as a detour."""
         self._planned_at = self._vehicle.now()
+        self._vehicle.show(route.plan.path)
         to_go = route.to_go(self._vehicle, self._vehicle.pose())
         if to_go > self._best + 1.0:
             self._detours += 1

@@ -9,6 +9,7 @@ import numpy as np
 from momantu_bt.frames import MAP, ODOM
 from momantu_bt.geometry import Array, Pose2D, Transform
 from momantu_bt.lazy import lazily
+from momantu_bt.marker import Grid, Line
 from momantu_bt.messages import BaseVelocity, JointPositions
 from momantu_bt.robot import CAMERA_CARRIER, CameraSensor, Robot, read_camera, read_laser
 from momantu_bt.service import Localization, PlanningScene
@@ -32,6 +33,12 @@ TURN_BETWEEN_LOOKS = 0.8
 """Turn that counts like `depth_every` metres of driving, rad: about half of a camera's view."""
 HANDS_OVER = 0.03
 """Height above a surface's nominal top from which arm and load count as being over it, m."""
+PATH_HEIGHT = 0.03
+"""Height above the floor at which a path is drawn, m."""
+COSTLESS = 0.5
+"""Clearance from which a cell is drawn as free, m."""
+SHOWN = 3.0
+"""Time for which a path and the costmap are shown, s; a base that drives plans more often."""
 AT_REST = 0.01
 """Speed below which the base counts as standing, m/s and rad/s."""
 
@@ -100,6 +107,18 @@ class Vehicle:
     def map_from_odom(self) -> Pose2D:
         """Return the newest result of localization."""
         return Pose2D.from_transform(self._frames.lookup(MAP, ODOM))
+
+    def show(self, path: Array) -> None:
+        """Draw a path (n, 2) and the costmap, if somebody watches; it changes nothing."""
+        if not self._skill.host.watched:
+            return
+        points = np.column_stack([path, np.full(len(path), PATH_HEIGHT)])
+        costs = 1.0 - self.costmap.field / COSTLESS
+        x, y, cell = (float(part) for part in self.costmap.frame)
+        self._skill.draw(
+            Line("path", points, frame=MAP, color="blue", width=0.05, seconds=SHOWN),
+            Grid("costmap", costs, (x, y), cell, frame=MAP, color="purple", seconds=SHOWN),
+        )
 
     def speed(self) -> tuple[float, float]:
         """Return the measured m/s and rad/s."""
