@@ -62,7 +62,11 @@ def _labels(recording: Recording) -> dict[str, list[Any]]:
 
 
 def _nodes(recording: Recording) -> dict[str, list[Any]]:
-    """Columns by node. row, above: see `rows_above`. prefix: its role, such as `try: `. file: -1 where the record has it not."""
+    """Columns by node.
+
+    row, above: see `rows_above`. prefix: what it is for the node above, such as `try: `. file: -1
+    where the record has it not.
+    """
     places = [node.place.rpartition(":") for node in recording.nodes]
     runs, failures = _counts(recording)
     own, above = _rows_above(recording.nodes)

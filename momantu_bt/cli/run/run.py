@@ -168,6 +168,7 @@ def _run(tree: str, options: RunOptions, shown: _Shown) -> Report:
     file = None if shown.report is None else reports.ReportFile(shown.report)
     lost: list[str] = []
     outputs = sys.stdout, sys.stderr
+    streams.keep_on(lambda text: None)  # what breaks now is told when the run begins
     with ExitStack() as stack:
         screen = screens.open_screen(prepared, shown.terminal, shown.view_port, quiet=shown.quiet)
         stack.callback(screen.close)

@@ -93,12 +93,17 @@ def open_standard_streams(*, alone: bool = False) -> None:
 
 
 def keep_on(remark: Callable[[str], None]) -> None:
-    """From now on nothing that is printed can raise. remark: called when standard output breaks."""
+    """From now on nothing that is printed can raise.
+
+    remark: called when standard output breaks, or at once if it is broken already.
+    """
     raw = _raw(sys.stdout)
     if raw is not None:
         with suppress(OSError, ValueError):
             sys.stdout.flush()
         raw.keep_on, raw.on_break = True, remark
+        if raw.broken is not None:
+            remark(raw.told())
         if raw.closed_before:
             remark("standard output is closed; nothing is shown there")
 
