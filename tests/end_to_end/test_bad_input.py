@@ -31,6 +31,7 @@ def test_ctrl_c_in_mid_motion_brakes_and_reports(tmp_path: Path) -> None:
         env={**os.environ, "PYTHONUNBUFFERED": "1"},
     )  # fmt: skip
     assert running.stdout is not None
+    assert running.stdout.readline().startswith("preparing: world ")
     first = running.stdout.readline()
     assert "navigate" in first, first
     time.sleep(3.0)
