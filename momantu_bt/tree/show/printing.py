@@ -67,7 +67,7 @@ def handler_text(handler: Handler, most: int | None = None) -> str:
 def plan(node: Node) -> tuple[tuple[str, bool], ...]:
     """A node's children and handlers as displays of a run name them, in the order of `below`.
 
-    Each has its prefix, such as `if: ` or `on SLIPPED → `, and whether it is a node; a handler
+    Each has its prefix, such as `if: ` or `on TIMEOUT → `, and whether it is a node; a handler
     without one tries again. Empty if no child needs a prefix.
     """
     spec = NODES.get(node.type)
