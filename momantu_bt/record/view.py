@@ -86,7 +86,7 @@ class ViewObserver:
         for sensor, scan in self._scans.items():
             map_from_laser = _map_from(scan.frame, context, scan.stamp)
             if map_from_laser is not None:
-                points = Points(sensor, _hits(scan), size=0.04, color=SCAN_COLOR, frame=MAP)
+                points = Points(sensor, hits(scan), size=0.04, color=SCAN_COLOR, frame=MAP)
                 view.draw(f"scan/{sensor}", points, map_from_laser, Layer.SCAN)
         self._scans.clear()
 
@@ -130,7 +130,7 @@ def _object_markers(thing: DetectedObject) -> tuple[Marker, Marker]:
     )
 
 
-def _hits(scan: LaserScan) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
+def hits(scan: LaserScan) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
     """The points (n, 3) that the beams met, in the laser's frame, m."""
     ranges = np.asarray(scan.ranges, dtype=np.float64)
     angles = scan.angle_min + scan.angle_increment * np.arange(len(ranges))

@@ -16,9 +16,9 @@ from momantu_worlds.scenes.geometry.bodies import Body
 from momantu_worlds.testing import plain_episode
 
 from momantu_bt.geometry import Transform
-from momantu_bt.marker import Axes, Box, Line, Points, Text
+from momantu_bt.marker import Axes, Box, Grid, Line, Points, Text
 from momantu_bt.messages import BaseVelocity
-from momantu_bt.world import MarkerView, TreeLine, WorldError
+from momantu_bt.world import MarkerView, TreeLine, TreeView, WorldError
 
 LINES = [TreeLine(0, "Bring", "RUNNING"), TreeLine(1, "navigate", "RUNNING")]
 PORT = 18923
@@ -118,14 +118,28 @@ def test_markers_are_shown_replaced_and_erased(simulator):
         Box("box", Transform((1, 1, 1)), (0.1, 0.2, 0.3), color=(1, 0, 0, 0.5)),
         Axes("axes", Transform((0, 0, 1))),
         Text("text", (0, 0, 1), "here"),
+        Grid("grid", np.linspace(0.0, 1.0, 6).reshape(2, 3), (0.0, 0.0), 0.05),
+        Grid("empty", np.zeros((0, 0)), (0.0, 0.0), 0.05),
     ]
     for marker in (*markers, markers[0]):
         view.draw(f"1 node/{marker.name}", marker, Transform((1.0, 0.0, 0.0)))
-    assert sorted(view.marked) == sorted(f"1 node/{marker.name}" for marker in markers)
+    there = [marker for marker in markers if marker.name != "empty"]
+    assert sorted(view.marked) == sorted(f"1 node/{marker.name}" for marker in there)
     view.erase("1 node/line")
     view.erase("1 node/line")
     assert "1 node/line" not in view.marked
     assert isinstance(view, MarkerView)
+    view.close()
+
+
+def test_the_panel_has_the_tree_and_at_the_end_how_it_ended(simulator):
+    view = open_view(simulator, plain_episode(), PORT + 4)
+    view.tell("1.0 s  navigate", [*LINES, TreeLine(1, "on A → a < b", "IDLE")])
+    assert "1.0 s  navigate" in view.told
+    assert "on A → a &lt; b" in view.told
+    view.end("Bring succeeded")
+    assert isinstance(view, TreeView)
+    assert not view.dismissed
     view.close()
 
 
