@@ -77,11 +77,13 @@ class NodeReader:
             for entry in raw.entries
             if entry[0].text not in MODIFIERS
             and entry[0].text not in companions
-            and (not is_kept(entry[0]) or known(entry[0].text))
+            and not is_kept(entry[0])
         ]
         if not own:
             nodes = [e for e in raw.entries if _has_child(e[1]) and e[0].text in MODIFIERS]
-            return nodes[-1] if nodes else None
+            # an attribute stands beside a node: alone, it is a node of that name
+            alone = [e for e in raw.entries if e[0].text.startswith("_")]
+            return nodes[-1] if nodes else alone[0] if len(alone) == 1 else None
         named = [e for e in own if e[0].text in NAMED]
         if named and not any(known(key.text) for key, _ in own):
             return named[0]
