@@ -36,6 +36,7 @@ def load(
     values: Mapping[str, Any] | None = None,
     include: Sequence[Path] = (),
     tolerant: bool = False,
+    library: bool = False,
 ) -> Checked:
     """Find, read and check a tree.
 
@@ -43,6 +44,7 @@ def load(
     addition to those in the file or in their place (`--set`, `--values`), not converted ("66 mm");
     `Given` also has their places. include: further files, or folders of files, with trees
     that the tree runs. tolerant: nodes, trees and keys that stand elsewhere are warnings.
+    library: so is a file that has no tree, or does not say which of its trees to run.
 
     Raises:
         TreeNotFound: there is no such file.
@@ -51,6 +53,8 @@ def load(
     having = registry if registry is not None else Registry.installed()
     found = tree if isinstance(tree, TreeText) else find(tree)
     document, problems = read_file(found, having, include)
+    if library:
+        problems.soften(("no-main", "no-trees"))
     _override(document, values or {}, problems)
     checked = check(document, having, world=world, robot=robot, reading=problems, tolerant=tolerant)
     if errors(checked.problems):

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 
 from momantu_bt.errors import MomantuError
 from momantu_bt.formats.places import Place
@@ -84,6 +85,15 @@ class Problems:
             message = f"more than {self._most} problems; from here on, nothing is looked at"
             self._found[Problem("too-large", message, problem.place)] = None
             raise TooManyProblems(self._found, {})
+
+    def soften(self, codes: Collection[str]) -> None:
+        """Turn the errors with one of these codes into warnings."""
+        self._found = {
+            replace(each, severity=Severity.WARNING)
+            if each.code in codes and each.severity is Severity.ERROR
+            else each: None
+            for each in self._found
+        }
 
     @property
     def grave(self) -> bool:

@@ -126,6 +126,7 @@ def _checked(tree: str, how: _How, *, quiet: bool) -> _FileChecked:
             robot=how.robot,
             include=how.include,
             tolerant=how.tolerant,
+            library=how.tolerant,
         )
     except (TreeNotFound, TreeError) as error:
         if not quiet:

@@ -16,14 +16,14 @@ from momantu_bt.drawing.dot import dot
 from momantu_bt.drawing.mermaid import mermaid
 from momantu_bt.drawing.svg import svg
 from momantu_bt.drawing.wires import Wire, wire_lines, wires
-from momantu_bt.errors import ExitCode
+from momantu_bt.errors import ExitCode, InputError
 from momantu_bt.formats.files import write_whole
 from momantu_bt.tree.catalogue.wording import value_text
 from momantu_bt.tree.check.named_world import world_of
 from momantu_bt.tree.load import load
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.registry import Registry
-from momantu_bt.tree.show.printing import lines
+from momantu_bt.tree.show.printing import lines, main_first
 
 INDENT = "  "
 DRAWINGS = {"svg": svg, "dot": dot, "mermaid": mermaid}
@@ -68,6 +68,8 @@ def show(
     registry = Registry.installed()
     document = _read(tree, registry, world, include)
     code = ExitCode.SUCCESS
+    if kinds and not document.trees:
+        raise InputError(f"{tree} has models alone, and no tree to draw")
     if other is not None:
         found = difference(document, _read(other, registry, world, include))
         text = "".join(f"{line.mark} {INDENT * line.depth}{line.text}\n" for line in found)
@@ -83,7 +85,9 @@ def show(
 
 def _read(tree: str, registry: Registry, world: str | None, include: list[Path] | None) -> Document:
     further = tuple(include or ())
-    return load(given_tree(tree), registry, world=world, include=further, tolerant=True).document
+    return load(
+        given_tree(tree), registry, world=world, include=further, tolerant=True, library=True
+    ).document
 
 
 def _picture(kind: str, document: Document, registry: Registry, with_wires: bool) -> str:
@@ -91,10 +95,14 @@ def _picture(kind: str, document: Document, registry: Registry, with_wires: bool
 
 
 def _words(document: Document, found: list[Wire], world: str | None) -> Iterator[str]:
+    if not document.trees:
+        count = len(document.models)
+        yield f"{document.file}: {count} model{'s' if count > 1 else ''}, no tree"
+        return
     yield f"{document.file}: {document.main}" + _where(world_of(document, world))
     for name, value in document.values.items():
         yield f"{INDENT}{name} = {value_text(value)}"
-    names = [document.main, *(name for name in document.trees if name != document.main)]
+    names = [tree.name for tree in main_first(document)]
     printed = list(lines(document))
     starts = [at for at, line in enumerate(printed) if line.depth == 0]
     for name, start, end in zip(names, starts, [*starts[1:], len(printed)], strict=True):

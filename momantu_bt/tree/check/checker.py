@@ -83,6 +83,8 @@ def _check(
 ) -> None:
     document = context.document
     if document.main not in document.trees:
+        if not document.trees and document.models:
+            return
         message = "no tree is left to run: those that there are cannot be read"
         context.problems.error("no-trees", _start(document), message, "see the other problems")
         return

@@ -119,7 +119,7 @@ class _Project:
         if self.broken and self.resolving:
             raise TreeError(self.broken, self.source)
         found = self.documents.get(main)
-        nothing = found is not None and not found.trees and not found.includes
+        nothing = found is not None and not (found.trees or found.includes or found.models)
         if found is None or (nothing and self.resolving):
             raise TreeError(errors(self.problems.sorted()), self.source)
         return self.whole(self.documents.pop(main)), self.problems

@@ -26,10 +26,14 @@ class Line:
 
 def lines(document: Document) -> Iterator[Line]:
     """The main tree and, below it, every other tree that the document has."""
-    others = [tree for name, tree in document.trees.items() if name != document.main]
-    for tree in (document.trees[document.main], *others):
+    for tree in main_first(document):
         yield Line(0, heading(tree), None)
         yield from tree_lines(tree.root, 1)
+
+
+def main_first(document: Document) -> list[Tree]:
+    """The trees of a document, the main one first; a file of models has none."""
+    return sorted(document.trees.values(), key=lambda tree: tree.name != document.main)
 
 
 def tree_lines(root: Node, depth: int = 0) -> Iterator[Line]:

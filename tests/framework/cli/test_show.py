@@ -100,8 +100,8 @@ def test_what_cannot_be_done_is_said(
 
 
 def test_a_tree_with_errors_is_not_drawn(capsys: Out, tree: Path) -> None:
-    tree.write_text(TREE.replace("pick", "pik"), encoding="utf-8")
+    tree.write_text(TREE.replace("retry: 3", "retry: often"), encoding="utf-8")
     assert main(["show", str(tree), "--svg"]) == 2
     said = capsys.readouterr()
     assert said.out == ""
-    assert "did you mean pick?" in said.err
+    assert "does not fit; expected int" in said.err
