@@ -44,6 +44,11 @@ def handler_codes(text: str, place: Place, problems: Problems) -> tuple[str, ...
     return tuple(code for code in codes if code not in wrong)
 
 
+def is_handler(text: str) -> bool:
+    """Whether a text is the code of a handler, or several."""
+    return all(_HANDLER_CODE.fullmatch(part.strip()) for part in text.split("|"))
+
+
 def is_xml(file: str, content: str) -> bool:
     """Whether a tree file is XML, by its suffix or, for other suffixes, by its first character."""
     suffix = Path(file).suffix.lower()

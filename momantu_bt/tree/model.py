@@ -176,6 +176,7 @@ class Tree:
     attributes: further attributes of its element in XML. unnamed: it has no ID there; then `name`
     is the one that BehaviorTree.CPP gives it. further: nodes beside the root, which are an error.
     metadata: of its model, see `NodeModel`. end_comments: those after its root node.
+    misread: what it declares could not all be read; errors that only follow from it are not told.
     """
 
     name: str
@@ -191,6 +192,7 @@ class Tree:
     further: list[Node] = field(default_factory=list, compare=False)
     comments_apart: bool = field(default=False, compare=False)
     metadata: tuple[MetadataFields, ...] = field(default=(), compare=False)
+    misread: bool = field(default=False, compare=False)
 
     def nodes(self) -> Iterator[Node]:
         """All its nodes in file order, without recursion, with those that are an error."""

@@ -96,6 +96,11 @@ class Problems:
         }
 
     @property
+    def count(self) -> int:
+        """The number of problems found so far."""
+        return len(self._found)
+
+    @property
     def grave(self) -> bool:
         """Whether there is an error. Advice that may only follow from one is not given then."""
         return any(problem.severity is Severity.ERROR for problem in self._found)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from momantu_bt.formats.places import Place
@@ -130,7 +130,7 @@ class Context:
         ports = dict(declared.ports)
         if AUTOREMAP in node.ports:
             ports[AUTOREMAP] = _AUTOREMAP_PORT
-        for name in node.ports if tree.open else ():
+        for name in node.ports if tree.open or tree.misread else ():
             if name and name not in ports:
                 ports[name] = Port(name, "inout", object, "")
         return Signature(tree.name, ports, declared.first)
@@ -164,7 +164,9 @@ class Context:
             ports: dict[str, Port] = {}
             for name, declaration in tree.ports.items():
                 try:
-                    ports[name] = declaration.port()
+                    port = declaration.port()
+                    may_lack = tree.misread and port.required
+                    ports[name] = replace(port, default=None) if may_lack else port
                 except KeyError:
                     ports[name] = Port(name, declaration.direction, object, declaration.doc)
             self._trees[tree.name] = Signature(tree.name, ports, _first(ports))

@@ -219,10 +219,14 @@ def test_files_that_cannot_be_included(
     assert hint in problems[0].hint
 
 
-def test_without_a_project_the_files_folder_is_the_limit(tmp_path: Path) -> None:
+def test_without_a_project_the_files_folder_is_the_limit(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     inside = tmp_path / "trees"
     inside.mkdir()
-    assert project_folder(inside / "a.yaml") == inside.resolve()
+    with monkeypatch.context() as patch:
+        patch.setattr(includes, "_MARKS", ("a mark that no folder above has",))
+        assert project_folder(inside / "a.yaml") == inside.resolve()
     (tmp_path / ".git").mkdir()
     assert project_folder(inside / "a.yaml") == tmp_path.resolve()
 

@@ -98,7 +98,7 @@ class _KeyCheck:
     def watched(self) -> None:
         """Check watched keys: they need not have a value, but something must write them."""
         given = {written.key for written in self.reads.written} | self.reads.given
-        for watch in self.reads.watched if not self.tree.open else ():
+        for watch in self.reads.watched if not (self.tree.open or self.tree.misread) else ():
             if watch.key not in given:
                 message = f"nothing writes ${watch.key}, which {watch.said} watches"
                 hint = valid_names(watch.key, sorted(given), "keys that something writes")
@@ -119,7 +119,7 @@ class _KeyCheck:
 
     def output_of_tree(self, name: str, key: Key | None, success: Known) -> None:
         place = self.tree.ports[name].place
-        if key is None and success.reached:
+        if key is None and success.reached and not self.tree.misread:
             message = f"the output {name!r} is not written on every way to success"
             self.context.problems.error("unwritten-output", place, message)
         for wrong in key.misfits(self.ports[name].type) if key is not None else ():
@@ -220,8 +220,9 @@ class _KeyCheck:
         self.reads.of_call(call, inside, before)
         kept = before.lacking(call.local(inside.removed))
         success = self.outputs(call.node, kept)
-        success = self.known_after(success, call, call.local(inside.success))
-        failure = self.known_after(kept, call, call.local(inside.failure))
+        given = call.local(call.node.ports) if call.tree.misread else {}
+        success = self.known_after(success, call, {**given, **call.local(inside.success)})
+        failure = self.known_after(kept, call, {**given, **call.local(inside.failure)})
         return After(success if inside.succeeds else NEVER, failure if inside.fails else NEVER)
 
     def known_after(self, known: Known, call: Call, shared: Mapping[str, str]) -> Known:

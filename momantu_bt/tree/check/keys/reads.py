@@ -119,7 +119,7 @@ class KeyReads:
 
     def _unwritten(self, name: str, before: Known, place: Place) -> None:
         """Report a key without a value, unless a caller or a write of `$@key` may give it one."""
-        if name in self.keys[self.tree.name].written_as_root:
+        if name in self.keys[self.tree.name].written_as_root or self.tree.misread:
             return
         declared = self.tree.ports.get(name)
         from_outside = self.tree.open if declared is None else declared.direction == "inout"

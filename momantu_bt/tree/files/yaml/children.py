@@ -6,6 +6,7 @@ from momantu_bt.formats.yaml.values import Entries, Items, Raw, Scalar
 from momantu_bt.tree.catalogue import NodeSpec
 from momantu_bt.tree.files.port_values import drop_duplicates
 from momantu_bt.tree.files.queue import into_handler
+from momantu_bt.tree.files.yaml.misplaced import settle_branches, settle_handlers
 from momantu_bt.tree.files.yaml.ports import read_port
 from momantu_bt.tree.files.yaml.reading import Reading, said
 from momantu_bt.tree.language import AGAIN, handler_codes
@@ -37,6 +38,7 @@ def read_handlers(node: Node, value: Raw, spec: NodeSpec, reading: Reading) -> N
     if not isinstance(value, Entries):
         reading.misfit(node, value, f"{said(node)} takes `try:` and `catch:`")
         return
+    settle_branches(value, spec.ports, reading.problems)
     drop_duplicates(value, reading.problems)
     for raw in split(node, _without(value, "catch"), spec, ("try",), reading):
         reading.later(raw, node.children.append)
@@ -74,6 +76,7 @@ def _handlers(node: Node, raw: Raw, spec: NodeSpec, reading: Reading) -> None:
         hint = "under it, lines such as `CODE | OTHER_CODE: node`"
         reading.error("wrong-value", raw.place, "`catch` is a mapping of codes to nodes", hint)
         return
+    settle_handlers(raw, reading.problems)
     drop_duplicates(raw, reading.problems)
     for key, value in raw.entries:
         codes = handler_codes(key.text, key.place, reading.problems)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from momantu_bt.formats.names import nearest, valid_names
+from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.places import Place
 from momantu_bt.formats.problems import errors
 from momantu_bt.formats.yaml.comments import Comment
@@ -14,6 +14,7 @@ from momantu_bt.formats.yaml.values import Entries, Items, Raw, Scalar
 from momantu_bt.tree.files.port_values import drop_duplicates, is_key, mapping, port_value
 from momantu_bt.tree.files.syntax import compose_with_comments
 from momantu_bt.tree.files.yaml.comments import attach
+from momantu_bt.tree.files.yaml.misplaced import Trees, indent_top
 from momantu_bt.tree.files.yaml.models import read_models
 from momantu_bt.tree.files.yaml.parts import read_document_xml, read_include, settle_order
 from momantu_bt.tree.files.yaml.trees import read_trees
@@ -112,6 +113,7 @@ class _Reader:
                 "not-a-tree", raw.place, "a tree file is a mapping", "begin with `momantu_bt: 1`"
             )
             return None
+        moved = indent_top(raw, _TOP, self.problems)
         drop_duplicates(raw, self.problems)
         having = {key.text: (key, value) for key, value in raw.entries}
         self.version(having.get("momantu_bt"), raw.place)
@@ -123,6 +125,8 @@ class _Reader:
         if "models" in having:
             document.models = read_models(having["models"][1], self.problems)
         entry = having.get("trees")
+        if entry is not None:
+            Trees(self.registry.skills, moved, self.problems).settle(entry[1])
         read_trees(entry, document, self.outside, self.registry, self.problems)
         self.report_no_tree(document, entry, raw.place)
         if not self.included:
@@ -153,8 +157,6 @@ class _Reader:
                 continue
             hint = valid_names(key.text, _TOP, "keys of a tree file")
             holds = isinstance(value, Entries | Items)
-            if holds and nearest(key.text, _TOP) is None:
-                hint = "if it is a tree, indent it and what belongs to it, under `trees:`"
             self.problems.error("unknown-key", key.place, f"a tree file has no {key.text!r}", hint)
             if holds:
                 return True

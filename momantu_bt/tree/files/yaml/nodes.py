@@ -12,6 +12,7 @@ from momantu_bt.tree.files.queue import Put
 from momantu_bt.tree.files.yaml.branches import read_branches, read_switch
 from momantu_bt.tree.files.yaml.children import read_control, read_decorator, read_handlers, split
 from momantu_bt.tree.files.yaml.kept import is_kept
+from momantu_bt.tree.files.yaml.misplaced import indent_branches
 from momantu_bt.tree.files.yaml.modifiers import modified, near_modifier
 from momantu_bt.tree.files.yaml.named import read_named
 from momantu_bt.tree.files.yaml.ports import read_leaf
@@ -59,6 +60,10 @@ class NodeReader:
             return self.reading.broken("no-node", raw.place, message, hint)
         key, value = chosen
         beside = [(k, v) for k, v in raw.entries if k is not key]
+        spec = SPELLED.get(key.text)
+        if spec is not None and spec.handlers and beside:
+            problems = self.reading.problems
+            value, beside = indent_branches(key, value, beside, spec.ports, problems)
         companions = {**COMPANIONS, **NAMED}.get(key.text, ())
         others = [(k, v) for k, v in beside if k.text in companions]
         if key.text in NAMED:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 
 from momantu_bt.formats.yaml.values import Entries, Items, Raw, Scalar
@@ -19,6 +20,9 @@ from momantu_bt.tree.language import AGAIN, TREE_NAME, TREE_NAME_HINT
 from momantu_bt.tree.model import Document, MetadataFields, Node, Tree
 from momantu_bt.tree.problems import Problems
 from momantu_bt.tree.registry import Registry
+
+_RUN_TOGETHER = re.compile(rf"({'|'.join(PORTS)})[^\w]")
+"""A key of a tree that runs into its value."""
 
 
 def read_trees(
@@ -65,11 +69,14 @@ def _header(key: Scalar, raw: Raw, problems: Problems) -> tuple[Tree, Raw]:
     tree = Tree(key.text, Node("", key.place), key.place)
     if not isinstance(raw, Entries):
         return tree, raw
+    told = problems.count
+    _near_words(raw, problems)
     drop_duplicates(raw, problems)
     header = {k.text: v for k, v in raw.entries if k.text in HEADER}
     for name in PORTS:
         if name in header:
             read_declarations(tree, header[name], name, problems)
+    tree.misread = problems.count > told
     if "open" in header:
         _open(tree, header["open"], problems)
     if "doc" in header:
@@ -82,6 +89,16 @@ def _header(key: Scalar, raw: Raw, problems: Problems) -> tuple[Tree, Raw]:
         read_tree_attributes(tree, header["tree"], problems)
     body = [(k, v) for k, v in raw.entries if k.text not in HEADER or k.text == "nodes"]
     return tree, Entries(body, raw.place, raw.flow)
+
+
+def _near_words(raw: Entries, problems: Problems) -> None:
+    """Report `inputs {…`, where a colon or a space is missing, and leave it out."""
+    wrong = [entry for entry in raw.entries if _RUN_TOGETHER.match(entry[0].text)]
+    for key, _ in wrong:
+        name = _RUN_TOGETHER.match(key.text)[1]
+        message = f"`{name}` needs a colon and a space after it"
+        problems.error("unknown-key", key.place, message, f"write `{name}: {{name: type}}`")
+    raw.entries = [entry for entry in raw.entries if entry not in wrong]
 
 
 def _read_nodes(tree: Tree, body: Raw, reader: NodeReader) -> None:
