@@ -93,12 +93,15 @@ def _header(key: Scalar, raw: Raw, problems: Problems) -> tuple[Tree, Raw]:
 
 def _near_words(raw: Entries, problems: Problems) -> None:
     """Report `inputs {…`, where a colon or a space is missing, and leave it out."""
-    wrong = [entry for entry in raw.entries if _RUN_TOGETHER.match(entry[0].text)]
-    for key, _ in wrong:
-        name = _RUN_TOGETHER.match(key.text)[1]
-        message = f"`{name}` needs a colon and a space after it"
-        problems.error("unknown-key", key.place, message, f"write `{name}: {{name: type}}`")
-    raw.entries = [entry for entry in raw.entries if entry not in wrong]
+    kept: list[tuple[Scalar, Raw]] = []
+    for key, value in raw.entries:
+        wrong = _RUN_TOGETHER.match(key.text)
+        if wrong is None:
+            kept.append((key, value))
+            continue
+        message = f"`{wrong[1]}` needs a colon and a space after it"
+        problems.error("unknown-key", key.place, message, f"write `{wrong[1]}: {{name: type}}`")
+    raw.entries = kept
 
 
 def _read_nodes(tree: Tree, body: Raw, reader: NodeReader) -> None:
