@@ -99,18 +99,36 @@ class Incident:
 
 
 @dataclass(frozen=True, slots=True)
+class Demanded:
+    """One demand of the goal, and whether it is met.
+
+    demand: in words, such as `can on table_b beside tag`. place: where it is written, such as
+    `four_rooms.yaml:164`; "" if that is not known. unmet: a sentence for each criterion that is not
+    met, of this object alone.
+    """
+
+    demand: str
+    place: str
+    met: bool
+    unmet: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class Verdict:
     """The referee's judgement of the episode, from ground truth.
 
-    success: every demand is met. unmet: one sentence for each demand that is not met.
+    success: every demand is met; None: nothing is demanded. unmet: one sentence for each criterion
+    that is not met.
     measures: the measured numbers (tilt in rad, distances in m, forces in N).
     incidents: everything dangerous that happened, ordered by time, demanded or not.
+    demands: each of them, if the world tells.
     """
 
-    success: bool
+    success: bool | None
     unmet: tuple[str, ...] = ()
     measures: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
     incidents: tuple[Incident, ...] = ()
+    demands: tuple[Demanded, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -32,9 +32,14 @@ def difference(first: Document, second: Document) -> list[Marked]:
     return [*_header(first, second), *_Difference(first, second).lines()]
 
 
+def _goal(document: Document) -> str | None:
+    return None if document.goal is None else value_text(document.goal)
+
+
 def _header(first: Document, second: Document) -> Iterator[Marked]:
     for word, before, after in (
         ("world", first.world, second.world),
+        ("goal", _goal(first), _goal(second)),
         ("main", first.main, second.main),
         ("include", _included(first), _included(second)),
     ):

@@ -14,7 +14,7 @@ from momantu_bt.errors import ExitCode
 from momantu_bt.failure import FailureValue
 from momantu_bt.formats.files import write_whole
 from momantu_bt.messages import plain
-from momantu_bt.world import Incident
+from momantu_bt.world import Demanded, Incident
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,8 +89,8 @@ class Report:
     """How a run ended.
 
     status: SUCCESS or FAILURE of the tree, INTERRUPTED, or ERROR. success: the referee's verdict;
-    None without a referee. unmet, measures: from the verdict. failure: why the tree failed, with
-    the causes.
+    None without a referee or a goal. unmet, measures, demands: from the verdict. failure: why the
+    tree failed, with the causes.
     sim_time_s: the world's clock at the tree's end. wall_time_s: from the first tick to the last.
     start_time_s: wall time before the first tick. ticks: number of ticks of the tree. blackboard:
     the root's values at the end. error: traceback of an internal error. incidents: dangerous events
@@ -119,6 +119,7 @@ class Report:
     versions: Mapping[str, str] = field(default_factory=dict)
     error: str | None = None
     incidents: tuple[Incident, ...] = ()
+    demands: tuple[Demanded, ...] = ()
     claims: Mapping[str, SkillClaims] | None = None
     faults: tuple[FaultReport, ...] = ()
     interrupted_by: str | None = None
@@ -164,6 +165,7 @@ class Report:
             "versions": dict(self.versions),
             "error": self.error,
             "incidents": [finite(plain(incident)) for incident in self.incidents],
+            "demands": [plain(demand) for demand in self.demands],
             "claims": None if self.claims is None else plain(self.claims),
             "faults": [plain(fault) for fault in self.faults],
             "interrupted_by": self.interrupted_by,

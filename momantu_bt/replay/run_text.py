@@ -13,6 +13,7 @@ from momantu_bt.record.report import Report
 from momantu_bt.record.text.changes import ChangeLines
 from momantu_bt.record.text.ending import ending_text
 from momantu_bt.replay.moment import ShownNode
+from momantu_bt.world import Demanded
 
 
 def headline(recording: Recording) -> str:
@@ -76,6 +77,10 @@ def report_of(data: Mapping[str, Any]) -> Report:
         nodes=(),
         fingerprint=data["fingerprint"],
         error=data["error"],
+        demands=tuple(
+            Demanded(d["demand"], d["place"], d["met"], tuple(d["unmet"]))
+            for d in data.get("demands", ())
+        ),
         interrupted_by=data.get("interrupted_by"),
     )
 

@@ -23,6 +23,7 @@ def run(
     *,
     world: str | World | None = None,
     robot: str | None = None,
+    goal: Any = None,
     seed: int = 0,
     values: Mapping[str, Any] | None = None,
     max_time: float = 600.0,
@@ -64,6 +65,7 @@ def run(
     options = RunOptions(
         world=world,
         robot=robot,
+        goal=goal,
         seed=seed,
         values=values or {},
         substitute=None if substitute is None else Path(substitute),

@@ -24,6 +24,7 @@ from momantu_bt.robot import RobotDescription
 from momantu_bt.running.assembly import program, set_up
 from momantu_bt.running.audit import Auditor
 from momantu_bt.running.calls import called_skills, check_calls
+from momantu_bt.running.goal import give_goal
 from momantu_bt.running.leftovers import Leftovers
 from momantu_bt.running.needed import LaunchError, check_parameters, check_sensors, services_of
 from momantu_bt.running.options import RunOptions
@@ -188,7 +189,10 @@ def open_world(
     check_calls({**called, **kinds}, registry, description)
     check_sensors(needed, description)
     try:
-        return entry.open(description, options.seed, referee=options.referee)
+        world = entry.open(description, options.seed, referee=options.referee)
+        if options.referee:
+            give_goal(world, prepared.document, opened=world is not options.world)
+        return world
     except MomantuError:
         raise
     except PLUGIN_ERRORS as error:  # a plug-in's code, which may raise anything

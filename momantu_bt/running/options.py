@@ -13,7 +13,7 @@ from momantu_bt.fault import Fault
 from momantu_bt.world import World
 
 _RECORDED = (
-    *("world", "robot", "max_time", "realtime", "referee", "audit", "faults"),
+    *("world", "robot", "goal", "max_time", "realtime", "referee", "audit", "faults"),
     "patience",
 )
 
@@ -24,6 +24,8 @@ class RunOptions:
 
     world: a name, a file, `"none"`, an open world (which stays open), or None for the tree's own.
     robot: a name or a file, or None for the world's default.
+    goal: what the referee demands, in the place of the tree's own goal: "world", "none", a text
+    such as "can on table_b beside tag", a mapping, or a list of these.
     seed: selects the variation of the episode. values: initial keys of the root's board, as with
     `--set`. substitute: a file of rules that replace nodes. include: further tree files, or folders
     of them, that have trees which the tree runs.
@@ -42,6 +44,7 @@ class RunOptions:
 
     world: str | World | None = None
     robot: str | None = None
+    goal: Any = None
     seed: int = 0
     values: Mapping[str, Any] = field(default_factory=dict)
     substitute: Path | None = None

@@ -53,6 +53,7 @@ def prepare(
         robot=options.robot,
         values=options.values,
         include=options.include,
+        goal=options.goal,
         tolerant=options.substitute is not None,
     ).document
     substitution = Substitution()

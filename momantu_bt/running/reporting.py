@@ -42,6 +42,7 @@ def report_of(
         versions=versions(),
         error=ending.error,
         incidents=() if verdict is None else verdict.incidents,
+        demands=() if verdict is None else verdict.demands,
         faults=faults,
         interrupted_by=ending.interrupted_by,
     )

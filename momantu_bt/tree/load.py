@@ -17,6 +17,7 @@ from momantu_bt.tree.files.includes import read_project
 from momantu_bt.tree.files.lookup import TreeNotFound, find
 from momantu_bt.tree.files.settings import Given
 from momantu_bt.tree.files.text import read_text
+from momantu_bt.tree.goals import given_goal
 from momantu_bt.tree.model import Document, Literal, Reference, Template
 from momantu_bt.tree.problems import Problems, TreeError
 from momantu_bt.tree.registry import Registry
@@ -35,6 +36,7 @@ def load(
     robot: str | None = None,
     values: Mapping[str, Any] | None = None,
     include: Sequence[Path] = (),
+    goal: Any = None,
     tolerant: bool = False,
     library: bool = False,
 ) -> Checked:
@@ -43,8 +45,9 @@ def load(
     tree: a path, the name of a bundled tree, or a text. values: keys of the root's board, in
     addition to those in the file or in their place (`--set`, `--values`), not converted ("66 mm");
     `Given` also has their places. include: further files, or folders of files, with trees
-    that the tree runs. tolerant: nodes, trees and keys that stand elsewhere are warnings.
-    library: so is a file that has no tree, or does not say which of its trees to run.
+    that the tree runs. goal: in the place of the tree's own (`--goal`).
+    tolerant: nodes, trees and keys that stand elsewhere are warnings. library: so is a file that
+    has no tree, or does not say which of its trees to run.
 
     Raises:
         TreeNotFound: there is no such file.
@@ -56,6 +59,8 @@ def load(
     if library:
         problems.soften(("no-main", "no-trees"))
     _override(document, values or {}, problems)
+    if goal is not None:
+        given_goal(document, goal)
     checked = check(document, having, world=world, robot=robot, reading=problems, tolerant=tolerant)
     if errors(checked.problems):
         raise TreeError(checked.problems, document.source)

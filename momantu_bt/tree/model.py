@@ -261,7 +261,8 @@ class Document:
     """A tree file with everything it includes.
 
     trees: the file's own and those of the files it includes; `Tree.place.file` tells them apart.
-        values: initial keys of the root's board. models: as the file has them; without those of its
+    goal: what the referee is to demand, as written: a text, a mapping, or a list of them.
+    values: initial keys of the root's board. models: as the file has them; without those of its
     trees that `Tree.ports` and `Tree.metadata` say whole. further_models: those of the files that
     it includes. source: the text, by file, for error
     displays.
@@ -281,11 +282,13 @@ class Document:
     trees: dict[str, Tree]
     world: str | None = None
     values: dict[str, Literal] = field(default_factory=dict)
+    goal: Literal | None = None
     includes: tuple[Include, ...] = ()
     models: tuple[NodeModel, ...] = ()
     further_models: tuple[NodeModel, ...] = field(default=(), compare=False)
     value_places: dict[str, Place] = field(default_factory=dict, compare=False)
     world_place: Place | None = field(default=None, compare=False)
+    goal_place: Place | None = field(default=None, compare=False)
     source: dict[str, str] = field(default_factory=dict, compare=False)
     header_comments: tuple[str, ...] = field(default=(), compare=False)
     value_comments: dict[str, tuple[str, ...]] = field(default_factory=dict, compare=False)

@@ -77,7 +77,8 @@ class Sower:
         trees = {name: self.tree(name, names) for name in names}
         values = {key: Literal(self.plain(2)) for key in self.some(_KEYS)}
         world = r.choice([None, "four_rooms", "none", "5"])
-        return Document("t.yaml", r.choice(names), trees, world, values)
+        goal = r.choice([None, Literal("none"), Literal("can on desk"), Literal(self.plain(2))])
+        return Document("t.yaml", r.choice(names), trees, world, values, goal)
 
     def some(self, names: Sequence[Any]) -> list[Any]:
         return self.random.sample(names, self.random.randint(0, min(3, len(names))))

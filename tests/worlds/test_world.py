@@ -26,10 +26,12 @@ from momantu_bt.claim import (
     TagAt,
     TagOn,
 )
+from momantu_bt.descriptions.goal import parse_demands
 from momantu_bt.geometry import Pose2D, Transform
+from momantu_bt.goal import DemandingWorld, Goal
 from momantu_bt.messages import BaseVelocity, JointPositions
 from momantu_bt.robot import RobotDescription, read_camera, read_laser
-from momantu_bt.world import TICK, World, WorldEntry, WorldError
+from momantu_bt.world import TICK, Demanded, World, WorldEntry, WorldError
 
 FETCH = fetch()
 
@@ -167,6 +169,33 @@ def test_a_world_without_referee_has_no_word_and_runs_the_same() -> None:
         opened.close()
         opened.close()
     assert states[0] == states[1]
+
+
+def test_the_referee_demands_what_it_is_told_from_where_it_is_written() -> None:
+    opened = four_rooms.open(FETCH, 2)
+    assert isinstance(opened, DemandingWorld)
+    own = opened.verdict()
+    assert own is not None
+    (demanded,) = own.demands
+    assert demanded.demand == "can on table_b beside tag"
+    name, line = demanded.place.split(":")
+    text = four_rooms.path.read_text(encoding="utf-8").splitlines()
+    assert (name, text[int(line) - 1]) == ("four_rooms.yaml", "goal:")
+    opened.demand(Goal(parse_demands(["can on table_a"]), "t.yaml:3"))
+    for _ in range(25):
+        opened.step()
+    stands = opened.verdict()
+    assert stands is not None
+    assert stands.success
+    assert stands.demands == (Demanded("can on table_a", "t.yaml:3", True),)
+    opened.demand(None)
+    opened.step()
+    nothing = opened.verdict()
+    assert nothing is not None
+    assert (nothing.success, nothing.unmet) == (None, ())
+    with pytest.raises(WorldError, match=r"the goal \(t.yaml:3\) is not possible here: .*'kan'"):
+        opened.demand(Goal(parse_demands("kan on table_a"), "t.yaml:3"))
+    opened.close()
 
 
 def test_seeds_differ_and_repeat() -> None:

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 from momantu_bt.claim import Sentence
 from momantu_bt.fault import Effect, Fault
 from momantu_bt.geometry import Transform
+from momantu_bt.goal import Goal
 from momantu_bt.lazy import lazily
 from momantu_bt.robot import RobotDescription
-from momantu_bt.world import Site, Verdict, Video, View
+from momantu_bt.world import Site, Verdict, Video, View, WorldError
 from momantu_worlds.sapien.faults.rows import possible, prepare
 from momantu_worlds.sapien.faults.stage import Stage
 from momantu_worlds.sapien.robot import SimulatedRobot
 from momantu_worlds.sapien.simulator import Simulator
+from momantu_worlds.scenes.arrange.episode import goal_of
 from momantu_worlds.scenes.geometry.bodies import Episode
 from momantu_worlds.scenes.referee.hand import hand_of
 from momantu_worlds.scenes.referee.judge import ClaimJudge
@@ -38,12 +41,13 @@ class SapienWorld:
     ) -> None:
         """path: the world file that the episode was drawn from."""
         self._path, self._episode = path, episode
+        self._description = description
         self.simulator = Simulator(description, episode, seed)
-        wanted = referee and episode.goal is not None
-        self._referee = (
-            Referee(episode, self.simulator.truth, hand_of(description)) if wanted else None
-        )
+        self._referee = self._referee_of(episode) if referee and episode.goals else None
         self._stage = Stage(self.simulator, episode, description, seed, self._referee)
+
+    def _referee_of(self, judged: Episode) -> Referee:
+        return Referee(judged, self.simulator.truth, hand_of(self._description))
 
     @property
     def name(self) -> str:
@@ -69,6 +73,20 @@ class SapienWorld:
         self.simulator.step()
         if self._referee is not None:
             self._referee.observe(self.simulator.now())
+
+    def demand(self, goal: Goal | None) -> None:
+        """See `momantu_bt.goal.DemandingWorld.demand`. Faults stay with the world's own goal."""
+        demands = () if goal is None else goal.demands
+        judged = replace(
+            self._episode,
+            goals=tuple(map(goal_of, demands)),
+            goals_place="" if goal is None else goal.place,
+        )
+        try:
+            self._referee = self._stage.referee = self._referee_of(judged)
+        except (KeyError, ValueError) as error:
+            place = "" if goal is None else f" ({goal.place})"
+            raise WorldError(f"the goal{place} is not possible here: {error.args[0]}") from None
 
     def verdict(self) -> Verdict | None:
         """The referee's verdict on the current state; None without a referee."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,7 +16,7 @@ from momantu_bt.world_plugins import WORLDS
 with lazily():
     from momantu_worlds import simulated_world
     from momantu_worlds.scenes import loading
-    from momantu_worlds.scenes.file import summary
+    from momantu_worlds.scenes.file import references, summary
     from momantu_worlds.scenes.site import maps
 
 if TYPE_CHECKING:
@@ -69,6 +69,10 @@ class WorldOfFile:
     def about(self) -> Mapping[str, Mapping[str, str]]:
         """Tags, loose objects, what varies between episodes and the goal, in words."""
         return summary.world_summary(self.path)
+
+    def goal_names(self) -> Mapping[str, Sequence[str]]:
+        """See `momantu_bt.goal.GoalNames`; raises as `site`."""
+        return references.goal_names(loading.load_world(self.path))
 
     def draw(self, seed: int) -> Episode:
         """The episode of a seed; raises WorldError."""

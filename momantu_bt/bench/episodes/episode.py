@@ -41,6 +41,7 @@ _PR_SET_PDEATHSIG = 1
 _KEPT = (
     *("world", "robot", "status", "success", "failure", "unmet", "measures", "sim_time_s"),
     *("wall_time_s", "start_time_s", "fingerprint", "error", "incidents", "claims", "faults"),
+    "demands",
 )
 """Fields that a row copies unchanged from a report."""
 
@@ -82,6 +83,7 @@ def run(spec: EpisodeSpec) -> tuple[Report, int]:
     options = RunOptions(
         world=spec.world,
         robot=spec.robot,
+        goal=spec.goal,
         seed=spec.seed,
         values=dict(spec.values),
         max_time=spec.max_time,
@@ -111,6 +113,7 @@ def _check(spec: EpisodeSpec, document: Document, registry: Registry) -> None:
         registry,
         world=spec.world,
         robot=spec.robot,
+        goal=spec.goal,
         values=spec.values,
         max_time=spec.max_time,
         referee=spec.referee,

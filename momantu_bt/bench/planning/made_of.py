@@ -29,6 +29,7 @@ from momantu_bt.tree.catalogue import NODES
 from momantu_bt.tree.catalogue.nodes import BEHAVIOURS, PLUGINS
 from momantu_bt.tree.check.named_world import WITHOUT_WORLD, world_of
 from momantu_bt.tree.files.settings import Given
+from momantu_bt.tree.goals import OPTION
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.plugins import SERVICES, SKILLS
 from momantu_bt.tree.registry import Registry
@@ -55,6 +56,7 @@ def made_of(
     values: Mapping[str, Any] | None = None,
     max_time: float = 600.0,
     referee: bool = True,
+    goal: Any = None,
 ) -> dict[str, str]:
     """All that decides an episode except its seed and its fault, by readable names.
 
@@ -68,7 +70,7 @@ def made_of(
     given = values.source if isinstance(values, Given) else {}
     folder = Path(document.file).parent
     for file, text in {**document.source, **faults_source(document)}.items():
-        if file not in given:
+        if file not in given and file != OPTION:
             found[f"the file {os.path.relpath(file, folder)}"] = _digest(text.encode())
     found["the world"] = world
     found["the robot"] = robot or "none"
@@ -81,6 +83,8 @@ def made_of(
         found["the robot"] = description.name
     found["the values"] = json.dumps(dict(values or {}), sort_keys=True, default=str)
     found["the time limit"] = f"{max_time:g} s"
+    if goal is not None:
+        found["the goal"] = json.dumps(goal, sort_keys=True, default=str)
     if not referee:
         found["the referee"] = "none"
     return found

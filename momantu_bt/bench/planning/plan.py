@@ -107,6 +107,7 @@ class Plan:
     values: Mapping[str, Any] = field(default_factory=dict)
     max_time: float = 600.0
     referee: bool = True
+    goal: Any = None
     limit: float = 900.0
     record: str = "none"
 
@@ -136,6 +137,7 @@ class Plan:
             dict(self.values),
             self.max_time,
             self.referee,
+            self.goal,
             fault,
             place,
             self.limit,

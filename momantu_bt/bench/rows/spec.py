@@ -25,10 +25,10 @@ class EpisodeSpec:
 
     key: names the episode on every machine. tree: path of its file. world, robot: as requested.
     values: keys of the root's board, raw as in a file. max_time: simulated seconds. referee:
-    False takes it out, and what the tree says counts. fault: as written, None without one.
-    record: a folder to make; None: no record. limit: seconds of wall time after which the watchdog
-    ends the process from outside. made_of: all else that decides the outcome, by name (versions,
-    digests of files and code).
+    False takes it out, and what the tree says counts. goal: as given, None for the tree's.
+    fault: as written, None without one. record: a folder to make; None: no record. limit: seconds
+    of wall time after which the watchdog ends the process from outside. made_of: all else that
+    decides the outcome, by name (versions, digests of files and code).
     """
 
     key: str
@@ -39,6 +39,7 @@ class EpisodeSpec:
     values: Mapping[str, Any] = field(default_factory=dict)
     max_time: float = 600.0
     referee: bool = True
+    goal: Any = None
     fault: str | None = None
     record: str | None = None
     limit: float = 900.0

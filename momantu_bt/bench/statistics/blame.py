@@ -22,7 +22,8 @@ _NUMBER = re.compile(r"-?\d+(\.\d+)?")
 class Blame:
     """node: its name, or "the referee", "the engine", "the process". place: `file:line` or "".
 
-    code: of the failure, or a sentence whose numbers are `#`.
+    place is that of the goal if the referee denies the success. code: of the failure, or a sentence
+    whose numbers are `#`.
     """
 
     node: str
@@ -45,7 +46,9 @@ def blame(row: Row) -> Blame:
         name, _, line = link["place"].rpartition(":")
         return Blame(link["node"], f"{PurePath(name).name}:{line}", link["code"])
     unmet = row["unmet"] or [f"the run was {row['status']}"]
-    return Blame(REFEREE, "", "; ".join(general(sentence) for sentence in unmet))
+    demands = sorted(row.get("demands") or (), key=lambda demand: bool(demand["met"]))
+    place = demands[0]["place"] if demands else ""
+    return Blame(REFEREE, place, "; ".join(general(sentence) for sentence in unmet))
 
 
 def innermost(failure: Mapping[str, Any]) -> Mapping[str, Any]:

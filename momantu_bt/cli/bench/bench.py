@@ -15,6 +15,7 @@ from momantu_bt.cli.shared.options import (
     OUT,
     RECORD,
     EpisodeLimit,
+    GoalGiven,
     Jobs,
     Judged,
     Kept,
@@ -69,6 +70,7 @@ def bench(
     values: Values = None,
     max_time: MaxTime = 600.0,
     referee: Judged = True,
+    goal: GoalGiven = None,
     episode_limit: EpisodeLimit = 900.0,
     fault: Annotated[
         list[str] | None,
@@ -130,7 +132,8 @@ def bench(
     demands = bench_setup.demands_of(place, fault or [], faults)
     broken: list[str | None] = [demand.fault for demand in demands] or [None]
     how = bench_setup.HowToRun(
-        world, robot, board, max_time, referee, episode_limit, chosen, broken
+        *(world, robot, board, max_time, referee, episode_limit, chosen, broken),
+        goal=given.given_goal(goal),
     )
     plan, document = bench_setup.plan_of(place, parse_seeds(seeds), how)
     bench_setup.check_faults(fault or [], document, how)

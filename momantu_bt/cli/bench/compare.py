@@ -14,6 +14,7 @@ from momantu_bt.cli.shared.options import (
     OUT,
     RECORD,
     EpisodeLimit,
+    GoalGiven,
     Jobs,
     Judged,
     Kept,
@@ -62,6 +63,7 @@ def compare(
     values: Values = None,
     max_time: MaxTime = 600.0,
     referee: Judged = True,
+    goal: GoalGiven = None,
     episode_limit: EpisodeLimit = 900.0,
     out: Annotated[
         Path, typer.Option(help="Folder with a folder of results for each tree, as bench's.")
@@ -84,7 +86,9 @@ def compare(
     """
     chosen = bench_setup.choose(record, RECORD, "--record")
     board = given.given_values(set_ or [], values)
-    how = bench_setup.HowToRun(world, robot, board, max_time, referee, episode_limit, chosen)
+    how = bench_setup.HowToRun(
+        world, robot, board, max_time, referee, episode_limit, chosen, goal=given.given_goal(goal)
+    )
     plans = [bench_setup.plan_of(tree, parse_seeds(seeds), how)[0] for tree in (tree_a, tree_b)]
     if plans[0].wanted == plans[1].wanted:
         raise InputError(f"{tree_a} and {tree_b} are the same; name two different trees")

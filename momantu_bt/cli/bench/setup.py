@@ -52,6 +52,7 @@ class HowToRun:
     limit: float
     record: str
     faults: Sequence[str | None] = field(default=(None,))
+    goal: Any = None
 
 
 def plan_of(tree: str, seeds: Sequence[int], how: HowToRun) -> tuple[Plan, Document]:
@@ -66,13 +67,13 @@ def plan_of(tree: str, seeds: Sequence[int], how: HowToRun) -> tuple[Plan, Docum
         "world": WORLDS.absolute(how.world),
         "robot": ROBOTS.absolute(how.robot),
     }
-    document = load(place, registry, values=how.values, **told).document
+    document = load(place, registry, values=how.values, goal=how.goal, **told).document
     refuse_missing(document, registry, Substitution())
     check_world(document, how.world, skills_in(document), registry)
     if WORLDS.is_path(document.world or ""):
         # on another machine, an episode has the tree in another folder
         told["world"] = told["world"] or WORLDS.absolute(world_of(document, None))
-    told |= {"max_time": how.max_time, "referee": how.referee}
+    told |= {"max_time": how.max_time, "referee": how.referee, "goal": how.goal}
     made = made_of(document, registry, values=how.values, **told)
     wanted = Wanted(tuple((seed, fault) for seed in seeds for fault in how.faults), made)
     values: Mapping[str, Any] = dict(how.values)

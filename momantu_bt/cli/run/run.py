@@ -15,7 +15,7 @@ import typer
 from momantu_bt import collector
 from momantu_bt.cli.shared import streams
 from momantu_bt.cli.shared.notices import notice
-from momantu_bt.cli.shared.options import TREE, Include, Robot
+from momantu_bt.cli.shared.options import TREE, GoalGiven, Include, Robot
 from momantu_bt.errors import TRACEBACK, ExitCode, InputError, MomantuError
 from momantu_bt.formats.files import check_writable
 from momantu_bt.lazy import lazily
@@ -77,6 +77,7 @@ def run(
     referee: Annotated[
         bool, typer.Option("--referee/--no-referee", help="Whether the referee judges the run.")
     ] = True,
+    goal: GoalGiven = None,
     substitute: Annotated[
         Path | None, typer.Option(help="A YAML file of rules that replace nodes, for tests.")
     ] = None,
@@ -110,6 +111,7 @@ def run(
       momantu-bt run trees/bring_object.yaml --seed 3 --video run.mp4 --report run.json
       momantu-bt run bring_object --set "tag_edge=150 mm" --view
       momantu-bt run bring_object --robot my_robot/robot.yaml
+      momantu-bt run my_tree.yaml --goal "can on table_b beside tag"
       momantu-bt run bring_object --fault "camera.dead@12 s:for=10 s"
     """
     terminal = terminals.Terminal() if terminals.is_interactive() and not unattended else None
@@ -124,6 +126,7 @@ def run(
         max_time=max_time,
         realtime=realtime,
         referee=referee,
+        goal=given.given_goal(goal),
         patience=patience,
         record=record,
         person=terminal or person.Scripted(),

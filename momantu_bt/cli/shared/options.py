@@ -25,6 +25,14 @@ MaxTime: TypeAlias = Annotated[
 Judged: TypeAlias = Annotated[
     bool, typer.Option("--referee/--no-referee", help="Whether the referee judges the episodes.")
 ]
+GoalGiven: TypeAlias = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--goal",
+        metavar="GOAL",
+        help="What the referee demands: world, none, 'can on table_b beside tag', or FILE.yaml.",
+    ),
+]
 EpisodeLimit: TypeAlias = Annotated[
     float, typer.Option(min=1.0, help="Seconds of wall time after which an episode is killed.")
 ]

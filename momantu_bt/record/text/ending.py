@@ -37,4 +37,14 @@ def _referee(report: Report) -> str:
         return ""
     if report.success:
         return "; the referee agrees" if report.status != FAILURE else "; the referee sees success"
-    return f"; the referee denies success: {', '.join(report.unmet) or 'no reason given'}"
+    reason = ", ".join(report.unmet) or "no reason given"
+    return f"; the referee denies success: {reason}{_demanded(report)}"
+
+
+def _demanded(report: Report) -> str:
+    """What was demanded, where that is written, and how to do without."""
+    wanted = ", ".join(demand.demand for demand in report.demands)
+    places = ", ".join(dict.fromkeys(d.place for d in report.demands if d.place))
+    if not wanted:
+        return "; --no-referee leaves it to the tree"
+    return f"; demanded: {wanted}{places and f' ({places})'}; --no-referee leaves it to the tree"

@@ -9,6 +9,7 @@ from momantu_bt.formats.places import Place
 from momantu_bt.importing import output_aside
 from momantu_bt.plugins import PluginError
 from momantu_bt.robots.plugins import ROBOTS
+from momantu_bt.tree.check.goal import check_goal
 from momantu_bt.tree.check.named_world import world_of
 from momantu_bt.tree.check.signatures import Context
 from momantu_bt.world import WorldError
@@ -32,7 +33,9 @@ def look_up_surroundings(context: Context, world: str | None, robot: str | None)
         )
         robot_place = start if robot is None else _told(ROBOT_OPTION, robot)
         robot = robot or default
-    elif robot is not None:
+    else:
+        check_goal(context, None)
+    if name is None and robot is not None:
         robot_place = _told(ROBOT_OPTION, robot)
     if robot is not None:
         _look_up_robot(context, robot, robot_place)
@@ -54,6 +57,7 @@ def _look_up_world(context: Context, name: str, place: Place) -> str | None:
         entry = worlds[name]
         with output_aside():
             context.site = entry.site()
+            check_goal(context, entry)
         return entry.default_robot
     except DescriptionError as error:
         _broken("broken-world", context, error)

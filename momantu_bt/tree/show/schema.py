@@ -59,6 +59,10 @@ def _header() -> Schema:
         "momantu_bt": {"const": 1, "description": "the version of the language"},
         "include": {"type": "array", "items": {"type": ["string", "object"]}},
         "world": {"type": "string", "description": "the world that the tree is meant for"},
+        "goal": {
+            "type": ["string", "object", "array"],
+            "description": "what the referee demands: world, none, or can on table_b beside tag",
+        },
         "main": {"type": "string", "description": "the tree to run"},
         "values": {"type": "object", "description": "the first keys of the root's board"},
         "models": {"type": ["array", "null"], "description": "what an XML file says of nodes"},

@@ -43,6 +43,7 @@ FIELDS = {
     "versions": dict,
     "error": str,
     "incidents": list,
+    "demands": list,
     "claims": dict,
     "faults": list,
     "interrupted_by": str,

@@ -85,7 +85,7 @@ EPISODE = Episode(
     suns=(),
     lamps=(),
     site=Site("two_rooms", places={"there": Pose2D(1.5, -1.0, 0.0)}, surfaces=SURFACES),
-    goal=Goal("can", "b", "tag", 0.1, 0.3, 1.0, 0.1, 0.5, 0.1, 100.0),
+    goals=(Goal("can", "b", "tag", 0.1, 0.3, 1.0, 0.1, 0.5, 0.1, 100.0),),
     doorways={"door": Gap((0.0, 0.0), 0.4)},
 )
 
@@ -207,7 +207,7 @@ CASES |= {
             table("b", 2.55, 2.55),
             tag(Transform((2.8, 2.8, HEIGHT + 0.0005))),
             robot=replace(ROBOT, reach=(0.2, 0.4, 0.5)),
-            goal=replace(EPISODE.goal, max_distance=0.1),
+            goals=(replace(EPISODE.goal, max_distance=0.1),),
         ),
         "goal-out-of-reach",
         (),

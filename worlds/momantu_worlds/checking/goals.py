@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from momantu_bt.findings import FindingAtKeys
+from momantu_bt.formats.places import KeyPath
 from momantu_bt.formats.problems import Severity
 from momantu_bt.geometry import Array, Transform
 from momantu_worlds.checking.convex import Convex, solids_of
@@ -28,10 +29,13 @@ FAR = 2.0
 
 
 def goals(scenario: Scenario) -> Iterator[FindingAtKeys]:
-    """The goal is not met at the start, and the item can be reached, grasped and set down."""
-    goal = scenario.episode.goal
-    if goal is None:
-        return
+    """No demand is met at the start; each item can be reached, grasped and set down."""
+    several = len(scenario.episode.goals) > 1
+    for number, goal in enumerate(scenario.episode.goals):
+        yield from _demand(scenario, goal, ("goal", number) if several else ("goal",))
+
+
+def _demand(scenario: Scenario, goal: Goal, place: KeyPath) -> Iterator[FindingAtKeys]:
     item = scenario.episode.body(goal.item)
     yield from _item(scenario, item)
     if _met(scenario, goal, item):
@@ -40,7 +44,7 @@ def goals(scenario: Scenario) -> Iterator[FindingAtKeys]:
             "goal-met",
             f"{goal.item} already stands {_where(goal)} at the start",
             "begin with the item elsewhere, or demand less `goal.distance`",
-            ("goal",),
+            place,
             about=(),
         )
     spots = _spots(scenario, goal, item)
@@ -50,7 +54,7 @@ def goals(scenario: Scenario) -> Iterator[FindingAtKeys]:
             "goal-no-room",
             f"there is no free spot for {goal.item} {_where(goal)}",
             "move the tag further in, or make room beside it",
-            ("goal",),
+            place,
             about=(),
         )
     elif (far := _farness(scenario, spots)) > scenario.robot.reach[2]:
@@ -60,7 +64,7 @@ def goals(scenario: Scenario) -> Iterator[FindingAtKeys]:
             f"every free spot for {goal.item} {_where(goal)} is {_meters(far)} from the floor that "
             f"{scenario.robot.name} can reach; its arm reaches {scenario.robot.reach[2]:g} m",
             "move the tag nearer to the edge",
-            ("goal",),
+            place,
             about=(),
             amount=far,
         )

@@ -167,13 +167,13 @@ def _start(canvas: Canvas, scenario: Scenario) -> None:
 
 def _names(canvas: Canvas, scenario: Scenario) -> None:
     """Names of surfaces and of what the goal is about first, then of all that there is room for."""
-    goal = scenario.episode.goal
+    goals = scenario.episode.goals
     wanted = {body.name for body in scenario.bodies if body.category == "tag"}
-    if goal is not None:
-        wanted |= {name for name in (goal.item, goal.marker) if name is not None}
+    wanted |= {name for goal in goals for name in (goal.item, goal.marker) if name is not None}
+    items = {goal.item for goal in goals}
     for body in scenario.bodies:
         if body.name in wanted:
-            color = RED if goal is not None and body.name == goal.item else INK
+            color = RED if body.name in items else INK
             canvas.dot(body.map_from_body.position, 4, color)
             canvas.text(body.name, body.map_from_body.position, color, 15, above=14)
     for name, (map_from_top, size) in scenario.surfaces.items():

@@ -17,6 +17,7 @@ FORMAT = "4"
 _ROOT = "root"
 _PARTS = ("BehaviorTree", "TreeNodesModel", "include")
 _OF_ROOT = ("BTCPP_format", "main_tree_to_execute", "project_name")
+_OURS_OF_ROOT = ("world", "goal", "version")
 _OLD = "3"
 
 
@@ -34,8 +35,8 @@ def check_header(root: Element, problems: Problems) -> None:
     _check_format(root, problems)
     for each in root.attributes:
         if each.space == OURS:
-            if each.name not in ("world", "version"):
-                report_unknown_attribute(each, ["world", "version"], "<root>", problems)
+            if each.name not in _OURS_OF_ROOT:
+                report_unknown_attribute(each, [*_OURS_OF_ROOT], "<root>", problems)
         elif not each.space and each.name not in _OF_ROOT and _is_slip(each.name):
             with problems.keeping():
                 report_unknown_attribute(each, list(_OF_ROOT), "<root>", problems)

@@ -79,10 +79,13 @@ def _root(document: Document, body: list[str]) -> str:
     if document.main_named:
         words += attribute("main_tree_to_execute", document.missing_main or document.main)
     words += "".join(attribute(name, text) for name, text in document.attributes.items())
-    if document.world is not None or any(_OURS.search(line) for line in body):
+    ours = (document.world, document.goal) != (None, None)
+    if ours or any(_OURS.search(line) for line in body):
         words += attribute("xmlns:momantu", OURS) + attribute(f"{PREFIX}version", str(VERSION))
     if document.world is not None:
         words += attribute(f"{PREFIX}world", document.world)
+    if document.goal is not None:
+        words += attribute(f"{PREFIX}goal", literal(document.goal.value))
     return f"<root{words}>"
 
 

@@ -17,7 +17,7 @@ from momantu_bt.formats.yaml.values import Entries, Items, Raw
 from momantu_bt.tree.files.yaml.models import add_comment
 from momantu_bt.tree.model import Document, Node, PortDeclaration, Tree
 
-_FIRST_KEYS = ("momantu_bt", "world", "main", "include", "xml")
+_FIRST_KEYS = ("momantu_bt", "world", "goal", "main", "include", "xml")
 _PORT_KEYS = ("inputs:", "outputs:", "inouts:", "doc:", "open:", "metadata:", "tree:")
 _DASH = 2
 """The columns of `- `: an item's name stands so far to the right of its list."""

@@ -23,7 +23,7 @@ from momantu_bt.tree.model import Document, Include, Literal, Tree
 from momantu_bt.tree.problems import Problems, TooManyProblems, TreeError
 from momantu_bt.tree.registry import Registry
 
-_TOP = ("momantu_bt", "include", "world", "main", "values", "trees", "models", "xml")
+_TOP = ("momantu_bt", "include", "world", "goal", "main", "values", "trees", "models", "xml")
 
 
 def read(text: str, file: str, registry: Registry | None = None) -> tuple[Document, Problems]:
@@ -132,6 +132,7 @@ class _Reader:
         if not self.included:
             self.main(document, having.get("main"))
         self.world(document, having.get("world"))
+        self.goal(document, having.get("goal"))
         self.values(document, having.get("values"))
         return document
 
@@ -209,6 +210,11 @@ class _Reader:
             document.world, document.world_place = raw.value, raw.place
         else:
             self.problems.error("wrong-value", raw.place, "`world` is the name of a world")
+
+    def goal(self, document: Document, entry: tuple[Scalar, Raw] | None) -> None:
+        if entry is not None:
+            document.goal = self.written_out(entry[1], "the goal")
+            document.goal_place = entry[1].place
 
     def values(self, document: Document, entry: tuple[Scalar, Raw] | None) -> None:
         if entry is None:

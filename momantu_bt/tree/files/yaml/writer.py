@@ -65,6 +65,8 @@ def _header(document: Document, *, comments: bool) -> list[str]:
         lines.append(f"include: [{paths}]")
     if document.world is not None:
         lines.append(f"world: {scalar(document.world)}")
+    if document.goal is not None:
+        lines.append(f"goal: {literal(document.goal.value)}")
     if not document.main_named:
         return lines
     main = document.missing_main or document.main

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import pytest
 from momantu_worlds.sapien.build.truth import JointSpeed
 from momantu_worlds.scenes.geometry.bodies import Body, Box, Cylinder, Episode, Goal, Part
+from momantu_worlds.scenes.referee.demand import tilt
 from momantu_worlds.scenes.referee.hand import Hand
-from momantu_worlds.scenes.referee.referee import Referee, tilt
+from momantu_worlds.scenes.referee.referee import Referee
 
 from momantu_bt.geometry import Array, Pose2D, Transform, quaternion_from_axis_angle
-from momantu_bt.world import Site
+from momantu_bt.world import Demanded, Site, Verdict
 
 TABLE_TOP = 0.5
 HAND = Hand("gripper_link", frozenset({"left_finger", "right_finger"}), frozenset({"elbow"}))
@@ -87,7 +88,7 @@ def episode() -> Episode:
         body("can", CAN, 5, 5, 0.7),
         body("mug", CAN, -0.2, -0.3, TABLE_TOP),
     )
-    return Episode("test", 0, bodies, Pose2D(0, 0), (0, 0, 0), (), (), Site("test"), GOAL)
+    return Episode("test", 0, bodies, Pose2D(0, 0), (0, 0, 0), (), (), Site("test"), (GOAL,))
 
 
 def good_truth() -> FakeTruth:
@@ -256,8 +257,48 @@ def test_tilt_is_the_angle_of_the_axis_whatever_the_yaw():
         assert tilt(turned) == pytest.approx(0.0, abs=1e-7)
 
 
-def test_an_episode_without_a_goal_cannot_be_judged():
-    whole = episode()
-    bare = Episode("bare", 0, whole.bodies, whole.start, (0, 0, 0), (), (), whole.site)
-    with pytest.raises(ValueError, match="no goal"):
-        Referee(bare, good_truth(), HAND)
+def test_without_a_goal_nothing_is_denied_but_danger_is_reported():
+    truth = good_truth()
+    truth.touches = [Touch("base_link", "table_b", 400.0)]
+    referee = Referee(replace(episode(), goals=()), truth, HAND)
+    referee.observe(TICK)
+    verdict = referee.verdict()
+    assert (verdict.success, verdict.unmet, verdict.demands) == (None, (), ())
+    assert [incident.kind for incident in verdict.incidents] == ["force"]
+
+
+MUG = replace(GOAL, item="mug", marker=None, max_others_shift=0.05)
+
+
+def judged(truth: FakeTruth, *goals: Goal) -> Verdict:
+    referee = Referee(replace(episode(), goals=goals, goals_place="w.yaml:7"), truth, HAND)
+    for tick in range(1, 31):
+        referee.observe(tick * TICK)
+    return referee.verdict()
+
+
+def test_each_of_several_demands_is_judged_and_told():
+    truth = good_truth()
+    met = judged(truth, GOAL, MUG)
+    assert met.success
+    assert met.demands == (
+        Demanded("can on table_b beside tag", "w.yaml:7", True),
+        Demanded("mug on table_b", "w.yaml:7", True),
+    )
+    assert {"can.tilt", "mug.tilt", "force"} <= set(met.measures)
+    truth.poses["mug"] = tilted(truth.poses["mug"], 20)
+    half = judged(truth, GOAL, MUG)
+    assert half.success is False
+    assert [demand.met for demand in half.demands] == [True, False]
+    assert half.unmet == half.demands[1].unmet == ("mug is tilted 20.0 deg, more than 5.0 deg",)
+
+
+def test_what_is_demanded_may_be_moved_and_the_strictest_limits_count():
+    truth = good_truth()
+    truth.poses["mug"] = Transform((-0.2, 0.3, TABLE_TOP))
+    assert not judged(truth, GOAL).success
+    assert judged(truth, GOAL, MUG).success
+    truth = good_truth()
+    truth.touches.append(Touch("base_link", "table_b", 120.0))
+    assert judged(truth, GOAL, MUG).success
+    assert not judged(truth, GOAL, replace(MUG, max_force=100.0)).success

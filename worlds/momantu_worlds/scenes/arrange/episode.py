@@ -6,6 +6,7 @@ import math
 from collections.abc import Collection, Iterator
 from types import MappingProxyType
 
+from momantu_bt.descriptions.goal import GoalDemand
 from momantu_bt.geometry import Transform
 from momantu_bt.world import Site
 from momantu_worlds.scenes.arrange.given_bodies import given_bodies
@@ -17,7 +18,6 @@ from momantu_worlds.scenes.catalogue.furniture import furniture
 from momantu_worlds.scenes.catalogue.shelves import boarded
 from momantu_worlds.scenes.catalogue.tag36h11 import picture_edge, tag_picture
 from momantu_worlds.scenes.file.furniture import Piece, Table
-from momantu_worlds.scenes.file.site import GoalDemand
 from momantu_worlds.scenes.file.values import transform
 from momantu_worlds.scenes.file.walls import LEAF
 from momantu_worlds.scenes.file.world import WorldFile
@@ -56,7 +56,8 @@ def build(world: WorldFile, layout: Layout, site: Site) -> Episode:
         suns=layout.light.suns,
         lamps=layout.light.lamps,
         site=site,
-        goal=None if world.goal is None else goal_of(world.goal),
+        goals=tuple(map(goal_of, world.demands)),
+        goals_place=world.goal_place,
         doorways=MappingProxyType(
             {name: Gap(door.at, door.clear) for name, door in world.all_doorways.items()}
         ),
@@ -155,7 +156,7 @@ def tag_pose(tag: PlacedTag, layout: Layout) -> Transform:
 
 
 def goal_of(goal: GoalDemand) -> Goal:
-    """The referee's criteria."""
+    """The referee's criteria for one demand."""
     return Goal(
         item=goal.item,
         support=goal.on,

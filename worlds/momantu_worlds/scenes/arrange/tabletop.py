@@ -211,7 +211,8 @@ class _Crowd:
         tags: Sequence[PlacedTag],
     ) -> None:
         assert world.distractors is not None
-        self._rule, self._table, self._goal, self._name = world.distractors, table, world.goal, name
+        self._rule, self._table, self._name = world.distractors, table, name
+        self._goal = world.demands[0] if world.demands else None
         item = next((o for o in objects if o.name == world.sought), None)
         self._item = item
         self._objects = [disc_of(o) for o in objects if o.table == name and o is not item]

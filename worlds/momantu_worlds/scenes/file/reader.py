@@ -44,7 +44,8 @@ def parse_world(text: str, path: Path) -> WorldFile:
     reading = Reading(path, text, WorldFileError)
     tunables = list(tunable_problems(reading, ("site", "services")))
     try:
-        world = checked(reading, WorldFile, WorldFileError).located(path)
+        world = checked(reading, WorldFile, WorldFileError)
+        world = world.located(path, reading.at(("goal",), key=True).line)
     except WorldFileError as error:
         found = [*error.problems, *_beside(reading, error), *tunables]
         raise WorldFileError(path, text, found) from None

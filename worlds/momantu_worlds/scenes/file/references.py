@@ -124,18 +124,29 @@ class _Names:
                 yield ("distractors", "on", number), top
 
     def _goal(self) -> Iterator[KeyMessage]:
-        world, goal = self._world, self._world.goal
-        if goal is None:
-            return
-        things = [*([world.item.name] if world.item is not None else ()), *world.objects]
-        yield from self._missing(("goal", "item"), goal.item, things, "object")
-        yield from self._missing(("goal", "on"), goal.on, self._surfaces, "table")
-        if goal.beside is None:
-            return
-        markers = [*world.all_tags, *world.objects, *self._surfaces, *world.bodies]
-        yield from self._missing(("goal", "beside"), goal.beside, markers, "tag or body")
-        if goal.beside == goal.item:
-            yield ("goal", "beside"), f"{goal.item!r} cannot stand beside itself"
+        world = self._world
+        names = goal_names(world)
+        for number, demand in enumerate(world.demands):
+            place: KeyPath = ("goal", number) if isinstance(world.goal, tuple) else ("goal",)
+            yield from self._missing((*place, "item"), demand.item, names["item"], "object")
+            yield from self._missing((*place, "on"), demand.on, names["on"], "table")
+            if demand.beside is None:
+                continue
+            yield from self._missing(
+                (*place, "beside"), demand.beside, names["beside"], "tag or body"
+            )
+            if demand.beside == demand.item:
+                yield (*place, "beside"), f"{demand.item!r} cannot stand beside itself"
+
+
+def goal_names(world: WorldFile) -> dict[str, tuple[str, ...]]:
+    """The names that a goal's keys can have."""
+    surfaces = surface_names(world)
+    return {
+        "item": (*([world.item.name] if world.item is not None else ()), *world.objects),
+        "on": surfaces,
+        "beside": (*world.all_tags, *world.objects, *surfaces, *world.bodies),
+    }
 
 
 def surface_names(world: WorldFile) -> tuple[str, ...]:

@@ -1,29 +1,13 @@
-"""The goal and the site of a world file."""
+"""The site of a world file."""
 
 from __future__ import annotations
 
-import math
 from typing import Annotated, Any
 
 from pydantic import Field
 
-from momantu_bt.descriptions.quantities import Angle, Force, Size, Time
+from momantu_bt.descriptions.quantities import Size
 from momantu_worlds.scenes.file.values import Name, Part, PlanarPose
-
-
-class GoalDemand(Part):
-    """The goal: an object on a surface, optionally within `distance` of a tag or body."""
-
-    item: Name
-    on: Name
-    beside: Name | None = None
-    tilt: Angle = math.radians(5)
-    distance: Size = 0.4
-    still: Time = 1.0
-    gripper: Size = 0.1
-    others_tilt: Angle = math.radians(30)
-    others_shift: Size = 0.1
-    force: Force = 150.0
 
 
 class ObjectSizes(Part):

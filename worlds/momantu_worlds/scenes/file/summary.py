@@ -23,9 +23,18 @@ def world_summary(path: Path) -> dict[str, dict[str, str]]:
         "Tags": dict(_named(world, "tag", "tags")),
         "Loose things": dict(_named(world, "item", "objects")),
         "What an episode varies": dict(_varying(world)),
-        "Goal": {key: _words(value) for key, value in _part(world, "goal").items()},
+        "Goal": dict(_goal(world.get("goal"))),
     }
     return {title: dict(list(lines.items())[:MOST]) for title, lines in sections.items() if lines}
+
+
+def _goal(goal: Any) -> Iterator[tuple[str, str]]:
+    if isinstance(goal, dict):
+        yield from ((key, _words(value)) for key, value in goal.items())
+    elif isinstance(goal, str):
+        yield "demand", goal
+    for number, demand in enumerate(goal if isinstance(goal, list) else (), 1):
+        yield f"demand {number}", _words(demand)
 
 
 def _named(world: dict[str, Any], one: str, many: str) -> Iterator[tuple[str, str]]:

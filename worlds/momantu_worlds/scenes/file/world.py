@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, PrivateAttr
 
+from momantu_bt.descriptions.goal import GoalDemand, GoalDemands, demands
 from momantu_bt.formats.maps import picture_file
 from momantu_bt.geometry import Pose2D
 from momantu_worlds.scenes.file.bodies import BodyNote
@@ -22,7 +23,7 @@ from momantu_worlds.scenes.file.building import (
 )
 from momantu_worlds.scenes.file.furniture import Piece, Table
 from momantu_worlds.scenes.file.objects import Distractors, Item, ObjectNote, Tag, TagNote
-from momantu_worlds.scenes.file.site import GoalDemand, SiteNotes
+from momantu_worlds.scenes.file.site import SiteNotes
 from momantu_worlds.scenes.file.values import Name, Part
 from momantu_worlds.scenes.file.variation import Light, Start, Unknown
 from momantu_worlds.scenes.file.walls import RoomWalls, WallRun, given_runs
@@ -52,14 +53,15 @@ class WorldFile(Part):
     start: Start
     unknown: Unknown | None = None
     light: Light = Light()
-    goal: GoalDemand | None = None
+    goal: GoalDemands | None = None
     site: SiteNotes = SiteNotes()
 
     _file: Path = PrivateAttr(default=Path())
+    _goal_line: int = PrivateAttr(default=1)
 
-    def located(self, file: Path) -> WorldFile:
-        """The same world, with the path of the file that it was read from."""
-        self._file = file
+    def located(self, file: Path, goal_line: int = 1) -> WorldFile:
+        """The same world, with the file that it was read from, and the line of its goal there."""
+        self._file, self._goal_line = file, goal_line
         return self
 
     @property
@@ -90,10 +92,20 @@ class WorldFile(Part):
         return (self._file, *self.mesh_files(), map_file, picture_file(map_file))
 
     @property
+    def demands(self) -> tuple[GoalDemand, ...]:
+        """What the goal demands; nothing without a goal."""
+        return demands(self.goal)
+
+    @property
+    def goal_place(self) -> str:
+        """Where the goal is written: `four_rooms.yaml:164`."""
+        return f"{self._file.name}:{self._goal_line}"
+
+    @property
     def sought(self) -> str | None:
-        """The object to bring: the goal's, or the item."""
-        if self.goal is not None:
-            return self.goal.item
+        """The object to bring: the goal's first, or the item."""
+        if self.demands:
+            return self.demands[0].item
         return None if self.item is None else self.item.name
 
     @cached_property

@@ -136,7 +136,7 @@ class PointLight:
 
 @dataclass(frozen=True, slots=True)
 class Goal:
-    """What the referee demands: `item` stands on `support` beside `marker` (names of bodies).
+    """One demand of the referee: `item` stands on `support` beside `marker` (names of bodies).
 
     marker: None: it need not stand beside anything. max_tilt: rad from upright. max_distance: m
     between item and marker, along the floor.
@@ -156,6 +156,10 @@ class Goal:
     max_others_shift: float
     max_force: float
 
+    def __str__(self) -> str:
+        beside = "" if self.marker is None else f" beside {self.marker}"
+        return f"{self.item} on {self.support}{beside}"
+
 
 @dataclass(frozen=True, slots=True)
 class Gap:
@@ -170,7 +174,8 @@ class Episode:
     """One episode. All poses are in the map; the floor is z = 0.
 
     start: the true pose of the robot's base at the start. ambient: light from all directions.
-    site: what the robot is told. goal: what the referee demands. doorways: by name.
+    site: what the robot is told. goals: what the referee demands. goals_place: where that is
+    written. doorways: by name.
     """
 
     name: str
@@ -181,8 +186,14 @@ class Episode:
     suns: tuple[SunLight, ...]
     lamps: tuple[PointLight, ...]
     site: Site
-    goal: Goal | None = None
+    goals: tuple[Goal, ...] = ()
     doorways: Mapping[str, Gap] = field(default_factory=lambda: MappingProxyType({}))
+    goals_place: str = ""
+
+    @property
+    def goal(self) -> Goal | None:
+        """The first of the goals: what the episode is about."""
+        return self.goals[0] if self.goals else None
 
     def body(self, name: str) -> Body:
         """The body of that name; KeyError lists the known names if there is none."""

@@ -16,7 +16,7 @@ from momantu_bt.robot import RobotDescription
 from momantu_worlds.scenes.catalogue.tag36h11 import CODES, tag_picture
 from momantu_worlds.scenes.geometry.bodies import Body, Picture
 from momantu_worlds.scenes.geometry.solids import FLUSH, LevelTop, PlacedBody, Scene
-from momantu_worlds.scenes.referee.referee import tilt
+from momantu_worlds.scenes.referee.demand import tilt
 
 UPRIGHT = math.radians(10.0)
 """Largest angle from the vertical at which an object stands upright, rad."""

@@ -1,0 +1,106 @@
+"""One demand: an item stands on its support, beside its marker, still, and let go of."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from momantu_bt.geometry import Transform
+from momantu_worlds.scenes.geometry.bodies import Episode, Goal
+from momantu_worlds.scenes.geometry.support import SupportTop, UprightCylinder
+from momantu_worlds.scenes.referee.ground_truth import GroundTruth
+
+STILL_SHIFT = 0.002
+"""Largest displacement of an object at rest, m: four times the solver's jitter."""
+STILL_TURN = math.radians(0.5)
+"""Largest rotation of an object at rest, rad."""
+ON_TOP = 0.005
+"""Tolerance of the height at which an object stands on a top, m."""
+
+
+class ItemDemand:
+    """Watches one item, and judges it at the last tick."""
+
+    def __init__(self, episode: Episode, goal: Goal, truth: GroundTruth) -> None:
+        self.goal, self._truth = goal, truth
+        self._item = UprightCylinder(episode.body(goal.item))
+        self._support = SupportTop(episode.body(goal.support))
+        self._rest = episode.body(goal.item).map_from_body
+        self._rest_since = 0.0
+        self._touching: frozenset[str] = frozenset()
+
+    def observe(self, now: float, touching: frozenset[str]) -> None:
+        """Observe the item at `now`, s. touching: what it touched during the tick."""
+        # a body that has fallen asleep reports no contacts: what it last touched still holds
+        if touching:
+            self._touching = touching
+        pose = self._truth.pose(self.goal.item)
+        if moved(self._rest, pose) > STILL_SHIFT or self._rest.angle_to(pose) > STILL_TURN:
+            self._rest, self._rest_since = pose, now
+
+    def measures(self, now: float, gripper: str) -> dict[str, float]:
+        """The numbers that are judged at `now`, s. gripper: the name of its link."""
+        goal, truth = self.goal, self._truth
+        pose = truth.pose(goal.item)
+        support = truth.pose(goal.support)
+        away = 0.0
+        if goal.marker is not None:
+            to_marker = truth.pose(goal.marker).position - pose.position
+            away = float(np.hypot(to_marker[0], to_marker[1]))
+        return {
+            "tilt": tilt(pose),
+            "distance": away,
+            "margin": self._support.margin(support, pose) - self._item.radius,
+            "gap": self._support.height_above(support, pose),
+            "still": now - self._rest_since,
+            "gripper": self._item.distance(pose, truth.link(gripper)),
+        }
+
+    def unmet(self, m: dict[str, float]) -> tuple[str, ...]:
+        """A sentence for each criterion that these measures do not meet."""
+        goal = self.goal
+        item, support = goal.item, goal.support
+        strangers = ", ".join(sorted(self._touching - {support}))
+        criteria = (
+            (
+                m["tilt"] > goal.max_tilt,
+                f"{item} is tilted {degrees(m['tilt'])}, more than {degrees(goal.max_tilt)}",
+            ),
+            (abs(m["gap"]) > ON_TOP, f"{item} is {m['gap']:.3f} m above the top of {support}"),
+            (m["margin"] < 0, f"the base of {item} is not whole on the top of {support}"),
+            (
+                m["distance"] > goal.max_distance,
+                f"{item} is {m['distance']:.2f} m from {goal.marker}, more than "
+                f"{goal.max_distance:.2f} m",
+            ),
+            (
+                m["still"] < goal.still_for,
+                f"{item} has been still for {m['still']:.2f} s, less than {goal.still_for:.2f} s",
+            ),
+            (support not in self._touching, f"{item} does not touch {support}"),
+            (bool(strangers), f"{item} also touches {strangers}"),
+            (
+                m["gripper"] <= goal.min_gripper_distance,
+                f"the gripper is {m['gripper']:.2f} m from {item}, not more than "
+                f"{goal.min_gripper_distance:.2f} m",
+            ),
+        )
+        return tuple(sentence for bad, sentence in criteria if bad)
+
+
+def tilt(pose: Transform) -> float:
+    """Angle between a body's z axis and the vertical, rad."""
+    _, x, y, _ = (float(v) for v in pose.quaternion)
+    return math.acos(max(-1.0, 1.0 - 2.0 * (x * x + y * y)))
+
+
+def moved(before: Transform, now: Transform) -> float:
+    """Distance between two positions, m."""
+    x, y, z = (float(v) for v in now.position - before.position)
+    return math.sqrt(x * x + y * y + z * z)
+
+
+def degrees(angle: float) -> str:
+    """An angle in rad, as a person reads it."""
+    return f"{math.degrees(angle):.1f} deg"
