@@ -152,7 +152,7 @@ def test_the_ending_is_one_line_with_both_opinions():
     denied = ending_text(report(success=False, unmet=("the can fell",)))
     assert denied == (
         "bring_object succeeded after 80.0 s simulated, 8.0 x real time; "
-        "the referee denies success: the can fell"
+        "the referee denies success: the can fell; --no-referee leaves it to the tree"
     )
     inner = FailureValue(
         "PATH_BLOCKED", "a chair", {}, "navigate", "x/bring_object.yaml:41", None, (), 3, 3
