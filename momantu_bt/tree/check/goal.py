@@ -8,8 +8,6 @@ from momantu_bt.tree.check.signatures import Context
 from momantu_bt.tree.goals import goal_of, is_word, unknown_names
 from momantu_bt.world import WorldEntry
 
-_CODE = "wrong-goal"
-
 
 def check_goal(context: Context, entry: WorldEntry | None) -> None:
     """Report a goal that cannot be judged. entry: the world that the tree is checked with."""
@@ -21,9 +19,9 @@ def check_goal(context: Context, entry: WorldEntry | None) -> None:
         goal = goal_of(document)
     except ValueError as error:
         hint = f"write {WORLDS_OWN}, {NO_GOAL}, or `can on table_b beside tag`"
-        context.problems.error(_CODE, place, f"this is no goal: {error}", hint)
+        context.problems.error("wrong-goal", place, f"this is no goal: {error}", hint)
         return
     if goal is None or not isinstance(entry, GoalNames):
         return
     for message, hint in unknown_names(goal, entry.goal_names()):
-        context.problems.error(_CODE, place, message, hint)
+        context.problems.error("wrong-goal", place, message, hint)
