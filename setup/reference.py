@@ -27,6 +27,7 @@ PUBLIC = (
     "momantu_bt.failure",
     "momantu_bt.fault",
     "momantu_bt.fault_kind",
+    "momantu_bt.goal",
     "momantu_bt.frames",
     "momantu_bt.geometry",
     "momantu_bt.lazy",
