@@ -103,7 +103,7 @@ class Demanded:
     """One demand of the goal, and whether it is met.
 
     demand: in words, such as `can on table_b beside tag`. place: where it is written, such as
-    `four_rooms.yaml:164`; "" if that is not known. unmet: a sentence for each criterion that is not
+    `my_flat.yaml:64`; "" if that is not known. unmet: a sentence for each criterion that is not
     met, of this object alone.
     """
 
