@@ -24,6 +24,7 @@ _KNOWN: Mapping[Any, Any] = {
     int: 1,
     float: 0.1,
     str: "text",
+    kinds.CodeText: kinds.CodeText("NOT_FOUND"),
     Transform: Transform(),
     Pose: _POSE,
     Pose2D: Pose2D(0.5, 0.0, 0.0),
