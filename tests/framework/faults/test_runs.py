@@ -345,14 +345,15 @@ def test_every_map_that_a_robot_can_drive_on_can_be_made_wrong(tmp_path, header,
 # the process
 
 
-def test_a_killed_process_leaves_nothing_but_its_signal(tmp_path):
+def test_a_killed_process_leaves_a_report_that_says_so(tmp_path):
     tree = tmp_path / "tree.yaml"
     tree.write_text("momantu_bt: 1\nmain: Main\ntrees:\n  Main: [{wait: 1 min}]\n")
     report = tmp_path / "report.json"
     words = ["run", str(tree), "--fault", "process.killed@1 s", "--report", str(report)]
     ended = subprocess.run([sys.executable, "-m", "momantu_bt", *words], capture_output=True)
     assert ended.returncode == -signal.SIGKILL
-    assert not report.exists()
+    left = json.loads(report.read_text())
+    assert (left["status"], left["success"]) == ("ERROR", None)
 
 
 def test_an_observer_sees_the_tick_before_a_fault_changes_anything(run_tree, monkeypatch):

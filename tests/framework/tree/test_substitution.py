@@ -71,7 +71,7 @@ OF_A_RULE = [
     ("node: «pick», status: FAILURE", "unmatched-rule", "disabled"),
     ("node: «reset_pose», line: 6, status: FAILURE", "unmatched-rule", "reset_pose in line 18"),
     ("node: navigate, status: FAILURE, code: «NO_PAHT»", "undeclared-code", "did you mean NO_PATH"),
-    ("node: navigate, status: FAILURE, code: «nope»", "bad-code", "upper-case"),
+    ("node: navigate, status: FAILURE, code: «nope»", "wrong-value", ""),
     ("node: navigate, status: SUCCESS, code: «NO_PATH»", "wrong-value", "remove `code`"),
     ("node: navigate, status: FAILURE, outputs: «{}»", "wrong-value", "remove `outputs`"),
     ("node: navigate, status: RUNNING, delay: «1 s»", "wrong-value", "remove `delay`"),
