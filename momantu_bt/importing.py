@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 SLOW = 5.0
@@ -22,10 +22,11 @@ def output_aside() -> Iterator[None]:
 
 
 @contextmanager
-def importing(module: str, what: str) -> Iterator[None]:
+def importing(module: str, what: Callable[[], str]) -> Iterator[None]:
     """Around the import of a module: its output is put aside, and it is named when it is slow.
 
-    what: what is imported, such as "the skill 'turn' (turn.skill:Turn of turn)".
+    what: says what is imported, such as "the skill 'turn' (turn.skill:Turn of turn)"; it is asked
+    only then, since a package's name must be read from its files.
     """
     if module in sys.modules:
         yield
@@ -40,5 +41,5 @@ def importing(module: str, what: str) -> Iterator[None]:
         timer.cancel()
 
 
-def _tell(what: str) -> None:
-    print(f"momantu-bt: still importing {what}; Ctrl-C ends it", file=sys.stderr, flush=True)
+def _tell(what: Callable[[], str]) -> None:
+    print(f"momantu-bt: still importing {what()}; Ctrl-C ends it", file=sys.stderr, flush=True)

@@ -113,7 +113,7 @@ class Group(Mapping[str, T]):
                 "uninstall one of them or rename its entry point"
             )
         try:
-            with importing(entry.module, f"the {self.what} {name!r} ({_origin(entry)})"):
+            with importing(entry.module, lambda: f"the {self.what} {name!r} ({_origin(entry)})"):
                 plugin: T = entry.load()
             objection = self.objection(name, plugin)
         except KeyboardInterrupt:

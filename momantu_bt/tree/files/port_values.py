@@ -99,6 +99,9 @@ def _parts(text: str, place: Place, problems: Problems) -> list[str | Reference]
     return [*parts, plain] if plain else parts
 
 
+_SIGN = re.compile(r"([=:])")
+
+
 def reported_braces(raw: Raw, problems: Problems) -> bool:
     """Whether the file has `{key}` where it should have `$key`. If so, report it."""
     if not isinstance(raw, Entries) or not raw.flow or len(raw.entries) != 1:
@@ -107,7 +110,9 @@ def reported_braces(raw: Raw, problems: Problems) -> bool:
     if not isinstance(value, Scalar) or value.value is not None or value.text:
         return False
     message = f"{{{key.text}}} is a mapping in YAML"
-    problems.error("braces", raw.place, message, f"did you mean ${key.text}?")
+    name, sign, rest = _SIGN.split(key.text, maxsplit=1) if _SIGN.search(key.text) else ("", "", "")
+    hint = f"write {{{name}: {rest}}}" if sign else f"did you mean ${key.text}?"
+    problems.error("braces", raw.place, message, hint)
     return True
 
 

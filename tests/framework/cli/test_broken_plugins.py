@@ -75,7 +75,7 @@ def test_what_a_plug_in_prints_does_not_get_into_json(installed, line):
 
 def test_an_import_that_hangs_is_named(installed, monkeypatch, capsys):
     monkeypatch.setattr(importing, "SLOW", 0.01)
-    with importing.importing("no_such_module", "the skill 'slow' (a:b of c)"):
+    with importing.importing("no_such_module", lambda: "the skill 'slow' (a:b of c)"):
         print("noise")
         time.sleep(0.2)
     said = capsys.readouterr()

@@ -115,3 +115,18 @@ def test_an_output_that_cannot_be_read_is_one_error(check: Check) -> None:
         "  Sub:\n    outputs: {b=text}\n    set: {key: $b, value: x}\n"
     )
     assert found(check, text) == [("bad-name", 8)]
+
+
+def test_an_equals_sign_in_ports_is_a_colon(check: Check) -> None:
+    (problem,) = check("momantu_bt: 1\ntrees:\n  Main:\n    - say: {text=hello}\n")
+    assert (problem.code, problem.hint) == ("braces", "write {text: hello}")
+
+
+def test_a_part_of_the_wanted_type_is_suggested(check: Check) -> None:
+    text = (
+        "momantu_bt: 1\nworld: rooms\ntrees:\n  Main:\n"
+        "    - detect_object: {object: {category: can, diameter: 0.07, height: 0.1}, on: table,"
+        " found: $o}\n    - navigate: {within_reach_of: $o}\n"
+    )
+    found = [p for p in check(text) if p.code == "wrong-type"]
+    assert [p.hint for p in found] == ["did you mean $o.pose?"]

@@ -10,7 +10,6 @@ from collections.abc import Callable, Mapping
 from typing import TypeGuard
 
 from momantu_bt.formats.names import valid_names
-from momantu_bt.formats.places import Place, within
 from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue import NODES, PRE_CONDITIONS, SUBTREE, NodeSpec
 from momantu_bt.tree.catalogue.flow import After, Walk, as_written
@@ -18,15 +17,13 @@ from momantu_bt.tree.catalogue.known import NEVER, Key, Known, literal_type, mee
 from momantu_bt.tree.catalogue.spec import Kind, Scripts
 from momantu_bt.tree.check.keys.changes import KeyChanges
 from momantu_bt.tree.check.keys.reads import Demand, KeyReads, Written, references
-from momantu_bt.tree.check.keys.shared import ROOT_MARK, Call, call_of, shared_keys
+from momantu_bt.tree.check.keys.script_keys import ScriptKeys
+from momantu_bt.tree.check.keys.shared import Call, call_of, shared_keys
 from momantu_bt.tree.check.keys.switches import check_switch
 from momantu_bt.tree.check.keys.unused import warn_of_unused_values
 from momantu_bt.tree.check.reachable import report_unreachable
 from momantu_bt.tree.check.signatures import Context, Signature
 from momantu_bt.tree.model import Literal, Node, Reference, Scope, Tree
-from momantu_bt.tree.script import Script, ScriptSyntaxError, parse
-from momantu_bt.tree.script.nodes import Variable
-from momantu_bt.tree.script.types import Mismatch, check_types
 from momantu_bt.values.kinds import Fixed, Items, ScriptText, ValueType, kind_of
 from momantu_bt.values.types import label
 
@@ -55,6 +52,7 @@ class _KeyCheck:
         self.reads, self.context, self.tree = reads, reads.context, reads.tree
         self.ports = self.context.tree_signature(self.tree).ports
         self.changes = KeyChanges(self.context, self.tree, reads.keys)
+        self.scripts = ScriptKeys(reads)
         self.walk = self.walking(self.node)
         self.at: dict[int, bool] = {}
 
@@ -164,7 +162,7 @@ class _KeyCheck:
 
     def condition(self, node: Node, name: str, known: Known) -> Known:
         place = node.condition_places.get(name, node.place)
-        return self.script(node.conditions[name], known, place)
+        return self.scripts.run(node.conditions[name], known, place)
 
     def post_scripts(self, node: Node, after: After) -> After:
         success, failure, skipped = after.success, after.failure, after.skipped
@@ -325,67 +323,7 @@ class _KeyCheck:
         code = node.ports.get(port)
         if not isinstance(code, Literal):
             return before
-        return self.script(str(code.value), before, node.port_places[port])
-
-    def script(self, text: str, before: Known, place: Place) -> Known:
-        try:
-            script = parse(text)
-        except ScriptSyntaxError as error:
-            self.context.problems.error("script", place, error.message, error.hint)
-            return before
-        return self.script_keys(script, before, place)
-
-    def on_board(self, variable: str) -> str | None:
-        """The key of the tree's own board that a script names; the root's in the main tree."""
-        if not variable.startswith(ROOT_MARK):
-            return variable
-        return variable[1:] if self.tree.name == self.context.document.main else None
-
-    def written_by_script(self, written: Written) -> None:
-        """Whether a script's key may be a result: the report shows the main tree's keys."""
-        self.reads.written.append(written)
-        if self.tree.name == self.context.document.main:
-            self.reads.seen.add(written.key)
-
-    def in_script(self, key: str, place: Place) -> Place:
-        """The place of a key in a script."""
-        shown = key if self.context.in_xml(place) else f"${key}"
-        return within(place, shown, self.context.document.source)
-
-    def script_types(self, script: Script, known: Mapping[str, ValueType], place: Place) -> None:
-        """Report operands that do not fit together. Keys that the script writes have any type."""
-        written = {variable.key for variable in script.writes}
-
-        def type_of(variable: Variable) -> ValueType:
-            name = ".".join((variable.key, *variable.parts))
-            return object if variable.key in written else known.get(name, object)
-
-        for statement in script.statements:
-            try:
-                check_types(statement, type_of)
-            except Mismatch as mismatch:
-                where, wrong = place, mismatch.variable
-                if wrong is not None:
-                    where = within(place, f"${wrong.key}", self.context.document.source)
-                self.context.problems.error("wrong-type", where, str(mismatch))
-
-    def script_keys(self, script: Script, before: Known, place: Place) -> Known:
-        """Check the keys that a script needs and reads, and record those that it writes."""
-        for variable in script.reads:
-            self.reads.see(_reference(variable.key))
-        known: dict[str, ValueType] = {}
-        for name, parts in dict.fromkeys((needed.key, needed.parts) for needed in script.needs):
-            where = self.in_script(name, place)
-            read = self.reads.lookup(_reference(name), before, where)
-            if read is not None:
-                known[".".join((name, *parts))] = self.reads.part_of(read, parts, where) or object
-        self.script_types(script, known, place)
-        self.reads.given.update(variable.key for variable in script.writes)
-        names = (self.on_board(v.key) for v in script.writes)
-        keys = dict.fromkeys(name for name in names if name is not None)
-        for key in keys:
-            self.written_by_script(Written(key, self.in_script(key, place), "the script"))
-        return before.having_all({name: Key(object, place) for name in keys})
+        return self.scripts.run(str(code.value), before, node.port_places[port])
 
 
 def _choices(node: Node, output: str, spec: NodeSpec) -> tuple[Literal, ...]:
@@ -400,9 +338,3 @@ def _writes(port: Port | None, signature: Signature) -> TypeGuard[Port]:
     """Whether a node itself writes what one of its ports is wired to; a subtree's nodes do it."""
     own = "inout" if signature.spec is not None else "out"
     return port is not None and port.direction in ("out", own)
-
-
-def _reference(variable: str) -> Reference:
-    if variable.startswith(ROOT_MARK):
-        return Reference(variable[1:], scope=Scope.ROOT)
-    return Reference(variable)

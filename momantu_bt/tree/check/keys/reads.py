@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, is_dataclass, replace
 from typing import TypeAlias
 
 from momantu_bt.formats.names import valid_names
@@ -217,7 +217,23 @@ class KeyReads:
             wire = self.context.wire_to(reference, place)
             wanted = f"{port.name!r} of {said} takes {label(port.type)}"
             message = f"{wire} is {label(wrong.type)}; {wanted}"
-            self.context.problems.error("wrong-type", place, message, _origin(wrong, place))
+            hint = self._fitting_part(reference, wrong, port, place) or _origin(wrong, place)
+            self.context.problems.error("wrong-type", place, message, hint)
+
+    def _fitting_part(self, wire: Reference, key: Key, port: Port, place: Place) -> str:
+        """The hint that names the one part of the value that has the wanted type; else empty."""
+        record = key.type if isinstance(key.type, type) and is_dataclass(key.type) else None
+        parts = [] if record is None else [item.name for item in fields(record)]
+        types = {name: part_type(key.type, (name,)) for name in parts}
+        fit = [
+            name
+            for name, type_ in types.items()
+            if type_ is not object and not any(Key(type_, place).misfits(port.type))
+        ]
+        if len(fit) != 1:
+            return ""
+        part = replace(wire, fields=(*wire.fields, fit[0]))
+        return f"did you mean {self.context.wire_to(part, place)}?"
 
     def part_of(self, key: Key, parts: tuple[str, ...], place: Place) -> ValueType | None:
         """The type of a part of a key's value; None, with a report, if there is no such part."""

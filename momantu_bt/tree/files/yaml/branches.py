@@ -23,7 +23,8 @@ def read_branches(
         if name in places:
             reading.later(places[name], node.children.append)
         elif name != "else":
-            reading.error("missing-child", node.place, f"`{said(node)}` without `{name}:`")
+            hint = f"write `{name}:` beside it, and below that the node that runs then"
+            reading.error("missing-child", node.place, f"`{said(node)}` without `{name}:`", hint)
 
 
 def read_switch(
