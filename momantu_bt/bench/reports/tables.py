@@ -106,8 +106,8 @@ def _blame(summary: Summary) -> list[str]:
     lines = ["why it failed:", *columns(rows)]
     if summary.successes == 0 and all(each.node == REFEREE for each, _ in summary.blame):
         lines.append(
-            "the tree never failed: if the world's referee judges another job than this tree's, "
-            "--no-referee counts what the tree says"
+            "the tree never failed: if the goal is another job than this tree's, give it with "
+            "--goal; --no-referee counts what the tree says"
         )
     return lines
 

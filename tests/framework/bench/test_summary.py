@@ -60,6 +60,9 @@ def test_blame_of_what_has_no_failure() -> None:
     denied = row(1, success=False, unmet=["the can is 0.31 m from the tag", "it tilts by -4.0 deg"])
     words = "the can is # m from the tag; it tilts by # deg"
     assert blame(denied) == Blame("the referee", "", words)
+    met = {"demand": "mug on desk", "place": "t.yaml:3", "met": True, "unmet": []}
+    missed = {"demand": "can on desk", "place": "t.yaml:4", "met": False, "unmet": ["it fell"]}
+    assert blame({**denied, "demands": [met, missed]}) == Blame("the referee", "t.yaml:4", words)
     assert blame(row(1, ended="hung", exit_code=-9)).node == "the process"
     broken = row(1, status="ERROR", error="Traceback …\nKeyError: 'x12'\n")
     assert blame(broken) == Blame("the engine", "", "KeyError: 'x#'")
