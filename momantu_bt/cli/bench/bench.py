@@ -24,6 +24,7 @@ from momantu_bt.cli.shared.options import (
     Robot,
     Runner,
     Seeds,
+    Settings,
     Values,
 )
 from momantu_bt.errors import ExitCode
@@ -64,9 +65,7 @@ def bench(
         str | None, typer.Option(help="A world's name. Default: the tree's own.")
     ] = None,
     robot: Robot = None,
-    set_: Annotated[
-        list[str] | None, typer.Option("--set", help="key=value: a value of the tree's blackboard.")
-    ] = None,
+    set_: Settings = None,
     values: Values = None,
     max_time: MaxTime = 600.0,
     referee: Judged = True,

@@ -15,7 +15,7 @@ import typer
 from momantu_bt import collector
 from momantu_bt.cli.shared import streams
 from momantu_bt.cli.shared.notices import notice
-from momantu_bt.cli.shared.options import TREE, GoalGiven, Include, Robot
+from momantu_bt.cli.shared.options import TREE, GoalGiven, Include, Robot, Settings, Values
 from momantu_bt.errors import TRACEBACK, ExitCode, InputError, MomantuError
 from momantu_bt.formats.files import check_writable
 from momantu_bt.lazy import lazily
@@ -57,10 +57,8 @@ def run(
     seed: Annotated[
         int, typer.Option(min=0, help="Varies the episode. The same seed gives the same run.")
     ] = 0,
-    set_: Annotated[
-        list[str] | None, typer.Option("--set", help="key=value: a value of the tree's blackboard.")
-    ] = None,
-    values: Annotated[Path | None, typer.Option(help="A YAML file of values.")] = None,
+    set_: Settings = None,
+    values: Values = None,
     video: Annotated[Path | None, typer.Option(help="Film the run to this MP4 file.")] = None,
     view: Annotated[bool, typer.Option("--view", help="Serve the scene to a browser.")] = False,
     view_port: Annotated[int, typer.Option(help="The port of --view.")] = VIEW_PORT,

@@ -18,6 +18,9 @@ Include: TypeAlias = Annotated[
     list[Path] | None,
     typer.Option(help="A file, or a folder of files, with trees that the tree runs."),
 ]
+Settings: TypeAlias = Annotated[
+    list[str] | None, typer.Option("--set", help="key=value: a value of the tree's blackboard.")
+]
 Values: TypeAlias = Annotated[Path | None, typer.Option(help="A YAML file of values.")]
 MaxTime: TypeAlias = Annotated[
     float, typer.Option(min=0.05, help="Simulated seconds after which an episode fails.")

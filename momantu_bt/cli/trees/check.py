@@ -11,12 +11,14 @@ from typing import Annotated, Any
 
 import typer
 
-from momantu_bt.cli.shared.given import given_tree
-from momantu_bt.cli.shared.options import Include
+from momantu_bt.cli.shared.given import given_tree, given_values
+from momantu_bt.cli.shared.options import Include, Settings, Values
 from momantu_bt.errors import ExitCode, InputError
 from momantu_bt.faults.tree_file import tree_beside, tree_faults
 from momantu_bt.formats.problems import Problem
+from momantu_bt.tree.files.given_text import TreeText
 from momantu_bt.tree.files.lookup import is_faults_file
+from momantu_bt.tree.files.settings import Given
 from momantu_bt.tree.load import Checked, TreeError, TreeNotFound, load
 from momantu_bt.tree.problems import report
 from momantu_bt.tree.show.problem_pages import explanation
@@ -41,6 +43,8 @@ def check(
     robot: Annotated[
         str | None, typer.Option(help="Check against this robot: a name or file.")
     ] = None,
+    set_: Settings = None,
+    values: Values = None,
     include: Include = None,
     undeclared: Annotated[
         Undeclared,
@@ -66,6 +70,7 @@ def check(
       momantu-bt check trees/bring_object.yaml
       momantu-bt check bring_object --world my_flat.yaml --robot my_robot/
       momantu-bt check --json my_tree.yaml
+      momantu-bt check their_tree.xml --set goal=table_b
       momantu-bt check their_tree.xml --undeclared warn --include their_trees/
       momantu-bt check --explain read-before-write
     """
@@ -76,7 +81,8 @@ def check(
         raise InputError("name at least one tree file; see momantu-bt check --help")
     if as_json and as_sarif:
         raise InputError("choose one of --json and --sarif")
-    how = _How(world, robot, tuple(include or ()), undeclared is Undeclared.WARN)
+    given = given_values(set_ or [], values)
+    how = _How(world, robot, given, tuple(include or ()), undeclared is Undeclared.WARN)
     findings = [_checked(tree, how, quiet=as_json or as_sarif) for tree in trees]
     fine = all(finding.ok for finding in findings)
     if as_json:
@@ -111,23 +117,29 @@ class _How:
 
     world: str | None
     robot: str | None
+    values: Given
     include: tuple[Path, ...]
     tolerant: bool
+
+    def load(self, tree: str | TreeText) -> Checked:
+        """Read and check a tree; raises as `load` does."""
+        return load(
+            tree,
+            world=self.world,
+            robot=self.robot,
+            values=self.values,
+            include=self.include,
+            tolerant=self.tolerant,
+            library=self.tolerant,
+        )
 
 
 def _checked(tree: str, how: _How, *, quiet: bool) -> _FileChecked:
     """Check one file, and unless quiet print the findings."""
     try:
         if is_faults_file(Path(tree)):
-            return _checked_faults(Path(tree), quiet=quiet)
-        checked = load(
-            given_tree(tree),
-            world=how.world,
-            robot=how.robot,
-            include=how.include,
-            tolerant=how.tolerant,
-            library=how.tolerant,
-        )
+            return _checked_faults(Path(tree), how, quiet=quiet)
+        checked = how.load(given_tree(tree))
     except (TreeNotFound, TreeError) as error:
         if not quiet:
             typer.echo(error.printed(), err=True)
@@ -141,9 +153,9 @@ def _checked(tree: str, how: _How, *, quiet: bool) -> _FileChecked:
     return _FileChecked(tree, True, checked.problems)
 
 
-def _checked_faults(file: Path, *, quiet: bool) -> _FileChecked:
+def _checked_faults(file: Path, how: _How, *, quiet: bool) -> _FileChecked:
     """Check a file of faults against the tree beside it."""
-    found = tree_faults(load(str(tree_beside(file))).document)
+    found = tree_faults(how.load(str(tree_beside(file))).document)
     if not quiet:
         typer.echo(f"{file}: no errors in {len(found.begins)} phases and {len(found.rows)} rows")
     return _FileChecked(str(file), True)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from momantu_bt.cli.shared.given import given_tree
-from momantu_bt.cli.shared.options import TREE, Include
+from momantu_bt.cli.shared.given import given_tree, given_values
+from momantu_bt.cli.shared.options import TREE, Include, Settings, Values
 from momantu_bt.drawing.boxes import pictures
 from momantu_bt.drawing.difference import difference
 from momantu_bt.drawing.dot import dot
@@ -20,6 +21,7 @@ from momantu_bt.errors import ExitCode, InputError
 from momantu_bt.formats.files import write_whole
 from momantu_bt.tree.catalogue.wording import value_text
 from momantu_bt.tree.check.named_world import world_of
+from momantu_bt.tree.files.settings import Given
 from momantu_bt.tree.load import load
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.registry import Registry
@@ -36,6 +38,8 @@ def show(
         str | None, typer.Argument(help="Another one: print the changes from the first to it.")
     ] = None,
     world: Annotated[str | None, typer.Option(help="Check against this world.")] = None,
+    set_: Settings = None,
+    values: Values = None,
     include: Include = None,
     as_svg: Annotated[bool, typer.Option("--svg", help="Draw an SVG picture.")] = False,
     as_dot: Annotated[bool, typer.Option("--dot", help="Print it for Graphviz.")] = False,
@@ -66,12 +70,13 @@ def show(
     if other is not None and kinds:
         raise typer.BadParameter(f"the difference of two trees is text; leave --{kinds[0]} out")
     registry = Registry.installed()
-    document = _read(tree, registry, world, include)
+    how = _How(registry, world, given_values(set_ or [], values), tuple(include or ()))
+    document = how.read(tree)
     code = ExitCode.SUCCESS
     if kinds and not document.trees:
         raise InputError(f"{tree} has models alone, and no tree to draw")
     if other is not None:
-        found = difference(document, _read(other, registry, world, include))
+        found = difference(document, how.read(other))
         text = "".join(f"{line.mark} {INDENT * line.depth}{line.text}\n" for line in found)
         code = ExitCode.FAILURE if found else ExitCode.SUCCESS
     elif kinds:
@@ -83,11 +88,27 @@ def show(
     return code
 
 
-def _read(tree: str, registry: Registry, world: str | None, include: list[Path] | None) -> Document:
-    further = tuple(include or ())
-    return load(
-        given_tree(tree), registry, world=world, include=further, tolerant=True, library=True
-    ).document
+@dataclass(frozen=True, slots=True)
+class _How:
+    """What trees are read with; see `load`."""
+
+    registry: Registry
+    world: str | None
+    values: Given
+    include: tuple[Path, ...]
+
+    def read(self, tree: str) -> Document:
+        """The tree, checked; raises as `load` does."""
+        checked = load(
+            given_tree(tree),
+            self.registry,
+            world=self.world,
+            values=self.values,
+            include=self.include,
+            tolerant=True,
+            library=True,
+        )
+        return checked.document
 
 
 def _picture(kind: str, document: Document, registry: Registry, with_wires: bool) -> str:

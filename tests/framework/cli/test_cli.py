@@ -114,6 +114,39 @@ def test_check_explains_a_code(capsys: pytest.CaptureFixture[str]) -> None:
     assert "Wrong:" in said
 
 
+NEEDS_GOAL = """<root BTCPP_format="4"><BehaviorTree ID="Go">
+  <GoalReached goal="{goal}"/>
+</BehaviorTree></root>
+"""
+
+
+@pytest.mark.parametrize(
+    ("given", "code", "said"),
+    [
+        ([], 2, "give it a value: --set goal=…"),
+        (["--set", "goal=1;2;0"], 0, "no errors in 1 tree"),
+        (["--values", "goals.yaml"], 0, "no errors in 1 tree"),
+        (["--set", "gaol=1;2;0"], 2, "--set:1:1: error: the tree has no value 'gaol'"),
+        (["--set", "goal"], 2, "--set goal: expected key=value"),
+        (["--values", "nowhere.yaml"], 2, "nowhere.yaml"),
+    ],
+)
+def test_check_with_values_from_outside(
+    capsys: pytest.CaptureFixture[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    given: list[str],
+    code: int,
+    said: str,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("go.xml").write_text(NEEDS_GOAL, encoding="utf-8")
+    Path("goals.yaml").write_text("goal: {x: 1, y: 2, yaw: 0}\n", encoding="utf-8")
+    assert main(["check", "go.xml", *given]) == code
+    out, err = capsys.readouterr()
+    assert said in out + err
+
+
 def test_check_in_sarif(bad: Path, tree: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["check", "--sarif", str(bad), str(tree), "nowhere.yaml"]) == 2
     captured = capsys.readouterr()

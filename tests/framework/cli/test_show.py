@@ -99,6 +99,11 @@ def test_what_cannot_be_done_is_said(
     assert message in capsys.readouterr().err
 
 
+def test_values_from_outside_are_shown(capsys: Out, tree: Path) -> None:
+    assert main(["show", str(tree), "--set", "place=home"]) == 0
+    assert "  place = home\n" in capsys.readouterr().out
+
+
 def test_a_tree_with_errors_is_not_drawn(capsys: Out, tree: Path) -> None:
     tree.write_text(TREE.replace("retry: 3", "retry: often"), encoding="utf-8")
     assert main(["show", str(tree), "--svg"]) == 2

@@ -57,6 +57,22 @@ def test_a_new_path_is_taken_over_without_a_stop(flat: Flat, act: Act) -> None:
     assert min(speeds) > 0.3
 
 
+def test_a_new_path_each_half_second_costs_no_speed(flat: Flat, act: Act) -> None:
+    """A tree that plans again at 2 Hz: the base must not wait for the next look at the path."""
+    world, speeds = flat(START), []
+    first = _line((-2.5, 0.9), (2.0, 0.9))
+    second = _line((-2.5, 0.92), (2.0, 0.9))
+
+    def replace(session: Any, world: Any) -> None:
+        session.skill.port_values["path"] = (first, second)[int(2.0 * world.now()) % 2]
+        if 3.0 < world.now() < 4.5:
+            speeds.append(world.robot.linear)
+
+    result = act(FollowPath, world, path=first, on_tick=replace)
+    assert result.status == "SUCCESS", result.explain()
+    assert min(speeds) > 0.4
+
+
 def test_around_something_that_was_not_there(flat: Flat, act: Act) -> None:
     world = flat(START, hidden=[(-1.0, 0.7, -0.7, 1.1)])
     path = _line((-2.5, 0.9), (0.3, 0.9))

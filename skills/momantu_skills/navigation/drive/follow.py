@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Generator
 from typing import Any
 
@@ -29,6 +30,8 @@ STRAIGHT = 1.05
 at most this many times as long as the way to its end."""
 NEAR_END = 0.3
 """Length of the rest of the path at which following ends, m."""
+NEVER = (0.0, -math.inf)
+"""Where on the track, m, and when, s, the window was planned last: it is due now."""
 PROGRESS = 0.5
 """Distance that the base must have moved, m, or turned, rad, within the patience for progress."""
 
@@ -54,7 +57,7 @@ class Follower:
         self._tolerance, self._told = tolerance, told
         self._track = Track(path_now(), vehicle.pose())
         self._plan: Plan | None = None
-        self._planned = (0.0, 0.0)
+        self._planned = NEVER
         self._free_at = vehicle.now()
         self._moved = (vehicle.pose(), vehicle.now())
 
@@ -89,7 +92,7 @@ class Follower:
         pose, path = self._vehicle.pose(), self._path_now()
         if path is not self._track.path:
             if path != self._track.path:
-                self._track, self._plan = Track(path, pose), None
+                self._track, self._planned = Track(path, pose), NEVER
             else:
                 self._track.path = path
         self._track.advance(pose)
@@ -136,7 +139,7 @@ class Follower:
     def _window_is_due(self) -> bool:
         at, when = self._planned
         moved_on = self._track.along[self._track.at] - at > RENEW
-        return when == 0.0 or moved_on or self._vehicle.now() - when > 2.0 * RENEW
+        return moved_on or self._vehicle.now() - when > 2.0 * RENEW
 
     def _renew(self) -> Drive:
         work = self._window
