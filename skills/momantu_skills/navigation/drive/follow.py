@@ -95,9 +95,12 @@ class Follower:
                 self._track, self._planned = Track(path, pose), NEVER
             else:
                 self._track.path = path
+        self._report(pose)
+        return pose
+
+    def _report(self, pose: Pose2D) -> None:
         self._track.advance(pose)
         self._told(self._track, pose)
-        return pose
 
     def _ends(self, pose: Pose2D) -> bool:
         track, distance = self._track, self._tolerance[0]
@@ -130,7 +133,7 @@ class Follower:
                     ) from None
                 return True
             answer = yield said
-            self._told(self._track, vehicle.pose())
+            self._report(vehicle.pose())
             if not within(self._path_now()[-1], end, distance, angle):
                 approach.close()
                 self._mppi.restart()
