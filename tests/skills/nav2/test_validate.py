@@ -91,3 +91,4 @@ def test_goals_in_collision_are_removed(flat: Flat, act: Act) -> None:
     result = act(RemoveInCollisionGoals, flat(), input_goals=(goals[1],))
     assert result.code == "POSE_OCCUPIED"
     assert act(RemoveInCollisionGoals, flat()).outputs["output_goals"] == ()
+    assert act(RemoveInCollisionGoals, flat(), input_goals=("kitchen",)).code == "BAD_GOAL"
