@@ -14,7 +14,7 @@ from typing import TypeAlias
 import numpy as np
 
 from momantu_bt.frames import ODOM
-from momantu_bt.geometry import Array, Transform
+from momantu_bt.geometry import Array, Pose, Transform
 
 __all__ = ["COLORS", "Axes", "Box", "Grid", "Line", "Marker", "Points", "Text"]
 
@@ -98,6 +98,11 @@ class Box(Marker):
     pose: Transform
     size: tuple[float, float, float]
 
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        _is_transform(self.pose, self.name)
+        object.__setattr__(self, "size", _triple(self.size, self.name, "size"))
+
 
 @dataclass(frozen=True, eq=False)
 class Axes(Marker):
@@ -105,6 +110,10 @@ class Axes(Marker):
 
     pose: Transform
     length: float = field(default=0.1, kw_only=True)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        _is_transform(self.pose, self.name)
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,6 +123,12 @@ class Text(Marker):
     position: tuple[float, float, float]
     text: str
     height: float = field(default=0.05, kw_only=True)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        object.__setattr__(self, "position", _triple(self.position, self.name, "position"))
+        if not isinstance(self.text, str):
+            raise ValueError(f"the text of marker {self.name!r} is {self.text!r}, expected a str")
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,6 +152,22 @@ class Grid(Marker):
             )
         values.flags.writeable = False
         object.__setattr__(self, "values", values)
+
+
+def _is_transform(pose: object, name: str) -> None:
+    if not isinstance(pose, Transform):
+        hint = "; write pose.transform" if isinstance(pose, Pose) else ""
+        raise ValueError(f"the pose of marker {name!r} is {pose!r}, expected a Transform{hint}")
+
+
+def _triple(numbers: object, name: str, what: str) -> tuple[float, float, float]:
+    """Three numbers (x, y, z)."""
+    try:
+        x, y, z = np.asarray(numbers, dtype=np.float64).tolist()
+    except (TypeError, ValueError):
+        message = f"the {what} of marker {name!r} is {numbers!r}, expected three numbers (x, y, z)"
+        raise ValueError(message) from None
+    return x, y, z
 
 
 def _rows(points: Array, name: str) -> Array:

@@ -28,6 +28,8 @@ from momantu_bt.values.types import label
 from momantu_bt.values.words import ConversionError
 
 _PYTHON = {"text": "str", "number": "float", "int": "int", "bool": "bool"}
+_OUTPUT_WORDS = frozenset({"out", "output"})
+"""Words in the name of a port that say that it is an output."""
 _BARE = "value"
 """The name of an input that a YAML file gives without a name."""
 
@@ -153,7 +155,10 @@ def _shown(value: PortValue) -> str:
 
 
 def _results(tree: Tree, node: Node) -> Iterator[str]:
-    """Ports of a node whose keys no earlier node of the tree names, and some later one does."""
+    """Ports of a node whose keys no earlier node of the tree names, and some later one does.
+
+    A port that is named as an output, such as `decision_out`, is one in any case.
+    """
     nodes = list(tree.root.walk())
     at = next(number for number, each in enumerate(nodes) if each is node)
     before = {*tree.ports, *(key for each in nodes[:at] for key in _keys(each))}
@@ -161,7 +166,8 @@ def _results(tree: Tree, node: Node) -> Iterator[str]:
     for name, value in node.ports.items():
         if not isinstance(value, Reference) or value.fields or name == FIRST_INPUT:
             continue
-        if value.key in after and value.key not in before:
+        named = not _OUTPUT_WORDS.isdisjoint(name.lower().split("_"))
+        if named or (value.key in after and value.key not in before):
             yield name
 
 

@@ -24,8 +24,9 @@ def stubs(
     """Make a package with a skill for each leaf that a tree uses and nothing here has.
 
     Ports come from the models in the file, or else from the uses: types from the values that are
-    written out, directions from whether a later node reads the key. Each skill fails with
-    NOT_WRITTEN until its `run` is filled in. The package installs with pip.
+    written out, directions from names such as `goal_out`, or from whether a later node reads the
+    key. Each skill fails with NOT_WRITTEN until its `run` is filled in. The package installs with
+    pip.
 
     Examples:
       momantu-bt skills stub their_tree.xml

@@ -197,7 +197,10 @@ def _check_used(context: Context, rules: list[Rule]) -> None:
             continue
         if any(_matches(rule, node) for node in everything):
             message = f"no node that {rule.node!r} names is ever run"
-            hint = "it is disabled, in a tree that nothing runs, or another rule replaces it"
+            hint = (
+                "it is disabled, in a tree that nothing runs, or another rule replaces it or a node"
+                " above it (`*` names control nodes and trees too)"
+            )
         else:
             at = "" if rule.line is None else f" in line {rule.line}"
             message = f"no node{at} is called {rule.node!r}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import runpy
 import subprocess
 import sys
 import tomllib
@@ -76,12 +77,30 @@ def test_a_file_checks_with_the_skills_that_were_made_from_its_uses(
     assert main(["check", str(file)]) == 0, capsys.readouterr().err
     assert main(["skills", "test", "FollowLine"]) == 1
     assert "speed" in capsys.readouterr().out
+    its_test = runpy.run_path(str(folder / "tests" / "test_stubs.py"))["test_it_does_its_work"]
+    for name in ("FindShelf", "FollowLine"):
+        with pytest.raises(pytest.skip.Exception, match=rf"fill in run\(\) of {name}"):
+            its_test(name)
     ran = subprocess.run(
         [sys.executable, "-m", "pytest", "-q", "-rs"], cwd=folder, capture_output=True, text=True,
         env={**os.environ, "PYTEST_ADDOPTS": "-p no:cacheprovider"},
     )  # fmt: skip
     assert ran.returncode == 0, ran.stdout
     assert "skipped" in ran.stdout
+
+
+def test_a_port_that_is_named_as_an_output_is_one(tmp_path: Path, install: Install) -> None:
+    file = tmp_path / "t.xml"
+    file.write_text(
+        """<root BTCPP_format="4"><BehaviorTree ID="Main"><ReactiveSequence>
+          <Aim _while="choice != 'rest'"/>
+          <Choose choice_in="{choice}" choice_out="{choice}"/>
+        </ReactiveSequence></BehaviorTree></root>""",
+        encoding="utf-8",
+    )
+    assert main(["skills", "stub", str(file), "--into", str(tmp_path)]) == 0
+    ports = install(tmp_path / "t-skills")["Choose"].ports
+    assert (ports["choice_in"].direction, ports["choice_out"].direction) == ("in", "out")
 
 
 def test_nodes_with_children_are_left_out_and_named(tmp_path: Path, capsys: Out) -> None:

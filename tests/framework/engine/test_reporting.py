@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pytest
 
-from momantu_bt.geometry import Transform
+from momantu_bt.geometry import Pose, Transform
 from momantu_bt.marker import Axes, Box, Line, Marker, Points, Text
 from momantu_bt.page.data import page_data
 from momantu_bt.record.reader import read_record
@@ -188,6 +188,14 @@ def test_a_view_shows_markers_where_they_are_believed_and_erases_old_ones(run_ya
         (lambda: Points("a", SQUARE, color="rod"), "no color 'rod'; colors: red, green"),
         (lambda: Points("a", SQUARE, color=(1, 2, 3, 4)), "four numbers from 0 to 1"),
         (lambda: Text("a", (0, 0, 0), "b", seconds=-1.0), "expected 0 or more"),
+        (
+            lambda: Text("a", "b", (0, 0, 0)),
+            "position of marker 'a' is 'b', expected three",
+        ),
+        (lambda: Text("a", (0, 0, 0), 5), "the text of marker 'a' is 5, expected a str"),
+        (lambda: Axes("a", (0, 0, 0)), "pose of marker 'a' .* expected a Transform"),
+        (lambda: Axes("a", Pose(Transform((0, 0, 0)), "odom", 0.0)), "write pose.transform"),
+        (lambda: Box("a", Transform((0, 0, 0)), (0, 0)), "size of marker 'a' is .*three numbers"),
     ],
 )
 def test_a_wrong_marker_says_what_is_right(wrong, said):

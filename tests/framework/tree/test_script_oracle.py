@@ -234,6 +234,7 @@ def test_a_key_that_a_script_changes_must_be_there(
 ) -> None:
     found = check(f"momantu_bt: 1\nvalues: {{n: 1}}\ntrees: {{A: {{script: '{script}'}}}}\n")
     assert [problem.message for problem in found] == problems
+    assert all("`:=` makes a new one" in problem.hint for problem in found)
 
 
 @pytest.mark.parametrize(

@@ -24,6 +24,7 @@ from momantu_bt.values.types import label
 from momantu_bt.values.words import ConversionError
 
 _CAPITALS = re.compile(r"[A-Z][A-Z0-9_]+")
+_CHANGES = "`=` changes a key that has a value; `:=` makes a new one"
 
 Demand: TypeAlias = tuple[str, str | Port]
 """What a value must be: a name, ("names", "place"), or a number with a unit, ("number", port)."""
@@ -101,8 +102,13 @@ class KeyReads:
         """Note a key that something reads, whether it has a value or not."""
         (self.seen_on_root if reference.scope is Scope.ROOT else self.seen).add(reference.key)
 
-    def lookup(self, reference: Reference, before: Known, place: Place) -> Key | None:
-        """What is known of a key that is read here; None, with a report, if it may be empty."""
+    def lookup(
+        self, reference: Reference, before: Known, place: Place, *, assigned: bool = False
+    ) -> Key | None:
+        """What is known of a key that is read here; None, with a report, if it may be empty.
+
+        assigned: a script changes the key here.
+        """
         self.see(reference)
         if reference.key == BROKEN or not before.reached:
             return None
@@ -114,10 +120,10 @@ class KeyReads:
             return self.root_keys.get(reference.key)
         key = before.get(reference.key)
         if key is None:
-            self._unwritten(reference.key, before, place)
+            self._unwritten(reference.key, before, place, assigned=assigned)
         return key
 
-    def _unwritten(self, name: str, before: Known, place: Place) -> None:
+    def _unwritten(self, name: str, before: Known, place: Place, *, assigned: bool) -> None:
         """Report a key without a value, unless a caller or a write of `$@key` may give it one."""
         if name in self.keys[self.tree.name].written_as_root or self.tree.misread:
             return
@@ -134,6 +140,8 @@ class KeyReads:
         else:
             message = f"nothing writes {shown} before it is read here"
             hint = valid_names(name, sorted(before.keys or {}), "keys that have a value here")
+            if assigned and not hint.startswith("did you mean"):
+                hint = _CHANGES
             hint = _enum_hint(name) or hint
         self.context.tell_elsewhere("read-before-write", place, message, hint)
 
@@ -172,7 +180,7 @@ class KeyReads:
         else:
             hint = valid_names(name, sorted(keys.written), "keys that something writes")
             if not hint.startswith("did you mean"):
-                hint = f"give it a value: --set {name}=…, or <momantu:Value key={name!r}>"
+                hint = f"give it a value: `run … --set {name}=…`, or <momantu:Value key={name!r}>"
             hint = _enum_hint(name) or hint
             message = f"nothing writes {shown}, which is read here"
             self.context.tell_elsewhere("read-before-write", place, message, hint)

@@ -71,7 +71,8 @@ class ScriptKeys:
         known: dict[str, ValueType] = {}
         for name, parts in dict.fromkeys((needed.key, needed.parts) for needed in script.needs):
             where = self._place(name, place)
-            read = self.reads.lookup(_reference(name), before, where)
+            assigned = any(name == variable.key for variable in script.writes)
+            read = self.reads.lookup(_reference(name), before, where, assigned=assigned)
             if read is not None:
                 known[".".join((name, *parts))] = self.reads.part_of(read, parts, where) or object
         self._types(script, known, place)
