@@ -34,11 +34,11 @@ class Panel:
 
     def __init__(self, gui: Any, show_layer: Callable[[Layer, bool], None]) -> None:
         gui.configure_theme(
-            control_layout="collapsible",
             control_width="large",
             show_logo=False,
             show_share_button=False,
         )
+        gui.main_panel.dock_right()
         gui.set_panel_label("momantu-bt")
         self._gui = gui
         self._text = ""
