@@ -24,7 +24,7 @@ from momantu_bt.robot import RobotDescription
 from momantu_bt.running.assembly import program, set_up
 from momantu_bt.running.audit import Auditor
 from momantu_bt.running.calls import called_skills, check_calls
-from momantu_bt.running.goal import give_goal
+from momantu_bt.running.goal import give_goal, undenied
 from momantu_bt.running.leftovers import Leftovers
 from momantu_bt.running.needed import LaunchError, check_parameters, check_sensors, services_of
 from momantu_bt.running.options import RunOptions
@@ -80,6 +80,8 @@ def launch(
         started = time.perf_counter() - begun
         with executor.context.watchdog:
             ending = executor.run(interrupts)
+        if executor.world is not options.world:
+            ending = undenied(ending, document)
         interrupts.begin_again()
         trouble = _close(observers)
         for left in leftovers.told():
@@ -191,7 +193,7 @@ def open_world(
     try:
         world = entry.open(description, options.seed, referee=options.referee)
         if options.referee:
-            give_goal(world, prepared.document, opened=world is not options.world)
+            give_goal(world, prepared.document)
         return world
     except MomantuError:
         raise

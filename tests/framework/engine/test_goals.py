@@ -5,9 +5,10 @@ from __future__ import annotations
 import pytest
 
 from momantu_bt.cli.shared.given import given_goal
+from momantu_bt.engine.ending import Ending
 from momantu_bt.errors import ExitCode
 from momantu_bt.record.text.ending import ending_text
-from momantu_bt.running.goal import give_goal
+from momantu_bt.running.goal import give_goal, undenied
 from momantu_bt.running.needed import LaunchError
 from momantu_bt.testing import ScriptedWorld
 from momantu_bt.tree.files.yaml.format import read
@@ -41,28 +42,26 @@ def document(goal):
 
 
 @pytest.mark.parametrize(
-    ("goal", "opened", "told"),
+    ("goal", "told"),
     [
-        (None, True, None),
-        ("none", True, None),
-        ("none", False, None),
-        ("world", True, "its own"),
-        (None, False, "its own"),
-        (GOAL, True, ("t.yaml:2", GOAL)),
-        (f"[{GOAL}, mug on desk]", False, ("t.yaml:2", GOAL, "mug on desk")),
+        (None, "its own"),
+        ("none", None),
+        ("world", "its own"),
+        (GOAL, ("t.yaml:2", GOAL)),
+        (f"[{GOAL}, mug on desk]", ("t.yaml:2", GOAL, "mug on desk")),
     ],
 )
-def test_the_tree_says_what_is_demanded(goal, opened, told):
+def test_the_tree_says_what_is_demanded(goal, told):
     world = Told()
-    give_goal(world, document(goal), opened=opened)
+    give_goal(world, document(goal))
     assert world.told == told
 
 
 def test_a_world_that_cannot_be_told_keeps_its_own_goal_and_says_so():
-    give_goal(ScriptedWorld(), document(None), opened=True)
-    give_goal(ScriptedWorld(), document("world"), opened=True)
+    give_goal(ScriptedWorld(), document(None))
+    give_goal(ScriptedWorld(), document("world"))
     with pytest.raises(LaunchError, match="judges by its own goal alone"):
-        give_goal(ScriptedWorld(), document(GOAL), opened=True)
+        give_goal(ScriptedWorld(), document(GOAL))
 
 
 def test_a_denial_says_what_was_demanded_where_it_stands_and_how_to_go_without(run_yaml):
@@ -81,6 +80,18 @@ def test_without_a_goal_nothing_is_denied(run_yaml):
     report = run_yaml("goal: none\ntrees: {Main: [succeed]}", world=Told())
     assert (report.success, report.unmet, report.exit_code) == (None, (), ExitCode.SUCCESS)
     assert "referee" not in ending_text(report)
+
+
+@pytest.mark.parametrize(
+    ("goal", "met", "success"),
+    [(None, False, None), (None, True, True), ("world", False, False), ("world", True, True)],
+)
+def test_a_worlds_own_goal_confirms_and_denies_only_where_the_tree_asks_for_it(goal, met, success):
+    verdict = Verdict(met, () if met else ("the can fell",))
+    ending = undenied(Ending("SUCCESS", None, verdict, 1.0, 1.0, 20, None), document(goal))
+    assert ending.verdict is not None
+    assert ending.verdict.success is success
+    assert bool(ending.verdict.unmet) is (success is False)
 
 
 def test_the_goal_of_the_command_wins_over_the_trees(run_yaml):
