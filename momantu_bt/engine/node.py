@@ -155,7 +155,7 @@ class TreeNode:
         return Role.PLAIN
 
     @property
-    def plan(self) -> tuple[tuple[str, bool], ...]:
+    def shown_children(self) -> tuple[tuple[str, bool], ...]:
         """Its children and handlers in displays; see `printing.plan`."""
         return plan(self.model)
 

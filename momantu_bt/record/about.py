@@ -75,6 +75,6 @@ def _node(node: TreeNode) -> Mapping[str, Any]:
         "parent": None if node.above is None else node.above.index,
         "label": node.label,
         "role": node.role.value,
-        **({"plan": node.plan} if node.plan else {}),
+        **({"plan": node.shown_children} if node.shown_children else {}),
         **({"around": node.around} if node.around else {}),
     }

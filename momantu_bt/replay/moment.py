@@ -44,7 +44,7 @@ class ShownNode:
         return self.info.role
 
     @property
-    def plan(self) -> Sequence[tuple[str, bool]]:
+    def shown_children(self) -> Sequence[tuple[str, bool]]:
         """The prefixes of its children and handlers."""
         return self.info.plan
 

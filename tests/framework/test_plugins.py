@@ -189,7 +189,7 @@ def test_a_skill_of_any_name_stands_in_trees_of_both_spellings(
         assert name in told or json.dumps(name) in told
 
 
-def test_a_tree_with_the_name_of_a_skill_is_refused(
+def test_a_tree_that_begins_with_a_capital_may_have_the_name_of_a_skill(
     entries: list[EntryPoint], module, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     entries.append(entry("FollowPath", f"{module(GOOD)}:Good"))
@@ -198,10 +198,9 @@ def test_a_tree_with_the_name_of_a_skill_is_refused(
     yaml = "momantu_bt: 1\ntrees:\n  FollowPath:\n    - wait: 1 s\n"
     for file, text in ((tmp_path / "a.xml", tree), (tmp_path / "a.yaml", yaml)):
         file.write_text(text, encoding="utf-8")
-        assert main(["check", str(file)]) == 2
-        told = capsys.readouterr().err
-        assert "'FollowPath' is the name of an installed skill" in told
-        assert "rename the tree" in told
+        assert main(["check", str(file)]) == 0
+        assert main(["show", str(file)]) == 0
+        assert "wait" in capsys.readouterr().out
 
 
 def test_one_broken_skill_and_one_clash_leave_the_rest_alone(

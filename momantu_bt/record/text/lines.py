@@ -48,7 +48,7 @@ class Shown(Protocol):
         ...
 
     @property
-    def plan(self) -> Sequence[tuple[str, bool]]:
+    def shown_children(self) -> Sequence[tuple[str, bool]]:
         """The prefixes of its children and handlers; see `printing.plan`."""
         ...
 
@@ -127,7 +127,7 @@ def _below(node: Shown) -> list[tuple[str, Shown | None]]:
         kids.extend(child.kids if is_frame(child.role, node.role) else (child,))
     rest = iter(kids)
     found: list[tuple[str, Shown | None]] = []
-    for prefix, is_node in node.plan:
+    for prefix, is_node in node.shown_children:
         found.append((prefix, next(rest, None) if is_node else None))
     return [*found, *(("", child) for child in rest)]
 

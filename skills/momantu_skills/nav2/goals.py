@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from momantu_bt.geometry import Pose2D
 from momantu_bt.robot import Working
 from momantu_bt.skill import Failure
 from momantu_bt.world import Site
-from momantu_skills.navigation.map.costmap import Costmap
 from momantu_skills.navigation.plan.goals import Stand, before_surface
+
+if TYPE_CHECKING:
+    from momantu_skills.navigation.map.costmap import Costmap
 
 Goal: TypeAlias = Pose2D | str
 """A pose of the map, a text such as `1.5;2;0` (see `Pose2D.from_text`), or a place's name."""

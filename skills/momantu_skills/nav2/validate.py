@@ -14,13 +14,13 @@ from momantu_bt.messages import WaypointStatus
 from momantu_bt.robot import Robot
 from momantu_bt.skill import Failure, In, Out, Run
 from momantu_bt.symptom import Symptom
-from momantu_skills.manipulation.model.hulls import floor_outline
 from momantu_skills.nav2.action import OnCostmap
 from momantu_skills.nav2.goals import Goal, pose_at
 from momantu_skills.navigation.control.footprint import discs
 from momantu_skills.navigation.drive.vehicle import Vehicle
 
 with lazily():
+    from momantu_skills.manipulation.model import hulls
     from momantu_skills.navigation.drive import ways
 
 LETHAL = 254
@@ -134,7 +134,7 @@ def _corners(text: str) -> Array | None:
         corners = np.zeros(0)
     if corners.ndim != 2 or corners.shape[0] < 3 or corners.shape[1] != 2:
         raise Failure("BAD_FOOTPRINT", f"{text!r} is not a list of corners [[x, y], …] in m")
-    return floor_outline(corners)
+    return hulls.floor_outline(corners)
 
 
 class ValidatePath(_CheckingPath):

@@ -45,6 +45,7 @@ trees:
   Main:
     - stall:
         seeds: {hang: [1], crash: [2], kill: [3], fail: [4], kill_worker: [8, 9]}
+goal: world
 """
 PLUGINS = '''
 """A skill that goes wrong on some seeds, in a world that tells it the seed."""

@@ -40,7 +40,7 @@ def test_the_package_names_its_skill_and_its_tests_pass(
     assert " passed" in ran.stdout
 
 
-NAMES = ["turn", "skill", "failure", "robot", "out", "a2", "FollowPath", "Robot", "class", "None"]
+NAMES = ["turn", "skill", "failure", "robot", "out", "a2", "FollowWall", "Robot", "class", "None"]
 
 
 @pytest.mark.parametrize("name", [*NAMES, "turn-round", "Über.weg", "日本", "_x", "TCPMove2D"])

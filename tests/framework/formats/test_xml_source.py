@@ -78,8 +78,8 @@ def test_comments_belong_to_what_follows_or_stands_before_them_in_the_line() -> 
     parsed = parse(text, "t.xml")
     root, (x, y) = parsed.root, parsed.root.children
     assert root.comments == ("one",)
-    assert x.comments == ("two", "three", "four")
-    assert [type(each) for each in x.comments] == [str, str, Beside]
+    assert x.comments == ("two\n three", "four")
+    assert [type(each) for each in x.comments] == [str, Beside]
     assert (y.comments, y.end_comments) == (("six",), ("five",))
     assert (root.end_comments, parsed.comments) == (("seven",), ("eight",))
 

@@ -17,6 +17,7 @@ from momantu_skills.navigation.map.maps import GridMap, read_grid
 from momantu_skills.navigation.map.sensing import SPREAD, Rays
 
 from momantu_bt.descriptions.tunables import configured
+from momantu_bt.engine.skills.services import ServiceError
 from momantu_bt.formats.maps import FREE, OCCUPIED
 from momantu_bt.geometry import Pose2D, Transform
 from momantu_bt.messages import BaseVelocity, LaserScan
@@ -234,7 +235,7 @@ def test_the_service_tells_the_frame_buffer(flat) -> None:  # type: ignore[no-un
 
 
 def test_a_site_without_a_map_is_refused() -> None:
-    with pytest.raises(ValueError, match="no map_file"):
+    with pytest.raises(ServiceError, match="no map_file"):
         run_skill(_Wander, services={"localization": LocalizationService()})
 
 

@@ -11,7 +11,7 @@ from momantu_skills.navigation.map.costmap import Costmap
 from momantu_skills.navigation.map.maps import GridMap
 
 from momantu_bt.formats.maps import OCCUPIED
-from momantu_bt.geometry import Pose2D
+from momantu_bt.geometry import Array, Pose2D
 from momantu_bt.robot import BaseLimits
 
 LIMITS = BaseLimits(linear=1.0, angular=1.5, linear_acceleration=1.0, angular_acceleration=3.0)
@@ -56,6 +56,9 @@ class Obedient:
 
     def pose(self) -> Pose2D:
         return self.map_from_odom() @ self.at
+
+    def show(self, path: Array) -> None:
+        """Nobody watches."""
 
     def speed(self) -> tuple[float, float]:
         return self.v, self.w

@@ -264,7 +264,7 @@ def test_what_an_episode_adds_may_stand_on_a_place_but_not_what_is_known() -> No
 def test_without_a_goal_nothing_is_demanded_of_the_item() -> None:
     wide = can("can", -2.0, 1.75, radius=0.09)
     assert remarks(changed(wide), "item-too-wide")
-    assert all_codes(changed(wide, goal=None)) == []
+    assert all_codes(changed(wide, goals=())) == []
 
 
 def test_a_robot_without_a_camera_is_not_asked_about_tags() -> None:

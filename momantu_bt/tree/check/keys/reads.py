@@ -180,7 +180,7 @@ class KeyReads:
         else:
             hint = valid_names(name, sorted(keys.written), "keys that something writes")
             if not hint.startswith("did you mean"):
-                hint = f"give it a value: `run … --set {name}=…`, or <momantu:Value key={name!r}>"
+                hint = f"give it a value: --set {name}=…, or <momantu:Value key={name!r}>"
             hint = _enum_hint(name) or hint
             message = f"nothing writes {shown}, which is read here"
             self.context.tell_elsewhere("read-before-write", place, message, hint)

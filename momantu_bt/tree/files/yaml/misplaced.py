@@ -105,7 +105,7 @@ class Trees:
             return False
         if name in HEADER or name in MODIFIERS or name in _BESIDE:
             return True
-        return having <= {*HEADER, *MODIFIERS}
+        return "nodes" not in having and having <= {*HEADER, *MODIFIERS}
 
     def _is_part(self, name: str) -> bool:
         """Whether it is a part of a tree and no name of one."""

@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from momantu_bt.geometry import Array, Path, Pose2D, nearest_index, path_lengths, wrap_angle
-from momantu_skills.navigation.map.costmap import Costmap
-from momantu_skills.navigation.map.fields import Field, clearance
+from momantu_bt.lazy import lazily
+
+with lazily():
+    from momantu_skills.navigation.map import fields
+
+if TYPE_CHECKING:
+    from momantu_skills.navigation.map.costmap import Costmap
+    from momantu_skills.navigation.map.fields import Field
 
 SEARCH = 1.5
 """How far ahead along the path the base is looked for, m: not on a later part that passes by."""
@@ -97,7 +104,7 @@ class Track:
         inside = (cells >= 0).all(axis=1) & (cells[:, 0] < columns) & (cells[:, 1] < rows)
         drawn = np.zeros((rows, columns), dtype=np.bool_)
         drawn[cells[inside, 1], cells[inside, 0]] = True
-        away = clearance(drawn, float(costmap.frame[2]))
+        away = fields.clearance(drawn, float(costmap.frame[2]))
         factors = np.minimum(1.0 + extra * np.maximum(away - half, 0.0), most)
         return np.asarray(factors, dtype=np.float32)
 
