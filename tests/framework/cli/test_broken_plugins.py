@@ -106,7 +106,10 @@ def test_doctor_gives_up_on_a_plug_in_that_hangs(installed, monkeypatch):
     monkeypatch.setattr(plugins, "fatal_imports", hung)
     groups = doctor.GROUPS[:1]
     first = next(iter(groups[0].installed().values()))
-    monkeypatch.setattr(plugins, "_is_ours", lambda entry: entry.name != first.name)
+    monkeypatch.setattr(plugins, "_is_ours", lambda entry: entry.module != first.module)
     monkeypatch.delitem(sys.modules, first.module, raising=False)
     found = [each for each in plugins.plugins(groups) if not each.ok]
-    assert [each.detail for each in found] == [f"{first.value} cannot be imported: hung"]
+    there = [each for each in groups[0].installed().values() if each.module == first.module]
+    assert [each.detail for each in found] == [
+        f"{each.value} cannot be imported: hung" for each in there
+    ]

@@ -80,8 +80,8 @@ def test_comments_belong_to_what_follows_or_stands_before_them_in_the_line() -> 
     assert root.comments == ("one",)
     assert x.comments == ("two\n three", "four")
     assert [type(each) for each in x.comments] == [str, Beside]
-    assert (y.comments, y.end_comments) == (("six",), ("five",))
-    assert (root.end_comments, parsed.comments) == (("seven",), ("eight",))
+    assert (y.comments, y.end_comments) == ((), ("five",))
+    assert (root.end_comments, parsed.comments) == (("six", "seven"), ("eight",))
 
 
 def test_text_inside_an_element() -> None:

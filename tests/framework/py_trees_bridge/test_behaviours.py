@@ -122,7 +122,7 @@ def install(monkeypatch: pytest.MonkeyPatch, *names: str) -> None:
     class Entry:
         """An entry point whose plug-in is this test's."""
 
-        dist, module = None, "test"
+        dist, module, attr = None, "test", "plugin"
 
         def __init__(self, name: str) -> None:
             self.name, self.value, self.group = name, f"test:{name}", GROUP
