@@ -93,7 +93,7 @@ def _messages(path: Path) -> tuple[dict[str, list[tuple[float, bytes]]], bool]:
         try:
             for topic, time, text in _records(file):
                 raw.setdefault(topic, []).append((time, text))
-        except (McapError, struct.error, UnicodeDecodeError, KeyError):
+        except (McapError, struct.error, ValueError, KeyError):
             if not raw:
                 raise RecordError(
                     f"{path} is not a record, or was cut off at its beginning"
@@ -110,7 +110,7 @@ def _records(file: BinaryIO) -> Iterator[tuple[str, float, bytes]]:
     size = file.seek(0, 2)
     file.seek(0)
     topics: dict[int, str] = {}
-    for record in StreamReader(file).records:
+    for record in StreamReader(file, record_size_limit=size).records:
         if isinstance(record, Channel):
             topics[record.id] = record.topic
         elif isinstance(record, Message):

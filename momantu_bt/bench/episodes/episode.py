@@ -1,18 +1,12 @@
-"""Run one episode and write its row: `python -m momantu_bt.bench.episodes.episode SPEC ROW PARENT`.
-
-SPEC and ROW are JSON files. PARENT is the number of the process that waits for this one; when it
-ends, this process ends too.
-"""
+"""Run one episode in this process and write its row."""
 
 from __future__ import annotations
 
-import ctypes
 import json
 import os
 import shutil
 import signal
 import sys
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -27,16 +21,11 @@ from momantu_bt.faults.spec import parse_fault
 from momantu_bt.formats.files import write_whole
 from momantu_bt.record.report import Report
 from momantu_bt.running.launch import launch
-from momantu_bt.running.leftovers import end_with
 from momantu_bt.running.options import RunOptions
 from momantu_bt.running.prepare import prepare
 from momantu_bt.tree.catalogue import NODES
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.registry import Registry
-
-_PR_SET_PDEATHSIG = 1
-"""`prctl(2)`: the signal that a process gets when its parent dies."""
-
 
 _KEPT = (
     *("world", "robot", "status", "success", "failure", "unmet", "measures", "sim_time_s"),
@@ -50,16 +39,14 @@ class Refused(MomantuError):
     """The episode cannot be run as requested; nothing was started."""
 
 
-def main(arguments: Sequence[str]) -> int:
-    """Run the episode.
+def main(spec_file: str, row_file: str) -> int:
+    """Run the episode that a JSON file tells, and write its row as JSON.
 
     Exit code EX_OK when a row was written, EX_UNAVAILABLE when its fault cannot happen here,
     EX_TEMPFAIL when it cannot begin.
     """
-    told, row, parent = arguments
-    _end_with(int(parent))
     signal.pthread_sigmask(signal.SIG_SETMASK, ())  # Ray workers pass their blocked signals on
-    spec = EpisodeSpec.from_dict(json.loads(Path(told).read_text(encoding="utf-8")))
+    spec = EpisodeSpec.from_dict(json.loads(Path(spec_file).read_text(encoding="utf-8")))
     try:
         report, tries = run(spec)
     except FaultError as error:
@@ -68,7 +55,7 @@ def main(arguments: Sequence[str]) -> int:
     except MomantuError as error:
         print(error, file=sys.stderr)
         return os.EX_TEMPFAIL
-    write_whole(Path(row), json.dumps(row_of(report, tries), default=str) + "\n")
+    write_whole(Path(row_file), json.dumps(row_of(report, tries), default=str) + "\n")
     return os.EX_OK
 
 
@@ -140,17 +127,3 @@ def row_of(report: Report, tries: int) -> Row:
     row["tries"] = tries
     row["nodes"] = [{k: v for k, v in node.items() if v} for node in told["nodes"]]
     return row
-
-
-def _end_with(parent: int) -> None:
-    """Let the kernel end this process when its parent is gone, however that ended."""
-    if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
-    if os.getppid() != parent:
-        raise SystemExit("the process that waits for this episode is gone")
-
-
-if __name__ == "__main__":
-    code = main(sys.argv[1:])
-    end_with(code)
-    raise SystemExit(code)

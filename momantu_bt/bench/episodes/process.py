@@ -1,7 +1,7 @@
 """Run one episode in a process of its own, with a watchdog outside it.
 
-`python -m momantu_bt.bench.episodes.episode SPEC ROW PARENT` runs in a session of its own, so that
-a hang in native code and whatever it started are killed together.
+`python -m momantu_bt.bench.episodes SPEC ROW PARENT` runs in a session of its own, so that a
+hang in native code and whatever it started are killed together.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class EpisodeProcess:
         words = [str(told), str(self._row_file), str(os.getpid())]
         with self._output.open("wb") as output:
             self._process = subprocess.Popen(
-                [sys.executable, "-m", "momantu_bt.bench.episodes.episode", *words],
+                [sys.executable, "-m", "momantu_bt.bench.episodes", *words],
                 stdin=subprocess.DEVNULL,
                 stdout=output,
                 stderr=subprocess.STDOUT,

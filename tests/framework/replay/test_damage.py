@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 import re
+import struct
 from dataclasses import replace
 
 import pytest
@@ -22,6 +23,10 @@ trees:
         catch: {any: [{script: "$n := 1"}]}
     - work: {script: RF}
 """
+
+
+MAGIC = 8
+"""Bytes of the mark at the beginning and at the end of a file."""
 
 
 @pytest.fixture(scope="module")
@@ -49,8 +54,20 @@ def renumbered(data, random):
     return bytes(found)
 
 
+def shortened(data, random):
+    """One record of the file says a length that it has not."""
+    places, at = [], MAGIC
+    while at < len(data) - MAGIC:
+        places.append(at + 1)
+        at += 9 + struct.unpack_from("<Q", data, at + 1)[0]
+    found = bytearray(data)
+    length = random.choice([random.randrange(30), random.randrange(2**64)])
+    struct.pack_into("<Q", found, random.choice(places), length)
+    return bytes(found)
+
+
 @pytest.mark.parametrize("seed", range(20))
-@pytest.mark.parametrize("damage", [cut, flipped, renumbered])
+@pytest.mark.parametrize("damage", [cut, flipped, renumbered, shortened])
 def test_damage_is_told_and_never_an_internal_error(whole, tmp_path, capsys, damage, seed):
     data = (whole.folder / "run.mcap").read_bytes()
     (tmp_path / "run.mcap").write_bytes(damage(data, random.Random(seed)))
