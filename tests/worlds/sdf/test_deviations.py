@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -135,8 +134,12 @@ def test_what_cannot_be_read_is_told_with_line_and_column(
     imported: Imported, wrong: str, words: str
 ) -> None:
     lines = [TABLE, "<model name='m'>", wrong, f"<link name='l'>{cubes(1)}</link></model>"]
-    with pytest.raises(SdfError) as told:
-        imported("\n".join(lines))
-    assert words in str(told.value)
+    found = imported("\n".join(lines))
+    assert [body.name for body in found.world.bodies] == ["table"]
+    (told,) = (f for f in found.deviations if f.subject == "m")
+    assert words in told.what
+    assert told.instead == "this model is left out"
     # two lines stand before what the world holds, and the fault is in its third
-    assert re.search(r"room\.sdf:5:\d+: ", str(told.value))
+    assert (Path(told.place.file).name, told.place.line) == ("room.sdf", 5)
+    with pytest.raises(SdfError, match=r"nothing is left of this world.*\n.*room\.sdf:4:\d+: m: "):
+        imported("\n".join(lines[1:]))

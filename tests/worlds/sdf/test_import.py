@@ -82,11 +82,66 @@ def test_wrong_arguments_are_told(run, box, tmp_path, output, options, words):
 
 
 def test_a_broken_world_leaves_nothing_behind(run, tmp_path):
-    code, _, err = run("<model name='m'><link name='l'><pose>1 2</pose></link></model>")
+    code, _, err = run("<model name='m'><pose>1 2</pose></model>")
     assert code == 2
     assert f"{tmp_path / 'room.sdf'}:3:" in err
     assert "2 numbers; expected 6" in err
     assert [path.name for path in tmp_path.iterdir()] == ["room.sdf"]
+
+
+LINK = "<link name='l'><collision name='c'><geometry>{}</geometry></collision></link>"
+CUBE = "<box><size>1 1 1</size></box>"
+BROKEN = {
+    "a model.config that is no XML": (
+        {"config": "<model><sdf>model.sdf"},
+        "model.config",
+        "no element",
+    ),
+    "a version that is not read": (
+        {"version": "2.0", "config": "<model><sdf version='1.9'>model.sdf</sdf></model>"},
+        "model.sdf",
+        "SDF version '2.0'",
+    ),
+    "an impossible size": ({"inside": LINK.format("<sphere/>")}, "model.sdf", "needs a <radius>"),
+    "a pose far away": (
+        {"inside": "<pose>2e7 0 0 0 0 0</pose>" + LINK.format(CUBE)},
+        "model.sdf",
+        "more than 100000 m",
+    ),
+}
+"""What is wrong with an included model, the file that says so, and words of the list."""
+
+
+@pytest.mark.parametrize("case", BROKEN)
+def test_one_bad_model_is_listed_and_everything_else_is_imported(run, box, model, tmp_path, case):
+    how, file, words = BROKEN[case]
+    model("bad", how.get("inside", LINK.format(CUBE)), **{k: how[k] for k in how if k != "inside"})
+    code, out, _ = run(
+        GROUND + box("a", "1 1 1") + "<include><uri>model://bad</uri></include>" + box("b", "1 1 1")
+    )
+    assert code == 0
+    assert "2 bodies" in out
+    (line,) = (line for line in out.splitlines() if words in line)
+    assert f"{tmp_path}/models/bad/{file}:" in line
+
+
+def test_what_gazebo_reads_though_it_is_no_xml_is_read(run, model, tmp_path):
+    config = (
+        "\n\n<?xml version='1.0'?><model><name>A & B -- C</name><!-- a -- b --><author>Zoë &nbsp;"
+    )
+    config += "</author><sdf version='1.3'>model.sdf</sdf></model>"
+    model("odd", LINK.format(CUBE), version="1.3", config=config)
+    (tmp_path / "models/odd/model.config").write_bytes(config.encode("latin-1"))
+    code, out, _ = run(GROUND + "<include><uri>model://odd</uri></include>")
+    assert code == 0
+    assert "1 bodies" in out
+    assert "Left out" not in out
+
+
+def test_nothing_but_a_floor_is_left_of_broken_models(run):
+    code, _, err = run(GROUND + "<model name='m'><pose>1 2</pose></model>")
+    assert code == 2
+    assert "nothing is left of this world" in err
 
 
 def test_a_broken_mesh_leaves_the_rest(run, box, tmp_path):

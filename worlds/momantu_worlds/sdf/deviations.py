@@ -35,11 +35,18 @@ class Deviation:
 class Deviations:
     """The deviations of an import, in the order of their places, without duplicates."""
 
+    models_lost: int = 0
+    """Models and includes of which nothing was imported."""
     _all: dict[Deviation, None] = field(default_factory=dict)
 
     def dropped(self, place: Place, subject: str, what: str, instead: str) -> None:
         """Record that something was dropped."""
         self._all[Deviation(place, subject, what, instead, Outcome.DROPPED)] = None
+
+    def lost(self, place: Place, subject: str, why: str) -> None:
+        """Record that a whole model was dropped."""
+        self.models_lost += 1
+        self.dropped(place, subject, why, "this model is left out")
 
     def changed(self, place: Place, subject: str, what: str, instead: str) -> None:
         """Record that something was changed."""

@@ -13,12 +13,19 @@ MOST_SHOWN_OF = 32_000_000
 
 
 class SdfError(MomantuError):
-    """An SDF world cannot be imported; the message says where, why and what to do."""
+    """An SDF world, or an element of it, cannot be imported; the message says where and why.
+
+    reason: the message without the place.
+    """
 
     def __init__(self, place: Place, message: str) -> None:
-        self.place = place
+        self.place, self.reason = place, message
         line = _line_at(place)
         super().__init__(f"{place}: {message}" + (f"\n{marked(place, line)}" if line else ""))
+
+
+class TooMuch(SdfError):
+    """A limit of the whole import is exceeded: no part of it is left out to go on."""
 
 
 def _line_at(place: Place) -> str:

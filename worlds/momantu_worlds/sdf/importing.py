@@ -68,7 +68,7 @@ def import_world(
         heed_up: turn COLLADA upright by its <up_axis>, which Gazebo does not.
 
     Raises:
-        SdfError: the file, or one that it includes, is broken.
+        SdfError: the file itself is broken, or nothing could be imported.
     """
     deviations = Deviations()
     for folder in (folder for folder in models if not folder.is_dir()):
@@ -87,9 +87,11 @@ def import_world(
         for body in maker.body(model, group)
     ]
     bodies = _enough(list(settled(made, ground.height, deviations)), deviations)
-    if not bodies and not ground.shapes:
+    if not bodies and (deviations.models_lost or not ground.shapes):
         raise SdfError(Place(str(file)), _nothing_left(deviations))
-    light = lighting(placed_lights(source, placed), source.ambient, ground.height, deviations)
+    light = lighting(
+        placed_lights(source, placed, deviations), source.ambient, ground.height, deviations
+    )
     name, model = plain_name(output.stem), robot.model.name if robot else None
     site = propose(bodies, _start_of(robot, deviations))
     if site.clear < TIGHT:

@@ -6,7 +6,6 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from momantu_worlds.sdf.body.placing import placed_models
 from momantu_worlds.sdf.deviations import Deviations
-from momantu_worlds.sdf.errors import SdfError
 
 from momantu_bt.geometry import Transform
 
@@ -131,9 +130,15 @@ def test_old_files_may_name_frames_that_are_not_there(read):
         ("<link name='l'><pose relative_to='arm::tip'/></link>", "no frame 'arm::tip'"),
     ],
 )
-def test_frames_that_hang_nowhere_are_told(read, inside, words):
-    with pytest.raises(SdfError, match=words):
-        links(read(f"<model name='m'>{inside}</model>")[0])
+def test_a_model_whose_frames_hang_nowhere_is_listed_and_the_rest_is_placed(read, inside, words):
+    world, deviations = read(
+        f"<model name='m'>{inside}</model><model name='n'><link name='l'/></model>"
+    )
+    assert [model.model.name for model in placed_models(world, deviations)] == ["n"]
+    (found,) = deviations
+    assert words in found.what
+    assert (found.subject, found.place.line) == ("m", 3)
+    assert deviations.models_lost == 1
 
 
 def test_a_chain_of_thousands_of_frames_is_no_trouble(read):

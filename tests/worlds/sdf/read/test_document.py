@@ -89,8 +89,8 @@ def test_the_message_shows_the_line(tmp_path):
     [
         ("<robot name='x'/>", "begins with <robot>"),
         ("<sdf/>", "SDF version ''"),
-        ("<sdf version='1.3'/>", "expected 1.4 to 1.11"),
-        ("<sdf version='1.12'/>", "expected 1.4 to 1.11"),
+        ("<sdf version='1.1'/>", "expected 1.2 to 1.11"),
+        ("<sdf version='1.12'/>", "expected 1.2 to 1.11"),
         ("<sdf version='2.0'/>", "SDF version '2.0'"),
         ("<sdf version='one'/>", "SDF version 'one'"),
     ],
@@ -100,7 +100,22 @@ def test_other_versions_are_refused(text, words):
         version_of(parse_document(text.encode(), FILE))
 
 
-@pytest.mark.parametrize("version", ["1.4", "1.5", "1.6", "1.7", "1.8", "1.9", "1.10", "1.11"])
+def test_what_gazebos_reader_bears_is_read_and_keeps_its_places():
+    data = b"\n \n<?xml version='1.0'?>\n<!-- a -- b\n -->\n<sdf>\n"
+    data += b"<a x='1 & 2'>R&D &amp; \xff</a><b/></sdf>"
+    root = parse_document(data, FILE)
+    assert root.place.line == 6
+    a, b = root.children
+    assert (a.place.line, b.place.line) == (7, 7)
+    assert a.attributes == {"x": "1 & 2"}
+    assert a.text == "R&D & \N{REPLACEMENT CHARACTER}"
+
+
+@pytest.mark.parametrize(
+    "version", ["1.2", "1.3", "1.4", "1.5", "1.6", "1.7", "1.8", "1.9", "1.10", "1.11"]
+)
 def test_versions_that_are_read(version):
     root = parse_document(f"<sdf version='{version}'/>".encode(), FILE)
     assert version_of(root) == tuple(int(part) for part in version.split("."))
+    older = parse_document(f"<gazebo version='{version}'/>".encode(), FILE)
+    assert version_of(older) == version_of(root)

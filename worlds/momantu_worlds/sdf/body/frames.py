@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 
 from momantu_bt.formats.places import Place
 from momantu_bt.geometry import Transform
+from momantu_worlds.sdf.deviations import Deviations
 from momantu_worlds.sdf.errors import SdfError
 from momantu_worlds.sdf.read.model import Frame, Joint, Link, Model, SdfWorld
 from momantu_worlds.sdf.read.values import Pose
@@ -106,10 +107,15 @@ def _circle(chain: list[tuple[str, Transform]], again: str) -> str:
     return " -> ".join([*names[names.index(again) :], again][:MOST_NAMED])
 
 
-def scope_of_world(world: SdfWorld) -> Scope:
-    """All frames of a world."""
+def scope_of_world(world: SdfWorld, deviations: Deviations) -> Scope:
+    """All frames of a world; a model of which the frames fit nowhere is listed and left out."""
     scope = Scope(WORLD)
-    _fill(scope, world.models, world.frames)
+    _fill(scope, (), world.frames)
+    for model in world.models:
+        try:
+            _fill(scope, (model,), ())
+        except SdfError as error:
+            deviations.lost(error.place, model.name, error.reason)
     return scope
 
 
@@ -129,13 +135,13 @@ def _fill(scope: Scope, models: Iterable[Model], frames: Iterable[Frame]) -> Non
     for frame in frames:
         scope.add(frame.name, frame.pose, frame.attached_to or scope.root)
     for model in models:
-        scope.inner[model.name] = inner = scope_of_model(model)
-        if model.merged:
-            scope.merged.append(model.name)
-        pose = model.pose
+        inner, pose = scope_of_model(model), model.pose
         if model.placement_frame:
             back = inner.pose(model.placement_frame, model.place).inverse()
             pose = replace(pose, transform=pose.transform @ back)
+        scope.inner[model.name] = inner
+        if model.merged:
+            scope.merged.append(model.name)
         scope.add(model.name, pose, scope.root)
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from typing import TypeVar
 
 from momantu_bt.geometry import Transform
 from momantu_worlds.sdf.body.frames import (
@@ -14,21 +16,28 @@ from momantu_worlds.sdf.body.frames import (
     scope_of_world,
 )
 from momantu_worlds.sdf.deviations import Deviations
-from momantu_worlds.sdf.read.model import Light, Model, ModelState, SdfWorld
+from momantu_worlds.sdf.errors import SdfError
+from momantu_worlds.sdf.read.model import Light, Model, ModelState, SdfWorld, Shape
 from momantu_worlds.sdf.read.values import Pose
+
+Posed = TypeVar("Posed", Shape, Light)
 
 
 def placed_models(world: SdfWorld, deviations: Deviations) -> list[PlacedModel]:
-    """The world's models with the poses of all links; raises SdfError for frames that do not exist.
+    """The world's models with the poses of all links; what has no pose is listed and left out.
 
     A state is as Gazebo saves it: poses of models and links in the world's frame.
     """
-    scope = scope_of_world(world)
-    placed = []
+    scope, placed = scope_of_world(world, deviations), []
     for model in world.models:
+        if model.name not in scope.inner:
+            continue
         state = world.states.get(model.name)
-        pose = scope.pose(model.name, model.place)
-        placed.append(_place(model, (), pose, scope.inner[model.name], state, deviations))
+        try:
+            pose = scope.pose(model.name, model.place)
+            placed.append(_place(model, (), pose, scope.inner[model.name], state, deviations))
+        except SdfError as error:
+            deviations.lost(error.place, model.name, error.reason)
     known = {model.name for model in world.models}
     for name, state in world.states.items():
         if name not in known:
@@ -75,17 +84,52 @@ def _place(
         )
         for inner in model.models
     )
-    return PlacedModel(path, model, scope, world_from_model, links, models)
+    placed = PlacedModel(path, model, scope, world_from_model, links, models)
+    return replace(placed, links=tuple(_sound(placed, link, deviations) for link in links))
+
+
+def _sound(model: PlacedModel, placed: PlacedLink, deviations: Deviations) -> PlacedLink:
+    """A link without what has no pose in it."""
+
+    def posed(things: Iterable[Posed], what: str) -> tuple[Posed, ...]:
+        found = []
+        for thing in things:
+            try:
+                placed_in_link(model, placed, thing.pose)
+            except SdfError as error:
+                subject = f"{placed.subject}/{thing.name}"
+                deviations.dropped(error.place, subject, error.reason, f"this {what} is left out")
+            else:
+                found.append(thing)
+        return tuple(found)
+
+    link = placed.link
+    return replace(
+        placed,
+        link=replace(
+            link,
+            visuals=posed(link.visuals, "visual"),
+            collisions=posed(link.collisions, "collision"),
+            lights=posed(link.lights, "light"),
+        ),
+    )
 
 
 def placed_lights(
-    world: SdfWorld, models: list[PlacedModel]
+    world: SdfWorld, models: list[PlacedModel], deviations: Deviations
 ) -> Iterator[tuple[Light, str, Transform]]:
-    """Every light with its name in messages and its pose in the world's frame."""
-    scope = scope_of_world(world)
+    """Every light with its name in messages and its pose in the world's frame.
+
+    One that has no pose is listed and left out.
+    """
+    scope = scope_of_world(world, Deviations())  # what is wrong with it is listed already
     for light in world.lights:
-        pose = world.light_states.get(light.name) or scope.placed(light.pose, WORLD)
-        yield light, light.name, pose
+        try:
+            pose = world.light_states.get(light.name) or scope.placed(light.pose, WORLD)
+        except SdfError as error:
+            deviations.dropped(error.place, light.name, error.reason, "this light is left out")
+        else:
+            yield light, light.name, pose
     for model in (inner for outer in models for inner in outer.everything()):
         for placed in model.links:
             for light in placed.link.lights:

@@ -6,6 +6,7 @@ reader of `momantu_bt.formats.xml`, which also knows where every attribute and c
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -73,14 +74,48 @@ def read_document(file: Path, asked_at: Place | None = None) -> Element:
 
 def parse_document(data: bytes, file: Path) -> Element:
     """As `read_document`, from bytes; `file` is for the messages."""
-    return _Parser(data, file).run()
+    try:
+        return _Parser(data, file).run()
+    except _NotXml as error:
+        text, cut = _forgiven(data)
+        try:
+            return _Parser(text, file, cut).run()
+        except SdfError:
+            raise SdfError(error.place, error.reason) from None
+
+
+class _NotXml(SdfError):
+    """The text breaks a rule of XML itself."""
+
+
+_COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
+_BARE_AND = re.compile(rb"&(?!(?:amp|lt|gt|quot|apos|#\d+|#x[0-9a-fA-F]+);)")
+
+
+def _forgiven(data: bytes) -> tuple[bytes, int]:
+    """A text with what Gazebo's reader bears and XML forbids put right; lines cut off at its top.
+
+    That is: blanks before the XML declaration, a bare `&`, two hyphens in a comment, bytes that are
+    not UTF-8 though nothing else is declared.
+    """
+    body = data.removeprefix(b"\xef\xbb\xbf").lstrip()
+    cut = data[: len(data) - len(body)].count(b"\n")
+    body = _COMMENT.sub(lambda found: b"\n" * found[0].count(b"\n"), body)
+    body = _BARE_AND.sub(b"&amp;", body)
+    try:
+        body.decode("utf-8")
+    except UnicodeDecodeError:
+        if b"encoding" not in body[:200].lower() or b"utf-8" in body[:200].lower():
+            body = body.decode("utf-8", "replace").encode("utf-8")
+    return body, cut
 
 
 class _Parser:
     """Builds elements from expat's events; refuses what is out of bounds as it comes."""
 
-    def __init__(self, data: bytes, file: Path) -> None:
-        self._data, self._file = data, file
+    def __init__(self, data: bytes, file: Path, cut: int = 0) -> None:
+        """cut: lines of the file before the data."""
+        self._data, self._file, self._cut = data, file, cut
         self._stack: list[Element] = []
         self._texts: list[list[str]] = []
         self._root: Element | None = None
@@ -97,11 +132,11 @@ class _Parser:
         try:
             self._expat.Parse(self._data, True)
         except expat.ExpatError as error:
-            self._refuse(
-                Place(str(self._file), max(error.lineno, 1), error.offset + 1),
+            raise _NotXml(
+                Place(str(self._file), max(error.lineno, 1) + self._cut, error.offset + 1),
                 f"this is not XML: {expat.ErrorString(error.code)}; expected an SDF file, "
                 "which begins with <sdf version='1.6'>",
-            )
+            ) from None
         except (ValueError, LookupError) as error:
             self._refuse(Place(str(self._file)), f"this is not XML: {error}")
         if self._root is None:
@@ -109,7 +144,7 @@ class _Parser:
         return self._root
 
     def _here(self) -> Place:
-        line, column = self._expat.CurrentLineNumber, self._expat.CurrentColumnNumber
+        line, column = self._expat.CurrentLineNumber + self._cut, self._expat.CurrentColumnNumber
         return Place(str(self._file), line, column + 1)
 
     def _start(self, tag: str, attributes: dict[str, str]) -> None:

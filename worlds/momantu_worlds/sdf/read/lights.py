@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 
 from momantu_worlds.sdf.errors import SdfError
 from momantu_worlds.sdf.read.document import Element
@@ -18,12 +17,12 @@ WHITE = (1.0, 1.0, 1.0, 1.0)
 _READ = ("pose", "diffuse", "direction", "intensity", "light_on", "visualize")
 
 
-def lights_of(parent: Element, around: str, reading: Reading) -> Iterator[Light]:
+def lights_of(parent: Element, around: str, reading: Reading) -> list[Light]:
     """The lights directly in an element."""
-    for element in parent.all("light"):
-        light = read_light(element, around, reading)
-        if light is not None:
-            yield light
+    found = reading.each(
+        parent.all("light"), around, lambda element: read_light(element, around, reading)
+    )
+    return [light for light in found if light is not None]
 
 
 def read_light(element: Element, around: str, reading: Reading) -> Light | None:

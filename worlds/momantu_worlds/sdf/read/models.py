@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TypeVar
 
-from momantu_worlds.sdf.errors import SdfError
 from momantu_worlds.sdf.read.document import Element, parse_document
 from momantu_worlds.sdf.read.lights import lights_of, read_light
 from momantu_worlds.sdf.read.model import MOVING_JOINTS, Frame, Joint, Light, Link, Model
@@ -60,22 +60,26 @@ def _model(element: Element, around: str, reading: Reading) -> Model:
     subject = f"{around}/{name}" if around else name
     list_leftovers(element, subject, _OF_MODEL, reading.deviations)
     static = flag(element, "static")
-    inner = [read_model(child, subject, reading) for child in element.all("model")]
-    for child in element.all("include"):
-        model, lights = read_include(child, subject, reading)
+    each = partial(reading.each, around=subject)
+    inner = each(element.all("model"), read=lambda e: read_model(e, subject, reading))
+    for model, lights in each(
+        element.all("include"), read=lambda e: read_include(e, subject, reading)
+    ):
         inner += [] if model is None else [model]
         for light in lights:
-            reading.deviations.dropped(child.place, subject, f"light {light.name!r}", "left out")
+            reading.deviations.dropped(light.place, subject, f"light {light.name!r}", "left out")
+    links = each(element.all("link"), read=lambda e: _link(e, subject, static, reading))
+    joints = each(element.all("joint"), read=lambda e: _joint(e, subject, reading))
     return Model(
         name=name,
         place=element.place,
         pose=pose_of(element),
         static=static,
         placement_frame=element.attributes.get("placement_frame", ""),
-        links=unique("link", (_link(e, subject, static, reading) for e in element.all("link"))),
-        joints=unique("joint", (_joint(e, subject, reading) for e in element.all("joint"))),
-        frames=tuple(read_frame(child) for child in element.all("frame")),
-        models=unique("model", inner),
+        links=_unique("link", links, subject, reading),
+        joints=_unique("joint", joints, subject, reading),
+        frames=tuple(each(element.all("frame"), read=read_frame)),
+        models=_unique("model", inner, subject, reading),
         plugins=sum(1 for _ in element.all("plugin")),
     )
 
@@ -102,7 +106,7 @@ def read_include(
         standard = standard_model(uri.text)
         if standard is not None:
             return _included(standard, element, subject, around, reading)
-        reading.deviations.dropped(uri.place, subject, str(error), "this model is left out")
+        reading.deviations.lost(uri.place, subject, str(error))
         return None, ()
     with reading.including(file, uri.place) as root:
         version_of(root)
@@ -208,20 +212,16 @@ def _is_locked(element: Element) -> bool:
     return number(axis, "limit/lower", 0.0) >= number(axis, "limit/upper", 0.0)
 
 
-def unique(what: str, things: Iterable[Named]) -> tuple[Named, ...]:
-    """The things in their order.
-
-    Raises:
-        SdfError: two have one name.
-    """
+def _unique(what: str, things: Iterable[Named], around: str, reading: Reading) -> tuple[Named, ...]:
+    """The things in their order; a second one of a name is listed and left out."""
     found: dict[str, Named] = {}
     for thing in things:
-        if thing.name in found:
-            first = found[thing.name].place
-            raise SdfError(
-                thing.place, f"there are two {what}s {thing.name!r}; the first is at {first}"
+        first = found.setdefault(thing.name, thing)
+        if first is not thing:
+            why = f"there are two {what}s {thing.name!r}; the first is at {first.place}"
+            reading.deviations.dropped(
+                thing.place, f"{around}/{thing.name}", why, f"this {what} is left out"
             )
-        found[thing.name] = thing
     return tuple(found.values())
 
 

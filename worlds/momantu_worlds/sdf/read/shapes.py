@@ -41,13 +41,13 @@ _PBR_COLORS = ("pbr/metal/albedo_map", "pbr/specular/albedo_map")
 
 def shapes_of(link: Element, tag: str, subject: str, reading: Reading) -> tuple[Shape, ...]:
     """The visuals or the collisions of a link that can be carried over."""
-    found = []
-    for element in link.all(tag):
+
+    def read(element: Element) -> Shape | None:
         reading.count_shape(element.place)
-        shape = _shape(element, f"{subject}/{name_of(element)}", reading)
-        if shape is not None:
-            found.append(shape)
-    return tuple(found)
+        return _shape(element, f"{subject}/{name_of(element)}", reading)
+
+    found = reading.each(link.all(tag), subject, read)
+    return tuple(shape for shape in found if shape is not None)
 
 
 def _shape(element: Element, subject: str, reading: Reading) -> Shape | None:

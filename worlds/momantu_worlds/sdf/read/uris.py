@@ -16,7 +16,10 @@ SEARCH_PATHS = ("GAZEBO_MODEL_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURC
 """Environment variables in which versions of Gazebo look for models."""
 NEWEST = (1, 11)
 """Newest version of SDF that is read."""
-OLDEST = (1, 4)
+OLDEST = (1, 2)
+"""Oldest one; what came before named poses <origin>."""
+ROOTS = ("sdf", "gazebo")
+"""Tags with which an SDF file begins; the second was that of 1.2."""
 MOST_NAMED = 6
 """Most folders that a message lists."""
 
@@ -156,7 +159,7 @@ def version_of(root: Element) -> tuple[int, int]:
         SdfError: it is not an SDF file, or of a version that is not read.
     """
     oldest, newest = (".".join(map(str, version)) for version in (OLDEST, NEWEST))
-    if root.tag != "sdf":
+    if root.tag not in ROOTS:
         hint = " (URDF is not SDF: `gz sdf -p FILE` converts it)" if root.tag == "robot" else ""
         raise root.error(f"the file begins with <{root.tag}>; expected <sdf version='1.6'>{hint}")
     version = _version_of(root)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from momantu_bt.formats.places import Place
@@ -11,7 +12,7 @@ from momantu_bt.geometry import Transform
 from momantu_worlds.sdf.deviations import Deviations
 from momantu_worlds.sdf.read.document import Element
 from momantu_worlds.sdf.read.lights import lights_of
-from momantu_worlds.sdf.read.model import Model, ModelState, SdfWorld
+from momantu_worlds.sdf.read.model import Model, ModelState, Rgba, SdfWorld
 from momantu_worlds.sdf.read.models import read_frame, read_include, read_model
 from momantu_worlds.sdf.read.reading import Reading
 from momantu_worlds.sdf.read.unread import INSTEAD, list_leftovers
@@ -42,34 +43,41 @@ def read_world(file: Path, folders: Iterable[Path], deviations: Deviations) -> S
 
 
 def _world(element: Element, file: Path, version: tuple[int, int], reading: Reading) -> SdfWorld:
-    _list_settings(element, reading.deviations)
-    models = [read_model(child, "", reading) for child in element.all("model")]
-    lights = list(lights_of(element, "", reading))
-    for child in element.all("include"):
-        model, more = read_include(child, "", reading)
+    each = partial(reading.each, around="")
+    each([element], read=lambda e: _list_settings(e, reading.deviations), what="setting")
+    models = each(element.all("model"), read=lambda e: read_model(e, "", reading))
+    lights = lights_of(element, "", reading)
+    for model, more in each(element.all("include"), read=lambda e: read_include(e, "", reading)):
         models += [] if model is None else [model]
         lights += more
     state = element.child("state")
     if state is not None:
-        models += [read_model(e, "", reading) for e in _inserted(state)]
+        models += each(_inserted(state), read=lambda e: read_model(e, "", reading))
         gone = _deleted(state)
         models = [model for model in models if model.name not in gone]
         lights = [light for light in lights if light.name not in gone]
         list_leftovers(state, "state", _OF_STATE, reading.deviations)
-    if not models and element.child("include") is None:
+    if not models and next(element.all("model", "include"), None) is None:
         raise element.error(f"there is no <model> in {file}; nothing could be imported")
-    scene = element.child("scene")
     return SdfWorld(
         name=element.attributes.get("name", "") or file.stem,
         file=file,
         version=version,
         models=_apart(models, reading.deviations),
         lights=tuple(lights),
-        frames=tuple(read_frame(child) for child in element.all("frame")),
-        states={} if state is None else _states(state, "model"),
-        light_states={} if state is None else _light_states(state),
-        ambient=None if scene is None else color_of(scene, "ambient"),
+        frames=tuple(each(element.all("frame"), read=read_frame)),
+        states={} if state is None else _states(state, "state", reading),
+        light_states={} if state is None else _poses(state, "light", "state", reading),
+        ambient=_ambient(element, reading),
     )
+
+
+def _ambient(element: Element, reading: Reading) -> Rgba | None:
+    """The colour of light from everywhere; None when there is none."""
+    found = reading.each(
+        element.all("scene"), "world", lambda scene: color_of(scene, "ambient"), what="setting"
+    )
+    return found[0] if found else None
 
 
 def _list_settings(element: Element, deviations: Deviations) -> None:
@@ -111,29 +119,37 @@ def _deleted(state: Element) -> set[str]:
     return {name.text for gone in state.all("deletions") for name in gone.all("name")}
 
 
-def _states(element: Element, tag: str) -> dict[str, ModelState]:
-    found = {}
-    for child in element.all(tag):
-        scale = child.child("scale")
-        x, y, z = (1.0, 1.0, 1.0) if scale is None else numbers(scale, 3)
-        if not SCALES[0] <= min(x, y, z) <= max(x, y, z) <= SCALES[1]:
-            few, many = SCALES
-            raise child.error(f"<scale> is {x:g} {y:g} {z:g}; expected factors of {few} to {many}")
-        found[name_of(child)] = ModelState(
-            child.place,
-            None if child.child("pose") is None else pose_of(child).transform,
-            (x, y, z),
-            _link_states(child),
-            _states(child, "model"),
+def _states(around: Element, subject: str, reading: Reading) -> dict[str, ModelState]:
+    """What a state says about the models in it, by their names; broken entries are left out."""
+
+    def read(child: Element) -> tuple[str, ModelState]:
+        name = name_of(child)
+        pose = None if child.child("pose") is None else pose_of(child).transform
+        links = _poses(child, "link", f"{subject}/{name}", reading)
+        inner = _states(child, f"{subject}/{name}", reading)
+        return name, ModelState(child.place, pose, _scale(child), links, inner)
+
+    # a broken state loses no model: the model stays where it says itself
+    return dict(reading.each(around.all("model"), subject, read, what="state"))
+
+
+def _scale(element: Element) -> tuple[float, float, float]:
+    scale = element.child("scale")
+    x, y, z = (1.0, 1.0, 1.0) if scale is None else numbers(scale, 3)
+    if not SCALES[0] <= min(x, y, z) <= max(x, y, z) <= SCALES[1]:
+        few, many = SCALES
+        raise element.error(f"<scale> is {x:g} {y:g} {z:g}; expected factors of {few} to {many}")
+    return x, y, z
+
+
+def _poses(around: Element, tag: str, subject: str, reading: Reading) -> dict[str, Transform]:
+    """Poses of the links or the lights of a state, by name."""
+    posed = (child for child in around.all(tag) if child.child("pose") is not None)
+    return dict(
+        reading.each(
+            posed,
+            subject,
+            lambda child: (name_of(child), pose_of(child).transform),
+            what="state",
         )
-    return found
-
-
-def _link_states(element: Element) -> dict[str, Transform]:
-    with_pose = (child for child in element.all("link") if child.child("pose") is not None)
-    return {name_of(child): pose_of(child).transform for child in with_pose}
-
-
-def _light_states(state: Element) -> dict[str, Transform]:
-    with_pose = (child for child in state.all("light") if child.child("pose") is not None)
-    return {name_of(child): pose_of(child).transform for child in with_pose}
+    )
