@@ -399,3 +399,39 @@ def test_a_machine_on_a_wall_is_no_robot(imported):
     joint = "<joint name='w' type='fixed'><parent>world</parent><child>base</child></joint>"
     rover = ROBOT.format(*[CAN.format(mass=1)] * 3).replace("</model>", joint + "</model>")
     assert [body.name for body in imported(GROUND + rover).world.bodies] == ["rover"]
+
+
+SHAPES = "<collision name='c'><geometry>{}</geometry></collision><visual name='v'><geometry>{}"
+SHAPES += "</geometry></visual>"
+LOST = "<mesh><uri>model://none/none.dae</uri></mesh>"
+CUBE = "<box><size>0.4 0.4 0.8</size></box>"
+BROKEN = "<mesh><uri>broken.stl</uri></mesh>"
+
+
+@pytest.mark.parametrize("lost", [LOST, BROKEN, "<box><size>0 1 1</size></box>"])
+@pytest.mark.parametrize("static", ["<static>1</static>", ""])
+def test_what_is_lost_of_a_body_is_replaced_by_what_is_known_of_it(
+    imported, tmp_path, lost, static
+):
+    """A missing file makes no invisible obstacle, and no table that nothing can stand on."""
+    (tmp_path / "broken.stl").write_text("solid nothing")
+    for shapes, said in (
+        (SHAPES.format(CUBE, lost), "its collision shape is drawn"),
+        (SHAPES.format(lost, CUBE), "what is seen of it is touched"),
+    ):
+        found = imported(f"{GROUND}<model name='m'>{static}<link name='l'>{shapes}</link></model>")
+        (part,) = found.world.bodies[0].parts
+        assert (part.solid, part.visual, part.collision) == (Box((0.4, 0.4, 0.8)), True, True)
+        assert [f.subject for f in found.deviations if f.instead == said] == ["m/l"]
+        assert len(part.hulls) == 1
+
+
+def test_what_is_meant_to_be_invisible_stays_so(imported):
+    hidden = SHAPES.format(CUBE, CUBE).replace("<visual name='v'>", "<visual name='v'>{}")
+    for inside in (
+        hidden.format("<transparency>1</transparency>"),
+        SHAPES.format(CUBE, "<empty/>"),
+        f"<collision name='c'><geometry>{CUBE}</geometry></collision>",
+    ):
+        found = imported(f"{GROUND}<model name='m'><link name='l'>{inside}</link></model>")
+        assert [part.visual for part in found.world.bodies[0].parts] == [False]

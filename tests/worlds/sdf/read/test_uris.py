@@ -41,6 +41,7 @@ def library(folders: Path) -> Library:
         "https://fuel.gazebosim.org/1.0/somebody/models/table/2/files/meshes/t.stl",
         "../models/table/meshes/t.stl",
         "file://table/meshes/t.stl",
+        "file://models/table/meshes/t.stl",
     ],
 )
 def test_one_file_has_many_names(library, place, folders, uri):

@@ -170,6 +170,16 @@ def test_the_sun_and_the_ground_need_no_files(read):
     assert list(deviations) == []
 
 
+@pytest.mark.parametrize(("name", "height"), [("cafe_table", 0.775), ("table", 1.015)])
+def test_tables_of_gazebo_need_no_files(imported, name, height):
+    found = imported(f"<include><uri>model://{name}</uri></include>")
+    (body,) = found.world.bodies
+    assert max(float(hull[:, 2].max()) for hull in body.hulls()) == pytest.approx(height)
+    assert all(part.visual and part.collision for part in body.parts)
+    (said,) = found.deviations
+    assert "drawn in plain" in said.instead
+
+
 def test_includes_that_never_end_end_where_they_begin_again(read, model):
     model("a", "<include><uri>model://b</uri></include>")
     model("b", "<include><uri>model://a</uri></include>")

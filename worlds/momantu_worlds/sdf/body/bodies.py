@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
+from typing import TypeAlias
 
 import numpy as np
 
 from momantu_bt.formats.places import Place
 from momantu_bt.geometry import Array, Transform
+from momantu_worlds.scenes.geometry.bodies import GREY
 from momantu_worlds.sdf.body.frames import PlacedLink, PlacedModel
 from momantu_worlds.sdf.body.ground import Ground
 from momantu_worlds.sdf.body.parts import Part, joined
@@ -17,6 +20,10 @@ from momantu_worlds.sdf.body.placing import placed_in_link
 from momantu_worlds.sdf.body.rigid_groups import Group
 from momantu_worlds.sdf.body.shaping import Shaping
 from momantu_worlds.sdf.deviations import Deviations
+from momantu_worlds.sdf.read.model import Shape, Vector
+
+Make: TypeAlias = Callable[[Shape, Transform, Vector, str], Iterator[Part]]
+"""Makes the parts of a shape at a pose in the body, at a scale, with a name for messages."""
 
 MOST_PARTS = 500
 """Limit of parts of one body, as in world files."""
@@ -97,23 +104,38 @@ class BodyMaker:
 
     def _parts(self, model: PlacedModel, group: Group, at: Transform) -> Iterator[Part]:
         owners = {one.path: one for one in model.everything()}
-        body_from_world = at.inverse()
         for placed in group.links:
-            owner = owners[placed.path]
-            for shape in placed.link.visuals:
+            yield from self._of_link(owners[placed.path], placed, at.inverse(), still=group.still)
+
+    def _of_link(
+        self, owner: PlacedModel, placed: PlacedLink, body_from_world: Transform, *, still: bool
+    ) -> Iterator[Part]:
+        """The parts of a link. What is only seen or only touched, as a file is missing, is both."""
+
+        def parts(shapes: tuple[Shape, ...], lost: int, make: Make) -> tuple[list[Part], int]:
+            found: list[Part] = []
+            for shape in shapes:
                 if self._ground.is_floor(placed, shape):
                     continue
                 pose = body_from_world @ placed_in_link(owner, placed, shape.pose)
-                subject = f"{placed.subject}/{shape.name}"
-                yield from self._shaping.seen(shape, pose, placed.scale, subject)
-            for shape in placed.link.collisions:
-                if self._ground.is_floor(placed, shape):
-                    continue
-                pose = body_from_world @ placed_in_link(owner, placed, shape.pose)
-                subject = f"{placed.subject}/{shape.name}"
-                yield from self._shaping.touched(
-                    shape, pose, placed.scale, subject, still=group.still
-                )
+                own = list(make(shape, pose, placed.scale, f"{placed.subject}/{shape.name}"))
+                lost += not own
+                found += own
+            return found, lost
+
+        link, touched_by = placed.link, partial(self._shaping.touched, still=still)
+        seen, unseen = parts(link.visuals, link.unseen, self._shaping.seen)
+        touched, untouched = parts(link.collisions, link.untouched, touched_by)
+        if unseen and not seen and touched:
+            touched = [replace(part, visual=True, color=GREY) for part in touched]
+            self._stands_in(placed, "what is seen of it is lost", "its collision shape is drawn")
+        elif untouched and not touched and seen:
+            touched, _ = parts(link.visuals, 0, touched_by)
+            self._stands_in(placed, "its collision shape is lost", "what is seen of it is touched")
+        yield from (*seen, *touched)
+
+    def _stands_in(self, placed: PlacedLink, what: str, instead: str) -> None:
+        self._deviations.changed(placed.link.place, placed.subject, what, instead)
 
     def _had_shapes(self, placed: PlacedLink) -> bool:
         """Whether a link has any shape besides the floor."""

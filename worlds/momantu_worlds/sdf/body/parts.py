@@ -102,7 +102,9 @@ def joined(parts: Iterable[Part]) -> Iterator[Part]:
     waiting = list(parts)
     touched = [part for part in waiting if part.collision and not part.visual]
     for part in waiting:
-        if part.visual and not part.collision:
+        if part.visual and part.collision:
+            yield part
+        elif part.visual:
             twin = next((other for other in touched if _same(part, other)), None)
             if twin is not None:
                 touched.remove(twin)

@@ -160,7 +160,10 @@ class Joint:
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """A rigid thing. mass: kg. sensors: how many it carries."""
+    """A rigid thing. mass: kg. sensors: how many it carries.
+
+    unseen, untouched: how many of its visuals and collisions could not be read.
+    """
 
     name: str
     place: Place
@@ -170,6 +173,8 @@ class Link:
     collisions: tuple[Shape, ...] = ()
     lights: tuple[Light, ...] = ()
     sensors: int = 0
+    unseen: int = 0
+    untouched: int = 0
 
 
 @dataclass(frozen=True, slots=True)

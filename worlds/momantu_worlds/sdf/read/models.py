@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 from typing import TypeVar
 
-from momantu_worlds.sdf.read.document import Element, parse_document
+from momantu_worlds.sdf.read.document import Element
 from momantu_worlds.sdf.read.lights import lights_of, read_light
 from momantu_worlds.sdf.read.model import MOVING_JOINTS, Frame, Joint, Light, Link, Model
 from momantu_worlds.sdf.read.reading import Reading
 from momantu_worlds.sdf.read.shapes import shapes_of
+from momantu_worlds.sdf.read.standard import standard_model
 from momantu_worlds.sdf.read.unread import list_leftovers
 from momantu_worlds.sdf.read.uris import MissingFile, model_file, version_of
 from momantu_worlds.sdf.read.values import flag, name_of, number, pose_of
@@ -26,23 +26,6 @@ MASSES = (1e-5, 1e5)
 _OF_MODEL = ("pose", "static", "link", "joint", "frame", "model", "include")
 _OF_LINK = ("pose", "inertial", "visual", "collision", "light")
 _OF_INCLUDE = ("uri", "name", "pose", "static", "placement_frame")
-_SUN = b"""<sdf version='1.6'>
-  <light name='sun' type='directional'>
-    <diffuse>0.8 0.8 0.8 1</diffuse>
-    <direction>-0.4 0.2 -0.9</direction>
-  </light>
-</sdf>"""
-_GROUND = b"""<sdf version='1.6'>
-  <model name='ground_plane'>
-    <static>true</static>
-    <link name='link'>
-      <collision name='collision'>
-        <geometry><plane><normal>0 0 1</normal><size>100 100</size></plane></geometry>
-      </collision>
-    </link>
-  </model>
-</sdf>"""
-_TEXTS = {"sun": _SUN, "ground_plane": _GROUND}
 
 
 def read_model(element: Element, around: str, reading: Reading) -> Model:
@@ -105,7 +88,10 @@ def read_include(
     except MissingFile as error:
         standard = standard_model(uri.text)
         if standard is not None:
-            return _included(standard, element, subject, around, reading)
+            if standard.plain:
+                instead = "it is drawn in plain, with the sizes that Gazebo's own model has"
+                reading.deviations.changed(uri.place, subject, str(error), instead)
+            return _included(standard.root, element, subject, around, reading)
         reading.deviations.lost(uri.place, subject, str(error))
         return None, ()
     with reading.including(file, uri.place) as root:
@@ -172,15 +158,19 @@ def _link(element: Element, around: str, static: bool, reading: Reading) -> Link
         where = element.find("inertial/mass") or element
         reading.deviations.changed(where.place, subject, f"a mass of {mass:g} kg", f"{MASS:g} kg")
         mass = MASS
+    visuals, unseen = shapes_of(element, "visual", subject, reading)
+    collisions, untouched = shapes_of(element, "collision", subject, reading)
     return Link(
         name=name_of(element),
         place=element.place,
         pose=pose_of(element),
         mass=mass,
-        visuals=shapes_of(element, "visual", subject, reading),
-        collisions=shapes_of(element, "collision", subject, reading),
+        visuals=visuals,
+        collisions=collisions,
         lights=tuple(lights_of(element, subject, reading)),
         sensors=sum(1 for _ in element.all("sensor")),
+        unseen=unseen,
+        untouched=untouched,
     )
 
 
@@ -223,10 +213,3 @@ def _unique(what: str, things: Iterable[Named], around: str, reading: Reading) -
                 thing.place, f"{around}/{thing.name}", why, f"this {what} is left out"
             )
     return tuple(found.values())
-
-
-def standard_model(uri: str) -> Element | None:
-    """The root of a model that is known by its name, whatever server it is named on; or None."""
-    words = uri.lower().replace("%20", "_").replace(" ", "_").split("/")
-    name = next((word for word in words if word in _TEXTS), None)
-    return None if name is None else parse_document(_TEXTS[name], Path(f"<{name}>"))

@@ -39,15 +39,30 @@ PLANE_SIZE = (1.0, 1.0)
 _PBR_COLORS = ("pbr/metal/albedo_map", "pbr/specular/albedo_map")
 
 
-def shapes_of(link: Element, tag: str, subject: str, reading: Reading) -> tuple[Shape, ...]:
-    """The visuals or the collisions of a link that can be carried over."""
+def shapes_of(
+    link: Element, tag: str, subject: str, reading: Reading
+) -> tuple[tuple[Shape, ...], int]:
+    """The visuals or the collisions of a link that can be carried over, and how many are lost.
+
+    Those that are empty or invisible are not lost.
+    """
 
     def read(element: Element) -> Shape | None:
         reading.count_shape(element.place)
         return _shape(element, f"{subject}/{name_of(element)}", reading)
 
-    found = reading.each(link.all(tag), subject, read)
-    return tuple(shape for shape in found if shape is not None)
+    wanted = [element for element in link.all(tag) if _shows(element, subject, reading)]
+    found = [shape for shape in reading.each(wanted, subject, read) if shape is not None]
+    return tuple(found), len(wanted) - len(found)
+
+
+def _shows(element: Element, subject: str, reading: Reading) -> bool:
+    """Whether a visual or a collision is meant to be there: neither empty nor invisible."""
+    if element.find("geometry/empty") is not None:
+        return False
+    name = element.attributes.get("name", "")
+    hidden = reading.each([element], subject, lambda e: _invisible(e, f"{subject}/{name}", reading))
+    return hidden == [False]
 
 
 def _shape(element: Element, subject: str, reading: Reading) -> Shape | None:
@@ -61,7 +76,7 @@ def _shape(element: Element, subject: str, reading: Reading) -> Shape | None:
     if around is None:
         raise element.error(f"<{element.tag}> needs a <geometry>")
     geometry = _geometry(around, subject, reading)
-    if geometry is None or _invisible(element, subject, reading):
+    if geometry is None:
         return None
     return Shape(
         name_of(element),

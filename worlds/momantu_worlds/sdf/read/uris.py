@@ -76,8 +76,10 @@ class Library:
         raise MissingFile(f"{uri!r} is not in {looked}; name its folder by --models")
 
     def _relative(self, path: str, place: Place) -> Iterator[Path]:
-        """Search relative to the referring file, then in every folder."""
-        for base in (_lexical(Path(place.file)).parent, *self.folders):
+        """Search relative to the referring file, then in every folder, also by its own name."""
+        first = Path(path).parts[0] if Path(path).parts else ""
+        around = [folder.parent for folder in self.folders if folder.name == first]
+        for base in (_lexical(Path(place.file)).parent, *self.folders, *around):
             candidate = _lexical(base / path)
             inside = any(candidate.is_relative_to(folder) for folder in self.folders)
             if inside or candidate.is_relative_to(_lexical(Path(place.file)).parent):
