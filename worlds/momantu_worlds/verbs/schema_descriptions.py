@@ -146,7 +146,7 @@ DESCRIPTIONS: Mapping[str, str] = MappingProxyType(
         "Unknown.moved": "How many of the pieces with `moves` stand elsewhere.",
         "Unknown.extra": "How many pieces stand somewhere that are on no map.",
         "Unknown.kinds": "What such pieces may be.",
-        "Unknown.passage": "Radius of a disc that still gets to every table and doorway.",
+        "Unknown.passage": "Radius of a disc that gets to every table and doorway; up to 0.4 m.",
         "Unknown.stand": "Depth of the floor before tables that is kept free.",
         "Unknown.areas": "Where they may stand: [x from, y from, x to, y to].",
         "WallPiece.length": "Along its axis.",

@@ -7,7 +7,7 @@ from itertools import combinations
 import pytest
 from momantu_worlds.scenes.arrange.floor import around, stand_pose, stand_zone
 from momantu_worlds.scenes.arrange.layout import Layout
-from momantu_worlds.scenes.arrange.obstacles import footprint, wall_rectangles
+from momantu_worlds.scenes.arrange.obstacles import fixed_rectangles, footprint, wall_rectangles
 from momantu_worlds.scenes.arrange.spots import (
     Disc,
     SetDown,
@@ -177,11 +177,12 @@ def test_a_disc_still_gets_everywhere(seed):
     drawn = layout(seed)
     floor = WORLD.floor
     grid = passages(obstacles(drawn), floor.center, floor.size, 0.45, cell=0.05)
-    stops = [(drawn.start.x, drawn.start.y), *(d.at for d in WORLD.doorways.values())]
+    reached = grid.reachable((drawn.start.x, drawn.start.y))
+    stops = [door.at for door in WORLD.doorways.values()]
     for table in drawn.tables.values():
         stand = stand_pose(table)
         stops.append((stand.x, stand.y))
-    assert grid.connects(stops)
+    assert all(reached[grid.index(stop)] for stop in stops)
 
 
 def test_over_many_seeds_everything_that_may_vary_does():
@@ -217,8 +218,36 @@ def test_the_site_of_an_episode_tells_nothing_but_the_file_and_a_rough_start():
 
 def test_a_world_that_a_robot_cannot_pass_is_refused():
     narrow = WORLD.model_copy(update={"unknown": WORLD.unknown.model_copy(update={"passage": 0.9})})
-    with pytest.raises(WorldError, match="a disc of 0.9 m does not get from the start"):
+    with pytest.raises(WorldError) as told:
         vary(narrow, 0)
+    assert "a disc of 0.9 m radius does not get from the start through the doorway" in str(
+        told.value
+    )
+    assert "to the front of 'table_b'" in str(told.value)
+    assert "write passage: 40 cm in `unknown`, or move what stands in the way" in str(told.value)
+
+
+@pytest.mark.parametrize(("door", "disc"), [(1.0, 0.4), (0.8, 0.35), (0.7, 0.3), (0.3, None)])
+def test_a_world_that_names_no_disc_keeps_the_widest_that_its_doors_let_through(write, door, disc):
+    rooms = {name: {"corner": [x, 0], "size": [4, 4]} for name, x in (("a", 0), ("b", 4))}
+    sofa = {"kind": "sofa", "at": [2, 3.3, "-90 deg"], "moves": True}
+    path = write(
+        rooms=rooms,
+        doors={"middle": {"at": [4, 2], "width": door, "clear": 0.5}},
+        furniture={"sofa": sofa},
+        unknown={"moved": {"least": 1, "most": 1}, "shift": 1.5},
+    )
+    if disc is None:
+        with pytest.raises(WorldError, match=r"0\.2 m radius .* 'middle'; move what stands"):
+            vary(load_world(path), 0)
+        return
+    layouts = [vary(load_world(path), seed) for seed in range(10)]
+    assert any(drawn.pieces[0].pose != Pose2D(*drawn.pieces[0].piece.at) for drawn in layouts)
+    world = load_world(path)
+    for (sofa,) in (drawn.pieces for drawn in layouts):
+        blocks = [*fixed_rectangles(world), footprint(world, sofa.piece, sofa.pose)]
+        grid = passages(blocks, (4, 2), (9, 5), disc, cell=0.05)
+        assert grid.reachable((1, 1))[grid.index((4, 2))]
 
 
 def test_a_start_inside_a_sofa_is_refused():

@@ -2,7 +2,8 @@
 
 Every pose is drawn from the seed and kept only if the robot can still do its task: doorways and the
 tables' preferred sides stay free, and a disc of the world's `passage` radius can still move from
-the start to both tables and through every doorway.
+the start to all tables and through every doorway. A world that names no radius keeps the widest of
+`RADII` that its file leaves.
 """
 
 from __future__ import annotations
@@ -31,6 +32,8 @@ EXTRA_GAP = 0.15
 """Least distance of an extra piece from everything else, m."""
 STAND_OFF = 0.55
 """Distance from a table's edge to the base of a robot that reaches onto it, m."""
+RADII = (0.4, 0.35, 0.3, 0.25, 0.2)
+"""Radii of discs, m, that are tried where a world names none; robots are wider than the last."""
 WIDE = 0.4
 """Disc radius above which a coarse grid is enough, m, as such discs need wide doors."""
 COARSE, FINE = 0.1, 0.05
@@ -118,7 +121,7 @@ def place_furniture(
     """
     known = {name: PlacedPiece(name, p, p.pose, True) for name, p in world.furniture.items()}
     known |= shelves
-    room = _Room(world, world.unknown or UNVARIED, tables, start)
+    room = _Room(world, tables, known, start)
     placed = dict(known)
     for change in (*_own_shifts(world, seed), *_moves(world, seed), *_extras(world, seed)):
         for piece in change:
@@ -127,13 +130,24 @@ def place_furniture(
             if room.fits(piece, others) and room.passable(then.values()):
                 placed = then
                 break
-    promised = world.unknown is not None
-    if promised and placed == known and not room.passable(known.values()):
-        raise WorldError(
-            f"in the world {world.name!r} a disc of {room.unknown.passage} m does not get from "
-            "the start to every table and through every doorway; move the furniture apart"
-        )
+    if world.unknown is not None and placed == known:
+        _promise(world.name, room, known)
     return tuple(placed.values())
+
+
+def _promise(name: str, room: _Room, known: Mapping[str, PlacedPiece]) -> None:
+    """Refuse a world whose file leaves too little room for the disc that it promises."""
+    missed = room.missed(known.values())
+    if not missed:
+        return
+    wider = next((r for r in RADII if r < room.passage and not room.missed(known.values(), r)), 0.0)
+    cure = "move what stands in the way"
+    if wider:
+        cure = f"write passage: {100 * wider:.0f} cm in `unknown`, or {cure}"
+    raise WorldError(
+        f"in the world {name!r} a disc of {room.passage:g} m radius does not get from the start "
+        f"{', '.join(missed)}; {cure}"
+    )
 
 
 def _own_shifts(world: WorldFile, seed: int) -> Iterator[Iterator[PlacedPiece]]:
@@ -182,25 +196,36 @@ def _anywhere(unknown: Unknown, seed: int, number: int) -> Iterator[PlacedPiece]
 
 
 class _Room:
-    """The floor that furniture must leave free: doorways, the start, before tables, passages."""
+    """The floor that furniture must leave free: doorways, the start, before tables, passages.
+
+    passage: radius of the disc that gets everywhere, m.
+    """
 
     def __init__(
         self,
         world: WorldFile,
-        unknown: Unknown,
         tables: Mapping[str, PlacedTable],
+        known: Mapping[str, PlacedPiece],
         start: Pose2D,
     ) -> None:
-        self.unknown = unknown
+        unknown = world.unknown or UNVARIED
         self._world = world
         self._standing, self._floor = fixed_rectangles(world), floor_extent(world)
         self._tops = [Rectangle(table.pose, table.size) for table in tables.values()]
-        doors = world.all_doorways.values()
-        self._doors = [(np.array(door.at), door.clear) for door in doors]
+        doors = world.all_doorways
+        self._doors = [(np.array(door.at), door.clear) for door in doors.values()]
         self._zones = [around(start, world.start.clear)]
         self._zones += [stand_zone(table, unknown.stand) for table in tables.values()]
-        self._stops = [(start.x, start.y), *(door.at for door in doors)]
-        self._stops += [(at.x, at.y) for at in map(stand_pose, tables.values())]
+        stands = {name: stand_pose(table) for name, table in tables.items()}
+        self._start = (start.x, start.y)
+        self._stops = {f"through the doorway {name!r}": door.at for name, door in doors.items()}
+        self._stops |= {f"to the front of {name!r}": (at.x, at.y) for name, at in stands.items()}
+        self.passage = unknown.passage or self._widest(known)
+
+    def _widest(self, known: Mapping[str, PlacedPiece]) -> float:
+        """The widest disc that gets everywhere as the file stands; the smallest if none does."""
+        fit = (r for r in RADII if not self.missed(known.values(), r))
+        return next(fit, RADII[-1])
 
     def footprint(self, placed: PlacedPiece) -> Rectangle:
         """The floor area under a piece."""
@@ -219,11 +244,17 @@ class _Room:
         )
 
     def passable(self, pieces: Iterable[PlacedPiece]) -> bool:
-        """Whether a disc can still move from the start to all targets."""
+        """Whether the disc can still move from the start to all targets."""
+        return not self.missed(pieces)
+
+    def missed(self, pieces: Iterable[PlacedPiece], radius: float | None = None) -> list[str]:
+        """The targets that a disc, by default that of `passage`, does not reach from the start."""
         obstacles = [*self._standing, *map(self.footprint, pieces), *self._tops]
-        cell = COARSE if self.unknown.passage >= WIDE else FINE
+        wide = self.passage if radius is None else radius
         center, size = self._floor
-        return passages(obstacles, center, size, self.unknown.passage, cell).connects(self._stops)
+        grid = passages(obstacles, center, size, wide, COARSE if wide >= WIDE else FINE)
+        reached = grid.reachable(self._start)
+        return [name for name, at in self._stops.items() if not reached[grid.index(at)]]
 
 
 def around(pose: Pose2D, radius: float) -> Rectangle:

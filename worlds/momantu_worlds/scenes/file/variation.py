@@ -70,7 +70,8 @@ class Unknown(Part):
     """Differences from the map: moved pieces, and extra pieces in some areas.
 
     passage: radius of a disc that can still move from the start to every table and through every
-    doorway. stand: depth of the floor before tables that is kept free, m.
+    doorway; by default the widest up to 0.4 m that the file leaves. stand: depth
+    of the floor before tables that is kept free, m.
     """
 
     shift: NotNegative = 0.2
@@ -78,7 +79,7 @@ class Unknown(Part):
     moved: Between = NONE
     extra: Between = NONE
     kinds: Annotated[tuple[FurnitureKind, ...], Field(min_length=1)] = ("crate", "chair", "plant")
-    passage: Size = 0.4
+    passage: Size | None = None
     stand: Size = 1.0
     areas: tuple[tuple[Length, Length, Length, Length], ...] = ()
 

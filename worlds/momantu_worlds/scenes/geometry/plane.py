@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -153,11 +153,6 @@ class Passages:
         column = round((point[0] - self.origin[0]) / self.cell)
         row = round((point[1] - self.origin[1]) / self.cell)
         return row, column
-
-    def connects(self, points: Sequence[tuple[float, float]]) -> bool:
-        """Whether the disc reaches all other points from the first one."""
-        reached = self.reachable(points[0])
-        return all(bool(reached[self.index(point)]) for point in points)
 
 
 def passages(
