@@ -1,6 +1,7 @@
 """Worlds that somebody else writes: every section alone, and what follows from it."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -296,3 +297,29 @@ def test_the_site_has_services_and_its_kept_form_keeps_them(write):
     site = nominal_site(load_world(write(site={"services": told, "places": {"home": [1, 1, 0]}})))
     assert site.services == told
     assert site.places["home"] == Pose2D(1, 1, 0)
+
+
+MAP = "image: {}\nresolution: 0.05\norigin: [-1, -1, 0]\noccupied_thresh: 0.65\nfree_thresh: 0.2\n"
+
+
+@pytest.mark.parametrize(
+    ("picture", "said"),
+    [
+        (None, "there is no file 'plan.yaml' beside the world file"),
+        (b"", "plan.pgm"),
+        (b"P5\n2 2\n255\n" + bytes(4), "the map 'plan.yaml' has no free cell"),
+        (b"P5\n2 2\n255\n" + bytes([205] * 4), "the map 'plan.yaml' has no free cell"),
+    ],
+)
+def test_a_map_that_tells_no_free_floor_is_refused_at_its_line(write, tmp_path, picture, said):
+    path = write(site={"map": "plan.yaml"})
+    if picture is not None:
+        (tmp_path / "plan.yaml").write_text(MAP.format("plan.pgm"))
+        (tmp_path / "plan.pgm").write_bytes(picture)
+    with pytest.raises(WorldError, match=said) as told:
+        load_world(path)
+    assert re.search(r"world\.yaml:\d+:\d+", str(told.value))
+    (tmp_path / "plan.yaml").write_text(MAP.format("plan.pgm"))
+    (tmp_path / "plan.pgm").write_bytes(b"P5\n2 2\n255\n" + bytes([254] * 4))
+    path.write_text(path.read_text() + "\n")
+    assert load_world(path).site.map == "plan.yaml"

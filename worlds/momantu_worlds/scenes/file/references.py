@@ -7,8 +7,12 @@ from collections.abc import Collection, Iterable, Iterator
 from momantu_bt.descriptions.reading import KeyMessage
 from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.places import KeyPath
+from momantu_bt.lazy import lazily
 from momantu_worlds.scenes.file.furniture import MeshUse
 from momantu_worlds.scenes.file.world import WorldFile
+
+with lazily():
+    from momantu_bt.formats import maps
 
 FLOOR = "floor"
 """The name of the floor's body."""
@@ -159,8 +163,25 @@ def _files(world: WorldFile) -> Iterator[KeyMessage]:
     for place, use in _meshes(world):
         if not world.beside(use.file).is_file():
             yield (*place, "file"), f"there is no file {use.file!r} beside the world file"
-    if world.site.map is not None and not world.beside(world.site.map).is_file():
-        yield ("site", "map"), f"there is no file {world.site.map!r} beside the world file"
+    if world.site.map is not None and (wrong := _map_problem(world, world.site.map)):
+        yield ("site", "map"), wrong
+
+
+def _map_problem(world: WorldFile, name: str) -> str | None:
+    """Why the robot cannot use the world's own map; None if it can."""
+    file = world.beside(name)
+    if not file.is_file():
+        return f"there is no file {name!r} beside the world file"
+    try:
+        free = maps.read_map(file).cells() == maps.FREE
+    except maps.MapError as error:
+        return str(error)
+    if free.any():
+        return None
+    return (
+        f"the map {name!r} has no free cell, so a robot cannot be anywhere on it; look at its "
+        "picture, `negate`, `free_thresh` and `occupied_thresh`"
+    )
 
 
 def _meshes(world: WorldFile) -> Iterator[tuple[KeyPath, MeshUse]]:
