@@ -11,6 +11,7 @@ from momantu_worlds.scenes.geometry.support import SupportTop
 from momantu_worlds.scenes.loading import draw_episode, load_world, nominal_site
 from momantu_worlds.scenes.site.floor_plan import FREE, OCCUPIED, UNKNOWN, cells_of, draw_plans
 
+from momantu_bt.descriptions.reading import DescriptionError
 from momantu_bt.geometry import Pose2D
 from momantu_bt.world import WorldError
 
@@ -316,7 +317,7 @@ def test_a_map_that_tells_no_free_floor_is_refused_at_its_line(write, tmp_path, 
     if picture is not None:
         (tmp_path / "plan.yaml").write_text(MAP.format("plan.pgm"))
         (tmp_path / "plan.pgm").write_bytes(picture)
-    with pytest.raises(WorldError, match=said) as told:
+    with pytest.raises(DescriptionError, match=said) as told:
         load_world(path)
     assert re.search(r"world\.yaml:\d+:\d+", str(told.value))
     (tmp_path / "plan.yaml").write_text(MAP.format("plan.pgm"))
