@@ -300,7 +300,12 @@ def test_the_site_has_services_and_its_kept_form_keeps_them(write):
     assert site.places["home"] == Pose2D(1, 1, 0)
 
 
-MAP = "image: {}\nresolution: 0.05\norigin: [-1, -1, 0]\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
+MAP = """image: {}
+resolution: 0.05
+origin: [-1, -1, 0]
+occupied_thresh: 0.65
+free_thresh: 0.196
+"""
 
 
 @pytest.mark.parametrize(
