@@ -42,10 +42,11 @@ class _Missing:
 MISSING: Any = _Missing()
 """The default of an input that a tree must give."""
 
-NAMES = ("place", "surface", "named_pose", "category", "goal")
+NAMES = ("place", "surface", "named_pose", "category", "goal", "spot")
 """What a text input may name, so that the checker knows the valid values.
 
-`goal` is a place, or a pose of the map written as text; see `Pose2D.from_text`.
+`goal` is a place, or a pose of the map written as text (see `Pose2D.from_text`), where the robot is
+to stand; `spot` is the same, but the robot need not stand there.
 It may also be an entry point group, such as `momantu_bt.detectors`; the input then names a plug-in
 of that group.
 """
@@ -237,7 +238,8 @@ def In(
 
     unit: SI unit that numbers in trees are converted to. names: see `NAMES`.
     least, most: bounds of a number, in `unit`; the checker rejects a tree that exceeds them.
-    frame: "map" for a pose2d in the map; the checker rejects one outside the map.
+    frame: "map" for a pose2d in the map where the robot is to stand; the checker rejects one
+    outside the map, and one that the map shows to be occupied.
     may_be_empty: the key that the tree gives may have no value yet; the input then is its default.
     ignored: the skill does not read it; trees made for other systems may give it.
     """

@@ -299,6 +299,15 @@ class WorldEntry(Protocol):
         ...
 
 
+@runtime_checkable
+class MappedWorld(Protocol):
+    """A world that knows its maps without being opened; `check` then looks where poses lie."""
+
+    def site_for(self, description: RobotDescription) -> Site:
+        """The nominal site with the maps of a robot; raises WorldError."""
+        ...
+
+
 class WorldError(MomantuError):
     """A world could not start; the message says why and what to do."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from itertools import islice
 
 _MOST_COMPARED = 300
@@ -14,6 +14,12 @@ _MOST_MEANT = 3
 """At most so many equally near names are offered."""
 _LEAST_LIKE = 0.6
 """Names with at least this ratio of difflib count as near."""
+
+
+def listed(words: Sequence[str], last: str = "and") -> str:
+    """Words as a sentence lists them: `a, b and c`. last: the word before the last one."""
+    *others, end = words
+    return f"{', '.join(others)} {last} {end}" if others else end
 
 
 def nearest(word: str, candidates: Iterable[str], least: float = _LEAST_LIKE) -> str | None:
@@ -30,11 +36,9 @@ def valid_names(word: str, candidates: Iterable[str], what: str, least: float = 
     names = list(dict.fromkeys(candidates))
     near = _equally_near(word, names, least)
     if near:
-        *others, last = near
-        said = f"{', '.join(others)} or {last}" if others else last
-        return f"did you mean {said}?"
-    listed = names[:_MOST_LISTED] + ["…"] * (len(names) > _MOST_LISTED)
-    return f"{what}: {', '.join(listed)}" if names else f"there are no {what}"
+        return f"did you mean {listed(near, 'or')}?"
+    shown = names[:_MOST_LISTED] + ["…"] * (len(names) > _MOST_LISTED)
+    return f"{what}: {', '.join(shown)}" if names else f"there are no {what}"
 
 
 def _equally_near(word: str, candidates: Iterable[str], least: float) -> list[str]:

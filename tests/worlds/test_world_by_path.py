@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 
+import numpy as np
 import pytest
 import trimesh
 
 from momantu_bt.bench.planning.made_of import difference, made_of
 from momantu_bt.cli import main
+from momantu_bt.formats.maps import MapPicture, write_map
 from momantu_bt.tree.check.named_world import world_of
 from momantu_bt.tree.load import load
 from momantu_bt.tree.registry import Registry
@@ -123,3 +125,17 @@ def test_another_text_and_another_mesh_are_another_episode(yard, tree):
     yard(furniture=furniture, start={"at": [2, 2.5, 0]})
     changed = difference(first, made())
     assert changed == ("the world's file yard.yaml", "the world's file box.stl")
+
+
+def test_a_goal_outside_a_worlds_own_map(yard, tmp_path, capsys):
+    levels = np.full((100, 120), 254)
+    levels[:, :20] = 0
+    write_map(tmp_path / "rooms" / "plan.yaml", MapPicture(levels, 0.05, (0.0, 0.0)))
+    path = yard(site={**WORLD["site"], "map": "plan.yaml"})
+    tree = tmp_path / "tree.yaml"
+    told = {"x: 9, y: 2": "outside-map", "x: 0.5, y: 2": "goal-blocked", "x: 3, y: 2": ""}
+    for at, code in told.items():
+        text = TREE.format(world="").replace("home", f"{{goal: {{{at}}}}}")
+        tree.write_text(text, encoding="utf-8")
+        assert main(["check", str(tree), "--world", str(path)]) == (2 if code else 0)
+        assert f"[{code}]" in capsys.readouterr().err or not code

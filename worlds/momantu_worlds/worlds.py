@@ -22,6 +22,7 @@ with lazily():
 if TYPE_CHECKING:
     from momantu_bt.robot import RobotDescription
     from momantu_bt.world import World
+    from momantu_worlds.scenes.file.world import WorldFile
     from momantu_worlds.scenes.geometry.bodies import Episode
 
 
@@ -51,6 +52,10 @@ class WorldOfFile:
         """
         return loading.nominal(self.path).site
 
+    def site_for(self, description: RobotDescription) -> Site:
+        """The nominal site with the maps of a robot; raises as `site`."""
+        return self._mapped(self.site(), loading.load_world(self.path), description)
+
     def files(self) -> tuple[Path, ...]:
         """The world file and all files that it names; raises as `site`."""
         return loading.load_world(self.path).files()
@@ -62,9 +67,12 @@ class WorldOfFile:
             WorldError: the world file is wrong, the robot cannot be simulated, or nothing renders.
         """
         world, episode = loading.load_world(self.path), self.draw(seed)
-        site = maps.with_maps(episode.site, world, laser_band(description), description.height)
-        episode = replace(episode, site=site)
+        episode = replace(episode, site=self._mapped(episode.site, world, description))
         return simulated_world.SapienWorld(self.path, description, episode, seed, referee=referee)
+
+    @staticmethod
+    def _mapped(site: Site, world: WorldFile, description: RobotDescription) -> Site:
+        return maps.with_maps(site, world, laser_band(description), description.height)
 
     def about(self) -> Mapping[str, Mapping[str, str]]:
         """Tags, loose objects, what varies between episodes and the goal, in words."""

@@ -13,6 +13,7 @@ from momantu_bt.tree.check.elsewhere import report_elsewhere, with_trees_elsewhe
 from momantu_bt.tree.check.guards import check_guards
 from momantu_bt.tree.check.handlers import check_handlers
 from momantu_bt.tree.check.keys.flow_check import check_keys
+from momantu_bt.tree.check.misspelled import mend_declarations, mend_ports
 from momantu_bt.tree.check.nodes import check_node, check_tree_ports, with_named_inputs
 from momantu_bt.tree.check.reactive import check_reactive
 from momantu_bt.tree.check.root_keys import ROBOT_KEY, report_broken_services, root_keys
@@ -60,8 +61,10 @@ def check(
     problems = reading if reading is not None else Problems()
     whole, elsewhere = with_trees_elsewhere(document)
     context = Context(_concerned(whole), registry, problems, tolerant)
-    context.document = with_named_inputs(context)
     with suppress(TooManyProblems):  # the last of them says that there are more
+        mend_declarations(context)
+        context.document = with_named_inputs(context)
+        mend_ports(context)
         _check(context, world, robot, elsewhere)
     trees = {n: tree for n, tree in context.document.trees.items() if n not in elsewhere}
     return Checked(replace(document, trees={**document.trees, **trees}), problems.sorted())

@@ -14,7 +14,8 @@ from momantu_bt.tree.catalogue.absent import why_absent
 from momantu_bt.tree.catalogue.nodes import DOCTOR, said_type, why_broken
 from momantu_bt.tree.check.declared import tree_models_of
 from momantu_bt.tree.check.signatures import Context
-from momantu_bt.tree.check.suggest import known_names, suggestion
+from momantu_bt.tree.check.suggest import LIKE, known_names, suggestion
+from momantu_bt.tree.check.trees import reached
 from momantu_bt.tree.model import BROKEN, Document, Literal, Node, Reference, Template, Tree
 from momantu_bt.values.cpp_types import our_type
 from momantu_bt.values.types import parse_type
@@ -106,10 +107,28 @@ def report_elsewhere(context: Context, trees: frozenset[str]) -> None:
             elif signature is not None and signature.skill is None:
                 declared.setdefault(node.type, node.place)
     for nodes in unknown.values():
-        _report_unknown(context, nodes)
+        if not _report_misspelled_tree(context, nodes):
+            _report_unknown(context, nodes)
     for nodes in missing.values():
         _report_missing(context, nodes, trees)
     _report_declared(context, declared)
+
+
+def _report_misspelled_tree(context: Context, nodes: list[Node]) -> bool:
+    """Whether several nodes run a tree by another name than it has; reported at the tree."""
+    document, name = context.document, nodes[0].type
+    if len(nodes) < 2 or document.main not in document.trees:
+        return False
+    run = reached(document, [document.main])
+    idle = [each for each in document.trees if each not in run]
+    near = nearest(name, idle, least=LIKE)
+    if near is None or why_absent(name) or _why_broken(context, name):
+        return False
+    place, first = document.trees[near].place, nodes[0].place
+    message = f"nothing runs the tree {near!r}, and {len(nodes)} nodes run {name!r}"
+    hint = f"did you mean {name}? The first stands in {first.seen_from(place)}"
+    context.problems.error("unknown-node", place, message, hint)
+    return True
 
 
 def _report_unknown(context: Context, nodes: list[Node]) -> None:

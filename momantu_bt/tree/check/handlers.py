@@ -62,6 +62,8 @@ def _codes(
     of_tree: Mapping[str, Codes],
     meant: Mapping[int, Codes],
 ) -> Codes:
+    if node.handlers and not node.children:  # its `try` is missing, which is reported
+        return frozenset({UNKNOWN})
     below = joined(*(of_node[id(child)] for child in node.children))
     handled = joined(*(of_node[id(h.node)] for h in node.handlers if h.node is not None))
     found = _own(context, node, Failing(below, handled, _named(node, meant.get(id(node)))), of_tree)

@@ -11,6 +11,7 @@ from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.places import Place, within
 from momantu_bt.geometry import Pose2D
 from momantu_bt.skill import Port
+from momantu_bt.tree.check.floor import FARTHEST
 from momantu_bt.tree.check.signatures import Context
 from momantu_bt.values.kinds import parts_of
 
@@ -49,9 +50,9 @@ def check_name(context: Context, name: str, place: Place, kind: str) -> None:
         _check_category(context, name, place)
         return
     also = ""
-    if kind == "goal":
+    if kind in ("goal", "spot"):
         if ";" in name:
-            _check_pose_text(context, name, place)
+            _check_pose_text(context, name, place, stands=kind == "goal")
             return
         kind, also = "place", "; or write a pose of the map as x;y;yaw"
     valid = context.names_of(kind)
@@ -69,14 +70,14 @@ def check_name(context: Context, name: str, place: Place, kind: str) -> None:
     context.problems.error(code, place, message, valid_names(name, valid, several) + also)
 
 
-def _check_pose_text(context: Context, text: str, place: Place) -> None:
+def _check_pose_text(context: Context, text: str, place: Place, *, stands: bool) -> None:
     """Check a pose that is written as a text, such as `1.5;2;0`."""
     try:
         pose = Pose2D.from_text(text)
     except ValueError as error:
         context.problems.error("wrong-value", place, str(error))
         return
-    _check_on_map(context, pose, place)
+    _check_on_map(context, pose, place, stands=stands)
 
 
 def _check_category(context: Context, name: str, place: Place) -> None:
@@ -96,10 +97,23 @@ def _check_category(context: Context, name: str, place: Place) -> None:
     context.problems.warning("unknown-category", place, message, hint)
 
 
-def _check_on_map(context: Context, pose: Pose2D, place: Place) -> None:
-    area = None if context.site is None else context.site.area
-    if area is None or (area[0] <= pose.x <= area[2] and area[1] <= pose.y <= area[3]):
+def _check_on_map(context: Context, pose: Pose2D, place: Place, *, stands: bool = True) -> None:
+    """Check that a pose lies on the map, and, if the robot is to stand there, on free floor."""
+    floor = context.floor
+    area = floor.area if floor is not None else None
+    if context.site is not None and context.site.area is not None:
+        area = context.site.area
+    if area is None:
         return
-    message = f"x {pose.x:g} m, y {pose.y:g} m is outside the map"
-    hint = f"it spans x from {area[0]:g} to {area[2]:g} m, y from {area[1]:g} to {area[3]:g} m"
-    context.problems.error("outside-map", place, message, hint)
+    if not (area[0] <= pose.x <= area[2] and area[1] <= pose.y <= area[3]):
+        message = f"x {pose.x:g} m, y {pose.y:g} m is outside the map"
+        hint = f"it spans x from {area[0]:g} to {area[2]:g} m, y from {area[1]:g} to {area[3]:g} m"
+        context.problems.error("outside-map", place, message, hint)
+    elif stands and floor is not None and not floor.is_free(pose):
+        message = f"the robot cannot stand at x {pose.x:g} m, y {pose.y:g} m, yaw {pose.yaw:g} rad"
+        message += ": the map has no free floor there"
+        free = floor.nearest_free(pose)
+        hint = f"nothing is free within {FARTHEST:g} m of it"
+        if free is not None:
+            hint = f"the nearest free pose is {{x: {free.x:g}, y: {free.y:g}, yaw: {free.yaw:g}}}"
+        context.problems.error("goal-blocked", place, message, hint)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from momantu_bt.failure import CODE
-from momantu_bt.formats.names import valid_names
+from momantu_bt.formats.names import listed, valid_names
 from momantu_bt.formats.places import Place
 from momantu_bt.messages import VALUE_TYPES
 from momantu_bt.skill import MISSING, Port
@@ -19,7 +19,6 @@ from momantu_bt.tree.model import (
     Literal,
     Node,
     PortDeclaration,
-    PortValue,
     Reference,
     Template,
     Tree,
@@ -72,10 +71,13 @@ def check_node(context: Context, node: Node) -> None:
             _check_port(context, node, name, signature)
     _check_one_of(context, node, signature)
     _check_values(context, node, signature)
-    for name, port in signature.ports.items():
-        needed = _is_needed(port, signature) and not autoremaps(node)
-        if needed and name not in node.ports and name not in node.port_places:
-            _report_missing(context, node, port, signature)
+    missing = [
+        port
+        for name, port in signature.ports.items()
+        if _is_needed(port, signature) and name not in node.ports and name not in node.port_places
+    ]
+    if missing and not autoremaps(node):
+        _report_missing(context, node, missing, signature)
 
 
 def _is_needed(port: Port, signature: Signature) -> bool:
@@ -100,21 +102,30 @@ def with_named_inputs(context: Context) -> Document:
 
 
 def _with_named_inputs(context: Context, tree: Tree) -> Tree:
-    """Copy a tree, innermost nodes first instead of by recursion, as trees may be deep."""
-    nodes = list(tree.root.walk())
-    if not any(FIRST_INPUT in node.ports for node in nodes):
+    named: dict[int, Node] = {}
+    for node in tree.root.walk():
+        signature = context.signature(node) if FIRST_INPUT in node.ports else None
+        if signature is not None and signature.first is not None:
+            named[id(node)] = copy = replace(node)
+            _name_first_input(copy, signature.first)
+    return with_nodes(tree, named)
+
+
+def with_nodes(tree: Tree, changed: Mapping[int, Node]) -> Tree:
+    """A copy of the tree with some nodes changed; the tree itself if there are none.
+
+    changed: the new node for the `id` of an old one. Its children and handlers do not count.
+    """
+    if not changed:
         return tree
     copies: dict[int, Node] = {}
-    for node in reversed(nodes):
-        copy = copies[id(node)] = replace(node)
+    for node in reversed(list(tree.root.walk())):  # innermost first: trees may be deep
+        copy = copies[id(node)] = replace(changed.get(id(node), node))
         copy.children = [copies[id(child)] for child in node.children]
         copy.handlers = [
             each if each.node is None else replace(each, node=copies[id(each.node)])
             for each in node.handlers
         ]
-        signature = context.signature(node) if FIRST_INPUT in node.ports else None
-        if signature is not None and signature.first is not None:
-            _name_first_input(copy, signature.first)
     return replace(tree, root=copies[id(tree.root)])
 
 
@@ -169,7 +180,7 @@ def _check_one_of(context: Context, node: Node, signature: Signature) -> None:
             context.problems.error("missing-input", node.place, message)
         elif not given:
             first = group[-1] if context.in_xml(node.place) else group[0]
-            _report_missing(context, node, signature.ports[first], signature)
+            _report_missing(context, node, [signature.ports[first]], signature)
         for name in given[1:]:
             message = f"{signature.said} takes {given[0]!r} or {name!r}, not both"
             place = node.port_name_places.get(name, node.place)
@@ -196,30 +207,36 @@ def _check_switch(context: Context, node: Node, signature: Signature) -> None:
     context.problems.error("not-a-key", place, message, hint)
 
 
-def _report_missing(context: Context, node: Node, port: Port, signature: Signature) -> None:
-    kind = "input" if port.direction == "in" else "key"
-    name = port.name
-    if signature.spec is not None and context.in_xml(node.place):
-        name = signature.spec.xml.get(name, name)
-    message = f"{signature.said} needs the {kind} {name!r}"
-    hint = f"{name}: {label(port.type)}{f' in {port.unit}' if port.unit else ''}"
-    if port.doc:
-        hint += f", {port.doc}"
+def _report_missing(
+    context: Context, node: Node, ports: Sequence[Port], signature: Signature
+) -> None:
+    """Report the ports that a node needs and lacks: all of them in one error."""
+    xml = signature.spec.xml if signature.spec is not None and context.in_xml(node.place) else {}
+    names = [repr(xml.get(port.name, port.name)) for port in ports]
+    kind = "input" if all(port.direction == "in" for port in ports) else "key"
+    several = f"{kind}s" if len(ports) > 1 else kind
+    message = f"{signature.said} needs the {several} {listed(names)}"
+    hint = "; ".join(_described(port, xml.get(port.name, port.name)) for port in ports)
     by_model = signature.spec is not None and node.type not in NODES
     tell = context.tell_elsewhere if by_model else context.problems.error
     tell("missing-input", node.place, message, hint)
 
 
+def _described(port: Port, name: str) -> str:
+    unit = f" in {port.unit}" if port.unit else ""
+    return f"{name}: {label(port.type)}{unit}" + (f", {port.doc}" if port.doc else "")
+
+
 def _check_port(context: Context, node: Node, name: str, signature: Signature) -> None:
     port = signature.ports.get(name)
     if port is None:
-        _report_unknown_port(context, node, name, signature)
+        report_unknown_port(context, node, name, signature)
         return
     value = node.ports[name]
     place = node.port_places.get(name, node.place)
     watched = signature.spec is not None and name in signature.spec.keys
     if port.direction == "out" or watched:
-        _check_key(context, value, place, port, signature)
+        check_key(context, node, name, signature)
     elif isinstance(value, Literal):
         check_literal(context, value, place, port)
     elif isinstance(value, Template) and not assignable(str, port.type):
@@ -227,10 +244,16 @@ def _check_port(context: Context, node: Node, name: str, signature: Signature) -
         context.problems.error("wrong-type", place, message, "write $key alone")
 
 
-def _check_key(
-    context: Context, value: PortValue, place: Place, port: Port, signature: Signature
-) -> None:
-    """Check that ports which write or watch a key are given a whole key."""
+def bare_key(text: str) -> str:
+    """What a text without signs of a wire names: `seen` for `{seen`; empty if it is no key."""
+    key = text.strip("{}$")
+    return key if key.isidentifier() else ""
+
+
+def check_key(context: Context, node: Node, name: str, signature: Signature) -> None:
+    """Check that a port which writes or watches a key is given a whole key."""
+    port, value = signature.ports[name], node.ports[name]
+    place = node.port_places.get(name, node.place)
     doing = "written" if port.direction == "out" else "watched"
     if isinstance(value, Reference):
         if value.fields:
@@ -238,8 +261,8 @@ def _check_key(
             hint = f"write {context.wire(value.key, place)}"
             context.problems.error("not-a-key", place, message, hint)
         return
-    text = str(value.value) if isinstance(value, Literal) else "key"
-    hint = f"did you mean {context.wire(text, place)}?" if text.isidentifier() else ""
+    key = bare_key(str(value.value)) if isinstance(value, Literal) else "key"
+    hint = f"did you mean {context.wire(key, place)}?" if key else ""
     hint = hint or f"write {context.wire('key', place)}"
     what = "is an output of" if port.direction == "out" else "names what is watched by"
     message = f"{port.name!r} {what} {signature.said}: it needs a key"
@@ -261,7 +284,10 @@ def check_literal(context: Context, value: Literal, place: Place, port: Port) ->
     check_named(context, found, place, port)
 
 
-def _report_unknown_port(context: Context, node: Node, name: str, signature: Signature) -> None:
+def report_unknown_port(
+    context: Context, node: Node, name: str, signature: Signature, meant: str = ""
+) -> None:
+    """Report a port that a node does not have. meant: the port that it means, if that is known."""
     place = node.port_name_places.get(name, node.place)
     if name in MODIFIERS:
         context.problems.error(
@@ -271,7 +297,7 @@ def _report_unknown_port(context: Context, node: Node, name: str, signature: Sig
             f"move `{name}` left, under `{signature.said}`",
         )
         return
-    hint = valid_names(name, signature.ports, "ports")
+    hint = f"did you mean {meant}?" if meant else valid_names(name, signature.ports, "ports")
     if not signature.ports:
         hint = f"{signature.said} has no ports"
         if signature.spec is None and signature.skill is None:

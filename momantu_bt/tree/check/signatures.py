@@ -13,12 +13,13 @@ from momantu_bt.skill import Port, Skill
 from momantu_bt.tree.catalogue import AUTOREMAP, NODES, SUBTREE, NodeSpec
 from momantu_bt.tree.catalogue.nodes import said_type
 from momantu_bt.tree.check.declared import declared_spec, models_of, used_spec
+from momantu_bt.tree.check.floor import Floor, floor_of
 from momantu_bt.tree.language import is_xml
 from momantu_bt.tree.model import BROKEN, Document, Node, NodeModel, Reference, Scope, Tree
 from momantu_bt.tree.problems import Problems
 from momantu_bt.tree.registry import Registry
 from momantu_bt.values.types import parse_type
-from momantu_bt.world import Site
+from momantu_bt.world import Site, WorldEntry
 
 _AUTOREMAP_PORT = Port(AUTOREMAP, "in", bool, "whether keys of one name are one key", False)
 
@@ -52,7 +53,7 @@ class Signature:
 
 @dataclass(slots=True)
 class Context:
-    """One check of one document. site, description: None without a world or robot.
+    """One check of one document. site, entry, description: None without a world or robot.
 
     tolerant: what stands elsewhere (nodes, trees, keys) is a warning and not an error.
     """
@@ -62,7 +63,9 @@ class Context:
     problems: Problems
     tolerant: bool = False
     site: Site | None = None
+    entry: WorldEntry | None = None
     description: RobotDescription | None = None
+    _floor: list[Floor | None] = field(default_factory=list)
     _skills: dict[str, type[Skill] | None] = field(default_factory=dict)
     _trees: dict[str, Signature] = field(default_factory=dict)
     _xml_files: dict[str, bool] = field(default_factory=dict)
@@ -135,6 +138,11 @@ class Context:
                 ports[name] = Port(name, "inout", object, "")
         return Signature(tree.name, ports, declared.first)
 
+    def redeclare(self, document: Document) -> None:
+        """Go on with another document, whose trees may declare other ports."""
+        self.document = document
+        self._trees.clear()
+
     def tell_elsewhere(self, code: str, place: Place, message: str, hint: str = "") -> None:
         """Report something that may stand elsewhere: an error, or a warning if tolerant."""
         tell = self.problems.warning if self.tolerant else self.problems.error
@@ -180,6 +188,13 @@ class Context:
             except (KeyError, PluginError):
                 self._skills[name] = None
         return self._skills[name]
+
+    @property
+    def floor(self) -> Floor | None:
+        """The floor plan, as the robot is told it; read when a tree gives the first pose."""
+        if not self._floor:
+            self._floor.append(floor_of(self.entry, self.description))
+        return self._floor[0]
 
     def names_of(self, kind: str) -> tuple[str, ...] | None:
         """Valid values of an input with `names=kind`; None when they are unknown."""

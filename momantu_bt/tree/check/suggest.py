@@ -10,7 +10,7 @@ from momantu_bt.tree.check.signatures import Context
 from momantu_bt.tree.language import AGAIN
 from momantu_bt.tree.model import Node
 
-_LIKE = 0.75
+LIKE = 0.75
 """Names of nodes count as near from this likeness on; half a word in common is not enough."""
 _PARTS = {
     "then": "the child that runs if the condition holds",
@@ -60,7 +60,7 @@ def suggestion(context: Context, node: Node) -> str:
     if meant is not None:
         return f"did you mean {in_spelling(meant, xml=xml)}?"
     built_in = {type_ if xml else NODES[type_].yaml[0]: type_ for type_ in NODES}
-    near = nearest(name, [*trees.values(), *own, *built_in], least=_LIKE)
+    near = nearest(name, [*trees.values(), *own, *built_in], least=LIKE)
     if near is None:
         return ""
     if near in trees.values() and near not in own:
@@ -71,7 +71,7 @@ def suggestion(context: Context, node: Node) -> str:
 def known_names(context: Context, node: Node) -> str:
     """The trees and skills that there are, for a name that is near to none of them."""
     names = [*context.document.trees, *context.registry.skills, *context.models]
-    return valid_names(node.type, names, "trees and skills", least=_LIKE)
+    return valid_names(node.type, names, "trees and skills", least=LIKE)
 
 
 def _run_as(tree: str, *, xml: bool) -> str:

@@ -56,7 +56,7 @@ def _look_up_world(context: Context, name: str, place: Place) -> str | None:
     try:
         entry = worlds[name]
         with output_aside():
-            context.site = entry.site()
+            context.site, context.entry = entry.site(), entry
             check_goal(context, entry)
         return entry.default_robot
     except DescriptionError as error:

@@ -88,7 +88,9 @@ def check_nesting(context: Context, tree: Tree) -> bool:
 
 
 def check_unused(context: Context) -> None:
-    """Warn of trees that nothing runs."""
+    """Warn of trees that nothing runs, unless a misspelled name may mean them."""
+    if context.problems.grave:
+        return
     document = context.document
     run = reached(document, [document.main])
     for name, tree in document.trees.items():

@@ -142,16 +142,22 @@ def _nested(raw: Raw, problems: Problems) -> Any:
 
 
 def drop_duplicates(raw: Entries, problems: Problems) -> None:
-    """Report every key that a mapping repeats, and keep the first of each."""
+    """Report every key that a mapping repeats, and keep the first of each that has a value."""
     first: dict[str, tuple[Scalar, Raw]] = {}
     for key, value in raw.entries:
         if key.text in first:
             message = f"the key {key.text!r} stands here twice"
             hint = f"the first is in line {first[key.text][0].place.line}"
             problems.error("duplicate-key", key.place, message, hint)
+            if _is_empty(first[key.text][1]):
+                first[key.text] = (first[key.text][0], value)
         else:
             first[key.text] = (key, value)
     raw.entries = list(first.values())
+
+
+def _is_empty(raw: Raw) -> bool:
+    return isinstance(raw, Scalar) and raw.value is None and not raw.text
 
 
 def mapping(raw: Raw, name: str, example: str, problems: Problems) -> list[tuple[Scalar, Raw]]:

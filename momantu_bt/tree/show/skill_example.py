@@ -25,7 +25,13 @@ from momantu_bt.values.kinds import (
 
 WIDEST = 76
 """The most characters of one line of an example."""
-_NAMED = {"place": "table_a", "surface": "table_a", "named_pose": "home", "goal": "table_a"}
+_NAMED = {
+    "place": "table_a",
+    "surface": "table_a",
+    "named_pose": "home",
+    "goal": "table_a",
+    "spot": "table_a",
+}
 _QUANTITIES = {"m": "10 cm", "rad": "30 deg", "s": "2 s"}
 
 

@@ -60,7 +60,7 @@ class _Planning(Nav2Action):
     symptoms: ClassVar = _SYMPTOMS
 
     planner_id: str = In("", may_be_empty=True, doc=_PLANNER)
-    start: Goal | None = In(None, names="goal", doc="where the path begins; the robot's pose")
+    start: Goal | None = In(None, names="spot", doc="where the path begins; the robot's pose")
     path: Path = Out(doc="the path: poses of the map")
 
     def plan(

@@ -83,7 +83,7 @@ class ClearCostmapAroundPose(_Clearing):
 
     failures: ClassVar = {**_Clearing.failures, "BAD_GOAL": "it is neither a pose nor a place"}
 
-    pose: Goal = In(names="goal", doc="a pose of the map, or a place")
+    pose: Goal = In(names="spot", doc="a pose of the map, or a place")
     reset_distance: float = In(1.0, unit="m", least=0, doc="distance from the pose")
 
     @classmethod

@@ -28,7 +28,7 @@ _FRAME = "Nav2's; poses here are in the map"
 class GoalReached(Skill):
     """Succeed when the robot is within 0.25 m of a goal."""
 
-    goal: Goal = In(names="goal", doc="a pose of the map, or a place")
+    goal: Goal = In(names="spot", doc="a pose of the map, or a place")
     robot_base_frame: str | None = In(None, ignored=True, doc=_BASE)
 
     failures: ClassVar = {
@@ -63,8 +63,8 @@ class GoalReached(Skill):
 class ArePosesNear(Skill):
     """Succeed when two poses are near each other, without regard to their headings."""
 
-    ref_pose: Goal = In(names="goal", doc="a pose of the map, or a place")
-    target_pose: Goal = In(names="goal", doc="the other pose")
+    ref_pose: Goal = In(names="spot", doc="a pose of the map, or a place")
+    target_pose: Goal = In(names="spot", doc="the other pose")
     tolerance: float = In(0.5, unit="m", least=0, doc="what counts as near")
     global_frame: str | None = In(None, ignored=True, doc=_FRAME)
 
@@ -118,7 +118,7 @@ class RemovePassedGoals(Skill):
     radius: float = In(0.5, unit="m", least=0, doc="what counts as near")
     robot_base_frame: str | None = In(None, ignored=True, doc=_BASE)
     input_goals: tuple[Goal, ...] = In(
-        (), names="goal", may_be_empty=True, doc="poses of the map, or places"
+        (), names="spot", may_be_empty=True, doc="poses of the map, or places"
     )
     input_waypoint_statuses: tuple[WaypointStatus, ...] | None = In(
         None, may_be_empty=True, doc="the statuses so far; made from the goals if there are none"

@@ -177,7 +177,7 @@ class _AtPoses(_Asking):
 class CheckPoseOccupancy(_AtPoses):
     """Succeed when the base could stand at a pose."""
 
-    pose: Goal = In(names="goal", doc="a pose of the map, or a place")
+    pose: Goal = In(names="spot", doc="a pose of the map, or a place")
 
     @classmethod
     def rehearsal(cls, seed: int) -> Mapping[str, Any]:
@@ -202,7 +202,7 @@ class RemoveInCollisionGoals(_AtPoses):
     }
 
     input_goals: tuple[Goal, ...] = In(
-        (), names="goal", may_be_empty=True, doc="poses of the map, or places"
+        (), names="spot", may_be_empty=True, doc="poses of the map, or places"
     )
     input_waypoint_statuses: tuple[WaypointStatus, ...] | None = In(
         None, may_be_empty=True, doc="Nav2's; passed on as it is"

@@ -53,7 +53,7 @@ class KeyReads:
     given: keys that may come from elsewhere: a script, a loop, the tree's inputs. watched: keys
     that a node only looks at; who writes them is not known yet. keys: what is known of each tree's
     keys, by the tree's name. seen: keys of this tree that are read. seen_on_root: keys that any
-    tree reads as `$@key`.
+    tree reads as `$@key`. told: keys without a value that are reported.
     """
 
     context: Context
@@ -66,6 +66,7 @@ class KeyReads:
     written: list[Written] = field(default_factory=list)
     given: set[str] = field(default_factory=set)
     watched: list[Written] = field(default_factory=list)
+    told: set[str] = field(default_factory=set)
 
     def inputs(self, node: Node, signature: Signature, before: Known) -> None:
         """Check all inputs of a node. Those that may be empty count as read and need no value."""
@@ -124,14 +125,20 @@ class KeyReads:
         return key
 
     def _unwritten(self, name: str, before: Known, place: Place, *, assigned: bool) -> None:
-        """Report a key without a value, unless a caller or a write of `$@key` may give it one."""
+        """Report a key without a value, unless a caller or a write of `$@key` may give it one.
+
+        Each key is reported once, where it is read first: the others follow from the same mistake.
+        """
         if name in self.keys[self.tree.name].written_as_root or self.tree.misread:
+            return
+        if name in self.told:
             return
         declared = self.tree.ports.get(name)
         from_outside = self.tree.open if declared is None else declared.direction == "inout"
         if from_outside:
             self.keys[self.tree.name].needed.setdefault(name, place)
             return
+        self.told.add(name)
         shown = self.context.wire(name, place)
         writer = next((w for w in self.written if w.key == name), None)
         if writer is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 
 from momantu_bt.formats.places import Place, within
@@ -13,6 +14,8 @@ from momantu_bt.tree.script import Script, ScriptSyntaxError, parse
 from momantu_bt.tree.script.nodes import Variable
 from momantu_bt.tree.script.types import Mismatch, check_types
 from momantu_bt.values.kinds import ValueType
+
+_WORD = re.compile(r"[^\W\d]\w*")
 
 
 class ScriptKeys:
@@ -27,7 +30,9 @@ class ScriptKeys:
             script = parse(text)
         except ScriptSyntaxError as error:
             self.context.problems.error("script", place, error.message, error.hint)
-            return before
+            named = {word: Key(object, place) for word in _WORD.findall(text)}
+            self.reads.given.update(named)
+            return before.having_all(named)  # it may be meant to write what it names
         return self._keys(script, before, place)
 
     def _on_board(self, variable: str) -> str | None:

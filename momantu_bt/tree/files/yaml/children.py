@@ -7,6 +7,7 @@ from momantu_bt.tree.catalogue import NodeSpec
 from momantu_bt.tree.files.port_values import drop_duplicates
 from momantu_bt.tree.files.queue import into_handler
 from momantu_bt.tree.files.yaml.misplaced import settle_branches, settle_handlers
+from momantu_bt.tree.files.yaml.misspelled import mend_words
 from momantu_bt.tree.files.yaml.ports import read_port
 from momantu_bt.tree.files.yaml.reading import Reading, said
 from momantu_bt.tree.language import AGAIN, handler_codes
@@ -18,6 +19,8 @@ def read_control(node: Node, value: Raw, spec: NodeSpec, reading: Reading) -> No
     if isinstance(value, Items):
         reading.children(node, value)
     elif isinstance(value, Entries):
+        where, problems = f"`{said(node)}`", reading.problems
+        mend_words(value, ("children", *spec.ports), where, problems, holding=("children",))
         split(node, value, spec, ("children",), reading)
     elif value.value is not None:
         reading.misfit(node, value, f"{said(node)} takes a list of nodes")
@@ -29,6 +32,8 @@ def read_decorator(node: Node, value: Raw, spec: NodeSpec, reading: Reading) -> 
         hint = f"write `{spec.yaml[0]}: {{…, child: …}}`, or put it beside a node"
         reading.misfit(node, value, f"{said(node)} takes `child:`", hint)
         return
+    where, problems = f"`{said(node)}`", reading.problems
+    mend_words(value, ("child", *spec.ports), where, problems, holding=("child",))
     for child in split(node, value, spec, ("child",), reading):
         reading.later(child, node.children.append)
 
@@ -38,6 +43,8 @@ def read_handlers(node: Node, value: Raw, spec: NodeSpec, reading: Reading) -> N
     if not isinstance(value, Entries):
         reading.misfit(node, value, f"{said(node)} takes `try:` and `catch:`")
         return
+    branches, where = ("try", "catch"), f"`{said(node)}`"
+    mend_words(value, (*branches, *spec.ports), where, reading.problems, holding=branches)
     settle_branches(value, spec.ports, reading.problems)
     drop_duplicates(value, reading.problems)
     for raw in split(node, _without(value, "catch"), spec, ("try",), reading):

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from momantu_bt.formats.names import nearest
 from momantu_bt.formats.yaml.values import Entries, Items, Raw, Scalar
 from momantu_bt.tree.catalogue import MODIFIERS, NODES, SPELLED, SUBTREE, Kind, NodeSpec
 from momantu_bt.tree.catalogue.nodes import DOCTOR, why_broken
-from momantu_bt.tree.files.port_values import drop_duplicates
+from momantu_bt.tree.files.port_values import KEY, drop_duplicates
 from momantu_bt.tree.files.queue import Put
 from momantu_bt.tree.files.yaml.branches import read_branches, read_switch
 from momantu_bt.tree.files.yaml.children import read_control, read_decorator, read_handlers, split
 from momantu_bt.tree.files.yaml.kept import is_kept
 from momantu_bt.tree.files.yaml.misplaced import indent_branches
+from momantu_bt.tree.files.yaml.misspelled import meant_word, mend_branching, mend_companions
 from momantu_bt.tree.files.yaml.modifiers import modified, near_modifier
 from momantu_bt.tree.files.yaml.named import read_named
 from momantu_bt.tree.files.yaml.ports import read_leaf
@@ -52,6 +54,7 @@ class NodeReader:
 
     def _mapping(self, raw: Entries) -> Node:
         drop_duplicates(raw, self.reading.problems)
+        mend_branching(raw, self.reading.problems)
         chosen = self._node_key(raw)
         if chosen is None:
             written = ", ".join(key.text for key, _ in raw.entries)
@@ -59,7 +62,10 @@ class NodeReader:
             hint = "write one, such as `wait: 1 s`"
             return self.reading.broken("no-node", raw.place, message, hint)
         key, value = chosen
+        if key.text in COMPANIONS:
+            mend_companions(key, raw, self.reading.problems)
         beside = [(k, v) for k, v in raw.entries if k is not key]
+        key = self._meant(key, value)
         spec = SPELLED.get(key.text)
         if spec is not None and spec.handlers and beside:
             problems = self.reading.problems
@@ -85,7 +91,7 @@ class NodeReader:
             and not is_kept(entry[0])
         ]
         if not own:
-            nodes = [e for e in raw.entries if _has_child(e[1]) and e[0].text in MODIFIERS]
+            nodes = [e for e in raw.entries if _decorates(*e)]
             # an attribute stands beside a node: alone, it is a node of that name
             alone = [e for e in raw.entries if e[0].text.startswith("_")]
             return nodes[-1] if nodes else alone[0] if len(alone) == 1 else None
@@ -94,6 +100,21 @@ class NodeReader:
             return named[0]
         surely = [e for e in own if known(e[0].text) or not near_modifier(e[0].text)]
         return (surely or own)[0]
+
+    def _meant(self, key: Scalar, value: Raw) -> Scalar:
+        """The key; for an unknown one with nodes below it, the near word that has such, reported.
+
+        Names of skills and trees stay.
+        """
+        name = key.text
+        if self.reading.is_known(name) or name in NODES or not KEY.fullmatch(name):
+            return key
+        near = None if why_broken(name) else meant_word(name, value)
+        if near is None:
+            return key
+        message = f"no node is called {name!r}"
+        self.reading.error("unknown-node", key.place, message, f"did you mean {near}?")
+        return Scalar(near, near, key.quoted, key.place)
 
     # one node by its name
 
@@ -151,6 +172,14 @@ class NodeReader:
             read_decorator(node, value, spec, self.reading)
         else:
             read_leaf(node, value, spec, self.reading)
+
+
+def _decorates(key: Scalar, value: Raw) -> bool:
+    """Whether a decorator is written as a node: it has a child, perhaps under a wrong name."""
+    if MODIFIERS.get(key.text) != "decorator" or not isinstance(value, Entries):
+        return False
+    near = [nearest(k.text, ("child",), least=0.8) for k, _ in value.entries]
+    return any(near) or any(not isinstance(below, Scalar) for _, below in value.entries)
 
 
 def _has_child(value: Raw) -> bool:

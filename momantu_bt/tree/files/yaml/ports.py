@@ -7,7 +7,7 @@ from momantu_bt.formats.places import Place
 from momantu_bt.formats.yaml.values import Entries, Items, Raw, Scalar
 from momantu_bt.tree.catalogue import NODES, SPELLED, SUBTREE, Kind, NodeSpec
 from momantu_bt.tree.catalogue.synonyms import in_spelling, meant_type
-from momantu_bt.tree.files.port_values import drop_duplicates, port_value, reported_braces
+from momantu_bt.tree.files.port_values import KEY, drop_duplicates, port_value, reported_braces
 from momantu_bt.tree.files.yaml.reading import Reading, said
 from momantu_bt.tree.files.yaml.scripts import read_script
 from momantu_bt.tree.model import BROKEN, FIRST_INPUT, Literal, Node, Reference
@@ -57,6 +57,9 @@ def read_port(
         script = read_script(value, problems, asked=name in spec.asks)
         if script is not None:
             node.ports[name] = Literal(script)
+        elif spec.kind is Kind.LEAF and isinstance(value, Scalar):
+            node.type = BROKEN  # it may read and write whatever it names
+            node.ports = {key: Reference(key) for key in KEY.findall(value.text)}
         return
     found = port_value(value, name, problems)
     node.ports[name] = Reference(BROKEN) if found is None else found

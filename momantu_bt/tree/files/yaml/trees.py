@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 from momantu_bt.formats.yaml.values import Entries, Items, Raw, Scalar
 from momantu_bt.tree.catalogue import MODIFIERS, SPELLED
@@ -11,6 +11,7 @@ from momantu_bt.tree.files.port_values import drop_duplicates, mapping, words
 from momantu_bt.tree.files.queue import into_tree
 from momantu_bt.tree.files.xml.nodes import NodeReader as AttributeReader
 from momantu_bt.tree.files.yaml.declarations import read_declarations
+from momantu_bt.tree.files.yaml.misspelled import mend_declarations
 from momantu_bt.tree.files.yaml.models import give_ports, read_metadata
 from momantu_bt.tree.files.yaml.nodes import NodeReader
 from momantu_bt.tree.files.yaml.parts import read_tree_attributes
@@ -40,10 +41,11 @@ def read_trees(
     if entry is not None:
         having = mapping(entry[1], "trees", "Name: [node, node]", problems)
     bodies: list[tuple[Tree, Raw]] = []
+    known = [*outside, *(key.text for key, _ in having)]
     for key, raw in having:
         _check_name(key, problems)
         if key.text not in document.trees:
-            bodies.append(_header(key, raw, problems))
+            bodies.append(_header(key, raw, [*known, *registry.skills], problems))
             document.trees[key.text] = bodies[-1][0]
     give_ports(document, problems)
     ports = {name: tree.ports for name, tree in {**outside, **document.trees}.items()}
@@ -64,13 +66,16 @@ def _check_name(key: Scalar, problems: Problems) -> None:
             problems.error("bad-name", key.place, message, "give the tree another name")
 
 
-def _header(key: Scalar, raw: Raw, problems: Problems) -> tuple[Tree, Raw]:
+def _header(key: Scalar, raw: Raw, skills: Collection[str], problems: Problems) -> tuple[Tree, Raw]:
     """A tree with everything but its nodes, and the value that has the nodes."""
     tree = Tree(key.text, Node("", key.place), key.place)
     if not isinstance(raw, Entries):
         return tree, raw
     told = problems.count
     _near_words(raw, problems)
+    told_words = problems.count
+    mend_declarations(raw, skills, problems)
+    told += problems.count - told_words
     drop_duplicates(raw, problems)
     header = {k.text: v for k, v in raw.entries if k.text in HEADER}
     for name in PORTS:
