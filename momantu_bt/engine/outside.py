@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Protocol, TypeVar
+from typing import Any, NamedTuple, Protocol, TypeAlias, TypeVar
 
 from momantu_bt.engine.changes import SeenNode
 from momantu_bt.engine.events import Events
 from momantu_bt.engine.skills.body import Body
 from momantu_bt.engine.skills.session import Session
-from momantu_bt.engine.skills.start import SkillContext
+from momantu_bt.engine.skills.start import Setup, SkillContext
 from momantu_bt.engine.status import Status
 from momantu_bt.failure import FailureValue
 from momantu_bt.marker import Marker
@@ -46,6 +46,9 @@ class SkillSession(Protocol):
     def halt(self) -> None:
         """Stop the skill at any point."""
         ...
+
+
+Starter: TypeAlias = Callable[[Mapping[str, Any]], SkillSession]
 
 
 class Surroundings(Protocol):
@@ -137,14 +140,13 @@ class Outside:
         """Whether the run can start skills."""
         return body is not None
 
-    def begin(self, leaf: SkillNode, inputs: Mapping[str, Any]) -> SkillSession:
-        """Start a leaf's skill."""
+    def starter(self, leaf: SkillNode) -> Starter:
+        """What starts a leaf's skill, again and again. It gets the inputs, by port."""
         context = leaf.context
         body = context.body
         assert body is not None
         surroundings = SkillContext(
             clock=context.clock,
-            seeds=(context.seed, leaf.path, leaf.runs),
             frames=body.frames,
             site=body.site,
             services=body.services,
@@ -152,7 +154,8 @@ class Outside:
             reporter=LeafReporter(leaf),
         )
         lease = body.actuators.lease(leaf.name, leaf.kind.uses)
-        return Session(leaf.kind, inputs, lease, surroundings)
+        setup, seed, path = Setup(leaf.kind, lease, surroundings), context.seed, leaf.path
+        return lambda inputs: Session(setup, inputs, (seed, path, leaf.runs))
 
     def ask(self, key: str, ask: Callable[[], T]) -> T:
         """Call `ask` and return its answer. key: the name of the question, such as `battery`."""

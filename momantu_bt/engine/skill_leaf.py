@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Any
 
-from momantu_bt.engine.label import label
 from momantu_bt.engine.node import Parts, TreeNode
-from momantu_bt.engine.outside import SkillEnded, SkillSession, SkillStepped
+from momantu_bt.engine.outside import SkillEnded, SkillSession, SkillStepped, Starter
 from momantu_bt.engine.role import Role
 from momantu_bt.engine.skills.session import SLOW_STEP
-from momantu_bt.engine.status import FAILURE, RUNNING, SUCCESS, Status
+from momantu_bt.engine.status import RUNNING, SUCCESS, Status
 from momantu_bt.failure import FAILED, FailureValue
 from momantu_bt.skill import Skill
 
@@ -33,8 +33,10 @@ class SkillLeaf(TreeNode):
         self.session: SkillSession | None = None
         self.slow_steps = 0
         self.slowest = 0.0
-        self._live_in = [p.name for p in kind.ports.values() if p.direction == "in" and p.live]
-        self._live_out = [p.name for p in kind.ports.values() if p.direction == "out" and p.live]
+        live = [port for port in kind.ports.values() if port.live]
+        self._live_in = [p.name for p in live if p.direction == "in" and p.name in self.inputs]
+        self._live_out = [p.name for p in live if p.direction == "out" and p.name in self.outputs]
+        self._start: Starter | None = None
         self._written: dict[str, Any] = {}
 
     @property
@@ -54,32 +56,34 @@ class SkillLeaf(TreeNode):
 
     def step(self) -> Status:
         """One step of the skill."""
-        if self.session is None:
-            self.session = self._begin()
-            live = None
-        else:
-            live = {name: self.inputs[name] for name in self._live_in if name in self.inputs}
-        session, watchdog = self.session, self.context.watchdog
+        session, live = self.session, None
+        if session is None:
+            session = self.session = self._begin()
+        elif self._live_in:
+            live = {name: self.inputs[name] for name in self._live_in}
+        watchdog, events = self.context.watchdog, self.context.events
         watchdog.begin_step()
         try:
             status = session.step(live)
         finally:
             watchdog.end_step()
-        events = self.context.events
-        events.publish(SkillStepped(self, session, status))
-        self._note_time(session)
+        if events.has_subscribers(SkillStepped):
+            events.publish(SkillStepped(self, session, status))
+        if session.took > SLOW_STEP:
+            self.slow_steps += 1
+            self.slowest = max(self.slowest, session.took)
         if status is RUNNING:
             self._write(session, self._live_out)
             return RUNNING
         self.session = None
-        events.publish(SkillEnded(self, session))
+        if events.has_subscribers(SkillEnded):
+            events.publish(SkillEnded(self, session))
         if status is SUCCESS:
-            self._write(session, list(self.outputs))
+            self._write(session, self.outputs)
             return SUCCESS
         self._write(session, self._live_out)
         failure = session.failure or FailureValue(FAILED, "failed without a reason")
-        self.fail_with(self.own(failure))
-        return FAILURE
+        return self.fail_with(self.own(failure))
 
     def clear(self) -> None:
         """Close the skill and stop the actuators that it owns."""
@@ -94,24 +98,18 @@ class SkillLeaf(TreeNode):
                 self.context.remark(f"{self.where}: while it was halted: {session.failure}")
 
     def _begin(self) -> SkillSession:
-        self._written = {}
+        self._written.clear()
         inputs = self.inputs.all()
-        self.label = label(self.model, inputs)
-        return self.context.outside.begin(self, inputs)
+        self.show_values(inputs)
+        if self._start is None:
+            self._start = self.context.outside.starter(self)
+        return self._start(inputs)
 
-    def _write(self, session: SkillSession, names: list[str]) -> None:
+    def _write(self, session: SkillSession, names: Collection[str]) -> None:
         if not names:
             return
         values = session.outputs
         for name in names:
-            output = self.outputs.get(name)
-            if output is None or name not in values:
-                continue
-            if self._written.get(name) is not values[name]:
+            if name in values and self._written.get(name) is not values[name]:
                 self._written[name] = values[name]
-                output.cell.store(values[name])
-
-    def _note_time(self, session: SkillSession) -> None:
-        if session.took > SLOW_STEP:
-            self.slow_steps += 1
-            self.slowest = max(self.slowest, session.took)
+                self.outputs[name].cell.store(values[name])

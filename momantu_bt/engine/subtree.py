@@ -7,7 +7,6 @@ from collections.abc import Mapping
 from momantu_bt.engine.blackboard import Board, Cell
 from momantu_bt.engine.causes import through
 from momantu_bt.engine.decorator import Decorator
-from momantu_bt.engine.label import label
 from momantu_bt.engine.node import Parts
 from momantu_bt.engine.ports import Reader
 from momantu_bt.engine.role import Role
@@ -54,7 +53,7 @@ class SubTree(Decorator):
             values = {name: cell.value for name, (cell, _) in self.given.items()}
             values |= {name: cell.value for name, cell in self.constants.items()}
             values |= {name: cell.value for name, cell in self.wires.items()}
-            self.label = label(self.model, values)
+            self.show_values(values)
             self.state = RUNNING
         status = self.child.execute()
         if status is FAILURE:

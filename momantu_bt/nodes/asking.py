@@ -6,7 +6,6 @@ import time
 from typing import Any
 
 from momantu_bt.engine.context import RunContext
-from momantu_bt.engine.label import label
 from momantu_bt.engine.node import Parts, TreeNode
 from momantu_bt.engine.outside import PERSON
 from momantu_bt.engine.person import Interrupted, Question, answer
@@ -48,7 +47,7 @@ class _Asking(TreeNode):
     def step(self) -> Status:
         """Ask, and turn the answer into a status."""
         values = self.inputs.all()
-        self.label = label(self.model, values)
+        self.show_values(values)
         self.state = RUNNING
         self.show(RUNNING)
         question = self.question(values)

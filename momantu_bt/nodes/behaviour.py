@@ -18,7 +18,6 @@ from py_trees.behaviour import Behaviour
 from py_trees.blackboard import Blackboard
 from py_trees.common import Status as PyTreesStatus
 
-from momantu_bt.engine.label import label
 from momantu_bt.engine.node import Parts, TreeNode
 from momantu_bt.engine.role import Role
 from momantu_bt.engine.status import RUNNING, SUCCESS, Status
@@ -180,7 +179,7 @@ class BehaviourLeaf(TreeNode):
         begins, self._at_work = not self._at_work, True
         if begins:
             inputs = self.inputs.all()
-            self.label = label(self.model, inputs)
+            self.show_values(inputs)
         said = self.context.ask(f"behaviour {self.index}", lambda: self._ticked(begins, inputs))
         status, self._feedback, outputs = said
         if status == RUNNING.value:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from momantu_bt.engine.causes import running_as_cause
 from momantu_bt.engine.decorator import Decorator
-from momantu_bt.engine.label import label
 from momantu_bt.engine.node import Parts, TreeNode
 from momantu_bt.engine.ports import Inputs
 from momantu_bt.engine.role import Role
@@ -135,7 +134,5 @@ class Sleep(TreeNode):
         if self.state is not RUNNING:
             duration = seconds(self.inputs)
             self.until = self.context.now + duration
-            self.label = label(
-                self.model, {"duration": f"{duration:g} s", "msec": duration * 1000.0}
-            )
+            self.show_values({"duration": f"{duration:g} s", "msec": duration * 1000.0})
         return SUCCESS if self.context.now >= self.until - CLOCK_SLACK else RUNNING

@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar, cast
 
-from momantu_bt.engine.outside import PERSON, Outside, Refused, SkillNode, SkillSession
+from momantu_bt.engine.outside import PERSON, Outside, Refused, SkillNode, Starter
 from momantu_bt.engine.person import Interrupted
 from momantu_bt.engine.skills.body import Body
 from momantu_bt.engine.status import Status
@@ -58,9 +58,9 @@ class RecordedOutside(Outside):
         """True: skills do what the record says they did."""
         return True
 
-    def begin(self, leaf: SkillNode, inputs: Mapping[str, Any]) -> SkillSession:
-        """Start a skill as recorded."""
-        return _RecordedSession(self, leaf.index)
+    def starter(self, leaf: SkillNode) -> Starter:
+        """What starts a skill as recorded."""
+        return lambda inputs: _RecordedSession(self, leaf.index)
 
     def ask(self, key: str, ask: Callable[[], T]) -> T:
         """The recorded answer."""

@@ -10,7 +10,7 @@ from momantu_bt.claim import Claim
 from momantu_bt.engine.skills.actuators import Actuators
 from momantu_bt.engine.skills.services import Services
 from momantu_bt.engine.skills.session import Session
-from momantu_bt.engine.skills.start import SkillContext
+from momantu_bt.engine.skills.start import Setup, SkillContext
 from momantu_bt.engine.status import FAILURE, RUNNING
 from momantu_bt.failure import Failure, FailureValue
 from momantu_bt.frames import FrameBuffer
@@ -105,7 +105,6 @@ def run_skill(
     reporter = _Listening()
     context = SkillContext(
         clock=place,
-        seeds=(seed, skill.__name__, 1),
         frames=running.frames,
         site=place.site,
         services=running.services,
@@ -113,7 +112,7 @@ def run_skill(
         reporter=reporter,
     )
     lease = Actuators(place.robot).lease(skill.__name__, skill.uses)
-    session = Session(skill, admitted, lease, context)
+    session = Session(Setup(skill, lease, context), admitted, (seed, skill.__name__, 1))
     began, phases, ticks = place.now(), [""], 0
     try:
         while place.now() - began < max_time - TICK / 2:

@@ -91,6 +91,8 @@ class Actuators:
             )
 
     def _release(self, lease: Lease) -> None:
+        if not self._owners:
+            return
         mine = [name for name, holder in self._owners.items() if holder is lease]
         for actuator in mine:
             del self._owners[actuator]

@@ -7,9 +7,11 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
+import numpy as np
+
 from momantu_bt.engine.skills.actuators import undeclared_actuator
 from momantu_bt.engine.skills.errors import CalledFailure, declared, skill_error
-from momantu_bt.engine.skills.start import SkillContext, begun, instance, outputs_at_end
+from momantu_bt.engine.skills.start import Seeds, Setup, begun, instance, outputs_at_end
 from momantu_bt.failure import Failure, FailureValue
 from momantu_bt.formats.names import valid_names
 from momantu_bt.marker import Marker
@@ -18,20 +20,22 @@ from momantu_bt.robot import Robot, RobotDescription, SensorReading
 from momantu_bt.skill import Compute, Host, Skill
 from momantu_bt.tree.skill_calls import undeclared_uses, undeclared_uses_text
 from momantu_bt.values.admit import admit
+from momantu_bt.world import seeded
 
 
 class SkillHost(Host):
     """The host of one running skill: it passes on what the skill says, and runs what it calls."""
 
-    def __init__(self, kind: type[Skill], robot: Robot, context: SkillContext) -> None:
-        self._kind, self._robot, self._context = kind, robot, context
-        self._calls = 0
-        self._calling: tuple[str, SkillHost] | None = None
+    _calls = 0
+    _calling: tuple[str, SkillHost] | None = None
+
+    def __init__(self, setup: Setup, seeds: Seeds) -> None:
+        self._setup, self._seeds = setup, seeds
 
     @property
     def watched(self) -> bool:
         """Whether somebody sees what the skill draws."""
-        return self._context.reporter.watched
+        return self._setup.context.reporter.watched
 
     @property
     def prefix(self) -> str:
@@ -41,14 +45,18 @@ class SkillHost(Host):
         name, host = self._calling
         return f"{name}/{host.prefix}"
 
+    def random(self) -> np.random.Generator:
+        """The random numbers of this start."""
+        return seeded(*self._seeds)
+
     def log(self, text: str) -> None:
         """Show a line to whoever watches the run."""
-        self._context.reporter.log(text)
+        self._setup.context.reporter.log(text)
 
     def draw(self, markers: Sequence[Marker]) -> None:
         """Show markers to whoever watches the run."""
         if self.watched:
-            self._context.reporter.draw(markers)
+            self._setup.context.reporter.draw(markers)
 
     def call(
         self, skill: str | type[Skill], inputs: Mapping[str, Any]
@@ -56,14 +64,14 @@ class SkillHost(Host):
         """Run another skill to its end; see `Skill.call`."""
         name, kind = self._declared(skill)
         self._calls += 1
-        context = replace(self._context, seeds=(*self._context.seeds, self._calls, name))
-        robot = CalledRobot(self._robot, name, kind)
-        host = SkillHost(kind, robot, context)
+        robot = CalledRobot(self._setup.robot, name, kind)
+        setup = Setup(kind, robot, self._setup.context)
+        host = SkillHost(setup, (*self._seeds, self._calls, name))
         self._calling = name, host
         try:
-            called = instance(kind, _admitted(kind, inputs), context, host)
+            called = instance(setup, _admitted(kind, inputs), host)
             yield from begun(called, robot)
-            outputs = outputs_at_end(called, {})
+            outputs = outputs_at_end(called, setup, {})
         except Failure as failure:
             robot.end()
             raise CalledFailure(_named(declared(kind, failure), name)) from None
@@ -82,15 +90,15 @@ class SkillHost(Host):
             TypeError: the caller does not declare the call.
             PermissionError: the caller does not declare one of its actuators.
         """
-        caller = self._kind
+        caller = self._setup.kind
         name = skill if isinstance(skill, str) else skill.__name__
         if skill not in caller.calls:
             raise TypeError(f"{caller.__name__} calls {name}; add it to `calls`")
-        kind = self._context.skills.get(skill) if isinstance(skill, str) else skill
+        kind = self._setup.context.skills.get(skill) if isinstance(skill, str) else skill
         if kind is None:
-            known = sorted(self._context.skills)
+            known = sorted(self._setup.context.skills)
             raise TypeError(f"no skill {name!r} to call; {valid_names(name, known, 'skills')}")
-        missing = undeclared_uses(caller, kind, self._robot.description)
+        missing = undeclared_uses(caller, kind, self._setup.robot.description)
         if missing:
             raise PermissionError(undeclared_uses_text(caller.__name__, name, missing))
         return name, kind

@@ -7,11 +7,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from momantu_bt.engine.skills.actuators import Lease
 from momantu_bt.engine.skills.calls import SkillHost
 from momantu_bt.engine.skills.errors import declared, hung_failure, skill_error
 from momantu_bt.engine.skills.start import (
-    SkillContext,
+    Seeds,
+    Setup,
     admitted,
     begun,
     instance,
@@ -38,26 +38,18 @@ class Session:
     outputs: what has been written so far; all of them with SUCCESS.
     """
 
-    def __init__(
-        self,
-        kind: type[Skill],
-        inputs: Mapping[str, Any],
-        lease: Lease,
-        context: SkillContext,
-    ) -> None:
-        self.kind = kind
-        self.lease = lease
-        self.status = Status.IDLE
-        self.phase = ""
-        self.failure: FailureValue | None = None
-        self.took = 0.0
-        self._context = context
-        self._inputs = dict(inputs)
-        self._generator: Run | None = None
-        self._waiting: _Pending | None = None
-        self.skill: Skill | None = None
-        self._host = SkillHost(kind, lease, context)
-        self._live = [p for p in kind.ports.values() if p.direction == "out" and p.live]
+    status: Status = Status.IDLE
+    phase = ""
+    failure: FailureValue | None = None
+    took = 0.0
+    skill: Skill | None = None
+    _generator: Run | None = None
+    _waiting: _Pending | None = None
+
+    def __init__(self, setup: Setup, inputs: Mapping[str, Any], seeds: Seeds) -> None:
+        self._setup = setup
+        self._inputs = inputs
+        self._host = SkillHost(setup, seeds)
         self._given: dict[str, Any] = {}
 
     @property
@@ -66,28 +58,28 @@ class Session:
         if self.skill is None:
             return {}
         values = self.skill.port_values
-        outs = (p.name for p in self.kind.ports.values() if p.direction == "out")
-        return {name: values[name] for name in outs if name in values}
+        outs = self._setup.signature.outputs
+        return {port.name: values[port.name] for port in outs if port.name in values}
 
     def step(self, live_inputs: Mapping[str, Any] | None = None) -> Status:
         """Run to the skill's next `yield`, or to its end."""
-        self.took = 0.0
+        kind = self._setup.kind
         try:
             if self._generator is None:
                 self._generator = self._begin()
             elif live_inputs and self.skill is not None:
                 self.skill.port_values.update(live_inputs)
             self._advance(self._generator)
-            if self.status is RUNNING:
+            if self.status is RUNNING and self._setup.signature.live_outputs:
                 self._admit_live_outputs()
         except Failure as failure:
-            self._fail(declared(self.kind, failure))
+            self._fail(declared(kind, failure))
         except Hung as hung:
-            self._fail(hung_failure(self.kind, hung))
+            self._fail(hung_failure(kind, hung))
         except StopRequested:
             raise
         except BaseException as error:  # other people's code: it may raise anything
-            self._fail(skill_error(self.kind, error))
+            self._fail(skill_error(kind, error))
         return self.status
 
     def halt(self) -> None:
@@ -98,30 +90,30 @@ class Session:
             try:
                 generator.close()
             except Hung as hung:
-                self.failure = hung_failure(self.kind, hung)
+                self.failure = hung_failure(self._setup.kind, hung)
             except StopRequested:
-                self.lease.end()
+                self._setup.robot.end()
                 raise
             except BaseException as error:
-                self.failure = skill_error(self.kind, error)
-        self.lease.end()
+                self.failure = skill_error(self._setup.kind, error)
+        self._setup.robot.end()
         if self.status is RUNNING:
             self.status = Status.IDLE
 
     def _begin(self) -> Run:
-        context = self._context
-        self.skill = instance(self.kind, self._inputs, context, self._host)
-        return begun(self.skill, self.lease)
+        self.skill = instance(self._setup, self._inputs, self._host)
+        return begun(self.skill, self._setup.robot)
 
     def _advance(self, generator: Run) -> None:
-        now = self._context.clock.now()
         pending = self._waiting
-        if pending is not None and now < pending.ready_at - CLOCK_SLACK:
-            return
-        self._waiting = None
+        if pending is not None:
+            if self._now() < pending.ready_at - CLOCK_SLACK:
+                self.took = 0.0
+                return
+            self._waiting = None
         started = time.perf_counter()
         try:
-            said = _resume(generator, pending)
+            said = next(generator) if pending is None else _resume(generator, pending)
             while isinstance(said, Compute) and not said.budget > 0.0:
                 said = generator.throw(
                     ValueError(f"compute with a budget of {said.budget} s; thinking is never free")
@@ -133,14 +125,17 @@ class Session:
             self.took = time.perf_counter() - started
         self.status = RUNNING
         if isinstance(said, Compute):
-            self._waiting = _compute(said, now)
+            self._waiting = _compute(said, self._now())
         elif isinstance(said, str):
             self.phase = self._host.prefix + said
         else:
             raise TypeError(
-                f"{self.kind.__name__}.run yielded {said!r}; it may yield a phase's name, or "
-                "`yield from compute(...)`"
+                f"{self._setup.kind.__name__}.run yielded {said!r}; "
+                "it may yield a phase's name, or `yield from compute(...)`"
             )
+
+    def _now(self) -> float:
+        return self._setup.context.clock.now()
 
     def _admit_live_outputs(self) -> None:
         """Live outputs, which others read while the skill runs: a wrong value fails at once.
@@ -150,7 +145,7 @@ class Session:
         """
         assert self.skill is not None
         values = self.skill.port_values
-        for port in self._live:
+        for port in self._setup.signature.live_outputs:
             value = values.get(port.name, MISSING)
             if value is not MISSING:
                 values[port.name] = self._admitted(value, port)
@@ -158,7 +153,7 @@ class Session:
     def _keep_live_outputs(self) -> None:
         """Keep the live outputs of a skill that fails; drop those that do not fit."""
         values = {} if self.skill is None else self.skill.port_values
-        for port in self._live:
+        for port in self._setup.signature.live_outputs:
             if port.name in values:
                 try:
                     values[port.name] = self._admitted(values[port.name], port)
@@ -167,20 +162,19 @@ class Session:
 
     def _finish(self) -> None:
         self._generator = None
+        skill, setup = self.skill, self._setup
+        assert skill is not None
         try:
-            self._check_outputs()
+            if setup.signature.outputs:
+                skill.port_values.update(outputs_at_end(skill, setup, self._given))
         except Failure as failure:
             self._fail(failure.value)
             return
         except TypeError as error:
-            self._fail(skill_error(self.kind, error))
+            self._fail(skill_error(setup.kind, error))
             return
-        self.lease.end()
+        setup.robot.end()
         self.status = SUCCESS
-
-    def _check_outputs(self) -> None:
-        assert self.skill is not None
-        self.skill.port_values.update(outputs_at_end(self.skill, self._given))
 
     def _admitted(self, value: Any, port: Port) -> Any:
         """A live output's value; one that is known already is not looked at again."""
@@ -196,13 +190,13 @@ class Session:
             try:
                 generator.close()
             except Hung as hung:
-                self.failure = hung_failure(self.kind, hung, cause=failure)
+                self.failure = hung_failure(self._setup.kind, hung, cause=failure)
             except StopRequested:
-                self.lease.end()
+                self._setup.robot.end()
                 raise
             except BaseException as error:
-                self.failure = skill_error(self.kind, error, cause=failure)
-        self.lease.end()
+                self.failure = skill_error(self._setup.kind, error, cause=failure)
+        self._setup.robot.end()
         self.status = FAILURE
 
 
@@ -220,9 +214,7 @@ def _compute(work: Compute, now: float) -> _Pending:
         return _Pending(now + work.budget, None, error)
 
 
-def _resume(generator: Run, pending: _Pending | None) -> str | Compute:
-    if pending is None:
-        return next(generator)
+def _resume(generator: Run, pending: _Pending) -> str | Compute:
     if pending.error is not None:
         return generator.throw(pending.error)
     return generator.send(pending.result)

@@ -4,26 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Protocol, TypeAlias
 
 from momantu_bt.failure import INPUT_MISSING, SERVICE_MISSING, Failure
 from momantu_bt.frames import FrameBuffer
 from momantu_bt.robot import Robot
 from momantu_bt.skill import MISSING, Clock, Host, Port, Run, Skill
 from momantu_bt.values.admit import admit_output
-from momantu_bt.world import Site, seeded
+from momantu_bt.world import Site
+
+Seeds: TypeAlias = tuple[str | float, ...]
+"""Seeds of the random numbers of one start, as `seeded` takes them."""
 
 
 @dataclass(frozen=True, slots=True)
 class SkillContext:
     """What a skill instance gets besides the robot.
 
-    seeds: of its random numbers, as `seeded` takes them. skills: those that it may call by name.
-    reporter: passes on what it logs and draws.
+    skills: those that it may call by name. reporter: passes on what it logs and draws.
     """
 
     clock: Clock
-    seeds: tuple[str | float, ...]
     frames: FrameBuffer
     site: Site
     services: Mapping[str, Any]
@@ -31,35 +32,61 @@ class SkillContext:
     reporter: Host = field(default_factory=Host)
 
 
-def instance(
-    kind: type[Skill], inputs: Mapping[str, Any], context: SkillContext, host: Host
-) -> Skill:
+class OwnedRobot(Robot, Protocol):
+    """A skill's robot; `end` stops what the skill has commanded."""
+
+    def end(self) -> None:
+        """Stop the actuators. Calling it twice is safe."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Signature:
+    """A skill's ports, sorted by what a start and an end do with them. inputs: their names."""
+
+    inputs: frozenset[str]
+    outputs: tuple[Port, ...]
+    live_outputs: tuple[Port, ...]
+
+
+def _signature(kind: type[Skill]) -> Signature:
+    ports = kind.ports.values()
+    outputs = tuple(port for port in ports if port.direction == "out")
+    return Signature(
+        frozenset(port.name for port in ports if port.direction == "in"),
+        outputs,
+        tuple(port for port in outputs if port.live),
+    )
+
+
+class Setup:
+    """Everything that is the same at each start of a skill by one node or one caller."""
+
+    __slots__ = ("context", "kind", "robot", "signature")
+
+    def __init__(self, kind: type[Skill], robot: OwnedRobot, context: SkillContext) -> None:
+        self.kind = kind
+        self.robot = robot
+        self.context = context
+        self.signature = _signature(kind)
+
+
+def instance(setup: Setup, inputs: Mapping[str, Any], host: Host) -> Skill:
     """A new instance with all that it needs. inputs: of the ports' types, and immutable.
 
     Raises:
         Failure: SERVICE_MISSING, INPUT_MISSING.
         TypeError: it has no such input.
     """
-    missing = [name for name in kind.needs if name not in context.services]
-    if missing:
-        having = ", ".join(context.services) or "none"
-        raise Failure(
-            SERVICE_MISSING,
-            f"{kind.__name__} needs {', '.join(missing)}; running services: {having}",
-            services=missing,
-        )
+    kind, context = setup.kind, setup.context
+    if kind.needs:
+        _refuse_missing_services(kind, context.services)
     skill = kind()
-    _refuse_unknown(kind, inputs)
+    if inputs.keys() != setup.signature.inputs:
+        _refuse_unknown(kind, inputs)
+        _refuse_absent(kind, inputs)
     skill.port_values.update(inputs)
-    absent = [p.name for p in kind.ports.values() if p.required and p.name not in inputs]
-    if absent:
-        raise Failure(
-            INPUT_MISSING,
-            f"{kind.__name__} was started without {', '.join(absent)}",
-            ports=absent,
-        )
     skill.services, skill.clock = context.services, context.clock
-    skill.random = seeded(*context.seeds)
     skill.frames, skill.site, skill.host = context.frames, context.site, host
     return skill
 
@@ -79,7 +106,7 @@ def begun(skill: Skill, robot: Robot) -> Run:
     return generator
 
 
-def outputs_at_end(skill: Skill, known: Mapping[str, Any]) -> dict[str, Any]:
+def outputs_at_end(skill: Skill, setup: Setup, known: Mapping[str, Any]) -> dict[str, Any]:
     """All its outputs, of the ports' types and immutable. known: those that were admitted before.
 
     Raises:
@@ -87,9 +114,7 @@ def outputs_at_end(skill: Skill, known: Mapping[str, Any]) -> dict[str, Any]:
         TypeError: an output was not given.
     """
     found = {}
-    for port in type(skill).ports.values():
-        if port.direction != "out":
-            continue
+    for port in setup.signature.outputs:
         value = skill.port_values.get(port.name, MISSING)
         if value is MISSING:
             raise TypeError(f"{type(skill).__name__} ended without giving output {port.name!r}")
@@ -106,9 +131,28 @@ def admitted(value: Any, port: Port, known: Mapping[str, Any]) -> Any:
     return value if value is known.get(port.name, MISSING) else admit_output(value, port)
 
 
+def _refuse_missing_services(kind: type[Skill], running: Mapping[str, Any]) -> None:
+    missing = [name for name in kind.needs if name not in running]
+    if missing:
+        having = ", ".join(running) or "none"
+        raise Failure(
+            SERVICE_MISSING,
+            f"{kind.__name__} needs {', '.join(missing)}; running services: {having}",
+            services=missing,
+        )
+
+
 def _refuse_unknown(kind: type[Skill], inputs: Mapping[str, Any]) -> None:
-    ports = kind.ports
-    unknown = [n for n in inputs if n not in ports or ports[n].direction != "in"]
+    valid = [p.name for p in kind.ports.values() if p.direction == "in"]
+    unknown = [name for name in inputs if name not in valid]
     if unknown:
-        valid = ", ".join(p.name for p in ports.values() if p.direction == "in") or "none"
-        raise TypeError(f"{kind.__name__} has no input {', '.join(unknown)}; inputs: {valid}")
+        names = ", ".join(valid) or "none"
+        raise TypeError(f"{kind.__name__} has no input {', '.join(unknown)}; inputs: {names}")
+
+
+def _refuse_absent(kind: type[Skill], inputs: Mapping[str, Any]) -> None:
+    absent = [p.name for p in kind.ports.values() if p.required and p.name not in inputs]
+    if absent:
+        raise Failure(
+            INPUT_MISSING, f"{kind.__name__} was started without {', '.join(absent)}", ports=absent
+        )

@@ -12,7 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from momantu_bt.engine.skills.actuators import Actuators
-from momantu_bt.engine.skills.session import Session, SkillContext
+from momantu_bt.engine.skills.session import Session
+from momantu_bt.engine.skills.start import Setup, SkillContext
 from momantu_bt.engine.status import FAILURE, RUNNING, SUCCESS
 from momantu_bt.failure import Failure
 from momantu_bt.frames import FrameBuffer
@@ -155,12 +156,12 @@ trees:
 def session(kind, world, book, name, **inputs):
     context = SkillContext(
         clock=world,
-        seeds=(0, name),
         frames=FrameBuffer(world.robot.description.kinematics()),
         site=world.site,
         services={},
     )
-    return Session(kind, inputs, book.lease(name, kind.uses), context)
+    setup = Setup(kind, book.lease(name, kind.uses), context)
+    return Session(setup, inputs, (0, name))
 
 
 def test_a_busy_actuator_fails_the_second_skill_and_names_the_first():
