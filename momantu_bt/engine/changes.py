@@ -14,13 +14,9 @@ class SeenNode(Protocol):
     """A node as observers of a run see it; every `TreeNode` implements it."""
 
     name: str
+    label: str
     place: str
     index: int
-
-    @property
-    def label(self) -> str:
-        """One line of text for displays."""
-        ...
 
     @property
     def role(self) -> Role:

@@ -12,14 +12,12 @@ import traceback
 from abc import abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from types import MappingProxyType
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from momantu_bt.engine.blackboard import Board, Cell
 from momantu_bt.engine.changes import Change
 from momantu_bt.engine.conditions import Conditions
 from momantu_bt.engine.context import RunContext
-from momantu_bt.engine.label import label
 from momantu_bt.engine.ports import Inputs, Output, cell_of, inputs_of, outputs_of
 from momantu_bt.engine.role import Role
 from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Status
@@ -27,16 +25,14 @@ from momantu_bt.errors import MomantuError
 from momantu_bt.failure import FAILED, SCRIPT_ERROR, Failure, FailureValue, checked_code
 from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue import NODES, NodeSpec
-from momantu_bt.tree.model import Literal, Node, Reference
+from momantu_bt.tree.model import Node, Reference
 from momantu_bt.tree.script import ScriptError
-from momantu_bt.tree.show.printing import around, plan
+from momantu_bt.tree.show.printing import around, plan, text
 
 
 class BuildError(MomantuError):
     """Nodes cannot be built from a model. The checker finds all such mistakes before."""
 
-
-NO_VALUES: Mapping[str, Any] = MappingProxyType({})
 
 _RESULTS = (RUNNING, SUCCESS, FAILURE, SKIPPED)
 """What `step` may return."""
@@ -102,9 +98,10 @@ class Parts:
 class TreeNode:
     """One node of a running tree. Subclasses define `step`, and `clear` to reset their state.
 
-    spec: the declaration of this kind of node. model: the node as the tree file defines it.
-    index: its number in file order. runs, failures, ticks: how often it started, failed and was
-    ticked. seconds: how long it was active, by the world's clock.
+    spec: the declaration of this kind of node. model: the node as the tree file defines it. label:
+    one line of text for displays; after the start it includes the inputs' values. index: its number
+    in file order. runs, failures, ticks: how often it started, failed and was ticked. seconds: how
+    long it was active, by the world's clock.
     """
 
     spec: ClassVar[NodeSpec]
@@ -116,9 +113,7 @@ class TreeNode:
         self._above: TreeNode | _Top = _TOP
         self.model = parts.model
         self.name = _name(parts.model)
-        self._label_text: str | None = None
-        self._label_values: Mapping[str, Any] = NO_VALUES
-        self._label_varies = any(not isinstance(v, Literal) for v in parts.model.ports.values())
+        self.label = text(parts.model)
         self.context = parts.context
         self.kids = parts.kids
         self.conditions = parts.conditions
@@ -148,17 +143,6 @@ class TreeNode:
 
     def renew(self) -> None:
         """Reset state that is kept after an end, such as RoundRobin's index; for a recovery."""
-
-    @property
-    def label(self) -> str:
-        """One line of text for displays; after the start it includes the inputs' values."""
-        if self._label_text is None:
-            self._label_text = label(self.model, self._label_values)
-        return self._label_text
-
-    @label.setter
-    def label(self, text: str) -> None:
-        self._label_text = text
 
     @property
     def note(self) -> str:
@@ -307,11 +291,6 @@ class TreeNode:
         return child.failure or child.own(FailureValue(FAILED, "failed without a reason"))
 
     # Bookkeeping.
-
-    def show_values(self, values: Mapping[str, Any]) -> None:
-        """Set the inputs' values that `label` includes; they must not change any more."""
-        if self._label_varies:
-            self._label_values, self._label_text = values, None
 
     def _conditioned(self, conditions: Conditions) -> Status:
         """One tick, with the conditions before it and the scripts after an end."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import Any, TypeAlias
 
 from momantu_bt.engine.blackboard import ROOT_MARK, Board, Cell
@@ -102,10 +102,15 @@ def _template_reader(port: Port, template: Template, board: Board) -> Reader:
 
 
 class Inputs:
-    """The inputs of one node by port name; each access reads the current value."""
+    """The inputs of one node by port name; each access reads the current value.
 
-    def __init__(self, readers: Mapping[str, Reader]) -> None:
+    constant: names of those that always have the same value.
+    """
+
+    def __init__(self, readers: Mapping[str, Reader], constant: Collection[str] = ()) -> None:
         self.readers = dict(readers)
+        self._changing = [(n, read) for n, read in readers.items() if n not in constant]
+        self._template = {n: read() if n in constant else None for n, read in readers.items()}
 
     def __getitem__(self, name: str) -> Any:
         return self.readers[name]()
@@ -115,7 +120,10 @@ class Inputs:
 
     def all(self) -> dict[str, Any]:
         """The values of all inputs; the first that cannot be read raises a Failure."""
-        return {name: read() for name, read in self.readers.items()}
+        values = self._template.copy()
+        for name, read in self._changing:
+            values[name] = read()
+        return values
 
 
 def inputs_of(ports: Mapping[str, Port], values: Mapping[str, PortValue], board: Board) -> Inputs:
@@ -125,20 +133,25 @@ def inputs_of(ports: Mapping[str, Port], values: Mapping[str, PortValue], board:
         ConversionError: a literal does not fit its port.
     """
     readers: dict[str, Reader] = {}
+    constant: set[str] = set()
     for name, port in ports.items():
         if port.direction != "in":
             continue
         if name in values:
-            given = reader(port, values[name], board)
+            given, steady = reader(port, values[name], board), isinstance(values[name], Literal)
             readers[name] = _perhaps(given, port) if port.may_be_empty else given
         elif port.default is not MISSING:
-            readers[name] = _default_reader(port)
-    return Inputs(readers)
+            readers[name], steady = _default_reader(port)
+        else:
+            continue
+        if steady:
+            constant.add(name)
+    return Inputs(readers, constant)
 
 
 def _perhaps(given: Reader, port: Port) -> Reader:
     """A reader of an input whose key may have no value: the input then is the port's default."""
-    default = _default_reader(port)
+    default, _ = _default_reader(port)
 
     def read() -> Any:
         try:
@@ -151,16 +164,17 @@ def _perhaps(given: Reader, port: Port) -> Reader:
     return read
 
 
-def _default_reader(port: Port) -> Reader:
-    """A reader of the port's default. The default None fits every type and means "not given".
+def _default_reader(port: Port) -> tuple[Reader, bool]:
+    """A reader of the port's default, and whether the default fits the type.
 
-    Any other default that does not fit the type raises Failure WRONG_TYPE when it is read.
+    The default None fits every type and means "not given". One that does not fit raises Failure
+    WRONG_TYPE when it is read.
     """
     try:
         default = None if port.default is None else admit(port.default, port)
     except Failure:
-        return lambda: admit(port.default, port)
-    return lambda: default
+        return lambda: admit(port.default, port), False
+    return lambda: default, True
 
 
 class Output:

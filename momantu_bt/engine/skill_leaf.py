@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from typing import Any
 
+from momantu_bt.engine.label import ShowsValues
 from momantu_bt.engine.node import Parts, TreeNode
 from momantu_bt.engine.outside import SkillEnded, SkillSession, SkillStepped, Starter
 from momantu_bt.engine.role import Role
@@ -14,7 +15,7 @@ from momantu_bt.failure import FAILED, FailureValue
 from momantu_bt.skill import Skill
 
 
-class SkillLeaf(TreeNode):
+class SkillLeaf(ShowsValues, TreeNode):
     """RUNNING at each `yield`, SUCCESS when `run` returns, FAILURE when it raises.
 
     Inputs are read at the start (live ones on each tick); outputs are written on SUCCESS (live ones
@@ -73,15 +74,18 @@ class SkillLeaf(TreeNode):
             self.slow_steps += 1
             self.slowest = max(self.slowest, session.took)
         if status is RUNNING:
-            self._write(session, self._live_out)
+            if self._live_out:
+                self._write(session, self._live_out)
             return RUNNING
         self.session = None
         if events.has_subscribers(SkillEnded):
             events.publish(SkillEnded(self, session))
         if status is SUCCESS:
-            self._write(session, self.outputs)
+            if self.outputs:
+                self._write(session, self.outputs)
             return SUCCESS
-        self._write(session, self._live_out)
+        if self._live_out:
+            self._write(session, self._live_out)
         failure = session.failure or FailureValue(FAILED, "failed without a reason")
         return self.fail_with(self.own(failure))
 
@@ -106,8 +110,6 @@ class SkillLeaf(TreeNode):
         return self._start(inputs)
 
     def _write(self, session: SkillSession, names: Collection[str]) -> None:
-        if not names:
-            return
         values = session.outputs
         for name in names:
             if name in values and self._written.get(name) is not values[name]:

@@ -7,13 +7,14 @@ from collections.abc import Mapping
 from momantu_bt.engine.blackboard import Board, Cell
 from momantu_bt.engine.causes import through
 from momantu_bt.engine.decorator import Decorator
+from momantu_bt.engine.label import ShowsValues
 from momantu_bt.engine.node import Parts
 from momantu_bt.engine.ports import Reader
 from momantu_bt.engine.role import Role
 from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, Status
 
 
-class SubTree(Decorator):
+class SubTree(ShowsValues, Decorator):
     """Runs another tree and returns its status; failures get this node's name and place.
 
     An inner key that is connected to an outer key shares its cell. A value and a default are in

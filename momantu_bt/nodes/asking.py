@@ -6,6 +6,7 @@ import time
 from typing import Any
 
 from momantu_bt.engine.context import RunContext
+from momantu_bt.engine.label import ShowsValues
 from momantu_bt.engine.node import Parts, TreeNode
 from momantu_bt.engine.outside import PERSON
 from momantu_bt.engine.person import Interrupted, Question, answer
@@ -32,7 +33,7 @@ def _wrong_default(node: Node) -> Objection | None:
     return Objection("default", f"{default.value!r} is not among the choices", hint)
 
 
-class _Asking(TreeNode):
+class _Asking(ShowsValues, TreeNode):
     """Asks in its first tick; RUNNING only when the run is interrupted instead of answered."""
 
     def __init__(self, parts: Parts) -> None:

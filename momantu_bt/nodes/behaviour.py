@@ -18,6 +18,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.blackboard import Blackboard
 from py_trees.common import Status as PyTreesStatus
 
+from momantu_bt.engine.label import ShowsValues
 from momantu_bt.engine.node import Parts, TreeNode
 from momantu_bt.engine.role import Role
 from momantu_bt.engine.status import RUNNING, SUCCESS, Status
@@ -145,7 +146,7 @@ def node_class(name: str, plugin: object) -> type[BehaviourLeaf]:
     return type(name, (BehaviourLeaf,), {"spec": spec, "declaration": declaration})
 
 
-class BehaviourLeaf(TreeNode):
+class BehaviourLeaf(ShowsValues, TreeNode):
     """Ticks a behaviour: `initialise` and `update` when it starts, `update` while it runs.
 
     At its end `terminate` is called with the status, on a halt with INVALID. Before the first

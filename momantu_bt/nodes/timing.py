@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from momantu_bt.engine.causes import running_as_cause
 from momantu_bt.engine.decorator import Decorator
+from momantu_bt.engine.label import ShowsValues
 from momantu_bt.engine.node import Parts, TreeNode
 from momantu_bt.engine.ports import Inputs
 from momantu_bt.engine.role import Role
@@ -112,7 +113,7 @@ class Delay(Decorator):
         self.begun = None
 
 
-class Sleep(TreeNode):
+class Sleep(ShowsValues, TreeNode):
     """Returns RUNNING for a while, then SUCCESS."""
 
     spec = leaf(

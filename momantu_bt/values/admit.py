@@ -21,6 +21,8 @@ def admit(value: Any, port: Port) -> Any:
     Raises:
         Failure: WRONG_TYPE, the value does not fit; the message says what was expected.
     """
+    if type(value) is port.type and port.type in _PLAIN:
+        return value
     try:
         return _admitted(value, kind_of(port.type))
     except _MisfitError:
@@ -41,7 +43,9 @@ def admit_output(value: Any, port: Port) -> Any:
         Failure: WRONG_TYPE, the value does not fit or holds a NaN. A robot must never get one.
     """
     admitted = admit(value, port)
-    where = None if type(admitted) in _WITHOUT_NAN else nan_in(admitted)
+    if admitted == admitted if type(admitted) is float else type(admitted) in _WITHOUT_NAN:
+        return admitted
+    where = nan_in(admitted)
     if where is None:
         return admitted
     raise Failure(
@@ -58,6 +62,9 @@ def type_text(annotation: ValueType) -> str:
     """A type as Python code."""
     return annotation.__name__ if isinstance(annotation, type) else str(annotation)
 
+
+_PLAIN = frozenset((bool, int, float, str))
+"""Types whose values fit a port of the same type as they are."""
 
 _WITHOUT_NAN = frozenset((bool, int, str, NoneType))
 """Types whose values cannot hold a NaN."""

@@ -1,6 +1,7 @@
 """A failure is a value that keeps its causes."""
 
 import json
+from dataclasses import FrozenInstanceError, replace
 
 import pytest
 
@@ -40,3 +41,19 @@ def test_the_engines_codes_are_codes_with_sentences() -> None:
     for code, sentence in ENGINE_CODES.items():
         assert CODE.fullmatch(code)
         assert " " in sentence
+
+
+def test_a_failure_at_another_node_keeps_all_else() -> None:
+    cause = FailureValue("LOST", "no map")
+    value = FailureValue("GONE", "it is gone", {"seen": 3}, cause=cause, tries=2, most_tries=5)
+    moved = value.at("dock", "tree.yaml:3", "Dock")
+    assert moved == replace(value, node="dock", place="tree.yaml:3", node_type="Dock")
+    assert (value.node, value.place, value.node_type) == ("", "", "")
+
+
+def test_a_failure_cannot_be_changed() -> None:
+    value = FailureValue("GONE", "it is gone")
+    with pytest.raises(FrozenInstanceError):
+        value.code = "LOST"  # type: ignore[misc]
+    with pytest.raises(TypeError):
+        value.data["seen"] = 4  # type: ignore[index]

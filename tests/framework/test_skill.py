@@ -1,5 +1,6 @@
 """A skill's declarations are checked when its class is made."""
 
+import numpy as np
 import pytest
 
 from momantu_bt.failure import Failure
@@ -107,3 +108,11 @@ def test_failures_are_raised_from_run() -> None:
     assert next(steps) == "looking"
     with pytest.raises(Failure, match="GONE, nothing here"):
         next(steps)
+
+
+def test_random_numbers_are_the_engines_or_the_tests() -> None:
+    skill = Fetching()
+    with pytest.raises(AttributeError, match="no random numbers"):
+        _ = skill.random
+    skill.random = np.random.default_rng(3)
+    assert skill.random.random() == np.random.default_rng(3).random()

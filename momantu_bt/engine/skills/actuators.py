@@ -91,8 +91,6 @@ class Actuators:
             )
 
     def _release(self, lease: Lease) -> None:
-        if not self._owners:
-            return
         mine = [name for name, holder in self._owners.items() if holder is lease]
         for actuator in mine:
             del self._owners[actuator]
@@ -147,7 +145,8 @@ class Lease:
 
     def end(self) -> None:
         """Stop and release all owned actuators. Calling it twice is safe."""
-        self._book._release(self)
+        if self._book._owners:
+            self._book._release(self)
 
     def _enter(self, actuator: str) -> None:
         if actuator in self._robot.description.actuators and actuator not in self._allowed:

@@ -37,7 +37,10 @@ def declared(kind: type[Skill], failure: Failure) -> FailureValue:
         message = said.message if own == said.code else f"{said.node} failed with {said.code}"
         return FailureValue(own, message, said.data, cause=said)
     if failure.code in kind.failures or failure.code in ENGINE_CODES:
-        return _with_cause(failure.value, _cause(failure))
+        value, before = failure.value, failure.__cause__
+        if value.cause is not None or not isinstance(before, Failure):
+            return value
+        return FailureValue(value.code, value.message, value.data, cause=before.value)
     codes = ", ".join(kind.failures) or "none"
     return skill_error(kind, failure, f"raised {failure.code}, which it does not declare ({codes})")
 
@@ -62,14 +65,3 @@ def hung_failure(
     text = "".join(traceback.format_exception(hung))
     message = f"{kind.__name__} gave no step back within the run's patience"
     return FailureValue(HUNG, message, {"traceback": text}, cause=cause)
-
-
-def _cause(failure: Failure) -> FailureValue | None:
-    before = failure.__cause__
-    return before.value if isinstance(before, Failure) else None
-
-
-def _with_cause(value: FailureValue, cause: FailureValue | None) -> FailureValue:
-    if cause is None or value.cause is not None:
-        return value
-    return FailureValue(value.code, value.message, value.data, cause=cause)

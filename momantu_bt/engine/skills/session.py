@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any
 
 from momantu_bt.engine.skills.calls import SkillHost
@@ -28,6 +29,9 @@ SLOW_STEP = 0.020
 CLOCK_SLACK = 1e-9
 """Tolerance for rounding when the clock is compared with a deadline, s."""
 
+_ENDED: Any = object()
+"""In place of what a skill yields: it has returned. It costs less than a StopIteration."""
+
 
 class Session:
     """Runs one skill instance. Call `step` once a tick until it no longer returns RUNNING.
@@ -45,12 +49,12 @@ class Session:
     skill: Skill | None = None
     _generator: Run | None = None
     _waiting: _Pending | None = None
+    _given: Mapping[str, Any] = MappingProxyType({})
 
     def __init__(self, setup: Setup, inputs: Mapping[str, Any], seeds: Seeds) -> None:
         self._setup = setup
         self._inputs = inputs
         self._host = SkillHost(setup, seeds)
-        self._given: dict[str, Any] = {}
 
     @property
     def outputs(self) -> dict[str, Any]:
@@ -63,14 +67,15 @@ class Session:
 
     def step(self, live_inputs: Mapping[str, Any] | None = None) -> Status:
         """Run to the skill's next `yield`, or to its end."""
-        kind = self._setup.kind
+        setup, kind, generator = self._setup, self._setup.kind, self._generator
         try:
-            if self._generator is None:
-                self._generator = self._begin()
+            if generator is None:
+                self.skill = instance(setup, self._inputs, self._host)
+                generator = self._generator = begun(self.skill, setup.robot)
             elif live_inputs and self.skill is not None:
                 self.skill.port_values.update(live_inputs)
-            self._advance(self._generator)
-            if self.status is RUNNING and self._setup.signature.live_outputs:
+            self._advance(generator)
+            if self.status is RUNNING and setup.signature.live_outputs:
                 self._admit_live_outputs()
         except Failure as failure:
             self._fail(declared(kind, failure))
@@ -100,10 +105,6 @@ class Session:
         if self.status is RUNNING:
             self.status = Status.IDLE
 
-    def _begin(self) -> Run:
-        self.skill = instance(self._setup, self._inputs, self._host)
-        return begun(self.skill, self._setup.robot)
-
     def _advance(self, generator: Run) -> None:
         pending = self._waiting
         if pending is not None:
@@ -113,16 +114,18 @@ class Session:
             self._waiting = None
         started = time.perf_counter()
         try:
-            said = next(generator) if pending is None else _resume(generator, pending)
+            said = next(generator, _ENDED) if pending is None else _resume(generator, pending)
             while isinstance(said, Compute) and not said.budget > 0.0:
                 said = generator.throw(
                     ValueError(f"compute with a budget of {said.budget} s; thinking is never free")
                 )
         except StopIteration:
-            self._finish()
-            return
+            said = _ENDED
         finally:
             self.took = time.perf_counter() - started
+        if said is _ENDED:
+            self._finish()
+            return
         self.status = RUNNING
         if isinstance(said, Compute):
             self._waiting = _compute(said, self._now())
@@ -178,14 +181,16 @@ class Session:
 
     def _admitted(self, value: Any, port: Port) -> Any:
         """A live output's value; one that is known already is not looked at again."""
-        self._given[port.name] = admitted(value, port, self._given)
-        return self._given[port.name]
+        found = admitted(value, port, self._given)
+        self._given = {**self._given, port.name: found}
+        return found
 
     def _fail(self, failure: FailureValue) -> None:
         generator, self._generator = self._generator, None
         self._waiting = None
         self.failure = failure
-        self._keep_live_outputs()
+        if self._setup.signature.live_outputs:
+            self._keep_live_outputs()
         if generator is not None:
             try:
                 generator.close()

@@ -85,7 +85,8 @@ def instance(setup: Setup, inputs: Mapping[str, Any], host: Host) -> Skill:
     if inputs.keys() != setup.signature.inputs:
         _refuse_unknown(kind, inputs)
         _refuse_absent(kind, inputs)
-    skill.port_values.update(inputs)
+    if inputs:
+        skill.port_values.update(inputs)
     skill.services, skill.clock = context.services, context.clock
     skill.frames, skill.site, skill.host = context.frames, context.site, host
     return skill
@@ -113,9 +114,9 @@ def outputs_at_end(skill: Skill, setup: Setup, known: Mapping[str, Any]) -> dict
         Failure: WRONG_TYPE.
         TypeError: an output was not given.
     """
-    found = {}
+    found, values = {}, skill.port_values
     for port in setup.signature.outputs:
-        value = skill.port_values.get(port.name, MISSING)
+        value = values.get(port.name, MISSING)
         if value is MISSING:
             raise TypeError(f"{type(skill).__name__} ended without giving output {port.name!r}")
         found[port.name] = admitted(value, port, known)
