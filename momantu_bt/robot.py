@@ -84,7 +84,7 @@ ARM = "arm"
 """Name of the actuator that carries the hand, and of the planning group of its joints."""
 
 REQUIRED_POSES = ("home", "ready", "carry", "look_around")
-"""Named poses that every robot has."""
+"""Named poses that every robot with an arm has."""
 
 MESH_ENDINGS = (".glb", ".gltf", ".dae", ".obj", ".stl", ".ply")
 """Extensions of mesh files, in lower case."""
@@ -116,10 +116,12 @@ class RobotDescription(Part):
     actuators: dict[str, Actuator]
     joint_limits: dict[str, JointLimit]
     sensors: dict[str, Sensor]
-    groups: dict[str, PlanningGroup]
-    end_effector: EndEffector
-    named_poses: dict[str, dict[str, float]]
-    """Joint positions by name, rad or m."""
+    groups: dict[str, PlanningGroup] = {}
+    """Chains that are planned together. Without the group `arm` the robot has no arm."""
+    end_effector: EndEffector | None = None
+    """None: the robot has no hand."""
+    named_poses: dict[str, dict[str, float]] = {}
+    """Joint positions by name, rad or m. A robot with an arm has REQUIRED_POSES."""
     ignored_collisions: tuple[tuple[str, str], ...] = ()
     """Pairs of links that collision checks ignore."""
     simulation: SimulationModel | None = None
@@ -129,8 +131,8 @@ class RobotDescription(Part):
     def _usual_opening(self) -> Self:
         """Without a finger table, each finger moves by an equal share of the opening."""
         hand = self.end_effector
-        gripper = self.actuators.get(hand.actuator)
-        if hand.opening or gripper is None or not gripper.joints:
+        gripper = None if hand is None else self.actuators.get(hand.actuator)
+        if hand is None or hand.opening or gripper is None or not gripper.joints:
             return self
         row = (hand.max_width, hand.max_width / len(gripper.joints))
         opening = dict.fromkeys(gripper.joints, ((0.0, 0.0), row))
@@ -159,6 +161,22 @@ class RobotDescription(Part):
         return _pick("camera", cameras, name)
 
     @property
+    def hand(self) -> EndEffector:
+        """The end effector, for code that works only with one.
+
+        Raises:
+            LookupError: the robot has no hand.
+        """
+        if self.end_effector is None:
+            raise LookupError(f"the robot {self.name} has no end effector")
+        return self.end_effector
+
+    @property
+    def has_arm(self) -> bool:
+        """Whether motions can be planned for an arm."""
+        return ARM in self.groups and ARM in self.actuators
+
+    @property
     def eye_in_hand(self) -> bool:
         """Whether the arm carries the first camera, so that looking around moves the arm."""
         cameras = (s for s in self.sensors.values() if isinstance(s, CameraSensor))
@@ -177,13 +195,17 @@ class RobotDescription(Part):
     def resolve_use(self, use: str) -> str | None:
         """The actuator that an entry of a skill's `uses` stands for on this robot.
 
-        Returns None for CAMERA_CARRIER when no actuator moves the camera.
+        Returns None for CAMERA_CARRIER when no actuator moves the camera, or there is none.
 
         Raises:
             KeyError: the robot has no such actuator; the message lists those it has.
         """
-        actuator = self.camera()[1].carrier if use == CAMERA_CARRIER else use
+        actuator = self._camera_carrier() if use == CAMERA_CARRIER else use
         return None if actuator is None else _pick("actuator", self.actuators, actuator)[0]
+
+    def _camera_carrier(self) -> str | None:
+        cameras = (s for s in self.sensors.values() if isinstance(s, CameraSensor))
+        return next((camera.carrier for camera in cameras), None)
 
 
 _T = TypeVar("_T")

@@ -255,11 +255,22 @@ class Working(Part):
     """Least distance to a surface's edge at which the robot stands."""
     look_off: Size
     """Distance to a surface's edge from which the robot looks at the surface."""
-    reach: tuple[Size, Size, Size]
-    """Nearest, best and farthest distance of an object to reach."""
+    reach: tuple[Size, Size, Size] | None = None
+    """Nearest, best and farthest distance of an object to reach; of a robot with an arm."""
+
+    @property
+    def reached(self) -> tuple[float, float, float]:
+        """`reach`, for code that works only with an arm.
+
+        Raises:
+            LookupError: the robot reaches nothing.
+        """
+        if self.reach is None:
+            raise LookupError("the robot has no arm, so that `working` has no `reach`")
+        return self.reach
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:
-        if not self.reach[0] <= self.reach[1] <= self.reach[2]:
+        if self.reach is not None and not self.reach[0] <= self.reach[1] <= self.reach[2]:
             raise ValueError("reach is [nearest, best, farthest]: each at least the one before")
         return self

@@ -111,6 +111,8 @@ class Skill:
 
     failures: each code this skill raises, with a sentence that explains it.
     uses: the actuators it commands; CAMERA_CARRIER for the one that carries the camera.
+    senses: kinds of sensors that the robot must have, such as `camera`; without one of them the
+    tree is refused.
     calls: the skills that it calls, by name or class. Their actuators must be in `uses`; the
     services that they need start with the run.
     one_of: groups of inputs with defaults; a tree gives exactly one input of each group.
@@ -127,6 +129,7 @@ class Skill:
 
     failures: ClassVar[Mapping[str, str]] = {}
     uses: ClassVar[frozenset[str] | set[str]] = frozenset()
+    senses: ClassVar[frozenset[str] | set[str]] = frozenset()
     calls: ClassVar[Iterable[str | type[Skill]]] = ()
     one_of: ClassVar[tuple[tuple[str, ...], ...]] = ()
     activities: ClassVar[Mapping[Activity, str] | None] = None

@@ -105,20 +105,35 @@ class _Checks:
         """Skills know a robot's actuators, and the group that plans for its arm, by name."""
         actuators, groups = self._robot.actuators, self._robot.groups
         for name, kind in ROLES.items():
-            if name not in actuators:
-                yield (
-                    ("actuators",),
-                    f"skills move an actuator named {name!r} of kind {kind}; this robot has none",
-                )
-            elif actuators[name].kind is not kind:
+            if name in actuators and actuators[name].kind is not kind:
                 yield ("actuators", name), f"skills take {name!r} for one of kind {kind}"
-        if ARM not in groups:
-            yield ("groups",), f"motions are planned for the group {ARM!r}; this robot has none"
-        elif ARM in actuators and groups[ARM].joints != actuators[ARM].joints:
+        yield from self._halves()
+        if ARM in groups and ARM in actuators and groups[ARM].joints != actuators[ARM].joints:
             yield (
                 ("groups", ARM, "joints"),
                 "the group and the actuator of this name need the same joints in the same order",
             )
+
+    def _halves(self) -> Iterator[KeyMessage]:
+        """An arm, and a hand, are described in several sections: in all of them, or in none."""
+        robot = self._robot
+        grips = any(a.kind is ActuatorKind.GRIPPER for a in robot.actuators.values())
+        if ARM in robot.actuators and ARM not in robot.groups:
+            yield (
+                ("groups",),
+                f"motions of the actuator {ARM!r} are planned for the group {ARM!r}; write its "
+                "joints and its tip",
+            )
+        if ARM in robot.groups and ARM not in robot.actuators:
+            yield (
+                ("actuators",),
+                f"skills move the group {ARM!r} by an actuator named {ARM!r} of kind joints; this "
+                "robot has none",
+            )
+        if ARM in robot.groups and robot.working.reach is None:
+            yield ("working",), "a robot with an arm needs `reach: [nearest, best, farthest]`"
+        if grips and robot.end_effector is None:
+            yield ("actuators",), "a robot with a gripper needs the section `end_effector`"
 
     def _limits(self) -> Iterator[KeyMessage]:
         for name, limit in self._robot.joint_limits.items():
@@ -185,6 +200,8 @@ class _Checks:
 
     def _hand(self) -> Iterator[KeyMessage]:
         hand = self._robot.end_effector
+        if hand is None:
+            return
         grippers = {
             k: a for k, a in self._robot.actuators.items() if a.kind is ActuatorKind.GRIPPER
         }
@@ -205,10 +222,10 @@ class _Checks:
 
     def _poses(self) -> Iterator[KeyMessage]:
         missing = [name for name in REQUIRED_POSES if name not in self._robot.named_poses]
-        if missing:
+        if missing and ARM in self._robot.groups:
             yield (
                 ("named_poses",),
-                f"every robot has the poses {', '.join(REQUIRED_POSES)}; missing: "
+                f"every robot with an arm has the poses {', '.join(REQUIRED_POSES)}; missing: "
                 f"{', '.join(missing)}",
             )
         limits = self._robot.joint_limits
@@ -240,7 +257,8 @@ class _Checks:
             yield from self._every(getattr(contacts, key), self._links, "link", ("simulation", key))
         for link in contacts.convex_cells:
             yield from self._in(link, self._links, "link", ("simulation", "convex_cells", link))
-        hand = self._robot.actuators.get(self._robot.end_effector.actuator)
+        effector = self._robot.end_effector
+        hand = None if effector is None else self._robot.actuators.get(effector.actuator)
         fingers = () if hand is None else hand.joints
         for joint, linkage in contacts.linkages.items():
             place: KeyPath = ("simulation", "linkages", joint)

@@ -120,16 +120,16 @@ class RobotFile(Part):
     """How fast it drives."""
     actuators: dict[Name, Actuator]
     """What can be commanded, by the names that skills use."""
-    joint_limits: dict[str, JointLimit]
+    joint_limits: dict[str, JointLimit] = {}
     """Limits of every joint of an actuator."""
     sensors: dict[Name, Sensor] = {}
     """What can be read."""
-    groups: dict[Name, PlanningGroup]
-    """Chains of joints that are planned together."""
-    end_effector: EndEffector
-    """The gripper."""
-    named_poses: dict[Name, dict[str, JointPosition]]
-    """Postures by name: home, ready, carry and look_around at least."""
+    groups: dict[Name, PlanningGroup] = {}
+    """Chains of joints that are planned together; none: the robot has no arm."""
+    end_effector: EndEffector | None = None
+    """The gripper; if not given, the robot has no hand."""
+    named_poses: dict[Name, dict[str, JointPosition]] = {}
+    """Postures by name; with an arm home, ready, carry and look_around at least."""
     ignored_collisions: tuple[tuple[str, str], ...] = ()
     """Pairs of links that never matter to a collision check."""
     drives: dict[str, JointGains] = {}

@@ -42,7 +42,7 @@ def summary(description: RobotDescription) -> dict[str, Any]:
             k: {**g.model_dump(), "stretched": _stretched(description, k)}
             for k, g in description.groups.items()
         },
-        "end_effector": description.end_effector.model_dump(),
+        "end_effector": description.end_effector and description.end_effector.model_dump(),
         "named_poses": description.named_poses,
         "simulated": description.simulation is not None,
     }

@@ -18,6 +18,7 @@ from momantu_bt.engine.executor import Executor, Observer
 from momantu_bt.engine.interrupts import Interrupts
 from momantu_bt.errors import PLUGIN_ERRORS, MomantuError, words_of
 from momantu_bt.faults.stage import Planned, Stage, plan
+from momantu_bt.lacking import lacking, lacks_text
 from momantu_bt.record.recorder import Recorder
 from momantu_bt.record.report import Report
 from momantu_bt.robot import RobotDescription
@@ -187,7 +188,7 @@ def open_world(
     entry = registry.worlds[name]
     description = registry.description(options.robot or entry.default_robot)
     options.stage(f"opening the world {name} with the robot {description.name}")
-    _check_uses({**called, **kinds}, description)
+    _check_robot({**called, **kinds}, registry, description)
     check_calls({**called, **kinds}, registry, description)
     check_sensors(needed, description)
     try:
@@ -220,10 +221,10 @@ def check_world(
         )
 
 
-def _check_uses(kinds: Mapping[str, type[Skill]], description: RobotDescription) -> None:
+def _check_robot(
+    kinds: Mapping[str, type[Skill]], registry: Registry, description: RobotDescription
+) -> None:
     for name, kind in kinds.items():
-        for use in sorted(kind.uses):
-            try:
-                description.resolve_use(use)
-            except KeyError as error:
-                raise LaunchError(f"{name} cannot run on {description.name}: {error}") from None
+        lacks = tuple(lacking(kind, registry.services, description))
+        if lacks:
+            raise LaunchError(lacks_text(name, lacks, description))

@@ -7,7 +7,7 @@ assert_skill(Nod)
 
 from momantu_bt.formats.problems import Problem
 from momantu_bt.testing.check import assert_skill, check_skill
-from momantu_bt.testing.description import small_robot
+from momantu_bt.testing.description import armless_robot, small_robot
 from momantu_bt.testing.example_world import ExampleWorld
 from momantu_bt.testing.eye_in_hand import eye_in_hand_robot
 from momantu_bt.testing.robot import ScriptedRobot
@@ -22,6 +22,7 @@ __all__ = [
     "ScriptedRobot",
     "ScriptedWorld",
     "SkillResult",
+    "armless_robot",
     "assert_service",
     "assert_skill",
     "check_service",

@@ -85,3 +85,22 @@ def small_robot() -> RobotDescription:
             )
         },
     )
+
+
+def armless_robot() -> RobotDescription:
+    """The small robot with its head and its sensors, and without its arm, hand and named poses."""
+    whole = small_robot()
+    gone = {"arm", "gripper"}
+    return RobotDescription(
+        **{
+            **dict(whole),
+            "name": "armless",
+            "working": Working(stand_off=0.4, look_off=0.6),
+            "actuators": {n: a for n, a in whole.actuators.items() if n not in gone},
+            "joint_limits": {n: limit for n, limit in whole.joint_limits.items() if n in _HEAD},
+            "sensors": {n: s for n, s in whole.sensors.items() if s.kind != "wrench"},
+            "groups": {},
+            "end_effector": None,
+            "named_poses": {},
+        }
+    )

@@ -54,7 +54,8 @@ class ScriptedRobot:
         names = [n for a in self._description.actuators.values() for n in a.joints]
         self.joints = dict.fromkeys(names, 0.0) | dict(joints or {})
         self.speeds = dict.fromkeys(self.joints, 0.0)
-        full = self._description.end_effector.max_width
+        hand = self._description.end_effector
+        full = 0.0 if hand is None else hand.max_width
         self.gripper_width = full if gripper_width is None else gripper_width
         self.gripper_effort = 0.0
         self.object_width: float | None = None
@@ -164,7 +165,7 @@ class ScriptedRobot:
         self.joints[joint] = position
 
     def _close(self, wanted: GripperCommand, seconds: float) -> None:
-        full = self._description.end_effector.max_width
+        full = self._description.hand.max_width
         floor = 0.0 if self.object_width is None else self.object_width
         target = min(full, max(wanted.width, floor))
         self.gripper_width += _clamp(target - self.gripper_width, GRIPPER_SPEED * seconds)

@@ -74,8 +74,11 @@ def _failures(kind: type[Skill]) -> str | None:
 
 
 def _uses(kind: type[Skill]) -> str | None:
-    named = isinstance(kind.uses, set | frozenset) and all(isinstance(u, str) for u in kind.uses)
-    return None if named else f"{kind.__name__}.uses is not a set of actuators' names"
+    for name, what in (("uses", "actuators' names"), ("senses", "kinds of sensors")):
+        value = getattr(kind, name)
+        if not isinstance(value, set | frozenset) or not all(isinstance(u, str) for u in value):
+            return f"{kind.__name__}.{name} is not a set of {what}"
+    return None
 
 
 def _activities(kind: type[Skill]) -> str | None:

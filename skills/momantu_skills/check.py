@@ -76,8 +76,10 @@ class Check(Skill):
         if self.what == "near":
             nearest = self._nearest(self.localization.map_from_base)
             return BaseAt(nearest, NEAR + (ASTRAY if said else -ASTRAY), math.pi)
+        if robot.description.end_effector is None:
+            return None
         slack = -GAUGE if said else GAUGE
-        return GripperOpen(OPEN * robot.description.end_effector.max_width + slack)
+        return GripperOpen(OPEN * robot.description.hand.max_width + slack)
 
     def _holding(self) -> None:
         if self.planning_scene.held is None:
@@ -129,7 +131,9 @@ class Check(Skill):
         raise Failure("BAD_QUESTION", f"the site has no place {self.place!r}; it has: {known}")
 
     def _gripper_open(self, robot: Robot) -> None:
-        width, widest = robot.state().gripper_width, robot.description.end_effector.max_width
+        if robot.description.end_effector is None:
+            raise Failure("BAD_QUESTION", f"{robot.description.name} has no hand that opens")
+        width, widest = robot.state().gripper_width, robot.description.hand.max_width
         if width < OPEN * widest:
             raise Failure(
                 "NOT_OPEN",

@@ -50,6 +50,7 @@ class DetectObject(Skill):
         "SURFACE_NOT_SEEN": "no picture showed a level surface where the site has one",
     }
     uses = {CAMERA_CARRIER}
+    senses = {"camera"}
     activities = {Activity.FIND_OBJECT: ""}
     symptoms = {
         "OBJECT_NOT_FOUND": {Symptom.NOT_SEEN, Symptom.OBJECT_GONE},

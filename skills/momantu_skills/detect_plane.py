@@ -56,6 +56,7 @@ class DetectPlane(Skill):
         "NO_FREE_SPOT": "no spot on it within reach of `near` has room for the size",
     }
     uses = {CAMERA_CARRIER}
+    senses = {"camera"}
     activities = {Activity.MEASURE_SURFACE: ""}
     symptoms = {
         "PLANE_NOT_FOUND": {Symptom.NOT_SEEN},

@@ -46,6 +46,7 @@ class FindAprilTag(Skill):
     tag_sigma: float = Out(unit="m", doc="standard deviation of its position")
     failures = {"TAG_NOT_SEEN": "no picture of the sweep showed the tag; data lists other tags"}
     uses = {CAMERA_CARRIER}
+    senses = {"camera"}
     activities = {Activity.FIND_MARKER: ""}
     symptoms = {
         "TAG_NOT_SEEN": {Symptom.NOT_SEEN, Symptom.MARKER_NOT_SEEN},

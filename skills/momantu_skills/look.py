@@ -37,6 +37,7 @@ class Look(Skill):
         "OUT_OF_VIEW": "the camera's carrier cannot turn that far, or is stuck",
     }
     uses = {CAMERA_CARRIER}
+    senses = {"camera"}
     activities = {}
     symptoms = {
         "OUT_OF_VIEW": {Symptom.ARM_OFF_COURSE},

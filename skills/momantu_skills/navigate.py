@@ -89,7 +89,7 @@ class Navigate(Skill):
 
     def run(self, robot: Robot) -> Run:
         """Check the goal, then travel."""
-        self._check()
+        self._check(robot)
         config = self._config()
         if robot.description.eye_in_hand:
             yield from tucking.take_in(self, robot, self.planning_scene)
@@ -110,7 +110,7 @@ class Navigate(Skill):
             target, stand = self.within_reach_of, self._going.chosen
             x, y, _ = self.frames.lookup(ODOM, target.frame).apply(target.position)
             away = stand.distance_to(Pose2D(*self._point(target)))
-            farthest = max(away, robot.description.working.reach[2])
+            farthest = max(away, robot.description.working.reached[2])
             return BaseNear((float(x), float(y)), farthest + self.tolerance)
         if failure is None or (failure.code in self.failures and self.within_reach_of is None):
             distance, turn = SURVEY
@@ -121,7 +121,7 @@ class Navigate(Skill):
     def _config(self) -> NavigationConfig:
         return configured(NavigationConfig, self.site.services.get("navigate", {}), "navigate")
 
-    def _check(self) -> None:
+    def _check(self, robot: Robot) -> None:
         given = [
             n for n in ("in_front_of", "goal", "within_reach_of") if getattr(self, n) is not None
         ]
@@ -136,6 +136,12 @@ class Navigate(Skill):
                 "BAD_GOAL",
                 f"tolerance {self.tolerance} m and angle_tolerance {self.angle_tolerance} rad must "
                 f"be above 0, side {self.side} at least 0",
+            )
+        if self.within_reach_of is not None and robot.description.working.reach is None:
+            raise Failure(
+                "BAD_GOAL",
+                f"within_reach_of needs an arm, and {robot.description.name} has none; give "
+                "in_front_of or goal",
             )
         known = self.site.known_places()
         if self.in_front_of is not None and self.in_front_of not in known:

@@ -59,6 +59,7 @@ class Pick(Skill):
         "ARM_STUCK": "the arm or the gripper does not follow its commands",
     }
     uses = {ARM, "gripper", CAMERA_CARRIER}
+    senses = {"camera"}
     activities = {Activity.GRASP: "", Activity.REACH: "/reaching"}
     symptoms = {
         "STALE_POSE": {Symptom.OUTDATED},
@@ -140,7 +141,7 @@ class Pick(Skill):
 
     def _reach(self, arm: Arm, plan: reaching.PickPlan) -> Run:
         """Open the hand on the way to the pre-grasp, then approach in a straight line."""
-        effector = arm.robot.description.end_effector
+        effector = arm.robot.description.hand
         opened = GripperCommand(effector.max_width, arm.force)
         for trajectory in plan.transit:
             for phase in arm.follow(trajectory, "reaching"):
@@ -229,7 +230,7 @@ class Pick(Skill):
         yield from arm.follow(plan.retreat, "drawing back")
 
     def _let_go(self, arm: Arm) -> Run:
-        effector, hand = arm.robot.description.end_effector, arm.hand
+        effector, hand = arm.robot.description.hand, arm.hand
         yield from self._gripper_or_stuck(
             open_hand(arm.robot, self.clock, effector.max_width, arm.force, hand.close_time)
         )

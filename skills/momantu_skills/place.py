@@ -51,6 +51,7 @@ class Place(Skill):
         "ARM_STUCK": "the arm or the gripper does not follow its commands",
     }
     uses = {ARM, "gripper", CAMERA_CARRIER}
+    senses = {"camera"}
     activities = {Activity.SET_DOWN: ""}
     symptoms = {
         "NOTHING_HELD": {Symptom.NOT_HELD},

@@ -44,7 +44,7 @@ class Release(Skill):
         """Open, wait until the gripper is open, retreat."""
         config = HandConfig()
         holding = self.planning_scene.held is not None
-        effector = robot.description.end_effector
+        effector = robot.description.hand
         force = min(config.force, effector.max_force)
         yield from open_hand(robot, self.clock, effector.max_width, force, config.close_time)
         if holding:
@@ -58,4 +58,4 @@ class Release(Skill):
         """Claim that the hand is open and empty; a failure denies it."""
         if failure is not None and failure.code != "GRIPPER_STUCK":
             return None
-        return GripperOpen(robot.description.end_effector.max_width - OPEN), Holding(False)
+        return GripperOpen(robot.description.hand.max_width - OPEN), Holding(False)

@@ -346,7 +346,7 @@ class Arm:
 
     def _check_line(self, path: Array, touching: bool) -> None:
         """Raise NO_PLAN where the arm hits something that it did not touch at the start."""
-        hand = set(self._robot.description.end_effector.touch_links) | {"held"}
+        hand = set(self._robot.description.hand.touch_links) | {"held"}
         world = self._arm.scene.world(self._robot.state(), self.held, 0.0)
         before = set(world.touching(path[0]))
         for q in (*path[STEP::STEP], path[-1]):

@@ -17,8 +17,9 @@ def robot_lines(about: Mapping[str, Any]) -> Iterator[str]:
     yield f"  mass        {about['mass']:.1f} kg"
     speeds = f"{base['linear']:g} m/s, {base['angular']:g} rad/s"
     yield f"  base        {speeds}; frame {about['base_frame']}"
-    near, best, far = working["reach"]
-    yield f"  works at    {near:g} to {far:g} m from its centre, best {best:g} m"
+    if working["reach"]:
+        near, best, far = working["reach"]
+        yield f"  works at    {near:g} to {far:g} m from its centre, best {best:g} m"
     yield f"  simulated   {'yes' if about['simulated'] else 'no: it has no section `simulation`'}"
     if about["parts"]:
         yield "\nParts"
@@ -31,15 +32,19 @@ def robot_lines(about: Mapping[str, Any]) -> Iterator[str]:
         yield f"  {name}: {_limit(limit)}"
     yield "\nSensors"
     yield from (f"  {name}: {_sensor(sensor)}" for name, sensor in about["sensors"].items())
-    yield "\nPlanning groups"
+    yield "\nPlanning groups" if about["groups"] else "\nPlanning groups   none: it has no arm"
     for name, group in about["groups"].items():
         reach = f"its tip at most {group['stretched']:.2f} m from its first joint"
         yield f"  {name}: {len(group['joints'])} joints that carry {group['tip']}, {reach}"
     hand = about["end_effector"]
     yield "\nHand"
-    yield f"  opens to {hand['max_width'] * 1000:g} mm, closes with up to {hand['max_force']:g} N"
-    yield f"  {len(hand['opening'])} finger joints; grasp frame on {hand['frame']}"
-    yield f"\nNamed poses   {', '.join(about['named_poses'])}"
+    if hand is None:
+        yield "  none"
+    else:
+        force = f"closes with up to {hand['max_force']:g} N"
+        yield f"  opens to {hand['max_width'] * 1000:g} mm, {force}"
+        yield f"  {len(hand['opening'])} finger joints; grasp frame on {hand['frame']}"
+    yield f"\nNamed poses   {', '.join(about['named_poses']) or 'none'}"
 
 
 def _part(part: Mapping[str, Any]) -> str:

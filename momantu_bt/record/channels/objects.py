@@ -87,7 +87,7 @@ def _seen(name: str, thing: DetectedObject, time: str) -> str:
 
 def _in_hand(run: Executor, held: HeldObject, time: str) -> str:
     assert run.world is not None
-    effector = run.world.robot.description.end_effector
+    effector = run.world.robot.description.hand
     link_from_object = Transform((effector.grasp_offset, 0.0, 0.0)) @ held.grasp_from_object
     return _entity(HELD, held.object, effector.frame, link_from_object, _IN_HAND, time)
 

@@ -16,6 +16,7 @@ from momantu_bt.tree.check.keys.flow_check import check_keys
 from momantu_bt.tree.check.misspelled import mend_declarations, mend_ports
 from momantu_bt.tree.check.nodes import check_node, check_tree_ports, with_named_inputs
 from momantu_bt.tree.check.reactive import check_reactive
+from momantu_bt.tree.check.robot_fit import check_robot_fit
 from momantu_bt.tree.check.root_keys import ROBOT_KEY, report_broken_services, root_keys
 from momantu_bt.tree.check.signatures import Context
 from momantu_bt.tree.check.surroundings import look_up_surroundings
@@ -104,6 +105,7 @@ def _check(
     report_elsewhere(context, elsewhere)
     check_unused(context)
     check_calls(context)
+    check_robot_fit(context)
     shallow = [check_nesting(context, tree) for tree in document.trees.values()]
     order = callees_first(context)
     if order is not None and all(shallow):

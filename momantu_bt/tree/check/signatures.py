@@ -201,7 +201,8 @@ class Context:
         if "." in kind:
             return installed_names(kind)
         if kind == "named_pose":
-            return None if self.description is None else tuple(self.description.named_poses)
+            poses = () if self.description is None else tuple(self.description.named_poses)
+            return poses or None  # a robot without an arm has none, and runs no node that needs one
         if self.site is None:
             return None
         return self.site.known_places() if kind == "place" else tuple(self.site.surfaces)

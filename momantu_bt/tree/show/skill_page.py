@@ -18,6 +18,8 @@ def as_text(name: str, skill: type[Skill]) -> str:
     """For the terminal."""
     lines = [f"{name}: {_doc(skill)}", *port_lines(skill)]
     lines += ["", f"Uses      {', '.join(sorted(skill.uses)) or 'no actuator'}"]
+    if skill.senses:
+        lines += [f"Senses    {', '.join(sorted(skill.senses))}"]
     lines += [f"Needs     {', '.join(skill.needs) or 'no service'}"]
     if skill.calls:
         lines += [f"Calls     {', '.join(_called(skill))}"]
@@ -37,6 +39,7 @@ def as_data(name: str, skill: type[Skill]) -> dict[str, Any]:
         "ports": [port_data(port) for port in skill.ports.values()],
         "one_of": [list(group) for group in skill.one_of],
         "uses": sorted(skill.uses),
+        "senses": sorted(skill.senses),
         "needs": list(skill.needs),
         "calls": _called(skill),
         "failures": dict(skill.failures),
@@ -57,6 +60,8 @@ def as_markdown(name: str, skill: type[Skill]) -> str:
     uses = ", ".join(f"`{use}`" for use in sorted(skill.uses)) or "no actuator"
     needs = ", ".join(f"`{need}`" for need in skill.needs)
     parts.append(f"It commands {uses}" + (f" and needs the service {needs}." if needs else "."))
+    if skill.senses:
+        parts.append(f"The robot needs a {' and a '.join(sorted(skill.senses))}.")
     if skill.calls:
         parts.append(f"It calls the skills {', '.join(f'`{name}`' for name in _called(skill))}.")
     return "\n\n".join(parts) + "\n"

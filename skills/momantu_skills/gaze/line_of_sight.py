@@ -65,7 +65,7 @@ def _in_the_way(scene: Scene, state: RobotState, held: HeldObject | None) -> lis
         if link in model.beyond_eye
     }
     if held is not None:
-        tip = poses[model.description.end_effector.frame]
+        tip = poses[model.description.hand.frame]
         bodies["held"] = scene.held_corners(held) @ tip[:3, :3].T + tip[:3, 3]
     seen = (camera.inverse().apply(corners) for corners in bodies.values())
     outlines = (outline(corners) for corners in seen if not _around_lens(corners))

@@ -34,10 +34,11 @@ def glance(
 ) -> Generator[str | Compute, Any, Snapshot | None]:
     """Look at a point (3,) in odom and take a picture; None if the camera cannot look at it.
 
-    The planning scene gets the picture too: the hand may hide some of its contents later.
+    A fixed camera looks at all that is in its picture. The planning scene gets the picture too: the
+    hand may hide some of its contents later.
     """
     try:
-        yield from look_at(skill, robot, point_odom, within=OFF_AXIS)
+        yield from look_at(skill, robot, point_odom, within=_off_axis(robot))
     except Failure as failure:
         if failure.code != "OUT_OF_VIEW":
             raise
@@ -45,6 +46,15 @@ def glance(
     snapshot = take(robot, skill.frames)
     scene.observe(snapshot)
     return snapshot
+
+
+def _off_axis(robot: Robot) -> float:
+    """Largest angle of a point to the middle of the picture, rad."""
+    sensor = robot.description.camera()[1]
+    if sensor.carrier is not None:
+        return OFF_AXIS
+    across = math.tan(sensor.horizontal_fov / 2)
+    return math.atan(across * min(1.0, sensor.height / sensor.width))
 
 
 def looks_over(skill: Skill, robot: Robot, corners: Array, at_least: int) -> list[Array]:
@@ -60,7 +70,13 @@ def looks_over(skill: Skill, robot: Robot, corners: Array, at_least: int) -> lis
 
 
 def around(skill: Skill, robot: Robot) -> list[Array]:
-    """Points (3,) in odom to look at if nothing is known: ahead, then to both sides."""
+    """Points (3,) in odom to look at if nothing is known: ahead, then to both sides.
+
+    Of a fixed camera the one that it looks at.
+    """
+    camera = robot.description.camera()[1]
+    if camera.carrier is None:
+        return [skill.frames.lookup(ODOM, camera.frame).apply((0.0, 0.0, NEAR))]
     odom_from_base = skill.frames.lookup(ODOM, robot.description.base_frame)
     points = []
     for bearing in AROUND:

@@ -11,7 +11,7 @@ from momantu_bt.failure import Failure
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.lazy import lazily
 from momantu_bt.messages import JointTrajectory, RobotState
-from momantu_bt.robot import ARM, Robot
+from momantu_bt.robot import ARM, CameraSensor, Robot
 from momantu_bt.service import HeldObject
 from momantu_bt.skill import Skill
 from momantu_skills.manipulation.config import HandConfig, PlanningConfig
@@ -62,16 +62,20 @@ class Arm:
     @property
     def force(self) -> float:
         """The gripper's closing force, N: the configured one, or its largest if that is less."""
-        return min(self.hand.force, self.scene.model.description.end_effector.max_force)
+        return min(self.hand.force, self.scene.model.description.hand.max_force)
 
     @property
     def open_width(self) -> float:
         """The widest opening of the gripper, m."""
-        return self.scene.model.description.end_effector.max_width
+        return self.scene.model.description.hand.max_width
 
     def observe(self) -> None:
-        """Take a picture now and let the planning scene see the surroundings in it."""
-        self.service.observe(take(self.robot, self.skill.frames))
+        """Take a picture now and let the planning scene see the surroundings in it.
+
+        A robot without a camera knows of its surroundings only what the site says.
+        """
+        if any(isinstance(s, CameraSensor) for s in self.robot.description.sensors.values()):
+            self.service.observe(take(self.robot, self.skill.frames))
 
     def seeds(self, start: Array, count: int) -> Array:
         """Start postures (count, n) for inverse kinematics: the current one, then random ones.

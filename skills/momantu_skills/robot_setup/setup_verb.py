@@ -84,7 +84,13 @@ def _read_again(path: Path) -> str:
 def _plain(
     found: proposal.Proposal, path: Path, fill_in: tuple[str, ...], wrong: str
 ) -> dict[str, Any]:
-    return {"file": str(path), **summary.plain(found), "fill_in": list(fill_in), "reader": wrong}
+    return {
+        "file": str(path),
+        **summary.plain(found),
+        "without": list(writer.without(found)),
+        "fill_in": list(fill_in),
+        "reader": wrong,
+    }
 
 
 def _say(found: proposal.Proposal, path: Path, fill_in: tuple[str, ...], wrong: str) -> None:
@@ -92,6 +98,8 @@ def _say(found: proposal.Proposal, path: Path, fill_in: tuple[str, ...], wrong: 
         typer.echo(line)
     for note in found.notes:
         typer.echo(f"note         {note}")
+    for lack in writer.without(found):
+        typer.echo(f"without      {lack}")
     for what in fill_in:
         typer.echo(f"FILL IN      {what}")
     typer.echo(f"written to {path}")

@@ -33,7 +33,11 @@ WRONG: list[tuple[str, str, str]] = [
     ("velocity: 60 deg/s", "velocity: 0", "joint_limits.arm_bend.velocity: .*greater than 0"),
     ("home: {arm_turn: 0", "home: {arm_turn: 2", "2 lies outside arm_turn's limits -1.5708 to"),
     ("home: {arm_turn: 0", "home: {arm_trun: 0", "no joint 'arm_trun'; did you mean arm_turn"),
-    ("  carry:", "  carri:", "every robot has the poses home, ready, carry.*; missing: carry"),
+    (
+        "  carry:",
+        "  carri:",
+        "every robot with an arm has the poses home, ready, carry.*; missing: carry",
+    ),
     ("tip: hand", "tip: mast", "the moving joints on that way are: none"),
     (
         "groups:\n  arm: {joints: [arm_turn, arm_bend]",
@@ -67,7 +71,11 @@ WRONG: list[tuple[str, str, str]] = [
     ),
     ("  arm: {kind: joints", "  manipulator: {kind: joints", "named 'arm' of kind joints; this"),
     ("base: {kind: base}", "base: {kind: gripper}", "skills take 'base' for one of kind base"),
-    ("groups:\n  arm:", "groups:\n  hand:", "planned for the group 'arm'; this robot has none"),
+    (
+        "groups:\n  arm:",
+        "groups:\n  hand:",
+        "of the actuator 'arm' are planned for the group 'arm'; write its joints and its tip",
+    ),
     (
         "kind: joints, joints: [arm_turn, arm_bend]",
         "kind: joints, joints: [arm_bend, arm_turn]",

@@ -11,6 +11,7 @@ import pytest
 
 from momantu_bt.formats.problems import Problem, Severity
 from momantu_bt.plugins import PluginError
+from momantu_bt.testing import armless_robot
 from momantu_bt.tree.check.checker import check
 from momantu_bt.tree.files.xml import format as xml_format
 from momantu_bt.tree.files.yaml.format import read
@@ -116,6 +117,14 @@ WITHOUT_A_TREE = {
     ),
     "broken-robot": lambda: problems(
         HEADER, Registry(worlds={"four_rooms": World()}, robots={"fetch": broken(OSError("gone"))})
+    ),
+    "robot-lacks": lambda: problems(
+        HEADER,
+        Registry(
+            skills=Registry.installed().skills,
+            worlds={"four_rooms": World()},
+            robots={"fetch": armless_robot},
+        ),
     ),
     "robot-not-installed": lambda: problems(
         HEADER,

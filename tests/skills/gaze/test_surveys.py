@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from momantu_skills.gaze import surveys
 from momantu_skills.gaze.surveys import SIDESTEP, beside, sweep
 from momantu_skills.perception.geometry.regions import (
     BESIDE,
@@ -19,7 +20,7 @@ from momantu_skills.perception.geometry.regions import (
 )
 
 from momantu_bt.geometry import Pose2D
-from momantu_bt.testing import small_robot
+from momantu_bt.testing import ScriptedRobot, small_robot
 
 CAMERA = small_robot().camera()[1]
 PLACES = st.builds(Pose2D, st.floats(-4, 4), st.floats(-4, 4), st.floats(-3.1, 3.1))
@@ -124,3 +125,12 @@ def test_around_a_place_that_was_measured_the_looks_surround_it(
     assert depth_inside(near[None, :2], corners[:, :2])[0] > 0.0
     assert region.support_heights[0] < z < region.support_heights[1]
     assert not region.contains(near[None] - np.array([0.0, 0.0, 0.1])).any()
+
+
+def test_a_fixed_camera_looks_at_all_that_is_in_its_picture() -> None:
+    camera = small_robot().camera()[1]
+    half = math.atan(math.tan(camera.horizontal_fov / 2) * camera.height / camera.width)
+    fixed = camera.model_copy(update={"carrier": None})
+    robot = small_robot().model_copy(update={"sensors": {"camera": fixed}})
+    assert surveys._off_axis(ScriptedRobot(robot)) == pytest.approx(half)
+    assert surveys._off_axis(ScriptedRobot()) == surveys.OFF_AXIS

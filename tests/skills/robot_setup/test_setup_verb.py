@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -15,6 +16,7 @@ from typer.testing import CliRunner
 from momantu_bt.errors import MomantuError
 from momantu_bt.robot import CameraSensor
 from momantu_bt.robots import read_robot
+from tests.skills.robot_setup.conftest import box, joint, link
 
 app = Typer()
 app.command()(setup)
@@ -110,6 +112,22 @@ def test_json_has_the_whole_matrix(bolted_xacro: Path, tmp_path: Path) -> None:
     assert told["fill_in"] == []
 
 
+CART = "".join(
+    [
+        '<robot name="cart">',
+        link("base_link", box(0.4, 0.3, 0.2), "0 0 0.2", 20),
+        link("left_wheel", '<cylinder radius="0.1" length="0.04"/>', rpy="1.5708 0 0"),
+        link("right_wheel", '<cylinder radius="0.1" length="0.04"/>', rpy="1.5708 0 0"),
+        joint("left", "base_link", "left_wheel", "0 0.17 0.1", "0 1 0", "continuous"),
+        joint("right", "base_link", "right_wheel", "0 -0.17 0.1", "0 1 0", "continuous"),
+        link("camera_link", box(0.02, 0.1, 0.02), mass=0.1),
+        joint("camera_joint", "base_link", "camera_link", "0.2 0 0.4", kind="fixed"),
+        link("laser_link"),
+        joint("laser_joint", "base_link", "laser_link", "0.15 0 0.35", kind="fixed"),
+        "</robot>",
+    ]
+)
+
 BARE = '<robot name="Bare 1"><link name="base"/><link name="flag"/>' + (
     '<joint name="j" type="continuous"><parent link="base"/><child link="flag"/></joint></robot>'
 )
@@ -121,10 +139,42 @@ def test_what_cannot_be_found_is_left_to_fill_in(tmp_path: Path) -> None:
     code, said = run(urdf, "-o", tmp_path / "bare", "--samples", 5)
     assert code == 1
     text = (tmp_path / "bare" / "robot.yaml").read_text()
-    for what in ("footprint", "groups.arm", "end_effector", "named_poses"):
-        assert any("FILL IN" in line and what in line for line in said.splitlines()), what
+    assert any("FILL IN" in line and "footprint" in line for line in said.splitlines())
+    for what in ("no arm", "no camera", "no laser"):
+        assert any("without" in line and what in line for line in said.splitlines()), what
     assert "name: bare_1" in text
-    assert text.count("# FILL IN") > 4
+    assert "# FILL IN: the base has no collision shape" in text
+
+
+def test_a_robot_without_an_arm_is_whole(tmp_path: Path) -> None:
+    urdf = tmp_path / "cart.urdf"
+    urdf.write_text(CART)
+    code, said = run(urdf, "-o", tmp_path / "cart", "--samples", 5)
+    assert code == 0, said
+    assert "reach" not in said
+    robot = read_robot(tmp_path / "cart")
+    assert not robot.has_arm
+    assert robot.end_effector is None
+    assert robot.working.reach is None
+    assert robot.named_poses == {}
+    assert set(robot.actuators) == {"base"}
+    assert robot.simulation is not None
+
+
+def test_an_arm_without_a_hand_is_whole(rolling_urdf: Path, tmp_path: Path) -> None:
+    handless = tmp_path / "handless.urdf"
+    text = rolling_urdf.read_text()
+    slides = re.sub(r'(<joint name="(?:left|right)_slide[^"]*" type=")prismatic', r"\1fixed", text)
+    assert slides != text
+    handless.write_text(slides)
+    code, said = run(handless, "-o", tmp_path / "handless", "--samples", 50)
+    assert code == 0, said
+    assert "no hand" in said
+    robot = read_robot(tmp_path / "handless")
+    assert robot.has_arm
+    assert robot.end_effector is None
+    assert {"home", "ready", "carry", "look_around"} <= set(robot.named_poses)
+    assert "gripper" not in robot.actuators
 
 
 @pytest.mark.parametrize(

@@ -78,10 +78,10 @@ def measured(description: RobotDescription) -> Measures:
         footprint=footprint,
         half_width=_inner_radius(footprint),
         height=description.height,
-        reach=description.working.reach,
+        reach=description.working.reach or (0.0, 0.0, 0.0),
         eyes=_eyes(description, kinematics),
         hand=_hand(description, kinematics),
-        max_width=description.end_effector.max_width,
+        max_width=0.0 if description.end_effector is None else description.hand.max_width,
     )
 
 
@@ -108,7 +108,9 @@ def _eyes(description: RobotDescription, kinematics: KinematicTree) -> tuple[flo
 
 def _hand(description: RobotDescription, kinematics: KinematicTree) -> Array:
     """(n, 2) distance and height of the grasp frame in random postures of the joints below it."""
-    effector = description.end_effector
+    if description.end_effector is None:
+        return np.zeros((0, 2))
+    effector = description.hand
     draw = seeded("reach of", description.name)
     matrices = np.broadcast_to(np.eye(4), (SAMPLES, 4, 4))
     for joint in kinematics.chain(effector.frame):

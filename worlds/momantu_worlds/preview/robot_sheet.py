@@ -23,6 +23,8 @@ WIDTH, HEIGHT = 720, 600
 """px of a pose's picture."""
 SMOOTH = 2
 """Supersampling factor, for smooth edges."""
+AT_REST = "at rest"
+"""Title of the picture of a robot without named poses."""
 FIELD = math.radians(32)
 """rad; width of a pose's picture: narrow, so that near arms do not look long."""
 AROUND = math.radians(72)
@@ -67,7 +69,7 @@ def robot_sheet(description: RobotDescription) -> bytes:
     try:
         rows = [
             (_titled(name, _pose(simulator, description, pose)), eye)
-            for name, pose in description.named_poses.items()
+            for name, pose in (description.named_poses or {AT_REST: {}}).items()
             for eye in [_camera(simulator, description, pose)]
         ]
     finally:
@@ -78,11 +80,16 @@ def robot_sheet(description: RobotDescription) -> bytes:
     return out.getvalue()
 
 
+def _opened(description: RobotDescription, pose: dict[str, float]) -> dict[str, float]:
+    """The joints of a pose, with the fingers of any hand open."""
+    effector = description.end_effector
+    return pose if effector is None else {**effector.positions(effector.max_width), **pose}
+
+
 def _put(simulator: Simulator, description: RobotDescription, pose: dict[str, float]) -> None:
     """Set the joints, the hand open."""
     model = simulator.model
-    effector = description.end_effector
-    joints = {**effector.positions(effector.max_width), **pose}
+    joints = _opened(description, pose)
     q = model.positions()
     for name, value in joints.items():
         if name in model.index:
@@ -125,9 +132,10 @@ def _frames(
 ) -> Iterator[tuple[str, Transform]]:
     """base_from_frame of the grasp frame and of every sensor."""
     tree, effector = description.kinematics(), description.end_effector
-    joints = {**effector.positions(effector.max_width), **pose}
-    hand = tree.base_from_frame(effector.frame, joints)
-    yield "hand", hand @ Transform((effector.grasp_offset, 0.0, 0.0))
+    joints = _opened(description, pose)
+    if effector is not None:
+        hand = tree.base_from_frame(effector.frame, joints)
+        yield "hand", hand @ Transform((effector.grasp_offset, 0.0, 0.0))
     for name, sensor in description.sensors.items():
         if sensor.kind != "wrench":
             yield name, tree.base_from_frame(sensor.frame, joints)
@@ -159,7 +167,7 @@ def _camera(
         return None
     name, sensor = cameras[0]
     _put(simulator, description, pose)
-    joints = {**description.end_effector.positions(description.end_effector.max_width), **pose}
+    joints = _opened(description, pose)
     optical = description.kinematics().base_from_frame(sensor.frame, joints)
     width = round(HEIGHT * sensor.width / sensor.height)
     camera = ViewCamera(simulator.scene, SMOOTH * width, SMOOTH * HEIGHT, sensor.horizontal_fov)

@@ -12,6 +12,7 @@ from momantu_bt.messages import ActuatorGoal, RobotState, frozen
 from momantu_bt.robot import (
     Actuator,
     ActuatorKind,
+    EndEffector,
     RobotDescription,
     SensorReading,
     SimulationModel,
@@ -65,7 +66,7 @@ class SimulatedRobot:
         )
         self._columns = [model.index[name] for name in self._names]
         hand = description.end_effector
-        self._fingers = {name: model.index[name] for name in hand.opening}
+        self._fingers = {name: model.index[name] for name in (hand.opening if hand else ())}
         prismatic = prismatic_joints(description, self._names)
         self._encoders = Encoders(self._names, prismatic, seed, config.joints)
         self._odometry = Odometry(start, seed, config.odometry)
@@ -86,7 +87,7 @@ class SimulatedRobot:
             (drive, [model.index[name] for name in drive.names])
             for drive in self.joint_drives.values()
         ]
-        self.gripper = self._gripper_drive(simulation)
+        self.gripper = None if hand is None else self._gripper_drive(simulation, hand)
         self._place(start, pose)
 
     @property
@@ -128,7 +129,7 @@ class SimulatedRobot:
             self.base.command(goal, self._now())
         elif kind is ActuatorKind.JOINTS:
             self.joint_drives[actuator].command(goal, self._now())
-        else:
+        elif self.gripper is not None:
             self.gripper.command(goal)
 
     def stop(self, actuator: str) -> None:
@@ -163,7 +164,8 @@ class SimulatedRobot:
         self.base.apply(float(positions[self._base_columns[2]]))
         for drive in self.joint_drives.values():
             drive.apply(index)
-        self.gripper.apply(positions)
+        if self.gripper is not None:
+            self.gripper.apply(positions)
 
     def end_tick(self) -> None:
         """Update odometry with the tick's motion; the clock shows the end of the tick already."""
@@ -180,9 +182,7 @@ class SimulatedRobot:
         positions, velocities, efforts = self._encoders.joints(
             true[self._columns], speeds[self._columns], self._drive_efforts(true, speeds), stamp
         )
-        fingers = {name: float(true[i]) for name, i in self._fingers.items()}
-        opening = self._description.end_effector.width(fingers)
-        width, grip = self._encoders.gripper(opening, self.gripper.effort(fingers), stamp)
+        width, grip = self._measure_gripper(true, stamp)
         base = self._true_base(true)
         vx, vy, wz = (float(speeds[i]) for i in self._base_columns)
         forward = vx * np.cos(base.yaw) + vy * np.sin(base.yaw)
@@ -200,9 +200,19 @@ class SimulatedRobot:
             grip,
         )
 
+    def _measure_gripper(self, true: Array, stamp: float) -> tuple[float, float]:
+        """Opening, m, and closing force, N, as measured; none of either without a hand."""
+        if self.gripper is None:
+            return 0.0, 0.0
+        fingers = {name: float(true[i]) for name, i in self._fingers.items()}
+        opening = self._description.hand.width(fingers)
+        return self._encoders.gripper(opening, self.gripper.effort(fingers), stamp)
+
     def _drive_efforts(self, true: Array, speeds: Array) -> Array:
         """Force of the drives, Nm or N: their control law, within the effort limits."""
         drives = self.joint_drives.values()
+        if not drives:
+            return np.zeros(0)
         target = np.concatenate([d.position for d in drives])
         speed = np.concatenate([d.velocity for d in drives])
         push = self._stiffness * (target - true[self._columns])
@@ -224,24 +234,26 @@ class SimulatedRobot:
             self._stiffness[places],
         )
 
-    def _gripper_drive(self, simulation: SimulationModel) -> GripperDrive:
-        effector, model = self._description.end_effector, self._model
+    def _gripper_drive(self, simulation: SimulationModel, effector: EndEffector) -> GripperDrive:
+        model = self._model
         limits = self._description.joint_limits
         tips = Tips(simulation.linkages, model.fingers, model.joints, model.gains, model.index)
         speeds = {name: limits[name].velocity for name in effector.opening}
         return GripperDrive(model.fingers, tips, effector, speeds)
 
     def _place(self, start: Pose2D, pose: Mapping[str, float]) -> None:
-        """Stand at `start` with the joints at `pose` and the gripper open, at rest."""
+        """Stand at `start` with the joints at `pose` and any gripper open, at rest."""
         positions = self._model.positions()
         positions[self._base_columns] = (start.x, start.y, start.yaw)
         for name, value in pose.items():
             positions[self._model.index[name]] = value
         effector = self._description.end_effector
-        for name, value in effector.positions(effector.max_width).items():
+        opened = {} if effector is None else effector.positions(effector.max_width)
+        for name, value in opened.items():
             positions[self._fingers[name]] = value
         self._model.articulation.set_qpos(positions.astype(np.float32))
         self._model.articulation.set_qvel(np.zeros(len(positions), dtype=np.float32))
         for drive in self.joint_drives.values():
             drive.place(np.array([positions[self._model.index[n]] for n in drive.names]))
-        self.gripper.place(effector.max_width)
+        if self.gripper is not None and effector is not None:
+            self.gripper.place(effector.max_width)

@@ -77,7 +77,7 @@ class Simulator:
             simulation,
             model,
             episode.start,
-            description.named_poses[START_POSE] if pose is None else pose,
+            description.named_poses.get(START_POSE, {}) if pose is None else pose,
             seed,
             self.config,
             self.now,

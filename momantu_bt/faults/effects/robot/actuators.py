@@ -24,10 +24,10 @@ def arm_of(description: RobotDescription) -> str:
 
 def gripper_of(description: RobotDescription) -> str:
     """The end effector's actuator; KeyError when there is none."""
-    name = description.end_effector.actuator
-    if name not in description.actuators:
+    effector = description.end_effector
+    if effector is None or effector.actuator not in description.actuators:
         raise KeyError(_lacks(description, "gripper"))
-    return name
+    return effector.actuator
 
 
 def _first(description: RobotDescription, kind: ActuatorKind) -> str:

@@ -108,7 +108,8 @@ class Offset(GoalLayer):
             raise KeyError(f"the arm has no joint {wanted!r}; it has: {', '.join(joints)}")
         if wanted:
             return wanted
-        chain = self.description.kinematics().chain(self.description.end_effector.frame)
+        tree, effector = self.description.kinematics(), self.description.end_effector
+        chain = tree.joints() if effector is None else tree.chain(effector.frame)
         turning = [j.name for j in chain if j.kind != "prismatic" and j.name in joints]
         if not turning:
             raise KeyError("the arm has no joint that turns")

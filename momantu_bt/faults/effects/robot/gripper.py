@@ -38,7 +38,7 @@ class Stuck(StuckLayer):
     def begin(self) -> None:
         """Hold the fingers where they are."""
         super().begin()
-        state, effector = self.inner.state(), self.description.end_effector
+        state, effector = self.inner.state(), self.description.hand
         if state.gripper_effort <= PRESSING:
             width = max(0.0, min(effector.max_width, state.gripper_width))
             self.inner.command(self.actuator, GripperCommand(width, effector.max_force))
@@ -59,7 +59,7 @@ class Slips(GoalLayer):
         """Repeat the fingers' last command with little force."""
         super().begin()
         width = max(0.0, self.inner.state().gripper_width)
-        last = self._last or GripperCommand(width, self.description.end_effector.max_force)
+        last = self._last or GripperCommand(width, self.description.hand.max_force)
         self.inner.command(self.actuator, self._weakened(last))
 
     def command(self, actuator: str, goal: ActuatorGoal) -> None:

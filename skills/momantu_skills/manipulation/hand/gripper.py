@@ -31,7 +31,7 @@ def move_gripper(
     It never fails: the caller decides what the opening means. Opening ends only at the width,
     because it begins with a release of force, during which nothing moves.
     """
-    actuator = robot.description.end_effector.actuator
+    actuator = robot.description.hand.actuator
     goal = GripperCommand(width, force)
     began, still, last = clock.now(), 0, robot.state().gripper_width
     closing = width < last

@@ -90,7 +90,7 @@ def reachable(arm: Arm, thing: DetectedObject, lift: float) -> list[Reach]:
     Raises:
         Failure: NO_GRASP, with the number of grasps that failed at each step.
     """
-    effector = arm.scene.model.description.end_effector
+    effector = arm.scene.model.description.hand
     model = arm.scene.model
     grasps = grasps_for(thing, effector, model.palm, model.open_fingers)
     if not grasps:

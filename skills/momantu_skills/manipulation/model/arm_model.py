@@ -14,7 +14,7 @@ from scipy.spatial import ConvexHull
 from momantu_bt.frames import Joint, KinematicTree
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.messages import RobotState
-from momantu_bt.robot import JointLimit, RobotDescription
+from momantu_bt.robot import ARM, JointLimit, RobotDescription
 from momantu_skills.manipulation.model import kinematics as kin
 from momantu_skills.manipulation.model.hulls import link_hulls
 from momantu_skills.manipulation.model.urdf import base_urdf
@@ -121,24 +121,45 @@ class Group:
 
 
 class ArmModel:
-    """Kinematics and hulls of the whole robot; one planning group moves."""
+    """Kinematics and hulls of the whole robot; one planning group moves.
 
-    def __init__(self, description: RobotDescription, group: str = "arm") -> None:
+    A robot without an arm has a model too: its hulls tell what belongs to it in pictures.
+    """
+
+    def __init__(self, description: RobotDescription, group: str = ARM) -> None:
         self.description = description
         self.urdf = base_urdf(description)
         self.pin: pin.Model = pin.buildModelFromXML(self.urdf.text)
         self.hulls = link_hulls(self.urdf.parts)
+        self._name = group
         effector = description.end_effector
-        self.group = _chain_of(description, description.groups[group].joints, effector.frame)
+        tip = () if effector is None else (effector.frame,)
         self._index = {
             name: int(self.pin.joints[self.pin.getJointId(name)].idx_q)
             for name in list(self.pin.names)[1:]
         }
-        self.group_index = np.array([self._index[name] for name in self.group.names])
         self.frame_ids = {
-            link: int(self.pin.getFrameId(link, pin.FrameType.BODY))
-            for link in (*self.hulls, effector.frame)
+            link: int(self.pin.getFrameId(link, pin.FrameType.BODY)) for link in (*self.hulls, *tip)
         }
+
+    @cached_property
+    def group(self) -> Group:
+        """The planning group, to the hand's frame, or to its own tip on an arm without a hand.
+
+        Raises:
+            LookupError: the robot has no such group.
+        """
+        description = self.description
+        if self._name not in description.groups:
+            raise LookupError(f"the robot {description.name} has no group {self._name!r}")
+        own = description.groups[self._name]
+        tip = own.tip if description.end_effector is None else description.end_effector.frame
+        return _chain_of(description, own.joints, tip)
+
+    @cached_property
+    def group_index(self) -> NDArray[np.int64]:
+        """Where the group's joints (n,) stand among all joints."""
+        return np.array([self._index[name] for name in self.group.names])
 
     def joints(self, state: RobotState) -> Array:
         """Measured joints of the planning group (n,), clipped to their limits."""
@@ -155,8 +176,9 @@ class ArmModel:
         for name, value in joints.items():
             if name in self._index:
                 q[self._index[name]] = value
-        for finger, value in self.description.end_effector.positions(max(0.0, width)).items():
-            q[self._index[finger]] = value
+        if self.description.end_effector is not None:
+            for finger, value in self.description.hand.positions(max(0.0, width)).items():
+                q[self._index[finger]] = value
         return q
 
     def link_poses(self, q: Array) -> dict[str, Array]:
@@ -176,7 +198,7 @@ class ArmModel:
     def tip_from_grasp(self) -> Transform:
         """The grasp frame relative to the tip, the link that is the end effector's frame."""
         effector = self.description.end_effector
-        return Transform((effector.grasp_offset, 0.0, 0.0))
+        return Transform((0.0 if effector is None else effector.grasp_offset, 0.0, 0.0))
 
     @cached_property
     def palm(self) -> Array:
@@ -184,7 +206,7 @@ class ArmModel:
 
         They come from the links that may touch the grasped object and are fixed to the tip.
         """
-        effector = self.description.end_effector
+        effector = self.description.hand
         tip = self.pin.frames[self.frame_ids[effector.frame]]
         corners = []
         for link in effector.touch_links:
@@ -203,7 +225,7 @@ class ArmModel:
 
         Outward normal and offset: a point is inside if all values are negative.
         """
-        effector = self.description.end_effector
+        effector = self.description.hand
         joint = self.pin.frames[self.frame_ids[effector.frame]].parentJoint
         poses = self.link_poses(self.posture({}, effector.max_width))
         grasp = Transform.from_matrix(poses[effector.frame]) @ self.tip_from_grasp

@@ -203,7 +203,7 @@ class CollisionWorld:
 
     def _attach(self, attached: Attached) -> int:
         model = self.body.model
-        tip = model.frame_ids[model.description.end_effector.frame]
+        tip = model.frame_ids[model.description.hand.frame]
         frame = model.pin.frames[tip]
         shape = pin.GeometryObject(
             "held", frame.parentJoint, tip, frame.placement, convex(attached.corners)
@@ -212,6 +212,6 @@ class CollisionWorld:
 
     def _strangers(self) -> list[int]:
         """Shapes of the links that the held object must not touch: all except the hand."""
-        touch = self.body.model.description.end_effector.touch_links
+        touch = self.body.model.description.hand.touch_links
         links = self.body.links
         return [shape for link, shapes in links.items() if link not in touch for shape in shapes]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
@@ -16,6 +17,7 @@ from momantu_skills.manipulation.config import SceneConfig
 from momantu_skills.manipulation.model.arm_model import arm_model
 from momantu_skills.manipulation.model.collision import (
     Attached,
+    BodyPairs,
     CollisionWorld,
     Obstacle,
     body_pairs,
@@ -57,13 +59,19 @@ class Scene:
     def __init__(self, description: RobotDescription, config: SceneConfig) -> None:
         self.config = config
         self.model = arm_model(description)
-        self.body = body_pairs(self.model)
         self.surroundings = Surroundings()
         self.points: Array = np.empty((0, 3))
         self.known: tuple[Support, ...] = ()
         self.overhead: tuple[Overhead, ...] = ()
         self.seen_space = SeenSpace()
         self._mask = LinkMask(self.model.hulls, config.robot_padding)
+        if description.has_arm:
+            self.body  # noqa: B018  # built before the run begins, as it takes a while
+
+    @cached_property
+    def body(self) -> BodyPairs:
+        """The robot's shapes, and the pairs of links that the arm can bring together."""
+        return body_pairs(self.model)
 
     # seeing
 
@@ -89,7 +97,9 @@ class Scene:
         image, odom_from_base = snapshot.image, snapshot.odom_from_base
         optical = points_from_depth(image.depth, image.intrinsics, self.config.pixel_stride)
         base_points = (odom_from_base.inverse() @ snapshot.odom_from_camera).apply(optical)
-        reach = self.model.description.working.reach[2] + self.config.beyond_reach
+        working = self.model.description.working
+        farthest = working.look_off if working.reach is None else working.reach[2]
+        reach = farthest + self.config.beyond_reach
         base_points = base_points[np.linalg.norm(base_points[:, :2], axis=1) < reach]
         own = self.is_robot(base_points, snapshot.state, held)
         return odom_from_base.apply(base_points[~own])
@@ -150,7 +160,7 @@ class Scene:
             for link, hull in self.model.hulls.items()
         ]
         if held is not None:
-            tip = poses[self.model.description.end_effector.frame]
+            tip = poses[self.model.description.hand.frame]
             corners.append(self.held_corners(held) @ tip[:3, :3].T + tip[:3, 3])
         corners = [each for each in corners if each[:, 2].min() < below]
         outline = np.array([(x, y, 0.0) for x, y in self.model.description.footprint])
@@ -164,7 +174,7 @@ class Scene:
         poses = self.model.link_poses(self.model.configuration(state))
         own = self._mask.covers(points, poses)
         if held is not None:
-            tip = poses[self.model.description.end_effector.frame]
+            tip = poses[self.model.description.hand.frame]
             mask = LinkMask({"held": self.held_corners(held)}, self.config.robot_padding)
             own |= mask.covers(points, {"held": tip})
         return own

@@ -142,7 +142,7 @@ class Vehicle:
     def _follow_footprint(self) -> None:
         state = self._robot.state()
         before = self._posture
-        if before is not None and np.abs(state.positions - before).max() < POSTURE_CHANGE:
+        if before is not None and _moved_little(state.positions, before):
             return
         self._posture = state.positions
         outline = np.asarray(self._scene.footprint(state))
@@ -234,6 +234,11 @@ class Vehicle:
     def room(self, pose: Pose2D, *, whole: bool) -> float:
         """Return the clearance at a pose, m: with all of arm and load (`whole`), or low parts."""
         return self.costmap.room(pose, self.discs if whole else self.low_discs)
+
+
+def _moved_little(positions: Array, before: Array) -> bool:
+    """Whether no joint has left its position; a robot may have no joints at all."""
+    return float(np.abs(positions - before).max(initial=0.0)) < POSTURE_CHANGE
 
 
 def _same(outline: Array, other: Array) -> bool:

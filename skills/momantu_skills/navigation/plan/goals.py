@@ -96,15 +96,15 @@ def within_reach(
     if surface is not None:
         here = surface.map_from_surface.inverse() @ Pose2D(*target)
         square = list(_square_stands(surface, here, base, working))
-        stands = [stand for away, stand in square if away <= working.reach[2]]
+        stands = [stand for away, stand in square if away <= working.reached[2]]
         nearest = min((away for away, _ in square), default=0.0)
         stands = stands or [stand for away, stand in square if away <= nearest + AS_NEAR]
     if not stands:
         for k in range(RING):
             yaw = wrap_angle(2.0 * math.pi * k / RING)
             pose = Pose2D(
-                target[0] - working.reach[1] * math.cos(yaw),
-                target[1] - working.reach[1] * math.sin(yaw),
+                target[0] - working.reached[1] * math.cos(yaw),
+                target[1] - working.reached[1] * math.sin(yaw),
                 yaw,
             )
             stands.append(Stand(pose, k, pose.distance_to(base)))
@@ -125,7 +125,7 @@ def _square_stands(
     surface: Surface, target: Pose2D, base: Pose2D, working: Working
 ) -> Iterable[tuple[float, Stand]]:
     """All stands that face one of the sides squarely, with their distance from the target, m."""
-    nearest, best, _ = working.reach
+    nearest, best, _ = working.reached
     for number, angle in enumerate(surface.sides):
         edge, _ = _edge(surface, angle)
         c, s = math.cos(angle), math.sin(angle)

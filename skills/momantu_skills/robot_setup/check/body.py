@@ -16,6 +16,8 @@ from momantu_skills.robot_setup.find.base import ABOVE, Stand
 from momantu_skills.robot_setup.urdf.body import Body
 from momantu_skills.robot_setup.urdf.cells import cuts_of, swallowed
 
+AT_REST = "at rest"
+"""Stands for the posture of a robot without named poses."""
 OUTSIDE = 0.01
 """How far the base may extend beyond its footprint, m: errors of hulls and rounding."""
 ROOMY = 0.06
@@ -47,7 +49,8 @@ def check_poses(description: RobotDescription, model: ArmModel) -> Iterator[Find
         q = np.array([pose.get(joint, 0.0) for joint in model.group.names])
         for pair in dict.fromkeys(_links(a, b) for a, b in world.touching(q)):
             met.setdefault(pair, []).append(name)
-    hand = set(description.end_effector.touch_links)
+    effector = description.end_effector
+    hand = set() if effector is None else set(effector.touch_links)
     for pair, poses in met.items():
         yield _closed_hand(pair) if set(pair) <= hand else _collision(pair, poses)
 
@@ -76,6 +79,8 @@ def _closed_hand(pair: tuple[str, str]) -> FindingAtKeys:
 
 def in_poses(names: list[str]) -> str:
     """`the pose home`, `the poses home and carry`."""
+    if names == [AT_REST]:
+        return "its posture at rest"
     if len(names) == 1:
         return f"the pose {names[0]}"
     return f"the poses {', '.join(names[:-1])} and {names[-1]}"
@@ -121,7 +126,7 @@ def check_footprint(
 def _height(description: RobotDescription, body: Body) -> Iterator[FindingAtKeys]:
     tops = {
         name: float(body.corners(body.hulls, pose)[:, 2].max())
-        for name, pose in description.named_poses.items()
+        for name, pose in (description.named_poses or {AT_REST: {}}).items()
         if body.hulls
     }
     tallest = max(tops, key=lambda name: tops[name], default=None)
@@ -129,7 +134,7 @@ def _height(description: RobotDescription, body: Body) -> Iterator[FindingAtKeys
         yield FindingAtKeys(
             Severity.ERROR,
             "taller-than-height",
-            f"in the pose {tallest} the robot is {tops[tallest]:.2f} m tall, and its height is "
+            f"in {in_poses([tallest])} the robot is {tops[tallest]:.2f} m tall, and its height is "
             f"{description.height:g} m",
             f"write `height: {tops[tallest] + 0.005:.2f}`, or lower the pose",
             ("height",),

@@ -32,7 +32,7 @@ HEIGHT_SHARE = 0.2
 
 def check_hand(description: RobotDescription, body: Body) -> Iterator[FindingAtKeys]:
     """The end effector against the URDF's fingers."""
-    effector = description.end_effector
+    effector = description.hand
     fingers = _fingers(description, body)
     if not fingers:
         yield FindingAtKeys(
@@ -57,16 +57,16 @@ def check_hand(description: RobotDescription, body: Body) -> Iterator[FindingAtK
 
 
 def _fingers(description: RobotDescription, body: Body) -> tuple[str, ...]:
-    joints = set(description.end_effector.opening)
+    joints = set(description.hand.opening)
     return tuple(
         link
-        for link in description.end_effector.touch_links
+        for link in description.hand.touch_links
         if link in body.hulls and joints & {j.name for j in body.skeleton.chain(link)}
     )
 
 
 def _beyond(description: RobotDescription, body: Body) -> Iterator[FindingAtKeys]:
-    for joint, rows in description.end_effector.opening.items():
+    for joint, rows in description.hand.opening.items():
         lower, upper = body.skeleton.joints[joint].range
         outside = [p for w, p in rows if w > 0 and not lower - 1e-3 <= p <= upper + 1e-3]
         if outside and body.skeleton.joints[joint].mimic is None:
@@ -81,12 +81,12 @@ def _beyond(description: RobotDescription, body: Body) -> Iterator[FindingAtKeys
 
 
 def _posture(description: RobotDescription, width: float) -> dict[str, float]:
-    return {**description.named_poses["home"], **description.end_effector.positions(width)}
+    return {**description.named_poses["home"], **description.hand.positions(width)}
 
 
 def _grasp(description: RobotDescription, posture: dict[str, float]) -> Transform:
     """base_from_grasp."""
-    effector = description.end_effector
+    effector = description.hand
     link = description.kinematics().base_from_frame(effector.frame, posture)
     return link @ Transform((effector.grasp_offset, 0.0, 0.0))
 
@@ -147,7 +147,7 @@ def _closing(moves: Array) -> Iterator[FindingAtKeys]:
 def _widths(
     description: RobotDescription, body: Body, fingers: tuple[str, ...]
 ) -> Iterator[FindingAtKeys]:
-    effector = description.end_effector
+    effector = description.hand
     for share in SAMPLES:
         width = share * effector.max_width
         corners = _in_grasp(description, body, fingers, width)
@@ -172,9 +172,9 @@ def _widths(
             return
 
 
-def check_reach(description: RobotDescription, body: Body, stand: Stand) -> Iterator[FindingAtKeys]:
-    """Working distances that the arm does not reach, or at which the base is in the table."""
-    working, effector = description.working, description.end_effector
+def check_stand_off(description: RobotDescription) -> Iterator[FindingAtKeys]:
+    """A distance from tables at which the base is in the table."""
+    working = description.working
     front = max(x for x, _ in description.footprint)
     if working.stand_off < front:
         yield FindingAtKeys(
@@ -185,6 +185,11 @@ def check_reach(description: RobotDescription, body: Body, stand: Stand) -> Iter
             f"write at least `stand_off: {front + 0.05:.2f}`",
             ("working", "stand_off"),
         )
+
+
+def check_reach(description: RobotDescription, stand: Stand) -> Iterator[FindingAtKeys]:
+    """Working distances that the arm does not reach."""
+    working, effector = description.working, description.hand
     solver = LimbSolver(
         description.kinematics(),
         description.groups["arm"].joints,
@@ -193,9 +198,9 @@ def check_reach(description: RobotDescription, body: Body, stand: Stand) -> Iter
         Transform((effector.grasp_offset, 0.0, 0.0)),
         seed=0,
     )
-    _, heights = reached(solver, np.array(working.reach), stand.floor)
+    _, heights = reached(solver, np.array(working.reached), stand.floor)
     for which, distance, share in zip(
-        ("nearest", "best", "farthest"), working.reach, heights, strict=True
+        ("nearest", "best", "farthest"), working.reached, heights, strict=True
     ):
         if share < (0.5 if which == "best" else HEIGHT_SHARE):
             yield FindingAtKeys(

@@ -10,7 +10,9 @@ from momantu_bt.formats.places import NOWHERE
 from momantu_bt.formats.urdf import read_urdf
 from momantu_bt.robot import RobotDescription
 from momantu_bt.robots import RobotFileError
+from momantu_bt.robots.reader import read_robot_file
 from momantu_skills.manipulation.model.arm_model import ArmModel
+from momantu_skills.robot_setup.check.abilities import check_abilities
 from momantu_skills.robot_setup.check.body import (
     check_footprint,
     check_hulls,
@@ -18,7 +20,7 @@ from momantu_skills.robot_setup.check.body import (
     check_looks,
     check_poses,
 )
-from momantu_skills.robot_setup.check.hand import check_hand, check_reach
+from momantu_skills.robot_setup.check.hand import check_hand, check_reach, check_stand_off
 from momantu_skills.robot_setup.check.sensors import check_sensors
 from momantu_skills.robot_setup.find.base import find_stand
 from momantu_skills.robot_setup.urdf.body import Body
@@ -31,21 +33,31 @@ def check_robot(description: RobotDescription) -> list[Finding]:
     Raises:
         SetupError: the URDF is not a mechanism, or has a collision shape without volume.
     """
-    body = Body(read_skeleton(read_urdf(description.urdf)), description)
+    skeleton = read_skeleton(read_urdf(description.urdf))
+    body = Body(skeleton, description)
     stand = find_stand(body)
-    return _located(
-        description,
-        [
-            *check_poses(description, ArmModel(description)),
-            *check_footprint(description, body, stand),
-            *check_limits(description, body),
-            *check_hulls(description, body),
-            *check_looks(description),
-            *check_sensors(description, body),
-            *check_hand(description, body),
-            *check_reach(description, body, stand),
-        ],
-    )
+    findings = [
+        *check_footprint(description, body, stand),
+        *check_limits(description, body),
+        *check_hulls(description, body),
+        *check_looks(description),
+        *check_sensors(description, body),
+        *check_stand_off(description),
+        *check_abilities(description, stand, virtual=_has_virtual(description)),
+    ]
+    if description.has_arm:
+        findings += check_poses(description, ArmModel(description))
+    if description.end_effector is not None:
+        findings += check_hand(description, body)
+    if description.has_arm and description.end_effector is not None:
+        findings += check_reach(description, stand)
+    return _located(description, findings)
+
+
+def _has_virtual(description: RobotDescription) -> bool:
+    """Whether the robot's own URDF has the joints that move its base."""
+    drive = None if description.source is None else read_robot_file(description.source).base.drive
+    return drive is not None and drive.joints is not None
 
 
 def _located(description: RobotDescription, findings: Iterable[FindingAtKeys]) -> list[Finding]:

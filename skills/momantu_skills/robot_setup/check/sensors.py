@@ -17,7 +17,7 @@ from momantu_bt.robot import (
     LidarSensor,
     RobotDescription,
 )
-from momantu_skills.robot_setup.check.body import in_poses
+from momantu_skills.robot_setup.check.body import AT_REST, in_poses
 from momantu_skills.robot_setup.urdf.body import Body, placed
 from momantu_skills.robot_setup.urdf.rays import blocked, planes_of
 
@@ -36,8 +36,14 @@ LEVEL = 0.05
 TILTED = 0.5
 """Least cosine between the picture's downward direction and the vertical; less means a wrong
 frame."""
-LOOKING = "look_around"
-"""The pose in which a camera is meant to have a free view."""
+LOOKING, FOLDED = "look_around", "home"
+"""The poses in which a camera is meant to have a free view, and in which the robot drives."""
+
+
+def _postures(description: RobotDescription) -> dict[str, dict[str, float]]:
+    """The poses that every robot with an arm has; at rest one without named poses."""
+    poses = description.named_poses
+    return {name: poses[name] for name in REQUIRED_POSES if name in poses} or {AT_REST: {}}
 
 
 def check_sensors(description: RobotDescription, body: Body) -> Iterator[FindingAtKeys]:
@@ -56,31 +62,32 @@ def _camera(
     rays = _pixels(sensor)
     shares = {
         pose: float((_hits(description, body, pose, sensor.frame, rays) < sensor.max_depth).mean())
-        for pose in REQUIRED_POSES
+        for pose in _postures(description)
     }
     covered = [pose for pose, share in shares.items() if share > COVERED]
     if covered:
         most = max(shares[pose] for pose in covered)
         yield FindingAtKeys(
-            Severity.ERROR if shares[LOOKING] > BLIND else Severity.WARNING,
+            Severity.ERROR if shares.get(LOOKING, most) > BLIND else Severity.WARNING,
             "camera-sees-itself",
             f"the robot covers up to {most:.0%} of the picture of {name} in {in_poses(covered)}",
             "turn the camera or move the arm out of the picture in that pose",
             ("named_poses", covered[0]),
         )
-    optical = _frame(description, LOOKING, sensor.frame)
+    pose = next((n for n in shares if n == LOOKING), next(iter(shares)))
+    optical = _frame(description, pose, sensor.frame)
     if optical.rotation[:, 1] @ (0.0, 0.0, -1.0) < TILTED:
         yield FindingAtKeys(
             Severity.WARNING,
             "camera-tilted",
-            f"in the pose {LOOKING} the picture of {name} does not stand upright",
+            f"in {in_poses([pose])} the picture of {name} does not stand upright",
             "name an optical frame: z out of the camera, x to the right, y down",
             ("sensors", name, "frame"),
         )
 
 
 def _level(description: RobotDescription, name: str, frame: str) -> Iterator[FindingAtKeys]:
-    upright = abs(float(_frame(description, "home", frame).rotation[2, 2]))
+    upright = abs(float(_frame(description, FOLDED, frame).rotation[2, 2]))
     if upright < math.cos(LEVEL):
         yield FindingAtKeys(
             Severity.ERROR,
@@ -107,7 +114,7 @@ def _laser(
             .all(axis=0)
             .mean()
         )
-        for pose in REQUIRED_POSES
+        for pose in _postures(description)
     }
     stopped = [pose for pose, share in shares.items() if share > SHADOW]
     if stopped:
@@ -126,13 +133,13 @@ def _hits(description: RobotDescription, body: Body, pose: str, frame: str, rays
     base_from_sensor = _frame(description, pose, frame)
     directions = rays @ base_from_sensor.rotation.T
     origins = np.broadcast_to(base_from_sensor.position, directions.shape)
-    poses = body.link_poses(description.named_poses[pose], list(body.hulls))
+    poses = body.link_poses(description.named_poses.get(pose, {}), list(body.hulls))
     solids = [planes_of(placed(body.hulls[link], poses[link])) for link in body.hulls]
     return blocked(solids, origins, directions)
 
 
 def _frame(description: RobotDescription, pose: str, frame: str) -> Transform:
-    return description.kinematics().base_from_frame(frame, description.named_poses[pose])
+    return description.kinematics().base_from_frame(frame, description.named_poses.get(pose, {}))
 
 
 def _pixels(sensor: CameraSensor) -> Array:

@@ -22,8 +22,6 @@ def actuator_lines(proposal: Proposal) -> Iterator[str]:
     limbs = proposal.limbs
     yield "actuators:"
     yield "  base: {kind: base}"
-    if limbs.arm is None:
-        yield "  # FILL IN: arm: {kind: joints, joints: [shoulder_joint, elbow_joint, …]}"
     for limb in (limbs.arm, *limbs.others, limbs.head):
         if limb is not None and limb.joints:
             yield from _joints(limb.name, "joints", limb.joints)
@@ -35,8 +33,6 @@ def actuator_lines(proposal: Proposal) -> Iterator[str]:
             yield from _joints(
                 gripper_name(limb.name), "gripper", tuple(proposal.grasps[limb.name].opening)
             )
-    if proposal.grasp is None:
-        yield "  # FILL IN: gripper: {kind: gripper, joints: [left_finger_joint, …]}"
 
 
 def gripper_name(limb: str) -> str:
@@ -57,8 +53,6 @@ def _joints(name: str, kind: str, joints: tuple[str, ...]) -> Iterator[str]:
 def limit_lines(proposal: Proposal) -> Iterator[str]:
     """Positions, speeds and accelerations of the joints."""
     if not proposal.limits:
-        yield "# FILL IN: joint_limits: {shoulder_joint: {velocity: 1.0, acceleration: 1.5}}"
-        yield "joint_limits: {}"
         return
     yield "# Positions and speeds from the URDF. Accelerations measured: half of the effort by the"
     yield "# greatest inertia, and not more than an arm does gently."
@@ -75,8 +69,9 @@ def group_lines(proposal: Proposal) -> Iterator[str]:
     """The planning groups: the arms."""
     limbs = [limb for limb in (proposal.limbs.arm, *proposal.limbs.others) if limb is not None]
     if not limbs:
-        yield "# FILL IN: groups: {arm: {joints: [shoulder_joint, …], tip: hand_link}}"
-        yield "groups: {}"
+        yield "# If the robot has an arm: groups: {arm: {joints: [shoulder_joint, …], tip: hand}},"
+        yield "# with `actuators: {arm: {kind: joints, joints: […]}}`, their `joint_limits`,"
+        yield "# `working: {reach: […]}` and the poses home, ready, carry and look_around."
         return
     yield "groups:"
     for limb in limbs:
@@ -98,7 +93,8 @@ def end_effector_lines(proposal: Proposal) -> Iterator[str]:
     """The hand of the first arm."""
     grasp, arm = proposal.grasp, proposal.limbs.arm
     if grasp is None or arm is None or arm.hand is None:
-        yield "# FILL IN: a frame whose x points out along the fingers, y the closing direction"
+        yield "# If the robot has a hand: a frame whose x points out along the fingers, y closing"
+        yield "# direction, and `actuators: {gripper: {kind: gripper, joints: […]}}`."
         yield "# end_effector: {actuator: gripper, frame: hand, max_width: 0.1, max_force: 20,"
         yield "#   pad_length: 0.03, pad_height: 0.02, hand_clearance: 0.03, touch_links: [hand]}"
         return
@@ -130,8 +126,6 @@ def end_effector_lines(proposal: Proposal) -> Iterator[str]:
 def pose_lines(proposal: Proposal) -> Iterator[str]:
     """The poses that were found, with what is to be known of each."""
     if not proposal.poses:
-        yield "# FILL IN: named_poses: home, ready, carry and look_around, joint by joint"
-        yield "named_poses: {}"
         return
     yield "# Found by search, free of self-collision where nothing else is said."
     yield "named_poses:"

@@ -38,7 +38,8 @@ def lines(proposal: Proposal) -> Iterator[str]:
         yield f"sensor       {name}: {sensor.kind} on {sensor.link}{sure}"
     if not named:
         yield "sensor       none was found: look at it"
-    yield from _reach(proposal)
+    if proposal.limbs.arm is not None:
+        yield from _reach(proposal)
     for name, pose in proposal.poses.items():
         clear = "IN COLLISION" if pose.clear is None else f"clear by {1000 * pose.clear:.0f} mm"
         yield f"pose         {name}: {clear}, {pose.outside:.2f} m out of the footprint"

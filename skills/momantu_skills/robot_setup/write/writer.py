@@ -59,14 +59,24 @@ def missing(proposal: Proposal) -> tuple[str, ...]:
     found = []
     if proposal.stand.footprint is None:
         found.append("`footprint`: the base has no collision shape to take it from")
+    return tuple(found)
+
+
+def without(proposal: Proposal) -> tuple[str, ...]:
+    """What the robot is described without, and what it cannot do for that."""
+    found = []
     if proposal.limbs.arm is None:
-        found.append("`groups.arm` and its `actuators`: no arm was found")
-        found.append("`named_poses`: they need the arm")
-    if proposal.grasp is None:
+        found.append("no arm: it drives and looks, and trees that need an arm are refused")
+    elif proposal.grasp is None:
         found.append(
-            "`end_effector` and `actuators.gripper`: no two links were found that open and close "
-            "against each other"
+            "no hand: no two links were found that open and close against each other. It moves "
+            "its arm, and trees that pick or place are refused"
         )
+    kinds = {sensor.kind for sensor in proposal.sensors}
+    if "camera" not in kinds:
+        found.append("no camera: trees that look for anything are refused")
+    if not kinds & {"laser", "lidar"}:
+        found.append("no laser: trees that drive are refused, as it cannot localize itself")
     return tuple(found)
 
 
@@ -93,6 +103,8 @@ def _head(proposal: Proposal) -> Iterator[str]:
     yield "# FILL IN: could not be found; the file cannot be read before it is there."
     for note in proposal.notes:
         yield from comment(f"Note: {note}.")
+    for lack in without(proposal):
+        yield from comment(f"Described without: {lack}.")
     yield "momantu_robot: 1"
     yield f"name: {proposal.name}"
 
@@ -163,6 +175,12 @@ def _footprint(proposal: Proposal) -> Iterator[str]:
 
 def _working(proposal: Proposal) -> Iterator[str]:
     reach = proposal.reach
+    if proposal.limbs.arm is None:
+        yield "# Guessed: how far from a table's edge the robot stands."
+        yield "working:"
+        yield f"  stand_off: {number(reach.stand_off)}    # the footprint's front and 13 cm"
+        yield f"  look_off: {number(reach.look_off)}"
+        return
     tables = f"{HEIGHTS[0]:g}-{HEIGHTS[-1]:g} m"
     if reach.measured:
         text = f"Measured: inverse kinematics of level and pitched grasps on tables {tables} high."

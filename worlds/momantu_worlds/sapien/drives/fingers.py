@@ -42,14 +42,16 @@ def fingers_of(
     joints: Mapping[str, Any],
     physics: Physics,
 ) -> dict[str, Finger]:
-    """The gripper's finger joints by name; joints: SAPIEN's.
+    """The gripper's finger joints by name; none of a robot without a hand. joints: SAPIEN's.
 
     A stiffness at the pads is converted to one of the joint by the square of the lever.
 
     Raises:
-        WorldError: there are none, or one does not move along the closing direction.
+        WorldError: the hand has none, or one does not move along the closing direction.
     """
-    effector, found = description.end_effector, {}
+    if description.end_effector is None:
+        return {}
+    effector, found = description.hand, {}
     if not effector.opening:
         raise WorldError(
             f"the gripper {effector.actuator!r} of {description.name} has no joints; a simulated "
@@ -73,7 +75,7 @@ def fingers_of(
 
 def _lever(description: RobotDescription, joint: str) -> float:
     """Motion of the grasp frame's origin along the closing direction, per motion of a joint."""
-    effector = description.end_effector
+    effector = description.hand
     tree = description.kinematics()
     one = next(each for each in tree.joints() if each.name == joint)
     offset = Transform((effector.grasp_offset, 0.0, 0.0))
@@ -92,6 +94,8 @@ def couple(articulation: Any, fingers: Mapping[str, Finger], physics: Physics) -
 
     This stands for motors that follow one command and that a held object cannot push back.
     """
+    if not fingers:
+        return
     first, *others = fingers.values()
     for other in others:
         links = [first.joint.parent_link, first.joint.child_link, other.joint.child_link]

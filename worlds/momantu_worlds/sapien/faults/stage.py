@@ -102,7 +102,9 @@ class Stage:
 
     def in_hand(self) -> bool:
         """Whether the item is between the fingers, gripped or not yet."""
-        hand = self.simulator.truth.link(self.description.end_effector.frame)
+        if self.description.end_effector is None:
+            return False
+        hand = self.simulator.truth.link(self.description.hand.frame)
         return UprightCylinder(self.item).distance(self.item_pose(), hand) < IN_HAND
 
     def held(self) -> bool:

@@ -39,8 +39,8 @@ class ItemDemand:
         if moved(self._rest, pose) > STILL_SHIFT or self._rest.angle_to(pose) > STILL_TURN:
             self._rest, self._rest_since = pose, now
 
-    def measures(self, now: float, gripper: str) -> dict[str, float]:
-        """The numbers that are judged at `now`, s. gripper: the name of its link."""
+    def measures(self, now: float, gripper: str | None) -> dict[str, float]:
+        """The numbers that are judged at `now`, s. gripper: its link; None without a hand."""
         goal, truth = self.goal, self._truth
         pose = truth.pose(goal.item)
         support = truth.pose(goal.support)
@@ -54,7 +54,9 @@ class ItemDemand:
             "margin": self._support.margin(support, pose) - self._item.radius,
             "gap": self._support.height_above(support, pose),
             "still": now - self._rest_since,
-            "gripper": self._item.distance(pose, truth.link(gripper)),
+            "gripper": (
+                math.inf if gripper is None else self._item.distance(pose, truth.link(gripper))
+            ),
         }
 
     def unmet(self, m: dict[str, float]) -> tuple[str, ...]:

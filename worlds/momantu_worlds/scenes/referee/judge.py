@@ -188,12 +188,14 @@ class ClaimJudge:
 
     def _gripped(self, thing: PlacedBody) -> bool:
         """Whether any part of an object is between the pads."""
+        if self._description.end_effector is None:
+            return False
         return bool(thing.inside(self._between_pads).any())
 
     @cached_property
     def _between_pads(self) -> Array:
         """Points (n, 3) in the map between the gripper's pads."""
-        hand = self._description.end_effector
+        hand = self._description.hand
         extent = (hand.pad_length, self._opening(), hand.pad_height)
         axes = [np.linspace(-e / 2, e / 2, n) for e, n in zip(extent, PADS, strict=True)]
         grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
@@ -201,7 +203,7 @@ class ClaimJudge:
         return np.asarray(grasp.apply(grid))
 
     def _opening(self) -> float:
-        hand = self._description.end_effector
+        hand = self._description.hand
         return hand.width({name: self._truth.joint(name) for name in hand.opening})
 
     def _off_axis(self, frame: str, point: Array) -> float:
