@@ -9,12 +9,13 @@ from typing import Any
 from momantu_bt.findings import FindingAtKeys
 from momantu_bt.formats.problems import Severity
 from momantu_bt.lacking import lacking
-from momantu_bt.plugins import Group, PluginError
+from momantu_bt.plugins import PREFIX, Group, PluginError
 from momantu_bt.robot import RobotDescription
 from momantu_skills.robot_setup.find.base import Stand
 
-SKILLS: Group[Any] = Group("momantu_bt.skills", "skill")
-SERVICES: Group[Any] = Group("momantu_bt.services", "service")
+SKILLS: Group[Any] = Group(f"{PREFIX}skills", "skill")
+SERVICES: Group[Any] = Group(f"{PREFIX}services", "service")
+"""The framework has these groups too, above what skills may import."""
 ROLLS = re.compile(r"wheel|track|caster|tyre|tire|roller", re.IGNORECASE)
 """Names of links that roll where the URDF has no joint that turns them."""
 NAMED = 8
