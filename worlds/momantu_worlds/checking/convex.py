@@ -14,15 +14,17 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array, Transform
 from momantu_worlds.scenes.geometry.bodies import Body, Box, Cylinder, Part
+from momantu_worlds.scenes.geometry.hulls import hull_mesh
 from momantu_worlds.scenes.geometry.solids import SIDES, outline
 
 MOST_AXES = 3000
 """Limit of the edge cross products that are tested: finer hulls have more, nearly parallel ones."""
+HALF = np.array([1.0, 1e-3, 1e-6])
+"""Directions on its side count, of each direction and its opposite."""
 PARALLEL = 1e-9
 """Length of a cross product, of unit vectors, below which they count as parallel."""
 
@@ -119,12 +121,14 @@ def _prism() -> tuple[Array, Array]:
 
 def _hull(points: Array) -> tuple[Array, Array, Array]:
     """Vertices, normals and edge directions of the convex hull of points."""
-    mesh = trimesh.convex.convex_hull(points)
-    ends = np.asarray(mesh.vertices)[np.asarray(mesh.edges_unique)]
+    hull = hull_mesh(points)
+    ends = hull.vertices[np.concatenate([hull.triangles[:, [i, (i + 1) % 3]] for i in range(3)])]
     edges = ends[:, 1] - ends[:, 0]
     edges = edges / np.linalg.norm(edges, axis=1, keepdims=True)
-    normals = np.unique(np.round(np.asarray(mesh.face_normals), 6), axis=0)
-    return np.asarray(mesh.vertices), normals, np.unique(np.round(edges, 6), axis=0)
+    # each edge is there twice, once in either direction
+    edges *= np.where(edges @ HALF < 0.0, -1.0, 1.0)[:, None]
+    normals = np.unique(np.round(hull.normals, 6), axis=0)
+    return hull.vertices, normals, np.unique(np.round(edges, 6), axis=0)
 
 
 def _crossed(a: Array, b: Array) -> Array:

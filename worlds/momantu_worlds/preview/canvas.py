@@ -135,5 +135,5 @@ def _font(size: int) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
 
 def rgb(color: Sequence[float], factor: float = 1.0) -> Rgb:
     """A colour of a body, made darker (factor < 1) or lighter."""
-    red, green, blue = (int(np.clip(255 * channel * factor, 0, 255)) for channel in color)
+    red, green, blue = (min(max(int(255 * channel * factor), 0), 255) for channel in color)
     return red, green, blue

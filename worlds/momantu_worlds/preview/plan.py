@@ -100,8 +100,9 @@ def _mesh(canvas: Canvas, part: Part, points: Array) -> None:
     assert isinstance(part.geometry, Mesh)
     corners = points[part.geometry.triangles]
     shown = corners[corners[:, :, 2].min(axis=1) < CUT]
+    face, edge = rgb(part.color), rgb(part.color, 0.8)
     for triangle in shown[np.argsort(shown[:, :, 2].max(axis=1), kind="stable")]:
-        canvas.polygon(triangle[:, :2], rgb(part.color), rgb(part.color, 0.8))
+        canvas.polygon(triangle[:, :2], face, edge)
 
 
 def part_points(body: Body, part: Part) -> Array:

@@ -122,3 +122,26 @@ def test_a_flat_thing_has_a_thickness():
 def test_the_same_mesh_has_the_same_pieces():
     first, second = (convex_pieces([piece(*room())], still=True)[0] for _ in range(2))
     assert all(np.array_equal(a, b) for a, b in zip(first, second, strict=True))
+
+
+def table():
+    """A top on four legs, which touch its corners: one part."""
+    legs = [box((0.06, 0.06, 0.68), (x, y, 0.34)) for x in (-0.42, 0.42) for y in (-0.72, 0.72)]
+    return trimesh.util.concatenate([box((0.9, 1.5, 0.04), (0, 0, 0.7)), *legs])
+
+
+@pytest.mark.parametrize("yaw", [0.0, 0.5])
+def test_a_table_is_its_top_and_its_legs(yaw):
+    mesh = table()
+    mesh.apply_transform(trimesh.transformations.rotation_matrix(yaw, (0, 0, 1)))
+    hulls, plain = convex_pieces([piece(mesh)], still=True)
+    assert not plain
+    assert len(hulls) < 20
+    assert max(hull[:, 2].max() for hull in hulls) == pytest.approx(0.72)
+    turn = trimesh.transformations.rotation_matrix(yaw, (0, 0, 1))[:3, :3]
+    below = np.array([(0, 0, 0.3), (0.3, 0.5, 0.6), (-0.35, 0, 0.1), (0, 0.65, 0.3)]) @ turn.T
+    solid = (
+        np.array([(0, 0, 0.7), (0.44, 0.74, 0.7), (0.42, 0.72, 0.3), (-0.42, 0.72, 0.05)]) @ turn.T
+    )
+    assert not inside_any(hulls, below).any()
+    assert inside_any(hulls, solid).all()

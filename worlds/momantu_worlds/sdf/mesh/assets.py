@@ -15,6 +15,7 @@ from PIL import Image
 
 from momantu_bt.formats.files import write_whole
 from momantu_bt.geometry import Array
+from momantu_worlds.scenes.geometry.hulls import hull_mesh
 from momantu_worlds.sdf.mesh.files import Piece
 
 MOST_PIXELS = 1024
@@ -44,7 +45,7 @@ class Assets:
 
     def touch(self, name: str, hulls: Sequence[Array]) -> str:
         """Add a collision file of at most MOST_PIECES convex pieces, each of points (n, 3)."""
-        return self._keep(f"{name}_touch", [trimesh.convex.convex_hull(h) for h in hulls])
+        return self._keep(f"{name}_touch", [_touched(hull) for hull in hulls])
 
     def write(self, beside: Path) -> int:
         """Write everything below the folder of `beside`; returns how many files.
@@ -66,6 +67,11 @@ class Assets:
         path = f"{self.folder}/{stem}-{digest}.glb"
         self._files[path] = content
         return path
+
+
+def _touched(points: Array) -> Any:
+    hull = hull_mesh(points)
+    return trimesh.Trimesh(hull.vertices, hull.triangles, process=False)
 
 
 def _seen(piece: Piece, color: tuple[float, ...] | None) -> Any:

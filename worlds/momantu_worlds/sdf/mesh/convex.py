@@ -1,8 +1,9 @@
 """Convex pieces as the collision shape of a mesh.
 
 A mesh is split into its connected parts, and each part is replaced by its convex hull. Such a hull
-is useless if it fills space for the robot or for objects (a room, the space below a table). For
-hollow static parts, faces therefore become thin plates instead.
+is useless if it fills space for the robot or for objects (a room, the space below a table). Hollow
+static parts are split instead: a table into its top and its legs. The faces of a building, and of
+what cannot be split so, become thin plates.
 """
 
 from __future__ import annotations
@@ -13,17 +14,22 @@ from typing import Any
 import numpy as np
 import trimesh
 from numpy.typing import NDArray
+from scipy.spatial import QhullError
 
 from momantu_bt.geometry import Array
+from momantu_worlds.scenes.geometry.hulls import HullMesh, hull_mesh
 from momantu_worlds.sdf.mesh.files import Piece
-from momantu_worlds.sdf.mesh.hollow import Air
+from momantu_worlds.sdf.mesh.hollow import Air, is_building
 from momantu_worlds.sdf.mesh.plates import plates_of
+from momantu_worlds.sdf.mesh.splitting import split_hulls
 
 SMALL = 0.3
 """Largest extent of parts that are always replaced by their hulls, m: nothing stands inside
 them."""
 MOST_PARTS = 400
 """Most parts of one mesh; with more, the hull of the whole mesh is used."""
+FILLED = 0.7
+"""Largest share of a hollow part's hull that its convex pieces may have."""
 FLAT_HULL = 1e-9
 """Volume below which a hull is flat, m3."""
 THICKENED = 0.005
@@ -47,10 +53,19 @@ def convex_pieces(pieces: Sequence[Piece], *, still: bool) -> tuple[list[Array],
     for vertices, triangles in parts:
         hull = _hull(vertices)
         hollow = air is not None and np.ptp(vertices, axis=0).max() > SMALL and air.fills(hull)
-        plates = plates_of(vertices, triangles) if hollow else []
-        plain = plain and not plates
-        found += plates or [np.asarray(hull.vertices)]
+        split = _split(vertices, triangles, hull) if hollow else []
+        plain = plain and not split
+        found += split or [np.asarray(hull.vertices)]
     return found, plain
+
+
+def _split(vertices: Array, triangles: NDArray[np.int64], hull: HullMesh) -> list[Array]:
+    """Convex pieces of a hollow part: a few for furniture, else plates; none when neither fits."""
+    if not is_building(vertices):
+        pieces = [_hull(piece) for piece in split_hulls(vertices, triangles)]
+        if sum(piece.volume for piece in pieces) < FILLED * hull.volume:
+            return [np.asarray(piece.vertices) for piece in pieces]
+    return plates_of(vertices, triangles)
 
 
 def _parts(pieces: Sequence[Piece]) -> Iterator[tuple[Array, NDArray[np.int64]]]:
@@ -69,15 +84,15 @@ def _parts(pieces: Sequence[Piece]) -> Iterator[tuple[Array, NDArray[np.int64]]]
         yield np.asarray(mesh.vertices[used]), np.asarray(own.reshape(-1, 3), dtype=np.int64)
 
 
-def _hull(points: Array) -> Any:
-    """The convex hull, a trimesh.Trimesh; a flat part is thickened first."""
+def _hull(points: Array) -> HullMesh:
+    """The convex hull; a flat part is thickened first."""
     try:
-        hull = trimesh.convex.convex_hull(points)
+        hull = hull_mesh(points)
         if hull.volume > FLAT_HULL:
             return hull
-    except Exception:  # qhull's own errors: points on one plane or line
+    except (QhullError, ValueError):  # points on one plane or line
         pass
-    return trimesh.convex.convex_hull(np.concatenate([points + THICKENED * s for s in _CORNERS]))
+    return hull_mesh(np.concatenate([points + THICKENED * s for s in _CORNERS]))
 
 
 _CORNERS = np.array(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 import trimesh
@@ -11,6 +10,7 @@ from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array
 from momantu_bt.world import seeded
+from momantu_worlds.scenes.geometry.hulls import HullMesh
 
 SAMPLES = 300
 """Number of sample points in a hull."""
@@ -31,6 +31,11 @@ DIRECTIONS = np.array([UP, *_FLAT])
 hollow."""
 
 
+def is_building(vertices: Array) -> bool:
+    """Whether a part with some vertices (n, 3) is large enough to be one."""
+    return bool((np.ptp(vertices, axis=0) > ROOM).all())
+
+
 class Air:
     """Tests whether points within a mesh are in free air.
 
@@ -46,10 +51,10 @@ class Air:
             process=False,
         )
 
-    def fills(self, hull: Any) -> bool:
-        """Whether a large share of a hull (a trimesh.Trimesh) is air."""
-        vertices = np.asarray(hull.vertices)
-        if (np.ptp(vertices, axis=0) > ROOM).all():
+    def fills(self, hull: HullMesh) -> bool:
+        """Whether a large share of a hull is air."""
+        vertices = hull.vertices
+        if is_building(vertices):
             return True
         draw = seeded("hollow", len(vertices))
         picked = vertices[draw.integers(len(vertices), size=(SAMPLES, CORNERS))]
