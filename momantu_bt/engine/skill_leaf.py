@@ -12,7 +12,7 @@ from momantu_bt.engine.role import Role
 from momantu_bt.engine.skills.session import SLOW_STEP
 from momantu_bt.engine.status import RUNNING, SUCCESS, Status
 from momantu_bt.failure import FAILED, FailureValue
-from momantu_bt.skill import Skill
+from momantu_bt.skill import MISSING, Skill
 
 
 class SkillLeaf(ShowsValues, TreeNode):
@@ -110,8 +110,9 @@ class SkillLeaf(ShowsValues, TreeNode):
         return self._start(inputs)
 
     def _write(self, session: SkillSession, names: Collection[str]) -> None:
-        values = session.outputs
+        values, written = session.outputs, self._written
         for name in names:
-            if name in values and self._written.get(name) is not values[name]:
-                self._written[name] = values[name]
-                self.outputs[name].cell.store(values[name])
+            value = values.get(name, MISSING)
+            if value is not MISSING and value is not written.get(name, MISSING):
+                written[name] = value
+                self.outputs[name].cell.store(value)

@@ -8,6 +8,7 @@ import os
 import signal
 import threading
 import time
+from typing import Any
 
 import pytest
 
@@ -332,3 +333,30 @@ def test_a_reactive_node_asks_all_its_conditions_on_each_tick(run_yaml):
     report = run_yaml(text, world="none")
     assert report.ticks == 101
     assert report.nodes[1].ticks == 101
+
+
+class Nothing(Skill):
+    """Finds nothing."""
+
+    found: float | None = Out(doc="None if there is nothing")
+
+    def run(self, robot) -> Run:
+        self.found = None
+        return
+        yield ""
+
+
+def test_an_output_without_a_value_replaces_the_one_before(run_yaml) -> None:
+    boards: list[Any] = []
+    text = """trees:
+  Main:
+    - set: {key: $spot, value: 3}
+    - nothing: {found: $spot}
+"""
+
+    def watch(run):
+        boards.append(run.built.board)
+        return []
+
+    assert run_yaml(text, Nothing, watch=watch).status == "SUCCESS"
+    assert boards[0].cell("spot").value is None
