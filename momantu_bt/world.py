@@ -321,4 +321,4 @@ def seeded(*parts: str | float) -> np.random.Generator:
     """
     digest = hashlib.blake2b("\x1f".join(repr(p) for p in parts).encode(), digest_size=16).digest()
     words: NDArray[np.uint32] = np.frombuffer(digest, dtype=np.uint32)
-    return np.random.Generator(np.random.PCG64(words.tolist()))
+    return np.random.Generator(np.random.PCG64(words))

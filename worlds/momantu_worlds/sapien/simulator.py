@@ -59,7 +59,7 @@ class Simulator:
         if next(_OPENED) > 0:
             tidy()
         self.config = config or SimulatorConfig()
-        self._ticks = 0
+        self._ticks, self._now = 0, 0.0
         self.scene = _new_scene(self.config.physics, render)
         self._system = self.scene.physx_system
         simulation = _simulation_of(description)
@@ -91,7 +91,7 @@ class Simulator:
 
     def now(self) -> float:
         """Seconds since the episode began."""
-        return round(self._ticks * TICK, 9)
+        return self._now
 
     def step(self) -> None:
         """Advance by one tick: drives act before each of its physics steps."""
@@ -107,6 +107,7 @@ class Simulator:
             if self.truth.watching:
                 self.truth.collect(last=index == SUB_STEPS - 1)
         self._ticks += 1
+        self._now = round(self._ticks * TICK, 9)
         self.robot.end_tick()
 
     @property

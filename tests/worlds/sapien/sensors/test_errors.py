@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from momantu_worlds.robots import fetch
 from momantu_worlds.sapien.config import CameraErrors, JointErrors, OdometryErrors
 from momantu_worlds.sapien.drives.proprioception import Encoders, Odometry
-from momantu_worlds.sapien.sensors.camera import noisy_color, noisy_depth
+from momantu_worlds.sapien.sensors.camera import Noise, draw_noise, noisy_color, noisy_depth
 
 from momantu_bt.geometry import Pose2D
 from momantu_bt.world import seeded
@@ -20,10 +20,14 @@ CAMERA = fetch().camera()[1]
 ERRORS = CameraErrors()
 
 
+def drawn(shape: tuple[int, ...], *parts: float) -> Noise:
+    return draw_noise(seeded(*parts), shape[0], shape[1])
+
+
 @pytest.mark.parametrize("distance", [0.6, 1.5, 3.0])
 def test_depth_noise_grows_with_the_square_of_the_distance(distance: float) -> None:
     flat = np.full((480, 640), distance, dtype=np.float32)
-    measured = noisy_depth(flat, seeded(0, distance), CAMERA, ERRORS)
+    measured = noisy_depth(flat, drawn(flat.shape, 0, distance), CAMERA, ERRORS)
     seen = measured[measured > 0]
     rounding = ERRORS.depth_quantum / math.sqrt(12.0)
     sigma = math.hypot(ERRORS.depth_noise * distance**2, rounding)
@@ -35,7 +39,7 @@ def test_depth_noise_grows_with_the_square_of_the_distance(distance: float) -> N
 def test_a_camera_may_be_better_or_worse_than_usual() -> None:
     flat = np.full((480, 640), 2.0, dtype=np.float32)
     coarse = CAMERA.model_copy(update={"depth_noise": 0.006})
-    measured = noisy_depth(flat, seeded(0), coarse, ERRORS)
+    measured = noisy_depth(flat, drawn(flat.shape, 0), coarse, ERRORS)
     assert np.std(measured[measured > 0]) == pytest.approx(0.006 * 4.0, rel=0.05)
 
 
@@ -44,7 +48,7 @@ def test_depth_ends_at_its_range_and_is_torn_at_edges() -> None:
     depth[:, 320:] = 2.0
     depth[:100] = 0.2
     depth[400:] = 6.0
-    measured = noisy_depth(depth, seeded(1), CAMERA, ERRORS)
+    measured = noisy_depth(depth, drawn(depth.shape, 1), CAMERA, ERRORS)
     assert np.all(measured[:99] == 0.0)
     assert np.all(measured[401:] == 0.0)
     lost = np.mean(measured[110:390, 319:321] == 0.0)
@@ -56,18 +60,19 @@ def test_a_slanted_plane_has_no_holes() -> None:
     focal, height = 554.0, 0.8
     rows = np.arange(1, 241, dtype=np.float32)[:, None]
     depth = np.repeat(height * focal / (rows + 100.0), 640, axis=1).astype(np.float32)
-    measured = noisy_depth(depth, seeded(2), CAMERA, ERRORS)
+    measured = noisy_depth(depth, drawn(depth.shape, 2), CAMERA, ERRORS)
     near = depth < 4.0
     assert np.mean(measured[near] == 0.0) < 0.005
 
 
 def test_colour_noise_has_its_sigma_and_stays_in_range() -> None:
-    grey = np.full((480, 640, 3), 120, dtype=np.uint8)
-    noisy = noisy_color(grey, seeded(3), ERRORS).astype(float)
+    grey = np.full((480, 640, 4), 120, dtype=np.uint8)
+    noisy = noisy_color(grey, drawn(grey.shape, 3), ERRORS).astype(float)
+    assert noisy.shape == (480, 640, 3)
     assert np.std(noisy) == pytest.approx(ERRORS.color_noise, rel=0.2)
     assert np.mean(noisy) == pytest.approx(120, abs=0.05)
-    white = noisy_color(np.full((48, 64, 3), 255, dtype=np.uint8), seeded(4), ERRORS)
-    assert white.min() >= 250
+    white = np.full((48, 64, 4), 255, dtype=np.uint8)
+    assert noisy_color(white, drawn(white.shape, 4), ERRORS).min() >= 250
 
 
 def test_joint_offsets_are_constant_and_small() -> None:

@@ -7,8 +7,11 @@ from typing import Any
 import numpy as np
 from trimesh import intersections
 
-from momantu_bt.geometry import Array
+from momantu_bt.geometry import Array, Transform
 from momantu_worlds.sapien.poses import transform_of
+
+KEPT = 32
+"""How many cuts of a body at rest are kept: the height of a scanner hardly changes."""
 
 
 class MovingBody:
@@ -17,6 +20,8 @@ class MovingBody:
     def __init__(self, entity: Any, mesh: Any) -> None:
         self._entity, self._mesh = entity, mesh
         self._radius = float(np.linalg.norm(mesh.vertices, axis=1).max())
+        self._cut_at = b""
+        self._cuts: dict[float, Array] = {}
 
     def ball(self) -> tuple[Array, float]:
         """Centre (3,) in the map and radius of a ball around the body, m."""
@@ -37,9 +42,16 @@ class MovingBody:
         far = float(np.hypot(*(position[:2] - origin[:2]))) > reach + self._radius
         if far or abs(position[2] - origin[2]) > self._radius:
             return np.zeros((0, 2, 2))
-        map_from_body = transform_of(pose)
-        height = map_from_body.inverse().apply(np.array([0.0, 0.0, origin[2]]))
+        at, height = pose.p.tobytes() + pose.q.tobytes(), float(origin[2])
+        if at != self._cut_at or len(self._cuts) > KEPT:
+            self._cut_at, self._cuts = at, {}
+        if height not in self._cuts:
+            self._cuts[height] = self._cut(transform_of(pose), height)
+        return self._cuts[height]
+
+    def _cut(self, map_from_body: Transform, height: float) -> Array:
+        origin = map_from_body.inverse().apply(np.array([0.0, 0.0, height]))
         normal = map_from_body.rotation.T[:, 2]
         cut: Any = intersections.mesh_plane
-        lines = cut(self._mesh, normal, height)
+        lines = cut(self._mesh, normal, origin)
         return np.asarray(map_from_body.apply(lines)[..., :2])

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import sapien
@@ -18,6 +19,10 @@ from momantu_worlds.scenes.geometry.solids import FLOOR
 DOWN = np.array([0.0, 0.0, -1.0], dtype=np.float32)
 THROUGH = 0.001
 """Step, m, by which a ray continues behind an ignored body; heights have this error."""
+
+
+Impulse: TypeAlias = tuple[float, float, float]
+"""Ns, in the map."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +52,8 @@ class Truth:
     def __init__(self, system: Any, model: RobotModel, base_link: str) -> None:
         self._system, self._model, self._base_link = system, model, base_link
         self._entities: dict[str, Any] = {}
-        self._impulses: dict[tuple[str, str], Array] = {}
+        self._poses: dict[str, tuple[bytes, Transform]] = {}
+        self._impulses: dict[tuple[str, str], Impulse] = {}
         self.watching = False
         self.robot_links = frozenset(model.links)
         self._links = frozenset(model.links.values())
@@ -59,6 +65,7 @@ class Truth:
     def forget(self, name: str) -> None:
         """Forget a removed body."""
         del self._entities[name]
+        self._poses.pop(name, None)
 
     def entity(self, name: str) -> Any:
         """A body's SAPIEN entity; KeyError lists the known names if there is none."""
@@ -72,8 +79,16 @@ class Truth:
         return tuple(self._entities)
 
     def pose(self, body: str) -> Transform:
-        """`map_from_body`; KeyError lists the known names if there is none."""
-        return transform_of(self.entity(body).pose)
+        """`map_from_body`; KeyError lists the known names if there is none.
+
+        It is the same object as long as the body does not move.
+        """
+        pose = self.entity(body).pose
+        numbers = pose.p.tobytes() + pose.q.tobytes()
+        known = self._poses.get(body)
+        if known is None or known[0] != numbers:
+            known = self._poses[body] = numbers, transform_of(pose)
+        return known[1]
 
     def speed(self, body: str) -> tuple[float, float]:
         """Speed of a moving body, m/s and rad/s; (0, 0) for a static one."""
@@ -142,7 +157,7 @@ class Truth:
         if not self.watching:
             raise RuntimeError("contacts are not collected; call watch_contacts() before stepping")
         return tuple(
-            Contact(first, second, float(np.linalg.norm(impulse)) / TICK)
+            Contact(first, second, _length(impulse) / TICK)
             for (first, second), impulse in self._impulses.items()
         )
 
@@ -156,18 +171,35 @@ class Truth:
         Contacts of the robot are summed over all steps of a tick, as they may be impacts. Contacts
         between bodies are taken from the last step, which is enough to know what rests on what.
         """
+        links = self._links
         for contact in self._system.get_contacts():
             a, b = contact.bodies
-            if a in self._links or b in self._links:
-                self._add(a.name, b.name, contact, 1)
+            if a in links or b in links:
+                self._add(a.name, b.name, _impulse(contact, 1))
             elif last:
-                self._add(a.name, b.name, contact, SUB_STEPS)
+                self._add(a.name, b.name, _impulse(contact, SUB_STEPS))
 
-    def _add(self, a: str, b: str, contact: Any, steps: int) -> None:
-        impulse = sum((point.impulse for point in contact.points), np.zeros(3)) * steps
-        if not impulse.any():
+    def _add(self, a: str, b: str, impulse: Impulse) -> None:
+        x, y, z = impulse
+        if x == y == z == 0.0:
             return
         if (a not in self.robot_links, a) > (b not in self.robot_links, b):
-            a, b, impulse = b, a, -impulse
+            a, b, x, y, z = b, a, -x, -y, -z
         before = self._impulses.get((a, b))
-        self._impulses[a, b] = impulse if before is None else before + impulse
+        if before is not None:
+            x, y, z = before[0] + x, before[1] + y, before[2] + z
+        self._impulses[a, b] = x, y, z
+
+
+def _impulse(contact: Any, steps: int) -> Impulse:
+    """The impulse of all points of a contact, as if it lasted for some steps."""
+    x = y = z = 0.0
+    for point in contact.points:
+        px, py, pz = point.impulse.tolist()
+        x, y, z = x + px, y + py, z + pz
+    return x * steps, y * steps, z * steps
+
+
+def _length(impulse: Impulse) -> float:
+    vector = np.array(impulse)
+    return math.sqrt(vector.dot(vector))

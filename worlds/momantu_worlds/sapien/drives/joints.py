@@ -214,24 +214,39 @@ class JointDrive:
         target = goal - self._offset
         if not self.velocity.any() and (self._braking or bool(np.all(self.position == target))):
             return None
-        positions = np.empty((SUB_STEPS, len(self.names)))
-        velocities = np.empty_like(positions)
-        p, v = self.position, self.velocity
-        for i in range(SUB_STEPS):
-            p, v = self._trapezoid(p, v, target)
-            positions[i], velocities[i] = p, v
-        return positions, velocities
+        ways = [
+            _trapezoid(*motion, braking=self._braking)
+            for motion in zip(
+                self.position.tolist(),
+                self.velocity.tolist(),
+                target.tolist(),
+                self._speed.tolist(),
+                self._acceleration.tolist(),
+                strict=True,
+            )
+        ]
+        steps = np.array(ways)
+        return steps[:, :, 0].T, steps[:, :, 1].T
 
-    def _trapezoid(self, p: Array, v: Array, target: Array) -> tuple[Array, Array]:
-        change = self._acceleration * STEP
-        if self._braking:
-            v = v - np.clip(v, -change, change)
-            return p + v * STEP, v
-        left = target - p
-        # the fastest speed from which the steps that follow can still brake to rest at the target
-        half = 0.5 * change
-        brakeable = np.sqrt(half * half + 2.0 * self._acceleration * np.abs(left)) - half
-        wanted = np.copysign(np.minimum(brakeable, self._speed), left)
-        v = v + np.clip(wanted - v, -change, change)
-        arrives = (np.abs(left) <= change * STEP) & (np.abs(v) <= 2.0 * change)
-        return np.where(arrives, target, p + v * STEP), np.where(arrives, 0.0, v)
+
+def _trapezoid(
+    p: float, v: float, target: float, speed: float, acceleration: float, *, braking: bool
+) -> list[tuple[float, float]]:
+    """Position and velocity of one joint in the steps of a tick; plain numbers are the fastest."""
+    change = acceleration * STEP
+    half = 0.5 * change
+    way = []
+    for _ in range(SUB_STEPS):
+        if braking:
+            v -= min(max(v, -change), change)
+            p += v * STEP
+        else:
+            left = target - p
+            # the fastest speed from which the steps that follow can brake to rest at the target
+            brakeable = math.sqrt(half * half + 2.0 * acceleration * abs(left)) - half
+            wanted = math.copysign(min(brakeable, speed), left)
+            v += min(max(wanted - v, -change), change)
+            arrives = abs(left) <= change * STEP and abs(v) <= 2.0 * change
+            p, v = (target, 0.0) if arrives else (p + v * STEP, v)
+        way.append((p, v))
+    return way

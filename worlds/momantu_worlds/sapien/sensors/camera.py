@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import sapien
 from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array, Transform, quaternion_from_axis_angle
+from momantu_bt.lazy import lazily
 from momantu_bt.messages import CameraImage, frozen
 from momantu_bt.robot import CameraSensor
 from momantu_bt.world import seeded
 from momantu_worlds.sapien.config import CameraErrors
 from momantu_worlds.sapien.poses import pose_of, transform_of
 from momantu_worlds.sapien.sensors.culling import Culling
+
+with lazily():
+    import cv2
 
 NEAR, FAR = 0.05, 30.0
 """Range of the renderer, m. Colour is rendered farther than depth is measured."""
@@ -59,16 +63,18 @@ class Camera:
             body.disable()
         self._scene.update_render()
         self._camera.take_picture()
-        color = self._camera.get_picture("Color")[..., :3]
+        # the renderer draws in a thread of its own: meanwhile the noise is drawn
+        random = seeded(self._seed, self._name, stamp)
+        noise = draw_noise(random, self._sensor.height, self._sensor.width)
+        color = self._camera.get_picture("Color")
         for body in unseen:
             body.enable()
         depth = -self._camera.get_picture("Position")[..., 2]
-        random = seeded(self._seed, self._name, stamp)
         return CameraImage(
             stamp,
             self._sensor.frame,
-            frozen(noisy_color(color, random, self._errors)),
-            frozen(noisy_depth(depth, random, self._sensor, self._errors)),
+            frozen(noisy_color(color, noise, self._errors)),
+            frozen(noisy_depth(depth, noise, self._sensor, self._errors)),
             self.intrinsics,
         )
 
@@ -77,19 +83,36 @@ class Camera:
         return np.asarray(-self._camera.get_picture("Position")[..., 2], dtype=np.float32)
 
 
-def noisy_color(
-    color: NDArray[Any], random: np.random.Generator, errors: CameraErrors
-) -> NDArray[np.uint8]:
-    """Colour (h, w, 3) uint8 with uniform noise of the configured sigma, grey levels."""
+class Noise(NamedTuple):
+    """Random numbers of one picture.
+
+    color: (h, w, 3) uniform bytes. depth: (h, w) standard normal. lost: (h, w) uniform in 0..1.
+    """
+
+    color: NDArray[np.uint8]
+    depth: NDArray[np.float32]
+    lost: NDArray[np.float32]
+
+
+def draw_noise(random: np.random.Generator, height: int, width: int) -> Noise:
+    """Draw the random numbers of one picture; height, width: px."""
+    color = np.frombuffer(random.bytes(3 * height * width), dtype=np.uint8)
+    depth = random.standard_normal((height, width), dtype=np.float32)
+    lost = random.random((height, width), dtype=np.float32)
+    return Noise(color.reshape(height, width, 3), depth, lost)
+
+
+def noisy_color(color: NDArray[np.uint8], noise: Noise, errors: CameraErrors) -> NDArray[np.uint8]:
+    """Colour (h, w, 3), from (h, w, 4), with uniform noise of the configured sigma, grey levels."""
     span = round(errors.color_noise * math.sqrt(3.0))
     levels = (np.arange(256) % (2 * span + 1) - span).astype(np.int16)
-    noise = levels[np.frombuffer(random.bytes(color.size), dtype=np.uint8)]
-    noisy = color + noise.reshape(color.shape)
-    return np.clip(noisy, 0, 255, out=noisy).astype(np.uint8)
+    exact = cv2.cvtColor(color, cv2.COLOR_RGBA2RGB)
+    noisy = cv2.add(exact, cv2.LUT(noise.color, levels), dtype=cv2.CV_8U)
+    return np.asarray(noisy, dtype=np.uint8)
 
 
 def noisy_depth(
-    depth: NDArray[Any], random: np.random.Generator, sensor: CameraSensor, errors: CameraErrors
+    depth: NDArray[Any], noise: Noise, sensor: CameraSensor, errors: CameraErrors
 ) -> NDArray[np.float32]:
     """Depth (h, w) float32 with the errors of a structured-light camera.
 
@@ -97,16 +120,19 @@ def noisy_depth(
     random ones are 0.
     """
     z = np.asarray(depth, dtype=np.float32)
-    noise = random.standard_normal(z.shape, dtype=np.float32)
-    chance = random.random(z.shape, dtype=np.float32)
     lost_share = np.where(_edges(z, errors.edge_jump), errors.edge_hole, errors.drop_out)
     sigma = errors.depth_noise if sensor.depth_noise is None else sensor.depth_noise
-    measured = z + np.float32(sigma) * z * z * noise
-    measured = np.round(measured / np.float32(errors.depth_quantum))
+    measured = np.float32(sigma) * z
+    measured *= z
+    measured *= noise.depth
+    measured += z
+    measured /= np.float32(errors.depth_quantum)
+    np.rint(measured, out=measured)
     measured *= np.float32(errors.depth_quantum)
     valid = (z > 0) & (measured >= sensor.min_depth) & (measured <= sensor.max_depth)
-    valid &= chance >= lost_share
-    return np.where(valid, measured, np.float32(0.0))
+    valid &= noise.lost >= lost_share
+    measured[~valid] = 0.0
+    return measured
 
 
 def _edges(z: NDArray[np.float32], jump: float) -> NDArray[np.bool_]:

@@ -25,6 +25,7 @@ class Culling:
         kind = sapien.render.RenderBodyComponent
         found = [link.entity.find_component_by_type(kind) for link in links]
         self._bodies = [body for body in found if body is not None]
+        self._pictured = False
         half = sensor.horizontal_fov / 2
         tall = math.atan(math.tan(half) * sensor.height / sensor.width)
         # inward normals of the right and the lower side, of which the others are mirror images
@@ -33,13 +34,16 @@ class Culling:
 
     @cached_property
     def _spheres(self) -> tuple[list[Array], Array]:
-        """Centres and radii, m; computed with the first picture: they take a tenth of a second."""
+        """Centres and radii, m; computed with the second picture, when all meshes are loaded."""
         spheres = [_sphere(body) for body in self._bodies]
         return [center for center, _ in spheres], np.array([radius for _, radius in spheres])
 
     def outside(self, map_from_optical: Transform) -> list[Any]:
-        """Render components that the camera cannot see from this pose."""
+        """Render components that the camera cannot see from this pose; none for a first picture."""
         if not self._bodies:
+            return []
+        if not self._pictured:  # the renderer now loads all meshes at once, in several threads
+            self._pictured = True
             return []
         around, radii = self._spheres
         centers = np.array(

@@ -28,6 +28,7 @@ class ItemDemand:
         self._support = SupportTop(episode.body(goal.support))
         self._rest = episode.body(goal.item).map_from_body
         self._rest_since = 0.0
+        self._pose: Transform | None = None
         self._touching: frozenset[str] = frozenset()
 
     def observe(self, now: float, touching: frozenset[str]) -> None:
@@ -36,6 +37,9 @@ class ItemDemand:
         if touching:
             self._touching = touching
         pose = self._truth.pose(self.goal.item)
+        if pose is self._pose:  # it has not moved since
+            return
+        self._pose = pose
         if moved(self._rest, pose) > STILL_SHIFT or self._rest.angle_to(pose) > STILL_TURN:
             self._rest, self._rest_since = pose, now
 

@@ -13,6 +13,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
+from momantu_bt.geometry import Transform
 from momantu_bt.world import Demanded, Verdict
 from momantu_worlds.scenes.geometry.bodies import Body, Episode, Goal
 from momantu_worlds.scenes.referee.demand import ItemDemand, degrees, moved, tilt
@@ -47,6 +48,7 @@ class Referee:
             for body in episode.bodies
             if not body.static and body.name not in self._items
         }
+        self._poses: dict[str, Transform] = {}
         self._shift, self._tilt, self._bump = Peak(), Peak(), Peak()
         self._now = 0.0
         self._incidents = Incidents(episode, truth, hand)
@@ -62,6 +64,9 @@ class Referee:
             demand.observe(now, frozenset(touching[demand.goal.item]))
         for name, before in self._others.items():
             pose = self._truth.pose(name)
+            if self._poses.get(name) is pose:  # it has not moved since
+                continue
+            self._poses[name] = pose
             self._shift.record(moved(before, pose), name)
             self._tilt.record(tilt(pose), name)
 
@@ -73,6 +78,7 @@ class Referee:
         """A body was added; a loose one must not be pushed or toppled either."""
         if not body.static:
             self._others[body.name] = body.map_from_body
+            self._poses.pop(body.name, None)
         self._incidents.added(body)
 
     def removed(self, name: str) -> None:
