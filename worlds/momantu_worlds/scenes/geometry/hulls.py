@@ -13,6 +13,9 @@ from momantu_bt.geometry import Array
 OPTIONS = "QbB Pp Qt"
 """Of qhull: scaled to a unit cube, no warnings, triangles only."""
 
+THIN = 1e-14
+"""Twice the area of a triangle below which it has no direction, m2."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class HullMesh:
@@ -37,9 +40,19 @@ def hull_mesh(points: Array) -> HullMesh:
     used = np.sort(hull.vertices)
     new = np.zeros(len(points), dtype=np.int64)
     new[used] = np.arange(len(used))
-    triangles = hull.simplices
-    a, b, c = (points[triangles[:, i]] for i in range(3))
-    normals = hull.equations[:, :3]
-    inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), normals) < 0.0
-    triangles = np.where(inward[:, None], triangles[:, ::-1], triangles)
-    return HullMesh(np.asarray(points[used]), new[triangles], normals, float(hull.volume))
+    vertices, triangles = np.asarray(points[used], dtype=np.float64), new[hull.simplices]
+    # qhull's own normals and volume are those of the cube that it scales to
+    own = vertices - vertices.mean(axis=0)
+    a, b, c = (own[triangles[:, i]] for i in range(3))
+    normals = np.cross(b - a, c - a)
+    heights = np.einsum("ij,ij->i", normals, a)
+    triangles = np.where(heights[:, None] < 0.0, triangles[:, ::-1], triangles)
+    normals = np.where(heights[:, None] < 0.0, -normals, normals)
+    length = np.linalg.norm(normals, axis=1)
+    real = length > THIN
+    return HullMesh(
+        vertices,
+        triangles[real],
+        normals[real] / length[real, None],
+        float(np.abs(heights).sum()) / 6.0,
+    )

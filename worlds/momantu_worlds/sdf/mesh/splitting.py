@@ -25,8 +25,8 @@ from momantu_worlds.sdf.mesh.reducing import reduced
 
 GAIN = 0.12
 """Least share of its volume that a hull must lose by a cut."""
-LEAST = 2e-4
-"""Least volume that a cut must save, m3: that of a cube of 6 cm."""
+LEAST = 5e-4
+"""Least volume that a cut must save, m3: that of a cube of 8 cm."""
 MOST_PIECES = 48
 """Most pieces of one part."""
 CUTS = 5
