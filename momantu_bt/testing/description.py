@@ -14,6 +14,7 @@ from momantu_bt.robot import (
     LaserSensor,
     PlanningGroup,
     RobotDescription,
+    Sensor,
     Working,
     WristWrench,
 )
@@ -21,6 +22,42 @@ from momantu_bt.robot import (
 URDF = Path(__file__).parent / "small_robot.urdf"
 _ARM = ("lift", "shoulder", "elbow")
 _HEAD = ("pan", "tilt")
+_LIMITS = {
+    "lift": JointLimit(lower=0.0, upper=0.4, velocity=0.1, acceleration=0.3),
+    "shoulder": JointLimit(lower=-1.6, upper=1.6, velocity=1.2, acceleration=1.5),
+    "elbow": JointLimit(lower=-2.2, upper=2.2, velocity=1.5, acceleration=1.5),
+    "pan": JointLimit(lower=-1.5, upper=1.5, velocity=1.5, acceleration=3.0),
+    "tilt": JointLimit(lower=-0.7, upper=1.4, velocity=1.5, acceleration=3.0),
+}
+_SENSORS: dict[str, Sensor] = {
+    "camera": CameraSensor(
+        frame="camera_optical_frame",
+        carrier="head",
+        width=64,
+        height=48,
+        horizontal_fov=1.05,
+        min_depth=0.35,
+        max_depth=4.5,
+    ),
+    "laser": LaserSensor(
+        frame="laser_link",
+        angle_min=-1.9,
+        angle_max=1.9,
+        beams=181,
+        range_min=0.05,
+        range_max=25.0,
+    ),
+    "wrench": WristWrench(frame="gripper_link"),
+}
+_HAND = EndEffector(
+    frame="gripper_link",
+    max_width=0.1,
+    max_force=60.0,
+    pad_length=0.06,
+    pad_height=0.02,
+    hand_clearance=0.04,
+    touch_links=("gripper_link",),
+)
 
 
 def small_robot() -> RobotDescription:
@@ -38,43 +75,10 @@ def small_robot() -> RobotDescription:
             "head": Actuator(kind=ActuatorKind.JOINTS, joints=_HEAD),
             "gripper": Actuator(kind=ActuatorKind.GRIPPER),
         },
-        joint_limits={
-            "lift": JointLimit(lower=0.0, upper=0.4, velocity=0.1, acceleration=0.3),
-            "shoulder": JointLimit(lower=-1.6, upper=1.6, velocity=1.2, acceleration=1.5),
-            "elbow": JointLimit(lower=-2.2, upper=2.2, velocity=1.5, acceleration=1.5),
-            "pan": JointLimit(lower=-1.5, upper=1.5, velocity=1.5, acceleration=3.0),
-            "tilt": JointLimit(lower=-0.7, upper=1.4, velocity=1.5, acceleration=3.0),
-        },
-        sensors={
-            "camera": CameraSensor(
-                frame="camera_optical_frame",
-                carrier="head",
-                width=64,
-                height=48,
-                horizontal_fov=1.05,
-                min_depth=0.35,
-                max_depth=4.5,
-            ),
-            "laser": LaserSensor(
-                frame="laser_link",
-                angle_min=-1.9,
-                angle_max=1.9,
-                beams=181,
-                range_min=0.05,
-                range_max=25.0,
-            ),
-            "wrench": WristWrench(frame="gripper_link"),
-        },
+        joint_limits=_LIMITS,
+        sensors=_SENSORS,
         groups={"arm": PlanningGroup(joints=_ARM, tip="gripper_link")},
-        end_effector=EndEffector(
-            frame="gripper_link",
-            max_width=0.1,
-            max_force=60.0,
-            pad_length=0.06,
-            pad_height=0.02,
-            hand_clearance=0.04,
-            touch_links=("gripper_link",),
-        ),
+        end_effector=_HAND,
         named_poses={
             name: {"lift": lift, "shoulder": turn, "elbow": -turn}
             for name, lift, turn in (

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from momantu_bt.claim import Claim
@@ -113,35 +113,57 @@ def run_skill(
     )
     lease = Actuators(place.robot).lease(skill.__name__, skill.uses)
     session = Session(Setup(skill, lease, context), admitted, (seed, skill.__name__, 1))
-    began, phases, ticks = place.now(), [""], 0
+    began = place.now()
+    course = _tick_to_end(session, place, running, max_time, on_tick)
+    return SkillResult(
+        status="HALTED" if course.halted else session.status.value,
+        outputs={} if session.status is FAILURE else session.outputs,
+        failure=session.failure,
+        phases=tuple(course.phases),
+        duration=place.now() - began,
+        ticks=course.ticks,
+        skill=session.skill,
+        robot=place.robot,
+        logs=tuple(reporter.logs),
+        markers=tuple(reporter.markers),
+    )
+
+
+@dataclass(slots=True)
+class _Course:
+    """How a run went. halted: it took too long."""
+
+    phases: list[str] = field(default_factory=list)
+    ticks: int = 0
+    halted: bool = False
+
+
+def _tick_to_end(
+    session: Session,
+    place: World,
+    running: _Services,
+    max_time: float,
+    on_tick: Callable[[Session, World], None] | None,
+) -> _Course:
+    """Tick the skill until it ends, or halt it after `max_time` simulated seconds."""
+    course, began, phase = _Course(), place.now(), ""
     try:
         while place.now() - began < max_time - TICK / 2:
             running.update()
             session.step()
-            ticks += 1
-            if session.phase != phases[-1]:
-                phases.append(session.phase)
+            course.ticks += 1
+            if session.phase != phase:
+                phase = session.phase
+                course.phases.append(phase)
             if on_tick is not None:
                 on_tick(session, place)
             if session.status is not RUNNING:
                 break
             place.step()
     finally:
-        halted = session.status is RUNNING
+        course.halted = session.status is RUNNING
         session.halt()
-    status = "HALTED" if halted else session.status.value
-    return SkillResult(
-        status=status,
-        outputs={} if session.status is FAILURE else session.outputs,
-        failure=session.failure,
-        phases=tuple(phases[1:]),
-        duration=place.now() - began,
-        ticks=ticks,
-        skill=session.skill,
-        robot=place.robot,
-        logs=tuple(reporter.logs),
-        markers=tuple(reporter.markers),
-    )
+    return course
 
 
 class _Listening(Host):
