@@ -11,6 +11,9 @@ Inside the block write `import module` or `from package import module`, never `f
 name`: asking a module for a name loads it. Type checkers, editors and import contracts see ordinary
 imports. The error for a library that is not installed comes at its first use, so an installation
 without it can still list and check trees.
+
+A library that is needed may itself import others that are not: around its import, `putting_off`
+names those.
 """
 
 from __future__ import annotations
@@ -100,7 +103,7 @@ class _PendingLoader(Loader):
         assert module.__spec__ is not None
         module.__class__ = ModuleType
         module.__spec__.loader = self._loader
-        first = [finder for finder in sys.meta_path if isinstance(finder, _LazyFinder)]
+        first = [finder for finder in sys.meta_path if type(finder) is _LazyFinder]
         last = [finder for finder in sys.meta_path if isinstance(finder, _MissingFinder)]
         sys.meta_path[:] = [f for f in sys.meta_path if f not in first and f not in last]
         try:
@@ -125,6 +128,34 @@ class _LazyFinder(MetaPathFinder):
             return None
         spec.loader = _PendingLoader(spec.loader)
         return spec
+
+
+class _NamedFinder(_LazyFinder):
+    """Puts off running certain modules, whoever imports them."""
+
+    def __init__(self, names: frozenset[str]) -> None:
+        self._names = names
+
+    def find_spec(
+        self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        """The spec of a named module; None leaves it to the finders after this one."""
+        return super().find_spec(fullname, path, target) if fullname in self._names else None
+
+
+@contextmanager
+def putting_off(*names: str) -> Iterator[None]:
+    """Put off running these modules until they are used, whoever imports them in the block.
+
+    names: of modules that the libraries imported in the block import too, but that need not run for
+    what is wanted of those libraries. `from module import name` in a library runs the module.
+    """
+    finder = _NamedFinder(frozenset(names))
+    sys.meta_path.insert(0, finder)
+    try:
+        yield
+    finally:
+        sys.meta_path.remove(finder)
 
 
 @contextmanager

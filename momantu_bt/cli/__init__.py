@@ -17,6 +17,7 @@ from typing import Any
 import typer
 
 import momantu_bt.threads  # noqa: F401 - before numpy, which the next imports load
+from momantu_bt import collector
 from momantu_bt.cli.shared import streams
 from momantu_bt.cli.shared.notices import notice
 from momantu_bt.cli.shared.program import COMPLETE, PROGRAM
@@ -50,6 +51,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return code
 
 
+@collector.seldom()
 def _main(given: list[str]) -> int:
     try:
         if COMPLETE in os.environ:

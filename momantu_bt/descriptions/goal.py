@@ -36,7 +36,7 @@ class GoalDemand(BaseModel):
     It is written as a mapping, or in short as `can on table_b beside tag`.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
     item: _Name
     on: _Name

@@ -30,7 +30,7 @@ class Tunables(BaseModel):
     field can be a `Tunables` too; it is then a group of tunables.
     """
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
 
 def _objection(name: str, plugin: Any) -> str | None:

@@ -26,6 +26,9 @@ class Registry:
     worlds: Mapping[str, WorldEntry] = field(default_factory=dict)
     robots: Mapping[str, Any] = field(default_factory=dict)
     services: Mapping[str, Any] = field(default_factory=dict)
+    _described: dict[str, RobotDescription] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     @classmethod
     def installed(cls) -> Registry:
@@ -37,6 +40,7 @@ class Registry:
         return self.worlds[world].site()
 
     def description(self, robot: str) -> RobotDescription:
-        """A robot's description; KeyError if there is no such robot."""
-        found: RobotDescription = self.robots[robot]()
-        return found
+        """A robot's description, read once; KeyError if there is no such robot."""
+        if robot not in self._described:
+            self._described[robot] = self.robots[robot]()
+        return self._described[robot]

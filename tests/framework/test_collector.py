@@ -49,3 +49,23 @@ def test_what_was_there_is_freed_after_the_run_and_garbage_of_the_run_during_it(
         assert early() is not None
     gc.collect()
     assert early() is None
+
+
+def test_a_program_collects_seldom_and_its_run_as_often_as_usual() -> None:
+    usual = gc.get_threshold()
+    with collector.seldom():
+        assert gc.get_threshold()[0] > usual[0]
+        with collector.frozen():
+            assert gc.get_threshold() == usual
+        assert gc.get_threshold()[0] > usual[0]
+    assert gc.get_threshold() == usual
+
+
+def test_who_has_switched_it_off_keeps_it_off() -> None:
+    usual = gc.get_threshold()
+    gc.set_threshold(0)
+    try:
+        with collector.seldom():
+            assert gc.get_threshold()[0] == 0
+    finally:
+        gc.set_threshold(*usual)

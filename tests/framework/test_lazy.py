@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from momantu_bt.lazy import lazily
+from momantu_bt.lazy import lazily, putting_off
 
 
 @pytest.fixture
@@ -104,3 +104,32 @@ def test_imports_after_the_block_are_as_usual(package: Path) -> None:
     assert sys.meta_path == finders
     importlib.import_module("slow_tools.saw")
     assert sys.sawn == 1  # type: ignore[attr-defined]
+
+
+def test_a_named_module_is_put_off_whoever_imports_it(package: Path) -> None:
+    with putting_off("slow_tools.blade"):
+        from slow_tools import saw
+    assert saw.TEETH == 24
+    assert sys.blades is False  # type: ignore[attr-defined]
+    assert saw.blade.sys is sys
+    assert sys.blades is True  # type: ignore[attr-defined]
+
+
+def test_it_is_put_off_also_below_a_module_that_runs_late(package: Path) -> None:
+    with putting_off("slow_tools.blade"), lazily():
+        from slow_tools import saw
+
+        assert saw.TEETH == 24
+        assert sys.blades is False  # type: ignore[attr-defined]
+
+
+def test_after_the_block_nothing_is_put_off(package: Path) -> None:
+    with putting_off("slow_tools.blade"):
+        pass
+    assert importlib.import_module("slow_tools.saw").TEETH == 24
+    assert sys.blades is True  # type: ignore[attr-defined]
+
+
+def test_a_missing_module_may_be_named(package: Path) -> None:
+    with putting_off("slow_tools.none"), pytest.raises(ModuleNotFoundError, match="none"):
+        importlib.import_module("slow_tools.none")

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from momantu_bt import collector
 from momantu_bt.cli.shared import streams
 from momantu_bt.cli.shared.notices import notice
 from momantu_bt.cli.shared.options import TREE, GoalGiven, Include, Robot, Settings, Values
@@ -161,8 +160,7 @@ class _Shown:
 
 def _run(tree: str, options: RunOptions, shown: _Shown) -> Report:
     """Check the arguments, run, and print how it ended."""
-    with collector.paused():
-        prepared = preparing.prepare(given.given_tree(tree), options)
+    prepared = preparing.prepare(given.given_tree(tree), options)
     stops = _breakpoints(shown, prepared)
     if shown.video is not None:
         check_writable(shown.video, regular=True)

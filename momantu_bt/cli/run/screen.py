@@ -4,21 +4,29 @@ from __future__ import annotations
 
 import sys
 import time
+from typing import TYPE_CHECKING
 
 import typer
-from rich.console import Console
 
-from momantu_bt.cli.run.live import LiveTree
 from momantu_bt.cli.run.terminal import Terminal
-from momantu_bt.cli.run.waiting_page import WaitingPage
 from momantu_bt.engine.executor import Executor, Observer
 from momantu_bt.errors import InputError, MomantuError
+from momantu_bt.lazy import lazily
 from momantu_bt.record.text.changes import ChangeLines
-from momantu_bt.record.view import ViewObserver
 from momantu_bt.running.prepare import Prepared
 from momantu_bt.tree.check.named_world import world_of
 from momantu_bt.tree.show.printing import tree_lines
 from momantu_bt.world import TreeLine, TreeView, View, World
+
+with lazily():
+    from rich import console as consoles
+
+    from momantu_bt.cli.run import live, waiting_page
+    from momantu_bt.record import view as views
+
+if TYPE_CHECKING:
+    from momantu_bt.cli.run.live import LiveTree
+    from momantu_bt.cli.run.waiting_page import WaitingPage
 
 POLL = 0.2
 """Seconds of wall time between two looks at whether the view was closed in the browser."""
@@ -27,13 +35,15 @@ POLL = 0.2
 class Screen:
     """The terminal's display, the page while the run is prepared, and the view.
 
-    display: an observer of the run; None: nothing is displayed.
+    display: an observer of the run; None: nothing is displayed. tree: the same, if it draws the
+    tree on a terminal.
     """
 
-    def __init__(self, display: Observer | None, page: WaitingPage | None) -> None:
-        self.display, self._page = display, page
+    def __init__(
+        self, display: Observer | None, page: WaitingPage | None, tree: LiveTree | None = None
+    ) -> None:
+        self.display, self._page, self._live = display, page, tree
         self._view: View | None = None
-        self._live = display if isinstance(display, LiveTree) else None
 
     def stage(self, text: str) -> None:
         """Say what is being prepared now."""
@@ -47,7 +57,7 @@ class Screen:
         if self._page is not None:
             self._page.close()
         self._view = world.open_view(port)
-        return ViewObserver(self._view, run, stays=True)
+        return views.ViewObserver(self._view, run, stays=True)
 
     def keep_view(self, ending: str) -> None:
         """Leave the view open until Ctrl-C, or until a person closes it in the browser."""
@@ -92,17 +102,17 @@ def open_screen(
         if world is None:
             raise InputError("--video and --view need a world; this run has none")
         text = "\n".join(f"{'  ' * line.depth}{line.text}" for line in planned)
-        page = WaitingPage(view_port, f"{document.main} in {world}", text)
+        page = waiting_page.WaitingPage(view_port, f"{document.main} in {world}", text)
         typer.echo(f"view: {page.url}")
     if quiet:
         return Screen(None, page)
     out = sys.stdout  # a skill may redirect it
-    console = Console(file=out)
+    console = consoles.Console(file=out)
     if console.is_terminal and not console.is_dumb_terminal:
-        display = LiveTree(console, planned)
+        display = live.LiveTree(console, planned)
         if terminal is not None:
             terminal.display = display
-        return Screen(display, page)
+        return Screen(display, page, display)
     if world is not None:
         typer.echo(f"preparing: world {world}{_robot(prepared, world)}", file=out)
     return Screen(ChangeLines(lambda line: typer.echo(line, file=out)), page)

@@ -222,14 +222,32 @@ def test_a_verb_of_a_plug_in(
     assert "paths" in capsys.readouterr().out
 
 
-def test_check_loads_nothing_heavy() -> None:
+TREE = str(TREES / "bring_object.yaml")
+NEVER = (*HEAVY, "trimesh", "networkx", "matplotlib", "requests", "viser", "py_trees", "PIL.Image")
+"""What no verb may load that runs no world."""
+
+
+@pytest.mark.parametrize(
+    ("arguments", "never"),
+    [
+        (["--help"], (*NEVER, "numpy", "pydantic", "ruamel.yaml", "lxml")),
+        (["check", TREE], (*NEVER, "rich.console", "http.server", "momantu_bt.engine.executor")),
+        (["show", TREE], (*NEVER, "rich.console", "http.server", "momantu_bt.engine.executor")),
+        (["run", "good.yaml", "-q"], (*NEVER, "rich.console", "http.server", "ssl")),
+    ],
+    ids=lambda given: given[0] if isinstance(given, list) else "",
+)
+def test_a_verb_loads_nothing_that_it_does_not_need(
+    tree: Path, arguments: list[str], never: tuple[str, ...]
+) -> None:
     program = (
         "import sys; from momantu_bt.cli import main\n"
-        f"code = main(['check', {str(TREES / 'bring_object.yaml')!r}])\n"
-        f"print([name for name in {HEAVY!r} if name in sys.modules], code)"
+        f"code = main({arguments!r})\n"
+        "ran = {name for name, module in sys.modules.items() if type(module) is type(sys)}\n"
+        f"print(sorted(ran.intersection({never!r})), code)"
     )
     done = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=tree.parent
     )
     assert done.stdout.splitlines()[-1] == "[] 0", done.stderr
 

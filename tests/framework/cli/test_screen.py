@@ -93,7 +93,7 @@ def test_a_line_comes_before_the_world_is_open(start, capsys):
 def test_the_tree_stands_before_the_world_is_open(start, monkeypatch):
     out = io.StringIO()
     console = Console(file=out, force_terminal=True, width=80, height=24, no_color=True)
-    monkeypatch.setattr(screens, "Console", lambda file: console)
+    monkeypatch.setattr(screens.consoles, "Console", lambda file: console)
     seen, with_screen = start(out.getvalue)
     assert "wait 0.1 s" in seen
     assert "preparing: opening the world slow with the robot" in seen

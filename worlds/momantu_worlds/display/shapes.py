@@ -8,7 +8,6 @@ from typing import Any, TypeAlias
 
 import numpy as np
 import sapien
-import trimesh
 from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array
@@ -73,8 +72,7 @@ def _part_mesh(part: Part) -> ColoredMesh:
     if isinstance(geometry, Mesh):
         vertices, faces = geometry.vertices, geometry.triangles
     else:
-        mesh: trimesh.Trimesh = collision_mesh(geometry)
-        vertices, faces = np.asarray(mesh.vertices), np.asarray(mesh.faces)
+        vertices, faces = collision_mesh(geometry)
     return ColoredMesh(part.body_from_part.apply(vertices), faces, _rgb(part.color))
 
 

@@ -10,8 +10,8 @@ import sapien
 import trimesh
 from momantu_worlds.robots import fetch, kinova_jackal
 from momantu_worlds.sapien.build.bodies import add_bodies
+from momantu_worlds.sapien.build.cells import convex_cells
 from momantu_worlds.sapien.build.meshes import body_mesh, collision_mesh, map_triangles, volume
-from momantu_worlds.sapien.build.robot_model import convex_cells
 from momantu_worlds.sapien.simulator import Simulator
 from momantu_worlds.scenes.geometry.bodies import Body, Box, Cylinder, Geometry, Hull, Mesh, Part
 from momantu_worlds.testing import plain_episode
@@ -33,7 +33,7 @@ CORNERS = np.array([[x, y, z] for x in (0, 0.1) for y in (0, 0.2) for z in (0, 0
 )
 def test_volume_and_mesh_agree(geometry: Geometry, expected: float) -> None:
     assert volume(geometry) == pytest.approx(expected)
-    assert collision_mesh(geometry).volume == pytest.approx(expected, rel=0.02)
+    assert trimesh.Trimesh(*collision_mesh(geometry)).volume == pytest.approx(expected, rel=0.02)
 
 
 def test_what_is_only_to_look_at_has_no_collision_shape() -> None:
@@ -48,7 +48,9 @@ def test_a_body_of_parts_is_one_mesh_and_lies_in_the_map() -> None:
     top = Part(Box((0.8, 0.6, 0.04)), Transform((0, 0, 0.72)))
     pose = Transform((2, 1, 0), quaternion_from_rpy(0, 0, math.pi / 2))
     table = Body("table", "table", pose, (*legs, top))
-    assert body_mesh(table).bounds[1][2] == pytest.approx(0.74)
+    mesh = body_mesh(table)
+    assert mesh is not None
+    assert mesh.vertices[:, 2].max() == pytest.approx(0.74)
     triangles = map_triangles([table])
     assert triangles[..., 0].max() == pytest.approx(2.3)
     assert triangles[..., 1].max() == pytest.approx(1.4)
@@ -56,7 +58,7 @@ def test_a_body_of_parts_is_one_mesh_and_lies_in_the_map() -> None:
 
 @pytest.mark.parametrize("geometry", [Box((0.1, 0.1, 0.2)), Cylinder(0.05, 0.2), Hull(CORNERS)])
 def test_a_loose_body_has_its_mass_and_comes_to_rest_on_its_base(geometry: Geometry) -> None:
-    low = float(collision_mesh(geometry).bounds[0][2])
+    low = float(collision_mesh(geometry).vertices[:, 2].min())
     part = Part(geometry, Transform((0, 0, -low)))
     thing = Body("thing", "thing", Transform((1, 0, 0.01)), (part,), False, 0.7)
     simulator = Simulator(FETCH, plain_episode(table=False), 0, render=False)

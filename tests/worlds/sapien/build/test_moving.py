@@ -11,6 +11,7 @@ import sapien
 import trimesh
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from momantu_worlds.sapien.build.meshes import TriangleMesh
 from momantu_worlds.sapien.build.moving import MovingBody
 
 from momantu_bt.geometry import Transform
@@ -24,7 +25,7 @@ def can_at(pose: Transform, mesh: trimesh.Trimesh | None = None) -> MovingBody:
     entity = SimpleNamespace(pose=sapien.Pose(pose.position.tolist(), pose.quaternion.tolist()))
     if mesh is None:
         mesh = trimesh.creation.cylinder(radius=RADIUS, height=HEIGHT, sections=48)
-    return MovingBody(entity, mesh)
+    return MovingBody(entity, TriangleMesh(np.asarray(mesh.vertices), np.asarray(mesh.faces)))
 
 
 def posed(x: float, y: float, z: float, roll: float, pitch: float, yaw: float) -> Transform:

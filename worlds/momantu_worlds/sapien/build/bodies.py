@@ -115,7 +115,7 @@ def _physics(body: Body) -> Any:
     )
     material = physx.PhysxMaterial(body.friction, body.friction, 0.0)
     colliding = [part for part in body.parts if part.collision]
-    total = sum(volume(part.geometry) for part in colliding)
+    total = 0.0 if body.static else sum(volume(part.geometry) for part in colliding)
     for part in colliding:
         shape = _collision_shape(part, material)
         shape.local_pose = pose_of(_sapien_pose(part))

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Any
 
 import numpy as np
-from trimesh import intersections
 
 from momantu_bt.geometry import Array, Transform
+from momantu_bt.lazy import lazily
+from momantu_worlds.sapien.build.meshes import TriangleMesh
 from momantu_worlds.sapien.poses import transform_of
+
+with lazily():
+    import trimesh
 
 KEPT = 32
 """How many cuts of a body at rest are kept: the height of a scanner hardly changes."""
@@ -17,11 +22,15 @@ KEPT = 32
 class MovingBody:
     """A loose body and its outline in a horizontal plane."""
 
-    def __init__(self, entity: Any, mesh: Any) -> None:
+    def __init__(self, entity: Any, mesh: TriangleMesh) -> None:
         self._entity, self._mesh = entity, mesh
         self._radius = float(np.linalg.norm(mesh.vertices, axis=1).max())
         self._cut_at = b""
         self._cuts: dict[float, Array] = {}
+
+    @cached_property
+    def _solid(self) -> trimesh.Trimesh:
+        return trimesh.Trimesh(*self._mesh, process=False)
 
     def ball(self) -> tuple[Array, float]:
         """Centre (3,) in the map and radius of a ball around the body, m."""
@@ -52,6 +61,6 @@ class MovingBody:
     def _cut(self, map_from_body: Transform, height: float) -> Array:
         origin = map_from_body.inverse().apply(np.array([0.0, 0.0, height]))
         normal = map_from_body.rotation.T[:, 2]
-        cut: Any = intersections.mesh_plane
-        lines = cut(self._mesh, normal, origin)
+        cut: Any = trimesh.intersections.mesh_plane
+        lines = cut(self._solid, normal, origin)
         return np.asarray(map_from_body.apply(lines)[..., :2])

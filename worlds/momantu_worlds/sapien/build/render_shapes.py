@@ -35,8 +35,7 @@ def render_shape(part: Part) -> Any:
     if isinstance(geometry, Mesh):
         return _mesh(geometry, part)
     if isinstance(geometry, Hull):
-        hull = collision_mesh(geometry)
-        return _mesh(Mesh(hull.vertices, hull.faces), part)
+        return _mesh(Mesh(*collision_mesh(geometry)), part)
     raise TypeError(f"a {type(geometry).__name__} cannot be shown")
 
 

@@ -9,13 +9,11 @@ from typing import Any
 
 import numpy as np
 import sapien
-import trimesh
-from numpy.typing import NDArray
 from sapien.wrapper.urdf_loader import URDFLoader
-from trimesh import intersections
 
 from momantu_bt.geometry import Array
 from momantu_bt.robot import ActuatorKind, Cuts, RobotDescription, SimulationModel
+from momantu_worlds.sapien.build.cells import convex_cells
 from momantu_worlds.sapien.build.collision_filter import FLOOR_BIT, ignore_bits
 from momantu_worlds.sapien.config import Physics
 from momantu_worlds.sapien.drives.fingers import Finger, couple, fingers_of
@@ -25,8 +23,6 @@ MANY_TURNS = 1e3
 """Limit of joints that turn without end, rad, so that positions never wrap."""
 FLOOR_REACH = 1e3
 """Range of the base's virtual sliding joints, m."""
-CRUMB = 1e-5
-"""Least volume of a hull, m3; smaller ones are slivers along a cut."""
 
 
 @dataclass
@@ -198,23 +194,3 @@ def _set_drives(
         if actuator.kind is ActuatorKind.JOINTS:
             for name in actuator.joints:
                 model.gains[name].give(model.joints[name])
-
-
-def convex_cells(path: str, cuts: Cuts) -> list[NDArray[np.float32]]:
-    """Vertices (n, 3) of the convex hull of each cell of the mesh in a file."""
-    mesh: Any = trimesh.load(path, force="mesh")
-    cells = [(mesh.vertices, mesh.faces)]
-    for axis, places in enumerate((cuts.x, cuts.y, cuts.z)):
-        for place in places:
-            cells = [half for cell in cells for half in _halves(*cell, axis, place)]
-    hulls = [trimesh.convex.convex_hull(vertices[np.unique(faces)]) for vertices, faces in cells]
-    return [np.asarray(hull.vertices, dtype=np.float32) for hull in hulls if hull.volume > CRUMB]
-
-
-def _halves(vertices: Any, faces: Any, axis: int, place: float) -> list[tuple[Any, Any]]:
-    """The triangles on either side of a plane across an axis, with crossing ones cut."""
-    origin, normal = np.zeros(3), np.zeros(3)
-    origin[axis], normal[axis] = place, 1.0
-    cut: Any = intersections.slice_faces_plane
-    sides = [cut(vertices, faces, n, origin) for n in (normal, -normal)]
-    return [(side[0], side[1]) for side in sides if len(side[1])]

@@ -7,11 +7,14 @@ from typing import Any
 
 import numpy as np
 import sapien
-import trimesh
 
 from momantu_bt.geometry import Array, Transform, quaternion_from_axis_angle
+from momantu_bt.lazy import lazily
 from momantu_worlds.sapien.build.meshes import CYLINDER_SIDES
 from momantu_worlds.sapien.poses import transform_of
+
+with lazily():
+    import trimesh
 
 ALONG_X = Transform((0, 0, 0), quaternion_from_axis_angle((0, 1, 0), np.pi / 2)).matrix
 """trimesh's cylinders stand along z, SAPIEN's lie along x."""

@@ -61,7 +61,7 @@ Pose3D: TypeAlias = Annotated[
 class Part(BaseModel):
     """Base of the sections of a world file: immutable, unknown keys are errors."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
 
 def pose2d(pose: tuple[float, float, float]) -> Pose2D:
