@@ -137,13 +137,15 @@ class LinkMask:
     def covers(self, points: Array, poses: Mapping[str, Array]) -> NDArray[np.bool_]:
         """Which of points (n, 3) lie within a link at its pose base_from_link (4, 4): (n,)."""
         inside = np.zeros(len(points), dtype=bool)
+        x = np.ascontiguousarray(points[:, 0])
         for i, name in enumerate(self.names):
             pose = poses[name]
             centre = pose[:3, :3] @ self._centres[i] + pose[:3, 3]
-            offsets = points - centre
+            candidates = np.flatnonzero(np.abs(x - centre[0]) < self._radii[i])
+            candidates = candidates[~inside[candidates]]
+            offsets = points[candidates] - centre
             near = np.einsum("ij,ij->i", offsets, offsets) < self._radii[i] ** 2
-            near &= ~inside
-            candidates = np.flatnonzero(near)
+            candidates = candidates[near]
             if not len(candidates):
                 continue
             local = (points[candidates] - pose[:3, 3]) @ pose[:3, :3]

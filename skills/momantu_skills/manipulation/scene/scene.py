@@ -37,7 +37,10 @@ from momantu_skills.manipulation.scene.surroundings import (
     within,
 )
 from momantu_skills.perception.camera.cloud import points_from_depth
+from momantu_skills.perception.geometry.rows import unique_rows
 
+PER_METRE = 1e4
+"""Places of cells are whole tenths of a millimetre, so that a cell seen twice is one cell."""
 FORGET = 2.0
 """Distance from the base above which cells and supports are deleted, m, because odometry has
 drifted since."""
@@ -89,7 +92,8 @@ class Scene:
             for support in self.surroundings.supports
             if _distance(support.outline, snapshot.odom_from_base) < FORGET
         ]
-        cells: Array = np.unique(np.round(np.vstack([old, new]), 4), axis=0)
+        places = np.rint(np.vstack([old, new]) * PER_METRE).astype(np.int64)
+        cells = unique_rows(places)[0] / PER_METRE
         self.surroundings = Surroundings(cells, tuple(near), image.stamp)
 
     def _seen(self, snapshot: Snapshot, held: HeldObject | None) -> Array:

@@ -15,6 +15,7 @@ from momantu_bt.messages import CameraImage, SupportPlane
 from momantu_bt.world import Surface
 from momantu_skills.manipulation.config import SceneConfig
 from momantu_skills.manipulation.model.collision import Obstacle
+from momantu_skills.perception.geometry.rows import unique_rows
 
 GRID = 0.05
 """Grid for connecting the points of one surface, m."""
@@ -92,14 +93,14 @@ def cells_of(points: Array, viewpoint: Array, floor: float, config: SceneConfig)
     points = points[points[:, 2] > floor]
     if not len(points):
         return np.empty((0, 3))
-    keys, counts = np.unique(_keys(points, config), axis=0, return_counts=True)
+    keys, counts = unique_rows(_keys(points, config))
     centres = (keys[counts >= config.points_per_voxel] + 0.5) * config.voxel
     away = centres[:, :2] - viewpoint[:2]
     away /= np.maximum(np.linalg.norm(away, axis=1, keepdims=True), 1e-6)
     layers = [centres]
     for depth in np.arange(config.voxel, config.thickness + 1e-9, config.voxel):
         layers.append(centres + np.column_stack([away * depth, np.zeros(len(away))]))
-    filled = np.unique(_keys(np.vstack(layers), config), axis=0)
+    filled, _ = unique_rows(_keys(np.vstack(layers), config))
     return np.asarray((filled + 0.5) * config.voxel)
 
 
@@ -128,7 +129,7 @@ def support_around(points: Array, centre: Array, height: float, band: float) -> 
 def _connected(flat: Array, centre: Array) -> Array | None:
     """Those of points (n, 2) whose raster cells connect to the one nearest to `centre`."""
     keys = np.floor(flat / GRID).astype(np.int64)
-    cells = {(int(a), int(b)) for a, b in np.unique(keys, axis=0)}
+    cells = {(int(a), int(b)) for a, b in unique_rows(keys)[0]}
     nearest = keys[int(np.argmin(np.linalg.norm(flat - centre, axis=1)))]
     seen = {(int(nearest[0]), int(nearest[1]))}
     waiting = deque(seen)

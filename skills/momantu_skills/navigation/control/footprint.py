@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array
 
@@ -10,6 +11,8 @@ SLACK = 0.015
 """How far a disc may extend beyond the outline, m; without it corners would need endless discs."""
 SPACING = 0.02
 """Distance between the sample points inside the outline that must be covered, m."""
+ROUNDING = 1e-9
+"""Far more than the rounding error of a squared distance, m2."""
 MOST = 12
 """Largest number of discs: enough for a rectangular base, or a round one with an outstretched
 arm."""
@@ -27,15 +30,31 @@ def discs(outline: Array) -> Array:
         ValueError: the outline has no inside.
     """
     points, depth = _inside(np.asarray(outline, dtype=np.float64))
-    apart = np.hypot(*(points[:, None, :] - points[None, :, :]).transpose(2, 0, 1))
-    covers = apart <= depth[:, None] + SLACK
+    covers = _covers(points, depth + SLACK)
     bare = np.ones(len(points), dtype=bool)
+    counts = np.count_nonzero(covers, axis=1)
     chosen: list[Array] = []
     while bare.any() and len(chosen) < MOST:
-        best = int(np.argmax(covers @ bare.astype(np.float64)))
+        best = int(np.argmax(counts))
         chosen.append(np.array([*points[best], depth[best] + SLACK]))
-        bare &= ~covers[best]
+        fresh = bare & covers[best]
+        counts -= np.count_nonzero(covers[:, fresh], axis=1)
+        bare &= ~fresh
     return np.array(chosen)
+
+
+def _covers(points: Array, radii: Array) -> NDArray[np.bool_]:
+    """Which discs around points (n, 2) with radii (n,) hold which of the points: (n, n).
+
+    The exact distance is only computed where its square does not tell.
+    """
+    across = points[:, None, 0] - points[None, :, 0]
+    along = points[:, None, 1] - points[None, :, 1]
+    excess = across * across + along * along - (radii * radii)[:, None]
+    covers: NDArray[np.bool_] = excess < 0.0
+    row, column = np.nonzero(np.abs(excess) < ROUNDING)
+    covers[row, column] = np.hypot(across[row, column], along[row, column]) <= radii[row]
+    return covers
 
 
 def half_width(outline: Array) -> float:

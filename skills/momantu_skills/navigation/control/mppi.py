@@ -6,6 +6,7 @@ import math
 
 import numba
 import numpy as np
+from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array, Pose2D
 from momantu_bt.robot import BaseLimits
@@ -54,10 +55,8 @@ class Mppi:
             far_clearance=navigation.far_clearance,
         )
         at = np.linspace(0.0, c.knots - 1.0, c.steps)
-        low = np.minimum(at.astype(np.int64), c.knots - 2)
-        self._blend = np.zeros((c.steps, c.knots))
-        self._blend[np.arange(c.steps), low] = 1.0 - (at - low)
-        self._blend[np.arange(c.steps), low + 1] = at - low
+        self._before = np.minimum(at.astype(np.int64), c.knots - 2)
+        self._share = at - self._before
         self.restart()
 
     def restart(self) -> None:
@@ -75,12 +74,7 @@ class Mppi:
         )
         noise = self._random.standard_normal((c.samples, c.knots, 2))
         noise *= (c.speed_noise, c.turn_noise)
-        controls = self._controls + np.einsum("tk,skc->stc", self._blend, noise)
-        controls[0] = self._controls
-        controls[1] = 0.0
-        controls[2] = (self._limits[0], 0.0)
-        np.clip(controls[..., 0], 0.0, self._limits[0], out=controls[..., 0])
-        np.clip(controls[..., 1], -self._limits[1], self._limits[1], out=controls[..., 1])
+        controls = _controls(self._controls, noise, self._before, self._share, self._limits)
         start = np.array([pose.x, pose.y, pose.yaw, speed[0], speed[1]])
         costs = _costs(
             start, controls, c.step, costmap.field, costmap.frame, discs, plan.cost, self._limits,
@@ -89,6 +83,33 @@ class Mppi:
         weights = np.exp((costs.min() - costs) / c.temperature)
         self._controls = np.einsum("s,stc->tc", weights / weights.sum(), controls)
         return float(self._controls[0, 0]), float(self._controls[0, 1])
+
+
+@numba.njit(cache=True)
+def _controls(
+    last: Array, noise: Array, before: NDArray[np.int64], share: Array, limits: Array
+) -> Array:
+    """Control sequences (samples, steps, 2) around the `last` (steps, 2), within the limits.
+
+    noise: (samples, knots, 2). before, share (steps,): the knot before each step, and the share of
+    the next one. Three sequences are the last one, standing still, and full speed straight ahead.
+    """
+    controls = np.empty((noise.shape[0], last.shape[0], 2))
+    for s in range(controls.shape[0]):
+        for t in range(controls.shape[1]):
+            k = before[t]
+            for c in range(2):
+                shift = (1.0 - share[t]) * noise[s, k, c] + share[t] * noise[s, k + 1, c]
+                controls[s, t, c] = last[t, c] + shift
+    controls[0] = last
+    controls[1] = 0.0
+    controls[2, :, 0] = limits[0]
+    controls[2, :, 1] = 0.0
+    for s in range(controls.shape[0]):
+        for t in range(controls.shape[1]):
+            controls[s, t, 0] = min(max(controls[s, t, 0], 0.0), limits[0])
+            controls[s, t, 1] = min(max(controls[s, t, 1], -limits[1]), limits[1])
+    return controls
 
 
 @numba.njit(cache=True)

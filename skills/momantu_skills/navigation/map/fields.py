@@ -18,13 +18,12 @@ def clearance(blocked: NDArray[np.bool_], resolution: float) -> Field:
     cell; if nothing is blocked it is greater than the grid's diagonal. It is bit-identical on every
     machine, unlike the vectorised square roots of a library.
     """
-    cells = np.sqrt(_squared_cells(np.ascontiguousarray(blocked)).astype(np.float64))
-    return np.asarray(np.maximum((cells - 0.5) * resolution, 0.0), dtype=np.float32)
+    return _clearance(np.ascontiguousarray(blocked), resolution)
 
 
 @numba.njit(cache=True)
-def _squared_cells(blocked: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """Squared distance in cells to the nearest blocked one (Meijster, Roerdink, Hesselink 2000)."""
+def _clearance(blocked: NDArray[np.bool_], resolution: float) -> Field:
+    """By the algorithm of Meijster, Roerdink and Hesselink (2000)."""
     rows, columns = blocked.shape
     beyond = rows + columns
     down = np.empty((rows, columns), dtype=np.int64)
@@ -35,7 +34,7 @@ def _squared_cells(blocked: NDArray[np.bool_]) -> NDArray[np.int64]:
     for r in range(rows - 2, -1, -1):
         for c in range(columns):
             down[r, c] = min(down[r, c], down[r + 1, c] + 1)
-    squared = np.empty((rows, columns), dtype=np.int64)
+    field = np.empty((rows, columns), dtype=np.float32)
     site = np.empty(columns, dtype=np.int64)
     begin = np.empty(columns, dtype=np.int64)
     for r in range(rows):
@@ -57,10 +56,11 @@ def _squared_cells(blocked: NDArray[np.bool_]) -> NDArray[np.int64]:
                 site[top] = c
                 begin[top] = meet
         for c in range(columns - 1, -1, -1):
-            squared[r, c] = _at(g, site[top], c)
+            cells = math.sqrt(float(_at(g, site[top], c)))
+            field[r, c] = max((cells - 0.5) * resolution, 0.0)
             if c == begin[top]:
                 top -= 1
-    return squared
+    return field
 
 
 @numba.njit(cache=True, inline="always")
