@@ -47,6 +47,7 @@ PUBLIC = (
     "momantu_bt.session",
     "momantu_bt.skill",
     "momantu_bt.symptom",
+    "momantu_bt.teleoperation",
     "momantu_bt.testing",
     "momantu_bt.world",
     "momantu_skills.toolbox",

@@ -23,6 +23,7 @@ class Verb(NamedTuple):
 
 VERBS = {
     "run": Verb("momantu_bt.cli.run.run", "Run a tree."),
+    "teleop": Verb("momantu_bt.cli.teleop.teleop", "Drive a robot with the keyboard."),
     "bench": Verb(
         "momantu_bt.cli.bench.bench",
         "Run a tree many times and say how often it works, and why not.",

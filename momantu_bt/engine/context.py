@@ -33,7 +33,6 @@ class RunContext:
     writes: cells written in this tick, with their values before. changes: of statuses in this tick.
     logs: what skills have logged in this tick.
     person: answers questions.
-    waited: wall time that the run has spent waiting for a person, s.
     outside: source of everything that the tree gets from outside. watchdog: ends steps that hang.
     events: the stream of events, for observers.
     """
@@ -47,7 +46,6 @@ class RunContext:
     changes: list[Change] = field(default_factory=list)
     logs: list[Logged] = field(default_factory=list)
     person: Person = field(default_factory=Scripted)
-    waited: float = 0.0
     outside: Outside = field(default_factory=Outside)
     events: Events = field(default_factory=Events)
     watchdog: Watchdog = field(default_factory=Watchdog)

@@ -17,6 +17,7 @@ from momantu_bt.engine.ending import Ending
 from momantu_bt.engine.fingerprint import Fingerprint
 from momantu_bt.engine.interrupts import Interrupts
 from momantu_bt.engine.node import TreeNode, ticked_in
+from momantu_bt.engine.pace import Pace
 from momantu_bt.engine.raised import raised_at
 from momantu_bt.engine.skills.services import ServiceError, Services
 from momantu_bt.engine.skills.session import CLOCK_SLACK
@@ -114,7 +115,7 @@ class Executor:
         interrupts.patient = True
         self._publish_starts(interrupts)
         try:
-            status = self._until_end(interrupts, started)
+            status = self._until_end(interrupts)
         except BaseException as error:  # services, worlds and nodes: they may raise anything
             status = self._broken_by(error, interrupts)
         sim_time, ticks = self.context.now, self.context.tick
@@ -150,8 +151,9 @@ class Executor:
 
         return publish_and_execute
 
-    def _until_end(self, interrupts: Interrupts, started: float) -> str:
+    def _until_end(self, interrupts: Interrupts) -> str:
         self.begin()
+        pace = Pace() if self._realtime else None
         with collector.frozen():
             while not interrupts.requested:
                 status = self.tick()
@@ -162,9 +164,8 @@ class Executor:
                 if self.context.now >= self._max_time - CLOCK_SLACK:
                     self._failure = self._timed_out()
                     return ending.FAILURE
-                if self._realtime:
-                    due = started + self.context.waited + self.context.now
-                    time.sleep(max(0.0, due - time.perf_counter()))
+                if pace is not None:
+                    pace.hold(self.context.now)
         return ending.INTERRUPTED
 
     def _hold(self, interrupts: Interrupts) -> None:

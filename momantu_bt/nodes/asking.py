@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from typing import Any
 
 from momantu_bt.engine.context import RunContext
@@ -54,14 +53,11 @@ class _Asking(ShowsValues, TreeNode):
         question = self.question(values)
         if question.default is not None and question.taken(question.default) is None:
             return self.fail(WRONG_TYPE, f"the default: {question.complaint(question.default)}")
-        begun = time.perf_counter()
         try:
             with self.context.watchdog.paused():
                 said = answer(_PersonOutside(self.context), question)
         except Interrupted:
             return RUNNING
-        finally:
-            self.context.waited += time.perf_counter() - begun
         if said is None:
             return self.fail(NO_ANSWER, f"nobody answers {question.text!r}")
         return self.judge(said, question)

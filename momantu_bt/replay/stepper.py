@@ -95,6 +95,9 @@ class Stepper:
 
     def press(self, key: str) -> None:
         """Handle a pressed key. A key without a meaning does nothing."""
+        if key == "leave":
+            self._leave()
+            return
         if self._asking:
             self._type(key)
             return

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import json
 import signal
-import time
 from collections.abc import Callable, Iterator, Sequence
 from fnmatch import fnmatchcase
 from typing import Any
@@ -68,10 +67,8 @@ class Breakpoints:
 
     def _starting(self, run: Executor, node: TreeNode) -> None:
         if self._stepping or id(node.model) in self._models:
-            begun = time.perf_counter()
             with run.context.watchdog.paused():
                 self._stop(run, node)
-            run.context.waited += time.perf_counter() - begun
 
     def _stop(self, run: Executor, node: TreeNode) -> None:
         """Show where the run is, and obey until it is to go on."""

@@ -8,6 +8,7 @@ import select
 import sys
 import termios
 import tty
+from contextlib import suppress
 from types import TracebackType
 from typing import Any
 
@@ -31,9 +32,9 @@ _SEQUENCES = {
     "\n": "enter",
     "\x7f": "backspace",
     "\x08": "backspace",
-    "\x04": "q",
+    "\x04": "leave",
 }
-"""Sequences that terminals send for special keys; the end of the input (Ctrl-D) means leave."""
+"""Sequences that terminals send for special keys, and the end of the input, Ctrl-D."""
 _KEY = re.compile(r"\x1b\[[0-9;]*[A-Za-z~]|\x1bO[A-Z]|.", re.DOTALL)
 _MOST = 1024
 
@@ -56,14 +57,24 @@ class Keyboard:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        termios.tcsetattr(self._file, termios.TCSADRAIN, self._before)
+        with suppress(termios.error):  # the terminal has gone
+            termios.tcsetattr(self._file, termios.TCSADRAIN, self._before)
+
+    def forget(self) -> None:
+        """Drop the keys that were pressed before now and not read."""
+        with suppress(termios.error):
+            termios.tcflush(self._file, termios.TCIFLUSH)
 
     def wait(self, seconds: float) -> list[str]:
         """The keys that are pressed within a time, as soon as there is one; none after it."""
         ready, _, _ = select.select([self._file], [], [], seconds)
         if not ready:
             return []
-        return keys_in(os.read(self._file, _MOST).decode(errors="replace") or "\x04")
+        try:
+            text = os.read(self._file, _MOST).decode(errors="replace")
+        except OSError:  # the terminal has gone
+            text = ""
+        return keys_in(text or "\x04")
 
 
 def keys_in(text: str) -> list[str]:

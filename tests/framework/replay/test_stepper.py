@@ -175,4 +175,4 @@ def test_terminals_keys():
         "backspace",
     ]
     assert keys_in("\x1b") == ["escape"]
-    assert keys_in("\x04") == ["q"]
+    assert keys_in("\x04") == ["leave"]

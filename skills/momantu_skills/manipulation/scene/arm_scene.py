@@ -36,3 +36,7 @@ class ArmScene(PlanningScene, Protocol):
     def support(self, plane: SupportPlane) -> None:
         """Add a measured surface."""
         ...
+
+    def take_over_site(self) -> None:
+        """Place the site's surfaces and what hangs over them; none while not localized."""
+        ...

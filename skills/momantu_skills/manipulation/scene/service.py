@@ -81,16 +81,16 @@ class PlanningSceneService(Service):
 
         The newest picture replaces what older ones showed of the same region.
         """
-        self._take_over_site()
+        self.take_over_site()
         self.scene.observe(snapshot, self.held)
 
     def support(self, plane: SupportPlane) -> None:
         """Add a measured surface."""
-        self._take_over_site()
+        self.take_over_site()
         self.scene.add_support(plane)
 
-    def _take_over_site(self) -> None:
-        """Add the site's surfaces and what hangs over them; none while not localized."""
+    def take_over_site(self) -> None:
+        """Place the site's surfaces and what hangs over them; none while not localized."""
         self.scene.known = self.scene.overhead = ()
         try:
             odom_from_map = self.frames.lookup(ODOM, MAP)

@@ -188,11 +188,15 @@ class Vehicle:
         )
         return JointPositions(joints, aimed.positions)
 
-    def drive(self, linear: float, angular: float, phase: str) -> Run:
-        """Command the base for one control period, as far as the newest scan allows."""
-        share = guard.safe_share(
+    def allowed(self, linear: float, angular: float) -> float:
+        """Return the share of a command, m/s and rad/s, that the newest scan allows; 0: none."""
+        return guard.safe_share(
             (linear, angular), self.speed(), self.limits, self.base_discs, self._hits
         )
+
+    def drive(self, linear: float, angular: float, phase: str) -> Run:
+        """Command the base for one control period, as far as the newest scan allows."""
+        share = self.allowed(linear, angular)
         period = self.config.period
         stuck = share == 0.0 and (linear, angular) != (0.0, 0.0)
         self.blocked_for = self.blocked_for + period if stuck else 0.0
