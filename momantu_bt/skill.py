@@ -123,6 +123,8 @@ class Skill:
     codes that no fault explains. None: each code may be caused by any fault of the actuators,
     sensors and inputs that the skill uses.
 
+    also_called: what people call it, such as `grab`; `check` then asks "did you mean pick?".
+
     The engine makes a new instance for each start. Before it calls `run` it sets the inputs,
     `services`, `clock`, `frames`, `site` and `host`.
     """
@@ -134,6 +136,7 @@ class Skill:
     one_of: ClassVar[tuple[tuple[str, ...], ...]] = ()
     activities: ClassVar[Mapping[Activity, str] | None] = None
     symptoms: ClassVar[Mapping[str, frozenset[Symptom] | set[Symptom]] | None] = None
+    also_called: ClassVar[tuple[str, ...]] = ()
 
     ports: ClassVar[Mapping[str, Port]] = {}
     needs: ClassVar[tuple[str, ...]] = ()

@@ -7,15 +7,36 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from enum import Enum
 
 from momantu_bt.engine.blackboard import Board
 from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Status
 from momantu_bt.tree.script import Script, parse, truth
+from momantu_bt.values.words import in_words
 
 _BEFORE: Mapping[str, Status] = {"fail_if": FAILURE, "succeed_if": SUCCESS, "skip_if": SKIPPED}
 WHILE = "while"
 ASKED = (*_BEFORE, WHILE)
 """The conditions; the other scripts do not decide anything."""
+
+
+_LONGEST = 40
+"""The most characters of a text among the values of a condition."""
+
+
+def reason(script: Script, board: Board, *, held: bool = False) -> str:
+    """Why a condition has decided: `n > 2` does not hold; n is 1.
+
+    held: whether it was true. Values that take more than a few words are left out.
+    """
+    words = [f"`{script.text}` {'holds' if held else 'does not hold'}"]
+    for name, value in script.values(board):
+        if isinstance(value, bool) and script.text.strip("! ") == name:
+            continue  # that is said already
+        plain = isinstance(value, bool | int | float | str) and not isinstance(value, Enum)
+        if plain and len(in_words(value)) <= _LONGEST:
+            words.append(f"{name} is {in_words(value) or 'empty'}")
+    return "; ".join([words[0], ", ".join(words[1:])] if len(words) > 1 else words)
 
 
 class Conditions:
@@ -25,14 +46,13 @@ class Conditions:
     """
 
     def __init__(self, scripts: Mapping[str, str], board: Board) -> None:
-        self._texts = dict(scripts)
         self._parsed: dict[str, Script] = {name: parse(text) for name, text in scripts.items()}
         self._board = board
         self.counts = {name: [0, 0] for name in scripts if name in ASKED}
 
-    def text(self, name: str) -> str:
-        """The text of a script."""
-        return self._texts.get(name, "")
+    def reason(self, name: str) -> str:
+        """Why a condition that held decided; see `reason`."""
+        return reason(self._parsed[name], self._board, held=True)
 
     def before(self, state: Status) -> Status | None:
         """The status that a condition decides; None: tick the node."""

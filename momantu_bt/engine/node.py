@@ -303,7 +303,7 @@ class TreeNode:
         elif new is SKIPPED and self.state is RUNNING:
             self.halt_node()
         elif new is FAILURE:
-            self.fail(FAILED, f"its condition `{conditions.text('fail_if')}` holds")
+            self.fail(FAILED, f"its condition {conditions.reason('fail_if')}")
         if new is SUCCESS or new is FAILURE:
             conditions.after(new)
         return new

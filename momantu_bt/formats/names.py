@@ -22,6 +22,11 @@ def listed(words: Sequence[str], last: str = "and") -> str:
     return f"{', '.join(others)} {last} {end}" if others else end
 
 
+def counted(number: int, what: str) -> str:
+    """`1 tree`, `2 trees`."""
+    return f"{number} {what}{'s' * (number != 1)}"
+
+
 def nearest(word: str, candidates: Iterable[str], least: float = _LEAST_LIKE) -> str | None:
     """The known name that is nearest to a mistyped one.
 

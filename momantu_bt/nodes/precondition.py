@@ -52,7 +52,7 @@ class Precondition(Decorator):
         if not self.admitted:
             instead = Status[self.inputs["else"]]
             if instead is FAILURE:
-                return self.fail(FAILED, f"`{self.code.text}` does not hold")
+                return self.fail(FAILED, self.code.reason())
             return instead
         status = self.child.execute()
         if status.completed:

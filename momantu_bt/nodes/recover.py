@@ -91,6 +91,11 @@ class Catching(TreeNode):
         """The number of failures that each of `catches` has handled."""
         return tuple(self._answered)
 
+    @property
+    def role(self) -> Role:
+        """Its role in displays."""
+        return Role.RECOVERY
+
     def clear(self) -> None:
         """Forget the failure that is being handled."""
         self.handling = self.first = None
@@ -178,11 +183,6 @@ class Recover(Catching):
         self.inputs = parts.inputs()
         self.count = 0
         self.before: dict[Cell, Any] = {}
-
-    @property
-    def role(self) -> Role:
-        """Its role in displays."""
-        return Role.RECOVERY
 
     def step(self) -> Status:
         """Continue with the handler or with `try`."""

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from functools import lru_cache
 
 from momantu_bt.engine.blackboard import Board
+from momantu_bt.engine.conditions import reason
 from momantu_bt.engine.node import Parts, TreeNode
 from momantu_bt.engine.status import SUCCESS, Status
 from momantu_bt.failure import FAILED, SCRIPT_ERROR, Failure
@@ -40,6 +41,10 @@ class Code:
         except ScriptSyntaxError as error:
             raise Failure(SCRIPT_ERROR, f"`{self.text}`: {error}") from None
         return parsed.run(self._board)
+
+    def reason(self) -> str:
+        """Why the condition does not hold, with the values that it compares."""
+        return reason(_parsed(self._read()), self._board)
 
     def holds(self) -> bool:
         """Run the script as a condition; return whether it is true."""
@@ -90,4 +95,4 @@ class ScriptCondition(Script):
         """Evaluate the condition."""
         if self.code.holds():
             return SUCCESS
-        return self.fail(FAILED, f"`{self.code.text}` does not hold")
+        return self.fail(FAILED, self.code.reason())

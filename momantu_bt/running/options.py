@@ -28,7 +28,8 @@ class RunOptions:
     such as "can on table_b beside tag", a mapping, or a list of these.
     seed: selects the variation of the episode. values: initial keys of the root's board, as with
     `--set`. substitute: a file of rules that replace nodes. include: further tree files, or folders
-    of them, that have trees which the tree runs.
+    of them, that have trees which the tree runs. tolerant: nodes, trees and keys that stand
+    elsewhere are warnings; a run that may reach such a node or tree is refused all the same.
     faults: the faults to inject.
     max_time: simulated time after which the run fails with TIMEOUT, s.
     realtime: do not run faster than real time.
@@ -49,6 +50,7 @@ class RunOptions:
     values: Mapping[str, Any] = field(default_factory=dict)
     substitute: Path | None = None
     include: tuple[Path, ...] = ()
+    tolerant: bool = False
     faults: tuple[Fault, ...] = ()
     max_time: float = 600.0
     realtime: bool = False

@@ -54,7 +54,7 @@ def prepare(
         values=options.values,
         include=options.include,
         goal=options.goal,
-        tolerant=options.substitute is not None,
+        tolerant=options.tolerant or options.substitute is not None,
     ).document
     substitution = Substitution()
     if options.substitute is not None:

@@ -11,6 +11,8 @@ from momantu_bt.skill import Skill
 from momantu_bt.testing.source import Module, methods, reached
 from momantu_bt.tree.skill_objection import skill_objection
 
+NOT_WRITTEN = "NOT_WRITTEN"
+"""The code with which a skill of `skills stub` fails until it is filled in."""
 _GIVEN = {"port_values", "services", "clock", "random", "frames", "site", "host"}
 """Attributes that the engine sets."""
 
@@ -113,6 +115,10 @@ def _is_static(method: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
 
 def _unused(skill: type[Skill]) -> Iterator[Problem]:
     """Outputs that no line gives, inputs that no line reads, in all that the skill reaches."""
+    if NOT_WRITTEN in skill.failures:
+        said = "it is a stub: fill in its run(), and take the code out of `failures`"
+        yield Problem("not-written", f"{NOT_WRITTEN} is among its codes; {said}")
+        return
     given, read = set[str](), set[str]()
     for module in reached(skill):
         for node in ast.walk(module.tree):

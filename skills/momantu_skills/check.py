@@ -33,6 +33,7 @@ class Check(Skill):
 
     what: Question = In(doc='what to check; "near" needs `place`')
     place: str | None = In(None, doc='for "near": a place or surface of the site', names="place")
+    also_called = ("check_holding", "is_holding", "is_localized", "verify")
     failures = {
         "NOT_HOLDING": "the hand holds nothing",
         "HOLDING": "the hand holds something",

@@ -45,6 +45,7 @@ class DetectObject(Skill):
         "geometric", names=DETECTORS.name, doc="the detector that finds it in the pictures"
     )
     found: DetectedObject = Out(doc="the best match; pose in odom, stamped")
+    also_called = ("find_object", "find", "detect", "search", "look_for", "recognize")
     failures = {
         "OBJECT_NOT_FOUND": "no object on the surface is the requested one; data lists those found",
         "SURFACE_NOT_SEEN": "no picture showed a level surface where the site has one",

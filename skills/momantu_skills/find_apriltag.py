@@ -44,6 +44,7 @@ class FindAprilTag(Skill):
     on: str | None = In(None, names="surface", doc="the surface it lies on; None: look around")
     tag_pose: Pose = Out(doc="centre of the tag, z out of it, x to its right; odom, stamped")
     tag_sigma: float = Out(unit="m", doc="standard deviation of its position")
+    also_called = ("find_tag", "detect_tag", "find_marker", "detect_marker")
     failures = {"TAG_NOT_SEEN": "no picture of the sweep showed the tag; data lists other tags"}
     uses = {CAMERA_CARRIER}
     senses = {"camera"}

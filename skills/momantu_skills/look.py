@@ -32,6 +32,7 @@ class Look(Skill):
     direction: Literal["ahead", "down"] | None = In(
         None, doc="look ahead, or down at the floor ahead"
     )
+    also_called = ("look_at", "point_camera", "gaze", "point_head", "move_head")
     failures = {
         "BAD_TARGET": "not exactly one of at, surface, direction is given, or no such surface",
         "OUT_OF_VIEW": "the camera's carrier cannot turn that far, or is stuck",

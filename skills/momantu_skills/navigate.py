@@ -53,6 +53,7 @@ class Navigate(Skill):
     )
     recovery: bool = In(True, doc="when blocked: look again, back up, turn, and retry")
 
+    also_called: ClassVar = ("go_to", "goto", "drive_to", "move_to", "move_base", "nav_to", "go")
     failures: ClassVar = {
         "BAD_GOAL": "the goal is not one place on the map",
         "GOAL_BLOCKED": "every place where the base could stand is occupied",

@@ -40,6 +40,7 @@ class Place(Skill):
 
     plane: SupportPlane = In(doc="the measured surface; recent pose in odom")
     spots: tuple[Pose, ...] = In(doc="free spots on it, best first; odom, z up, on the surface")
+    also_called = ("put", "put_down", "set_down", "drop_off", "place_object", "put_object")
     failures = {
         "NOTHING_HELD": "the hand holds nothing",
         "STALE_POSE": "the surface was measured too long ago, or before the hand last touched it",

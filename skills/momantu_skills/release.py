@@ -28,6 +28,7 @@ class Release(Skill):
         doc="distance to retreat the open hand along its fingers, where possible, so that the "
         "next motion does not push the object",
     )
+    also_called = ("open_gripper", "let_go", "drop", "open_hand")
     failures = {
         "GRIPPER_STUCK": "the gripper does not open",
         "ARM_STUCK": "the arm does not follow on its way back",

@@ -58,6 +58,7 @@ class Relocalize(Skill):
 
     everywhere: bool = In(False, doc="start with the whole map")
 
+    also_called: ClassVar = ("localize", "reset_localization", "initialize_pose")
     failures: ClassVar = {
         "NOT_LOCALIZED": "no place on the map fits what the laser sees",
         "ARM_STUCK": "the arm that carries the camera is stretched out and does not fold",

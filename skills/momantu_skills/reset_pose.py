@@ -39,6 +39,7 @@ class ResetPose(Skill):
     """
 
     pose: str = In(doc="one of the robot's named poses", names="named_pose")
+    also_called = ("move_arm", "go_home", "fold_arm", "tuck_arm", "move_to_pose")
     failures = {
         "UNKNOWN_POSE": "the robot has no pose of that name",
         "NO_PLAN": "no collision-free way to the pose was found, or the pose itself collides",

@@ -14,7 +14,16 @@ import typer
 
 from momantu_bt.cli.shared import streams
 from momantu_bt.cli.shared.notices import notice
-from momantu_bt.cli.shared.options import TREE, GoalGiven, Include, Robot, Settings, Values
+from momantu_bt.cli.shared.options import (
+    TREE,
+    GoalGiven,
+    Include,
+    Robot,
+    Settings,
+    Undeclared,
+    UndeclaredAre,
+    Values,
+)
 from momantu_bt.errors import TRACEBACK, ExitCode, InputError, MomantuError
 from momantu_bt.formats.files import check_writable
 from momantu_bt.lazy import lazily
@@ -79,6 +88,7 @@ def run(
         Path | None, typer.Option(help="A YAML file of rules that replace nodes, for tests.")
     ] = None,
     include: Include = None,
+    undeclared: UndeclaredAre = Undeclared.ERROR,
     break_: Annotated[
         list[str] | None,
         typer.Option("--break", metavar="NODE", help="Stop before a node: its name, type or line."),
@@ -119,6 +129,7 @@ def run(
         values=given.given_values(set_ or [], values),
         substitute=substitute,
         include=tuple(include or ()),
+        tolerant=undeclared is Undeclared.WARN,
         faults=tuple(spec.parse_fault(text) for text in fault or []),
         max_time=max_time,
         realtime=realtime,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, TypeAlias
 
@@ -35,6 +36,18 @@ GoalGiven: TypeAlias = Annotated[
         metavar="GOAL",
         help="What the referee demands: world, none, 'can on table_b beside tag', or FILE.yaml.",
     ),
+]
+
+
+class Undeclared(StrEnum):
+    """What nodes are that no plug-in offers and no model declares."""
+
+    ERROR = "error"
+    WARN = "warn"
+
+
+UndeclaredAre: TypeAlias = Annotated[
+    Undeclared, typer.Option(help="What nodes, trees and keys that stand elsewhere are.")
 ]
 EpisodeLimit: TypeAlias = Annotated[
     float, typer.Option(min=1.0, help="Seconds of wall time after which an episode is killed.")

@@ -5,16 +5,23 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass
-from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from momantu_bt.cli.shared.given import given_tree, given_values
-from momantu_bt.cli.shared.options import Include, Settings, Values
+from momantu_bt.cli.shared.given import given_goal, given_tree, given_values
+from momantu_bt.cli.shared.options import (
+    GoalGiven,
+    Include,
+    Settings,
+    Undeclared,
+    UndeclaredAre,
+    Values,
+)
 from momantu_bt.errors import ExitCode, InputError
 from momantu_bt.faults.tree_file import tree_beside, tree_faults
+from momantu_bt.formats.names import counted
 from momantu_bt.formats.problems import Problem
 from momantu_bt.tree.files.given_text import TreeText
 from momantu_bt.tree.files.lookup import is_faults_file
@@ -23,13 +30,6 @@ from momantu_bt.tree.load import Checked, TreeError, TreeNotFound, load
 from momantu_bt.tree.problems import report
 from momantu_bt.tree.show.problem_pages import explanation
 from momantu_bt.tree.show.sarif import sarif
-
-
-class Undeclared(StrEnum):
-    """What `check` makes of nodes that no plug-in offers and no model declares."""
-
-    ERROR = "error"
-    WARN = "warn"
 
 
 def check(
@@ -46,10 +46,8 @@ def check(
     set_: Settings = None,
     values: Values = None,
     include: Include = None,
-    undeclared: Annotated[
-        Undeclared,
-        typer.Option(help="What nodes, trees and keys that stand elsewhere are."),
-    ] = Undeclared.ERROR,
+    goal: GoalGiven = None,
+    undeclared: UndeclaredAre = Undeclared.ERROR,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,
     as_sarif: Annotated[
         bool, typer.Option("--sarif", help="Print SARIF 2.1.0, for editors and code reviews.")
@@ -71,6 +69,7 @@ def check(
       momantu-bt check bring_object --world my_flat.yaml --robot my_robot/
       momantu-bt check --json my_tree.yaml
       momantu-bt check their_tree.xml --set goal=table_b
+      momantu-bt check my_tree.yaml --goal "can on table_b beside tag"
       momantu-bt check their_tree.xml --undeclared warn --include their_trees/
       momantu-bt check --explain read-before-write
     """
@@ -82,7 +81,8 @@ def check(
     if as_json and as_sarif:
         raise InputError("choose one of --json and --sarif")
     given = given_values(set_ or [], values)
-    how = _How(world, robot, given, tuple(include or ()), undeclared is Undeclared.WARN)
+    tolerant = undeclared is Undeclared.WARN
+    how = _How(world, robot, given, tuple(include or ()), tolerant, given_goal(goal))
     findings = [_checked(tree, how, quiet=as_json or as_sarif) for tree in trees]
     fine = all(finding.ok for finding in findings)
     if as_json:
@@ -120,6 +120,7 @@ class _How:
     values: Given
     include: tuple[Path, ...]
     tolerant: bool
+    goal: Any
 
     def load(self, tree: str | TreeText) -> Checked:
         """Read and check a tree; raises as `load` does."""
@@ -129,6 +130,7 @@ class _How:
             robot=self.robot,
             values=self.values,
             include=self.include,
+            goal=self.goal,
             tolerant=self.tolerant,
             library=self.tolerant,
         )
@@ -157,7 +159,8 @@ def _checked_faults(file: Path, how: _How, *, quiet: bool) -> _FileChecked:
     """Check a file of faults against the tree beside it."""
     found = tree_faults(how.load(str(tree_beside(file))).document)
     if not quiet:
-        typer.echo(f"{file}: no errors in {len(found.begins)} phases and {len(found.rows)} rows")
+        size = f"{counted(len(found.begins), 'phase')} and {counted(len(found.rows), 'row')}"
+        typer.echo(f"{file}: no errors in {size}")
     return _FileChecked(str(file), True)
 
 
@@ -168,4 +171,5 @@ def _print_json(value: Any) -> None:
 def _fine(tree: str, checked: Checked) -> str:
     trees = checked.document.trees
     nodes = sum(1 for each in trees.values() for _ in each.root.walk())
-    return f"{tree}: no errors in {len(trees)} trees with {nodes} nodes"
+    size = f"{counted(len(trees), 'tree')} with {counted(nodes, 'node')}"
+    return f"{tree}: no errors in {size}"

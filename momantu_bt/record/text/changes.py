@@ -15,6 +15,10 @@ from momantu_bt.record.text.failure import failure_line
 _WORDS = {"RUNNING": "starts", "SUCCESS": "done", "IDLE": "halted", "SKIPPED": "skipped"}
 
 
+_GUARDS = (Role.PLAIN, Role.AROUND)
+"""Roles of nodes that have no lines of their own."""
+
+
 class ReportedNode(Protocol):
     """A node of a run, or of its record."""
 
@@ -78,11 +82,15 @@ class ChangeLines:
         What a skill logs comes after its start and before its end.
         """
         waiting = list(logs)
+        guards: list[tuple[ReportedNode, FailureValue]] = []
         for node, status, note, failure in _parents_first(changes):
+            if status is FAILURE and failure is not None and node.role in _GUARDS:
+                guards.append((node, failure))
             if waiting and status is not RUNNING:
                 self._tell_logs(now, [log for log in waiting if log[0].index == node.index])
                 waiting = [log for log in waiting if log[0].index != node.index]
             if node.role is Role.RECOVERY:
+                self._tell_guard(now, node, note, guards)
                 self._tell_note(now, node, note)
             elif node.role is Role.ACT or node.role is Role.TREE:
                 self._tell(now, node, status, failure)
@@ -107,6 +115,24 @@ class ChangeLines:
         words = f"fails: {_reason(node, failure)}" if status is FAILURE else _WORDS[status.value]
         self._line(now, node, f"{node.label} {words}", matters=status is FAILURE)
 
+    def _tell_guard(
+        self,
+        now: float,
+        recovery: ReportedNode,
+        note: str,
+        guards: list[tuple[ReportedNode, FailureValue]],
+    ) -> None:
+        """Print why a guard failed, if a recovery handles that: guards have no lines otherwise."""
+        code, colon, _ = note.partition(": ")
+        caught = [(n, f) for n, f in guards if _is_below(n, recovery) and f.cause is None]
+        guards.clear()
+        if not colon or not caught or caught[-1][1].code != code:
+            return
+        last = caught[-1][1].message  # nodes around the guard have failed with the same words
+        node, failure = next((n, f) for n, f in caught if f.message == last)
+        words = f"{node.label} fails: {failure_line(failure).partition(' <- ')[0]}"
+        self._line(now, node, words, matters=True)
+
     def _tell_note(self, now: float, node: ReportedNode, note: str) -> None:
         before = self._notes.get(node.index, "")
         self._notes[node.index] = note
@@ -123,6 +149,13 @@ def _parents_first(changes: Iterable[StatusChange]) -> Iterator[StatusChange]:
     for starting, group in groupby(changes, key=lambda change: change[1] is RUNNING):
         together = list(group)
         yield from sorted(together, key=lambda change: change[0].index) if starting else together
+
+
+def _is_below(node: ReportedNode, other: ReportedNode) -> bool:
+    above = node.above
+    while above is not None and above.index != other.index:
+        above = above.above
+    return above is not None
 
 
 def _level(node: ReportedNode) -> int:

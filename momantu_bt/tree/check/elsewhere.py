@@ -150,8 +150,9 @@ def _report_unknown(context: Context, nodes: list[Node]) -> None:
         return
     for node in nodes:
         hint = why_absent(node.type) or suggestion(context, node)
-        if not hint and context.in_xml(node.place):
-            hint = f"`{STUB} FILE` writes a plug-in for it; --undeclared warn accepts it"
+        if context.in_xml(node.place) and not why_absent(node.type):
+            begin = f"{hint} If it stands elsewhere: " if hint else ""
+            hint = f"{begin}`{STUB} FILE` writes a plug-in for it; --undeclared warn accepts it"
         context.problems.error(
             "unknown-node", node.place, message, hint or known_names(context, node)
         )

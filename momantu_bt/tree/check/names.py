@@ -67,7 +67,8 @@ def check_name(context: Context, name: str, place: Place, kind: str) -> None:
     where = "the robot" if kind == "named_pose" else "the world"
     message = f"{where} has no {one} {name!r}"
     code = f"unknown-{one.replace(' ', '-')}"
-    context.problems.error(code, place, message, valid_names(name, valid, several) + also)
+    hint = context.meant_key(name, place) or valid_names(name, valid, several) + also
+    context.problems.error(code, place, message, hint)
 
 
 def _check_pose_text(context: Context, text: str, place: Place, *, stands: bool) -> None:

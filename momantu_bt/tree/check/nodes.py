@@ -279,7 +279,8 @@ def check_literal(context: Context, value: Literal, place: Place, port: Port) ->
         found = convert(value.value, port)
     except ConversionError as error:
         message = f"{port.name!r}: {error}"
-        context.problems.error("wrong-value", place, message)
+        hint = context.meant_key(value.value, place)
+        context.problems.error("wrong-value", place, message, hint)
         return
     check_named(context, found, place, port)
 

@@ -65,6 +65,7 @@ class Context:
     site: Site | None = None
     entry: WorldEntry | None = None
     description: RobotDescription | None = None
+    _keys: frozenset[str] | None = None
     _floor: list[Floor | None] = field(default_factory=list)
     _skills: dict[str, type[Skill] | None] = field(default_factory=dict)
     _trees: dict[str, Signature] = field(default_factory=dict)
@@ -195,6 +196,23 @@ class Context:
         if not self._floor:
             self._floor.append(floor_of(self.entry, self.description))
         return self._floor[0]
+
+    @property
+    def keys(self) -> frozenset[str]:
+        """The names of all keys that some wire, declared port or value of the document has."""
+        if self._keys is None:
+            found = {*self.document.values}
+            for tree in self.document.trees.values():
+                found |= {*tree.ports}
+                for node in tree.root.walk():
+                    found |= {v.key for v in node.ports.values() if isinstance(v, Reference)}
+            self._keys = frozenset(found)
+        return self._keys
+
+    def meant_key(self, value: object, place: Place) -> str:
+        """The hint for the name of a key that is written without its sign; else empty."""
+        known = isinstance(value, str) and value in self.keys
+        return f"did you mean {self.wire(str(value), place)}?" if known else ""
 
     def names_of(self, kind: str) -> tuple[str, ...] | None:
         """Valid values of an input with `names=kind`; None when they are unknown."""

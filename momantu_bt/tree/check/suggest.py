@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Sequence
+
 from momantu_bt.formats.names import nearest, valid_names
-from momantu_bt.tree.catalogue import NODES
+from momantu_bt.tree.catalogue import NODES, SPELLED
 from momantu_bt.tree.catalogue.nodes import said_type
 from momantu_bt.tree.catalogue.synonyms import in_spelling, meant_type
 from momantu_bt.tree.check.signatures import Context
 from momantu_bt.tree.language import AGAIN
 from momantu_bt.tree.model import Node
 
+_RUN_TOGETHER = re.compile(r"(\w+)[\s{(]+\$?(\w+)")
 LIKE = 0.75
 """Names of nodes count as near from this likeness on; half a word in common is not enough."""
 _PARTS = {
@@ -56,16 +60,42 @@ def suggestion(context: Context, node: Node) -> str:
     same = nearest(name, own, least=1.0)
     if same is not None:
         return f"did you mean {same}?"
+    colon = _without_colon(name, own, context)
+    if colon:
+        return colon
     meant = meant_type(name)
     if meant is not None:
         return f"did you mean {in_spelling(meant, xml=xml)}?"
     built_in = {type_ if xml else NODES[type_].yaml[0]: type_ for type_ in NODES}
     near = nearest(name, [*trees.values(), *own, *built_in], least=LIKE)
+    if near is None or near not in (*trees.values(), *own):
+        called = _also_called(context, name)
+        near = called or near
     if near is None:
         return ""
     if near in trees.values() and near not in own:
         return f"did you mean {_run_as(near, xml=xml)}?"
     return f"did you mean {in_spelling(built_in[near], xml=xml) if near in built_in else near}?"
+
+
+def _also_called(context: Context, name: str) -> str | None:
+    """The skill that people call by a name, such as `grab`."""
+    small = name.lower().replace("_", "").replace("-", "")
+    for each in context.registry.skills:
+        skill = context.skill(each)
+        words = () if skill is None else skill.also_called
+        if any(small == word.replace("_", "") for word in words):
+            return each
+    return None
+
+
+def _without_colon(name: str, own: Sequence[str], context: Context) -> str:
+    """The hint for `navigate {in_front_of: …}` and `navigate in_front_of: …`; else empty."""
+    found = _RUN_TOGETHER.match(name)
+    known = (*own, *context.document.trees, *SPELLED)
+    if found is None or found[1] not in known:
+        return ""
+    return f"`{found[1]}` needs a colon after it: `{found[1]}: {{{found[2]}: …}}`"
 
 
 def known_names(context: Context, node: Node) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 
 from momantu_bt.tree.script.nodes import (
@@ -13,6 +14,7 @@ from momantu_bt.tree.script.nodes import (
     Comparison,
     Constant,
     Expression,
+    ScriptError,
     Unary,
     Variable,
 )
@@ -52,6 +54,14 @@ class Script:
         for statement in self.statements:
             value = statement.evaluate(board)
         return value
+
+    def values(self, board: Board) -> list[tuple[str, object]]:
+        """The variables that it reads, as `found.pose`, with their values; no empty ones."""
+        found: dict[str, object] = {}
+        for variable in self.reads:
+            with suppress(ScriptError):
+                found[".".join((variable.key, *variable.parts))] = variable.evaluate(board)
+        return list(found.items())
 
 
 def script_of(found: list[Token], text: str, *, strict: bool = False) -> Script:

@@ -144,6 +144,7 @@ class BackUp(_Motion):
     backup_dist: float = In(0.15, unit="m", least=0, doc="how far back")
     backup_speed: float = In(0.025, unit="m/s", least=0, doc="how fast")
 
+    also_called: ClassVar = ("reverse", "drive_back", "move_back")
     failures: ClassVar = {**_Motion.failures, "INVALID_INPUT": "the speed is 0"}
     numbers: ClassVar = {
         "UNKNOWN": 710,

@@ -87,7 +87,7 @@ def test_wrong_arguments(
 
 def test_check_of_a_good_tree(capsys: pytest.CaptureFixture[str], tree: Path) -> None:
     assert main(["check", str(tree)]) == 0
-    assert "no errors in 1 trees with 3 nodes" in capsys.readouterr().out
+    assert "no errors in 1 tree with 3 nodes" in capsys.readouterr().out
 
 
 def test_check_reports_all_errors(capsys: pytest.CaptureFixture[str], bad: Path) -> None:
@@ -112,6 +112,29 @@ def test_check_explains_a_code(capsys: pytest.CaptureFixture[str]) -> None:
     said = capsys.readouterr().out
     assert said.startswith("# unknown-node")
     assert "Wrong:" in said
+
+
+def test_check_with_a_goal(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", "bring_object", "--goal", "can on table_b"]) == 0
+    capsys.readouterr()
+    assert main(["check", "bring_object", "--goal", "can on tabel_b"]) == 2
+    assert "--goal:1:1: error: the world has no surface 'tabel_b'" in capsys.readouterr().err
+
+
+def test_run_accepts_what_stands_elsewhere_in_trees_that_it_does_not_reach(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    tree = tmp_path / "tree.yaml"
+    text = "momantu_bt: 1\nmain: A\ntrees:\n  A: [{wait: 0.1 s}]\n  B: [{Kick: {power: 3}}]\n"
+    tree.write_text(text)
+    run = ["run", "-q", str(tree), "--world", "none"]
+    assert main(run) == 2
+    assert "no node is called 'Kick'" in capsys.readouterr().err
+    assert main([*run, "--undeclared", "warn"]) == 0
+    tree.write_text(text.replace("0.1 s}", "0.1 s}, B"))
+    capsys.readouterr()
+    assert main([*run, "--undeclared", "warn"]) == 2
+    assert "nothing here has the node 'Kick'" in capsys.readouterr().err
 
 
 NEEDS_GOAL = """<root BTCPP_format="4"><BehaviorTree ID="Go">

@@ -192,7 +192,7 @@ def test_checking_several_trees_tells_of_each(capsys: Out, tree: Path, tmp_path:
     bad.write_bytes(TREE.replace("wait", "wat").replace("\n", "\r\n").encode())
     assert main(["check", str(bad), str(tree), "x" * 5000]) == 2
     said = capsys.readouterr()
-    assert said.out == f"{tree}: no errors in 1 trees with 3 nodes\n"
+    assert said.out == f"{tree}: no errors in 1 tree with 3 nodes\n"
     first, line, caret, *_ = said.err.splitlines()
     assert first.startswith(f"{bad}:4:11: error: no node is called 'wat'")
     assert caret.index("^^^") == line.index("wat")

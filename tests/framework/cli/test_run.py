@@ -50,6 +50,7 @@ def test_a_run_tells_each_change_and_ends_with_one_line(tree, capsys):
         "wait 0.1 s starts",
         "wait 0.1 s done",
         "Check k 1 fails: TOO_SMALL",
+        'fail code TOO_SMALL, message "k is ${k}" fails: TOO_SMALL, k is 1',
         "recover: TOO_SMALL: script $n += 1",
         "recover: try 2 of 2",
         "Check k 2 done",

@@ -76,7 +76,9 @@ def test_a_file_checks_with_the_skills_that_were_made_from_its_uses(
     assert not follow["speed"].required
     assert main(["check", str(file)]) == 0, capsys.readouterr().err
     assert main(["skills", "test", "FollowLine"]) == 1
-    assert "speed" in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert "NOT_WRITTEN is among its codes; it is a stub" in said
+    assert "speed" not in said
     its_test = runpy.run_path(str(folder / "tests" / "test_stubs.py"))["test_it_does_its_work"]
     for name in ("FindShelf", "FollowLine"):
         with pytest.raises(pytest.skip.Exception, match=rf"fill in run\(\) of {name}"):

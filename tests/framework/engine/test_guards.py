@@ -46,6 +46,24 @@ def test_a_guard_is_not_asked_while_its_child_runs_but_again_after_its_end(bench
     assert node.failure.message == "`open` does not hold"
 
 
+@pytest.mark.parametrize(
+    ("code", "values", "said"),
+    [
+        ("n == 2", {"n": 1}, "`n == 2` does not hold; n is 1"),
+        ("n > 0.5 && word == 'a'", {"n": 0.25, "word": "b"}, "; n is 0.25, word is b"),
+        ("word == 'a'", {"word": ""}, "; word is empty"),
+        ("!open", {"open": True}, "`!open` does not hold"),
+        ("n == 2 && w == 'a'", {"n": 1, "w": "x" * 100}, "does not hold; n is 1"),
+    ],
+)
+def test_a_condition_says_with_which_values_it_does_not_hold(bench, code, values, said):
+    for name, value in values.items():
+        bench.board.set(name, value)
+    node = guarded(bench, "S", code=code)
+    assert bench.tick(node) == "F"
+    assert node.failure.message.endswith(said)
+
+
 def test_after_a_halt_a_guard_is_asked_again_only_by_a_new_recovery(bench):
     bench.board.set("open", True)
     node = guarded(bench, "R")

@@ -107,6 +107,40 @@ def test_a_replay_prints_the_same_lines_and_checks(run_yaml, tmp_path):
     assert [line for _, line in run_lines(recording)] == said
 
 
+GUARDS = """
+trees:
+  Main:
+    - script: $rounds := 1
+    - handle:
+        try:
+          fallback:
+            - condition: $rounds == 2
+            - precondition: {if: $rounds > 5, child: {wait: 1 s}}
+        catch:
+          any: {wait: 0.1 s}
+    - recover:
+        attempts: 2
+        try: {condition: $rounds == 3}
+        catch:
+          any: {script: $rounds = 3}
+"""
+
+
+def test_the_reason_of_a_guard_stands_before_what_handles_it(run_yaml):
+    said: list[str] = []
+    run_yaml(GUARDS, watch=lambda run: [ChangeLines(said.append)])
+    words = [line.split(" s ", 1)[1].strip() for line in said]
+    assert words[:2] == [
+        "precondition $rounds > 5 fails: FAILED, `rounds > 5` does not hold; rounds is 1",
+        "handle: FAILED: wait 0.1 s",
+    ]
+    at = words.index(
+        "condition $rounds == 3 fails: FAILED, `rounds == 3` does not hold; rounds is 1"
+    )
+    assert words[at + 1] == "recover: FAILED: script $rounds = 3"
+    assert sum("does not hold" in line for line in words) == 2
+
+
 def test_viewers_get_the_markers_and_the_lines(run_yaml, tmp_path):
     lines_of(run_yaml, tmp_path)
     recording = read_record(tmp_path / "r")

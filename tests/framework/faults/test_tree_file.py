@@ -113,7 +113,7 @@ def test_check_reads_it_against_the_tree_beside_it(
 ) -> None:
     file = beside(tree, "begins: {camera.dead: Rest}\n")
     assert main(["check", str(file)]) == 0
-    assert capsys.readouterr().out == f"{file}: no errors in 1 phases and 0 rows\n"
+    assert capsys.readouterr().out == f"{file}: no errors in 1 phase and 0 rows\n"
     tree.unlink()
     assert main(["check", str(file)]) == 2
     assert "faults in mine.yaml, which is not beside it" in capsys.readouterr().err

@@ -11,6 +11,7 @@ from momantu_bt.formats.problems import errors
 from momantu_bt.formats.yaml.comments import Comment
 from momantu_bt.formats.yaml.reader import YamlSyntaxError
 from momantu_bt.formats.yaml.values import Entries, Items, Raw, Scalar
+from momantu_bt.tree.catalogue import SPELLED
 from momantu_bt.tree.files.port_values import drop_duplicates, is_key, mapping, port_value
 from momantu_bt.tree.files.syntax import compose_with_comments
 from momantu_bt.tree.files.yaml.comments import attach
@@ -124,7 +125,7 @@ class _Reader:
             read_document_xml(document, having["xml"][1], self.problems)
         if "models" in having:
             document.models = read_models(having["models"][1], self.problems)
-        entry = having.get("trees")
+        entry = self.as_mapping(having.get("trees"))
         if entry is not None:
             Trees(self.registry.skills, moved, self.problems).settle(entry[1])
         read_trees(entry, document, self.outside, self.registry, self.problems)
@@ -136,6 +137,22 @@ class _Reader:
         self.values(document, having.get("values"))
         return document
 
+    def as_mapping(self, entry: tuple[Scalar, Raw] | None) -> tuple[Scalar, Raw] | None:
+        """`trees:` with a list of trees (`- Name: …`) or of nodes, reported, as what it means."""
+        if entry is None or not isinstance(entry[1], Items) or not entry[1].items:
+            return entry
+        raw = entry[1]
+        trees = [tree for item in raw.items if isinstance(item, Entries) for tree in item.entries]
+        nodes = [key.text for key, _ in trees if key.text in (*SPELLED, *self.registry.skills)]
+        message = "`trees` is a mapping from names to trees, not a list"
+        if nodes or len(trees) < len(raw.items):
+            hint = "write a name such as `Main:` above the list, and indent the list"
+            trees = [(Scalar("Main", "Main", False, entry[0].place), raw)]
+        else:
+            hint = f"write `{trees[0][0].text}:` without `- ` before it"
+        self.problems.error("wrong-value", raw.place, message, hint)
+        return entry[0], Entries(trees, raw.place)
+
     def report_no_tree(
         self, document: Document, entry: tuple[Scalar, Raw] | None, place: Place
     ) -> None:
@@ -143,6 +160,8 @@ class _Reader:
         palette = bool(document.models) and self.included
         if document.trees or (entry is None and (self.outside or palette)):
             return
+        if entry is not None and isinstance(entry[1], Scalar) and entry[1].value is not None:
+            return  # what stands there instead is reported
         where = entry[0].place if entry is not None else Place(place.file, place.line, 1)
         hint = "write `trees:` and under it `Name:`"
         with self.problems.keeping():
