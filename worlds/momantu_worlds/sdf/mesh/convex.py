@@ -30,6 +30,8 @@ MOST_PARTS = 400
 """Most parts of one mesh; with more, the hull of the whole mesh is used."""
 FILLED = 0.7
 """Largest share of a hollow part's hull that its convex pieces may have."""
+MOST_PLATES = 60
+"""Most plates of a part that is no building: cushions and frames of many faces are hulls."""
 FLAT_HULL = 1e-9
 """Volume below which a hull is flat, m3."""
 THICKENED = 0.005
@@ -61,11 +63,15 @@ def convex_pieces(pieces: Sequence[Piece], *, still: bool) -> tuple[list[Array],
 
 def _split(vertices: Array, triangles: NDArray[np.int64], hull: HullMesh) -> list[Array]:
     """Convex pieces of a hollow part: a few for furniture, else plates; none when neither fits."""
-    if not is_building(vertices):
-        pieces = [_hull(piece) for piece in split_hulls(vertices, triangles)]
-        if sum(piece.volume for piece in pieces) < FILLED * hull.volume:
-            return [np.asarray(piece.vertices) for piece in pieces]
-    return plates_of(vertices, triangles)
+    if is_building(vertices):
+        return plates_of(vertices, triangles)
+    pieces = [_hull(piece) for piece in split_hulls(vertices, triangles)]
+    split = [piece.vertices for piece in pieces]
+    if sum(piece.volume for piece in pieces) < FILLED * hull.volume:
+        return split
+    plates = plates_of(vertices, triangles)
+    few = 0 < len(plates) <= MOST_PLATES
+    return plates if few else split if len(split) > 1 else []
 
 
 def _parts(pieces: Sequence[Piece]) -> Iterator[tuple[Array, NDArray[np.int64]]]:
