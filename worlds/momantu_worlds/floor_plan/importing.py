@@ -135,4 +135,5 @@ def _free_floor(free: np.ndarray, picture: MapPicture) -> FreeFloor:
     clearance = np.asarray(away, dtype=np.float32)
     fits = (clearance > HALF_WIDTH).astype(np.uint8)
     _, regions = cv2.connectedComponents(fits, connectivity=4)
-    return FreeFloor(picture.origin, picture.resolution, clearance, np.asarray(regions))
+    walls = ~np.asarray(free, dtype=bool)
+    return FreeFloor(picture.origin, picture.resolution, clearance, np.asarray(regions), walls)

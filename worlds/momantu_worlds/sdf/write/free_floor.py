@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array
+from momantu_worlds.sdf.write.indoors import inside
 
 CELL = 0.05
 """m."""
@@ -19,21 +21,39 @@ MARGIN = 2.0
 """Margin of floor around everything, m."""
 LOWEST, HIGHEST = 0.03, 1.5
 """Range of heights of obstacles for a robot, m."""
+WALL = 1.5
+"""What is so high may be a wall, m."""
+SMALLEST = 4.0
+"""Least area of a building, m2."""
 HALF_WIDTH = 0.35
 """Half the width of a robot that turns on the spot, m."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, eq=False)
 class FreeFloor:
     """clearance: (rows, columns) distance to the nearest obstacle, m; row 0 is at the smallest y.
 
     regions: (rows, columns) number of the connected region; 0: the robot does not fit.
+    walls: (rows, columns) whether something as high as a wall stands there.
     """
 
     origin: tuple[float, float]
     cell: float
     clearance: NDArray[np.float32]
     regions: NDArray[np.int32]
+    walls: NDArray[np.bool_]
+
+    @cached_property
+    def inside(self) -> NDArray[np.bool_]:
+        """Cells within a building; all of them where there is none."""
+        found = inside(self.walls)
+        return found if float(found.sum()) * self.cell**2 > SMALLEST else np.ones_like(found)
+
+    @cached_property
+    def from_walls(self) -> NDArray[np.float32]:
+        """(rows, columns) distance to the nearest wall, m."""
+        free = np.where(self.walls, 0, 255).astype(np.uint8)
+        return np.asarray(cv2.distanceTransform(free, cv2.DIST_L2, 5), np.float32) * self.cell
 
     def index(self, x: float, y: float) -> tuple[int, int] | None:
         """Row and column of a point; None beyond the grid."""
@@ -60,18 +80,21 @@ class FreeFloor:
 
 def free_floor(hulls: Iterable[Array]) -> FreeFloor:
     """The free floor between convex things, each given by points (n, 3) in the map."""
-    footprints = [
-        hull[:, :2] for hull in hulls if hull[:, 2].max() > LOWEST and hull[:, 2].min() < HIGHEST
-    ]
+    obstacles = [h for h in hulls if h[:, 2].max() > LOWEST and h[:, 2].min() < HIGHEST]
+    footprints = [hull[:, :2] for hull in obstacles]
     everything = np.concatenate(footprints) if footprints else np.zeros((1, 2))
     low, high = everything.min(axis=0) - MARGIN, everything.max(axis=0) + MARGIN
     cell = max(CELL, float((high - low).max()) / MOST_CELLS)
     columns, rows = (int(n) for n in np.ceil((high - low) / cell).astype(int) + 1)
     free = np.full((rows, columns), 255, dtype=np.uint8)
-    for footprint in footprints:
+    walls = np.zeros_like(free)
+    for footprint, hull in zip(footprints, obstacles, strict=True):
         around = cv2.convexHull(((footprint - low) / cell).astype(np.float32))
         cv2.fillConvexPoly(free, np.floor(around).astype(np.int32), 0)
+        if hull[:, 2].max() >= WALL:
+            cv2.fillConvexPoly(walls, np.floor(around).astype(np.int32), 1)
     clearance = np.asarray(cv2.distanceTransform(free, cv2.DIST_L2, 5), dtype=np.float32) * cell
     fits = (clearance > HALF_WIDTH).astype(np.uint8)
     _, regions = cv2.connectedComponents(fits, connectivity=4)
-    return FreeFloor((float(low[0]), float(low[1])), cell, clearance, np.asarray(regions))
+    origin = float(low[0]), float(low[1])
+    return FreeFloor(origin, cell, clearance, np.asarray(regions), walls > 0)
