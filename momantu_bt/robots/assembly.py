@@ -11,11 +11,12 @@ from lxml import etree
 
 from momantu_bt.formats.cache import cache_subfolder
 from momantu_bt.formats.files import write_whole
+from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.places import KeyPath
 from momantu_bt.formats.problems import errors
 from momantu_bt.robot_simulation import BaseJoints
 from momantu_bt.robots.errors import PartError
-from momantu_bt.robots.inertia import inertia_problems
+from momantu_bt.robots.inertia import inertia_problems, replace_inertial
 from momantu_bt.robots.joining import KEPT, VIRTUAL_JOINTS, Joining
 from momantu_bt.robots.limits import complete_limits
 from momantu_bt.robots.meshes import locate_meshes, replace_meshes, users_folder, write_paths
@@ -50,6 +51,7 @@ def assemble(robot: RobotFile, folder: Path) -> Assembled:
         RobotNotInstalled: a part is in a Python package that is not installed.
     """
     parts = load_parts(robot, folder)
+    _raise([error for part in parts for error in _give_inertials(part)])
     _raise([error for part in parts for error in _unfit(part)])
     drive = robot.base.drive
     joints = None if drive is None else drive.joints or VIRTUAL_JOINTS
@@ -75,21 +77,35 @@ def assemble(robot: RobotFile, folder: Path) -> Assembled:
 def load_parts(robot: RobotFile, folder: Path) -> list[LoadedPart]:
     """Every part's URDF, as its own file has it; raises as `assemble`."""
     parts, troubles = [], []
+    package_path = [folder / each for each in robot.packages]
     for name, source in robot.parts.items():
         meshes = users_folder(robot.name, name, source.meshes, folder)
         try:
-            parts.append(load_part(name, source, folder, meshes))
+            parts.append(load_part(name, source, folder, meshes, package_path))
         except PartError as error:
             troubles.append(error)
     _raise(troubles)
     return parts
 
 
+def _give_inertials(part: LoadedPart) -> Iterator[PartError]:
+    """Put the inertials of the robot file in place; yields what is wrong."""
+    links = {str(link.get("name")): link for link in part.root.findall("link")}
+    for name, inertial in part.source.inertials.items():
+        if name in links:
+            replace_inertial(links[name], inertial)
+        else:
+            place: KeyPath = ("parts", part.name, "inertials", name)
+            yield PartError(
+                place, f"there is no link {name!r}; {valid_names(name, links, 'links')}"
+            )
+
+
 def _is_whole(robot: RobotFile, parts: list[LoadedPart]) -> bool:
     """Whether the first part's file is the whole robot, with the limits that it has."""
     own, *others = parts
     drive = robot.base.drive
-    changed = own.source.xacro or own.source.namespace or own.meshes
+    changed = own.source.xacro or own.source.namespace or own.meshes or own.source.inertials
     unread = any(element.tag not in KEPT for element in own.root)
     added = others or robot.mounts or robot.frames or (drive is not None and drive.joints is None)
     return not (changed or unread or added)
@@ -116,7 +132,7 @@ def _meshes(parts: list[LoadedPart], folder: Path) -> list[Mapping[str, Path]]:
     for part in parts:
         place: KeyPath = ("parts", part.name)
         troubles += [PartError((*place, "meshes"), said) for said in replace_meshes(part)]
-        located = locate_meshes(part, folder)
+        located = locate_meshes(part)
         troubles += [PartError(place, said) for said in located.missing]
         found.append(located.found)
     _raise(troubles)

@@ -13,6 +13,7 @@ from momantu_bt.formats.problems import Problem, Severity
 from momantu_bt.formats.urdf import linked
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.robots.parts import line_of
+from momantu_bt.robots.robot_file import BoxInertial
 
 TRIANGLE_SLACK = 0.01
 """Rounding may bring one principal inertia above the sum of the others by this relative amount."""
@@ -26,16 +27,39 @@ def inertia_problems(root: etree._Element, file: str = "") -> list[Problem]:
     An error: no physical body has these values. A warning: the values are only unlikely.
     file: the URDF's name in the places.
     """
+    found = []
+    for link, error, code, message, hint in _of_links(root):
+        severity = Severity.ERROR if error else Severity.WARNING
+        found.append(Problem(code, message, Place(file, line_of(link)), hint, severity))
+    return found
+
+
+def impossible_inertials(root: etree._Element) -> dict[str, str]:
+    """What is wrong with masses and inertias that no body has, by link name."""
+    return {str(link.get("name")): said for link, error, _, said, _ in _of_links(root) if error}
+
+
+def _of_links(root: etree._Element) -> Iterator[tuple[etree._Element, bool, str, str, str]]:
     moving = {
         linked(joint, "child") for joint in root.findall("joint") if joint.get("type") != "fixed"
     }
-    found = []
     for link in root.findall("link"):
-        name, place = str(link.get("name")), Place(file, line_of(link))
-        for error, code, message, hint in _of_link(link, name in moving):
-            severity = Severity.ERROR if error else Severity.WARNING
-            found.append(Problem(code, message, place, hint, severity))
-    return found
+        for found in _of_link(link, link.get("name") in moving):
+            yield (link, *found)
+
+
+def replace_inertial(link: etree._Element, given: BoxInertial) -> None:
+    """Give a link the mass and the inertia of a solid box."""
+    for old in link.findall("inertial"):
+        link.remove(old)
+    new = etree.SubElement(link, "inertial")
+    etree.SubElement(new, "origin", xyz=" ".join(f"{v:.9g}" for v in given.xyz), rpy="0 0 0")
+    etree.SubElement(new, "mass", value=f"{given.mass:.9g}")
+    x, y, z = given.box
+    own = [given.mass / 12 * (a * a + b * b) for a, b in ((y, z), (x, z), (x, y))]
+    inertia = etree.SubElement(new, "inertia", ixy="0", ixz="0", iyz="0")
+    for key, value in zip(("ixx", "iyy", "izz"), own, strict=True):
+        inertia.set(key, f"{value:.9g}")
 
 
 def _of_link(link: etree._Element, moves: bool) -> Iterator[tuple[bool, str, str, str]]:
@@ -58,7 +82,8 @@ def _of_link(link: etree._Element, moves: bool) -> Iterator[tuple[bool, str, str
     if least <= 0.0:
         what = f"the inertia of {name} is not positive definite (principal values "
         what += f"{least:.3g}, {middle:.3g}, {most:.3g})"
-        yield moves, "bad-inertia", what, _proposal(link, mass)
+        # a link that is fixed to another may have none, but not an impossible one
+        yield moves or bool(inertia.any()), "bad-inertia", what, _proposal(link, mass)
     elif most > (least + middle) * (1.0 + TRIANGLE_SLACK):
         what = f"no body has the inertia of {name}: the largest principal value {most:.3g} is "
         what += f"more than the sum of the others, {least + middle:.3g}"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -10,10 +9,13 @@ from pathlib import Path
 
 from lxml import etree
 
+from momantu_bt.robots.packages import Packages
 from momantu_bt.robots.parts import LoadedPart, line_of
 
 MESHES = "MOMANTU_BT_MESHES"
 """Environment variable: a folder with `<robot>/<part>/<link>.…`, used instead of a part's own."""
+PLACES = 3
+"""Most places that the message about a missing mesh names."""
 ENDINGS = (".glb", ".dae", ".obj", ".stl")
 """Suffixes of mesh files, also in upper case; the first one found is used."""
 
@@ -74,20 +76,18 @@ class Located:
     missing: tuple[str, ...]
 
 
-def locate_meshes(part: LoadedPart, folder: Path) -> Located:
-    """Look up every mesh of a part. folder: of the robot file."""
+def locate_meshes(part: LoadedPart) -> Located:
+    """Look up every mesh of a part."""
     found: dict[str, Path] = {}
     missing = []
     for mesh in part.root.findall("link/*/geometry/mesh"):
         name = str(mesh.get("filename", ""))
-        looked = list(dict.fromkeys(_candidates(name, part.path, folder)))
-        path = next((each for each in looked if each.is_file()), None)
+        path = part.packages.mesh(name)
         if path is not None:
             found[name] = path.resolve()
             continue
-        places = ", ".join(str(each) for each in looked)
         where = part.where(line_of(mesh))
-        missing.append(f"{where}: the mesh {name!r} is missing; looked for {places}")
+        missing.append(f"{where}: the mesh {name!r} is missing; {_looked(name, part.packages)}")
     return Located(found, tuple(missing))
 
 
@@ -97,19 +97,10 @@ def write_paths(part: LoadedPart, found: Mapping[str, Path]) -> None:
         mesh.set("filename", str(found[str(mesh.get("filename", ""))]))
 
 
-def _candidates(name: str, path: Path, folder: Path) -> Iterator[Path]:
-    plain = name.removeprefix("file://")
-    if not plain.startswith("package://"):
-        yield path.parent / plain
-        yield folder / plain
-        return
-    plain = plain.removeprefix("package://").lstrip("/")
-    package, _, inside = plain.partition("/")
-    for root in (path.parent, folder):
-        yield root / plain
-    for parent in path.resolve().parents:
-        if parent.name == package:
-            yield parent / inside
-    spec = importlib.util.find_spec(package) if package.isidentifier() else None
-    if spec is not None and spec.submodule_search_locations:
-        yield Path(next(iter(spec.submodule_search_locations))) / inside
+def _looked(name: str, packages: Packages) -> str:
+    """Where a mesh was looked for."""
+    package = name.removeprefix("package://").partition("/")[0]
+    if name.startswith("package://") and packages.find(package) is None:
+        return f"there is no package {package!r}: {packages.searched()}"
+    looked = list(dict.fromkeys(packages.mesh_candidates(name)))[:PLACES]
+    return f"looked for {', '.join(str(each) for each in looked)}"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,6 +12,7 @@ from lxml import etree
 from momantu_bt.formats.places import KeyPath
 from momantu_bt.formats.urdf import UrdfError, parse_urdf
 from momantu_bt.robots.errors import PartError, RobotNotInstalled
+from momantu_bt.robots.packages import Packages
 from momantu_bt.robots.robot_file import PackageFile, PartSource
 from momantu_bt.robots.xacro_files import expand
 
@@ -27,6 +28,7 @@ class LoadedPart:
 
     path: the file that the robot file names. root: its `robot` element. files: all files that it
     was read from, by names that other machines can use. meshes: the user's folder of meshes.
+    packages: those that it may name.
     """
 
     name: str
@@ -35,6 +37,7 @@ class LoadedPart:
     root: etree._Element
     files: Mapping[str, Path]
     meshes: Path | None
+    packages: Packages
 
     def where(self, line: int) -> str:
         """The place of a line, for messages; of what xacro made only the file is known."""
@@ -46,10 +49,17 @@ def line_of(element: etree._Element) -> int:
     return getattr(element, "sourceline", None) or 0
 
 
-def load_part(name: str, source: PartSource, folder: Path, meshes: Path | None) -> LoadedPart:
+def load_part(
+    name: str,
+    source: PartSource,
+    folder: Path,
+    meshes: Path | None,
+    package_path: Sequence[Path] = (),
+) -> LoadedPart:
     """Read one part.
 
-    folder: of the robot file. meshes: the folder of meshes to use, if any.
+    folder: of the robot file. meshes: the folder of meshes to use, if any. package_path: folders
+    in which ROS packages are looked for first.
 
     Raises:
         PartError: a file is missing, or is not a URDF.
@@ -66,12 +76,13 @@ def load_part(name: str, source: PartSource, folder: Path, meshes: Path | None) 
         raise PartError(place, f"there is no file {path}{beside}")
     if path.stat().st_size > MOST_BYTES:
         raise PartError(place, f"{path} has more than {MOST_BYTES} bytes")
+    packages = Packages(path, folder, package_path)
     if kind == "xacro":
-        text, included = expand(path, source.args, folder, place)
+        text, included = expand(path, source.args, packages, place)
     else:
         text, included = path.read_bytes(), ()
     files = {shown(each, folder): each for each in (path, *included)}
-    return LoadedPart(name, source, path, _parsed(text, path, place), files, meshes)
+    return LoadedPart(name, source, path, _parsed(text, path, place), files, meshes, packages)
 
 
 def _in_package(where: PackageFile, place: KeyPath) -> Path:

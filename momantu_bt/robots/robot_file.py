@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal, Self, TypeAlias
 
 from pydantic import Field, model_validator
 
-from momantu_bt.descriptions.quantities import Angle, Force, JointPosition, Length, Size
+from momantu_bt.descriptions.quantities import Angle, Force, JointPosition, Length, Mass, Size
 from momantu_bt.robot_parts import (
     Actuator,
     BaseLimits,
@@ -34,6 +34,17 @@ class PackageFile(Part):
     """The file's path inside it."""
 
 
+class BoxInertial(Part):
+    """The mass of a link, spread evenly in a box."""
+
+    mass: Mass
+    """kg."""
+    box: tuple[Size, Size, Size]
+    """The box's edges along the link's x, y and z."""
+    xyz: Point = (0.0, 0.0, 0.0)
+    """The box's middle in the link's frame."""
+
+
 class PartSource(Part):
     """One URDF of the robot. Exactly one of `urdf` and `xacro` is given."""
 
@@ -45,6 +56,8 @@ class PartSource(Part):
     """Arguments for the xacro file."""
     namespace: Namespace | None = None
     """Put before the name of every link, joint and material, with an underscore."""
+    inertials: dict[str, BoxInertial] = {}
+    """Masses and inertias in the place of the file's own, by link name without the namespace."""
     meshes: str | None = None
     """A folder with meshes that are used instead of the part's own geometry, by link name."""
 
@@ -104,6 +117,8 @@ class RobotFile(Part):
     """What the robot is called."""
     parts: Annotated[dict[Name, PartSource], Field(min_length=1)]
     """The robot's URDF files; the first carries the base frame."""
+    packages: tuple[str, ...] = ()
+    """Folders in which ROS packages are looked for, relative to the robot file."""
     mounts: dict[str, Mount] = {}
     """Where each part but the first is fixed; the first may be put on a base frame of its own."""
     frames: dict[str, Attachment] = {}

@@ -7,7 +7,6 @@ around that. Expand only files that you trust.
 
 from __future__ import annotations
 
-import importlib.util
 import sys
 import threading
 import xml.parsers.expat
@@ -20,6 +19,7 @@ from momantu_bt.formats.names import nearest
 from momantu_bt.formats.places import KeyPath
 from momantu_bt.lazy import lazily
 from momantu_bt.robots.errors import PartError
+from momantu_bt.robots.packages import Packages
 
 with lazily():
     import xacro
@@ -32,17 +32,17 @@ _INDEX = "ament_index_python"
 
 
 def expand(
-    path: Path, args: Mapping[str, object], folder: Path, place: KeyPath
+    path: Path, args: Mapping[str, object], packages: Packages, place: KeyPath
 ) -> tuple[bytes, tuple[Path, ...]]:
     """The URDF that a xacro file gives, and the files that it includes.
 
-    folder: of the robot file; `$(find x)` is looked up beside it and among installed packages.
+    packages: in which `$(find x)` is looked up.
 
     Raises:
         PartError: xacro reports an error; the message has its words and the file.
     """
     given = {name: _argument(value) for name, value in args.items()}
-    with _LOCK, _package_index(path, folder) as missing:
+    with _LOCK, _package_index(packages) as missing:
         xacro.all_includes.clear()
         try:
             document = xacro.process_file(str(path), mappings=given)
@@ -66,7 +66,7 @@ def _said(path: Path, message: str, stack: list[str | None]) -> str:
 
 
 @contextmanager
-def _package_index(path: Path, folder: Path) -> Iterator[list[str]]:
+def _package_index(packages: Packages) -> Iterator[list[str]]:
     """Stand in for ROS's package index while a file is expanded.
 
     Yields: sentences about requested packages that are missing.
@@ -75,14 +75,14 @@ def _package_index(path: Path, folder: Path) -> Iterator[list[str]]:
 
     def find(name: str) -> str:
         try:
-            return str(_package(name, path, folder))
+            return str(_package(name, packages))
         except LookupError as error:
             missing.append(str(error))
             raise
 
-    index, packages = ModuleType(_INDEX), ModuleType(f"{_INDEX}.packages")
-    packages.get_package_share_directory = find  # type: ignore[attr-defined]
-    mine = {index.__name__: index, packages.__name__: packages}
+    index, finder = ModuleType(_INDEX), ModuleType(f"{_INDEX}.packages")
+    finder.get_package_share_directory = find  # type: ignore[attr-defined]
+    mine = {index.__name__: index, finder.__name__: finder}
     before = {name: sys.modules.get(name) for name in mine}
     sys.modules.update(mine)
     try:
@@ -95,21 +95,15 @@ def _package_index(path: Path, folder: Path) -> Iterator[list[str]]:
                 sys.modules[name] = module
 
 
-def _package(name: str, path: Path, folder: Path) -> Path:
+def _package(name: str, packages: Packages) -> Path:
     """The folder that `$(find name)` means."""
-    parents = path.resolve().parents
-    for root in (folder.resolve(), folder.resolve().parent, *parents):
-        if root.name == name:
-            return root
-        if (root / name).is_dir():
-            return root / name
-    spec = importlib.util.find_spec(name) if name.isidentifier() else None
-    if spec is not None and spec.submodule_search_locations:
-        return Path(next(iter(spec.submodule_search_locations)))
-    beside = sorted(p.name for p in folder.iterdir() if p.is_dir())
+    found = packages.find(name)
+    if found is not None:
+        return found
+    beside = sorted(p.name for p in packages.folder.iterdir() if p.is_dir())
     near = nearest(name, beside)
     hint = f" (did you mean {near!r}?)" if near else ""
     raise LookupError(
-        f"$(find {name}) is neither a folder beside the robot file nor an installed "
-        f"package{hint}; put a folder of that name into {folder}"
+        f"$(find {name}) is neither a folder beside the robot file nor any other package that can "
+        f"be found{hint}; {packages.searched()}"
     )

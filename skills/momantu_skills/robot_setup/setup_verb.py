@@ -8,13 +8,14 @@ from typing import Annotated, Any
 
 import typer
 
-from momantu_bt.errors import ExitCode
+from momantu_bt.errors import ExitCode, InputError
 from momantu_bt.formats.files import OutputError, write_whole
 from momantu_bt.lazy import lazily
 from momantu_bt.robots import RobotFileError, read_robot
 
 with lazily():
     from momantu_skills.robot_setup.find import proposal
+    from momantu_skills.robot_setup.urdf import prepare
     from momantu_skills.robot_setup.write import summary, writer
 
 
@@ -31,6 +32,14 @@ def setup(
         typer.Option(min=1, max=1_000_000, help="Number of random postures for self-collisions."),
     ] = 10_000,
     seed: Annotated[int, typer.Option(min=0, help="The same seed gives the same proposal.")] = 0,
+    arg: Annotated[
+        list[str] | None,
+        typer.Option("--arg", metavar="NAME=VALUE", help="An argument of the xacro file."),
+    ] = None,
+    package_path: Annotated[
+        list[Path] | None,
+        typer.Option("--package-path", help="A folder of ROS packages that the file names."),
+    ] = None,
     force: Annotated[bool, typer.Option("--force", help="Overwrite an existing file.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")] = False,
 ) -> ExitCode:
@@ -44,11 +53,13 @@ def setup(
     Examples:
       momantu-bt robots setup my_robot.urdf
       momantu-bt robots setup my_robot.urdf.xacro -o robots/my_robot
+      momantu-bt robots setup my_robot.urdf.xacro --arg arm=true --package-path ~/ws/src
       momantu-bt robots setup my_robot.urdf --samples 50000 --force
     """
     if output is not None:
         _check_free(output / FILE, force)
-    found = proposal.propose(urdf, samples=samples, seed=seed)
+    given = prepare.Given(_arguments(arg or []), tuple(package_path or []))
+    found = proposal.propose(urdf, samples=samples, seed=seed, given=given)
     folder = output or Path(found.name)
     path = folder / FILE
     _check_free(path, force)
@@ -60,6 +71,18 @@ def setup(
     else:
         _say(found, path, fill_in, wrong)
     return ExitCode.FAILURE if fill_in or wrong else ExitCode.SUCCESS
+
+
+def _arguments(given: list[str]) -> dict[str, str]:
+    """Arguments NAME=VALUE, or NAME:=VALUE as ROS writes it."""
+    found = {}
+    for each in given:
+        name, equals, value = each.partition("=")
+        name = name.removesuffix(":").strip()
+        if not equals or not name:
+            raise InputError(f"--arg {each}: expected NAME=VALUE, such as --arg arm=true")
+        found[name] = value
+    return found
 
 
 def _check_free(path: Path, force: bool) -> None:

@@ -7,8 +7,10 @@ from pathlib import Path
 
 import pytest
 from lxml import etree
-from momantu_skills.robot_setup.urdf.prepare import Prepared, find_mesh, prepare
+from momantu_skills.robot_setup.urdf.prepare import Prepared, prepare
 from momantu_skills.robot_setup.urdf.skeleton import SetupError
+
+from momantu_bt.robots.inertia import impossible_inertials
 
 Given = Callable[..., Prepared]
 BOX = '<collision><geometry><box size="1 1 1"/></geometry></collision>'
@@ -117,16 +119,22 @@ def test_what_is_no_urdf_is_refused(tmp_path: Path) -> None:
         prepare(tmp_path / "gone.urdf", tmp_path)
 
 
-@pytest.mark.parametrize(
-    "name",
-    ["meshes/x.stl", "package://arm/meshes/x.stl", "package://other_name/meshes/x.stl", "file"],
-)
-def test_a_mesh_is_found_beside_the_urdf_or_in_a_folder_above(tmp_path: Path, name: str) -> None:
-    file = tmp_path / "arm" / "meshes" / "x.stl"
-    file.parent.mkdir(parents=True)
-    file.touch()
-    for folder in (tmp_path / "arm", tmp_path / "arm" / "urdf" / "old"):
-        folder.mkdir(parents=True, exist_ok=True)
-        asked = f"file://{file}" if name == "file" else name
-        assert find_mesh(asked, folder / "r.urdf") == file.resolve()
-        assert find_mesh(asked.replace("x.stl", "y.stl"), folder / "r.urdf") is None
+def test_an_impossible_inertia_becomes_a_boxes_and_is_told_by_link(tmp_path: Path) -> None:
+    shape = '<collision><geometry><box size="0.2 0.1 0.4"/></geometry></collision>'
+    zero = '<inertia ixx="0" iyy="0" izz="0" ixy="0" ixz="0" iyz="0"/>'
+    bad = f'<inertial><mass value="2"/>{zero}</inertial>'
+    text = (
+        f'<robot name="r"><link name="base"/><link name="arm">{bad}{shape}</link>'
+        f'<link name="tip">{shape}</link><joint name="j" type="continuous"><parent link="base"/>'
+        '<child link="arm"/></joint><joint name="k" type="continuous"><parent link="arm"/>'
+        '<child link="tip"/></joint></robot>'
+    )
+    (tmp_path / "r.urdf").write_text(text)
+    prepared = prepare(tmp_path / "r.urdf", tmp_path)
+    mended = prepared.given.inertials
+    assert set(mended) == {"arm", "tip"}
+    assert mended["arm"].mass == 2
+    assert mended["arm"].box == pytest.approx((0.2, 0.1, 0.4))
+    assert mended["tip"].mass == pytest.approx(500 * 0.2 * 0.1 * 0.4)
+    assert all(any(f"'{name}'" in note for note in prepared.notes) for name in mended)
+    assert impossible_inertials(prepared.document) == {}

@@ -187,3 +187,16 @@ def test_a_scan_is_made_from_a_lidar_where_there_is_no_laser(rolling_proposal: P
 def test_sensors_of_one_kind_are_numbered(rolling_proposal: Proposal) -> None:
     lasers = [*found("base_laser"), *found("base_scan"), *found("hokuyo")]
     assert list(read_with(rolling_proposal, lasers)) == ["laser", "laser_2", "laser_3"]
+
+
+@pytest.mark.parametrize(
+    ("on", "swept"),
+    [("thing", 0.5), ("sonar_03_link", 3.0), ("cliff_left", 3.0), ("ir_front", 2.0)],
+)
+def test_what_measures_one_distance_ahead_is_no_scanner(on: str, swept: float) -> None:
+    inside = (
+        f"<ray><scan><horizontal><samples>5</samples><min_angle>{-swept / 2}</min_angle>"
+        f"<max_angle>{swept / 2}</max_angle></horizontal><vertical><samples>5</samples>"
+        "<min_angle>-0.2</min_angle><max_angle>0.2</max_angle></vertical></scan></ray>"
+    )
+    assert found(on, extra=written("ray", inside, on)) == []

@@ -23,7 +23,7 @@ from momantu_skills.robot_setup.find.sensors import FoundSensor, find_sensors
 from momantu_skills.robot_setup.urdf.arm_ik import LimbSolver
 from momantu_skills.robot_setup.urdf.body import Body
 from momantu_skills.robot_setup.urdf.cells import cuts_of, swallowed
-from momantu_skills.robot_setup.urdf.prepare import Placed, Prepared, prepare
+from momantu_skills.robot_setup.urdf.prepare import Given, Placed, Prepared, prepare
 
 OPTICAL_FROM_LINK = Transform.from_rpy((0.0, 0.0, 0.0), (-math.pi / 2, 0.0, -math.pi / 2))
 """An optical frame on a link whose x looks ahead and whose z is up."""
@@ -57,14 +57,18 @@ class Proposal:
     notes: tuple[str, ...]
 
 
-def propose(source: Path, *, samples: int = SAMPLES, seed: int = 0) -> Proposal:
+def propose(
+    source: Path, *, samples: int = SAMPLES, seed: int = 0, given: Given | None = None
+) -> Proposal:
     """Find out all there is about a URDF or xacro file.
+
+    given: arguments of a xacro file, and where packages are.
 
     Raises:
         SetupError: it is not a URDF of one robot, or no mechanism.
     """
     with tempfile.TemporaryDirectory() as folder:
-        prepared = prepare(source, Path(folder))
+        prepared = prepare(source, Path(folder), given)
         return _propose(prepared, samples, seed)
 
 

@@ -32,8 +32,17 @@ NAMES = (
     ("wrench", re.compile(r"(force_?torque|wrench|_ft_?(sensor|tool|link)|ftsensor)", re.I)),
 )
 """Usual names of links with a sensor, the more reliable ones first."""
-NO_FRAME = re.compile(r"screw|mount|bracket|cable|laser_?pointer|projector|button|imu", re.I)
+NO_FRAME = re.compile(
+    r"sonar|ultraso|infrared|cliff|screw|mount|bracket|cable|laser_?pointer|projector|button|imu",
+    re.I,
+)
 """Names of links that contain a sensor's name but are not sensors."""
+RANGER = re.compile(
+    r"sonar|ultraso|infrared|cliff|(^|_)(ir|us)_|range_?finder|bumper", re.IGNORECASE
+)
+"""Names of sensors that measure one distance ahead, which URDFs write as a ray sensor."""
+NARROW = 1.0
+"""Swept angle, rad, below which a ray sensor measures one distance ahead and scans nothing."""
 PREFERRED = re.compile(r"rgb|color", re.IGNORECASE)
 """The preferred one of a camera's optical frames: that of a registered picture."""
 
@@ -85,7 +94,7 @@ def find_sensors(
         if kind == "laser" and any(sensor.kind == "lidar" for sensor in found):
             pattern = re.compile(r"laser|hokuyo|sick|base_scan", re.IGNORECASE)
         names = [n for n in skeleton.links if n in below and pattern.search(n)]
-        names = [n for n in names if not NO_FRAME.search(n)]
+        names = [n for n in names if not NO_FRAME.search(n) and not RANGER.search(n)]
         if names:
             found += _by_name(kind, names, skeleton)
     return found
@@ -138,7 +147,11 @@ def _sensor(element: etree._Element, link: str, skeleton: Skeleton) -> FoundSens
         return _camera(element, link, skeleton)
     if kind == "wrench":
         return FoundSensor(kind, link, written=True)
-    return _laser(element, link)
+    laser = _laser(element, link)
+    narrow = laser.angles is not None and laser.angles[1] - laser.angles[0] < NARROW
+    if narrow or RANGER.search(element.get("name", "")) or RANGER.search(link):
+        return None
+    return laser
 
 
 def _camera(element: etree._Element, link: str, skeleton: Skeleton) -> FoundSensor:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -10,9 +11,12 @@ from lxml import etree
 from scipy.spatial import QhullError
 
 from momantu_bt.formats.urdf import Urdf
+from momantu_bt.geometry import Array
 from momantu_bt.robots.errors import PartError
+from momantu_bt.robots.inertia import DENSITY, impossible_inertials, replace_inertial
+from momantu_bt.robots.packages import Packages
 from momantu_bt.robots.parts import MOST_BYTES, load_part
-from momantu_bt.robots.robot_file import PartSource
+from momantu_bt.robots.robot_file import BoxInertial, PartSource
 from momantu_skills.manipulation.model.hulls import hull_points, part_points
 from momantu_skills.manipulation.model.urdf import BaseUrdf, CollisionPart, base_urdf
 from momantu_skills.robot_setup.urdf.skeleton import (
@@ -26,16 +30,30 @@ from momantu_skills.robot_setup.urdf.skeleton import (
 SOLIDS = ("box", "cylinder", "sphere", "mesh")
 HALF_TURN = "3.14159"
 """Range of a hinge without limits, rad."""
+LEAST_EDGE = 0.01
+"""Least edge of the box whose inertia a link gets, m."""
+LEAST_MASS = 0.01
+"""Least mass of such a link, kg."""
 LEAST_ROOM = 1e-4
 """Least range of a joint, rad or m; a joint with less is fixed, and so are slides without
 limits."""
 
 
 @dataclass(frozen=True)
+class Given:
+    """How a URDF is read: arguments of a xacro file, folders of packages, mended inertials."""
+
+    args: Mapping[str, str] = field(default_factory=dict)
+    package_path: tuple[Path, ...] = ()
+    inertials: Mapping[str, BoxInertial] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
 class Prepared:
     """A URDF that is ready for analysis.
 
-    kind: urdf or xacro. urdf: the cleaned copy. notes: what was left out, and why.
+    kind: urdf or xacro. urdf: the cleaned copy. notes: what was left out, and why. given: what the
+    robot file must say of the URDF, so that it is found and read again.
     """
 
     source: Path
@@ -44,6 +62,7 @@ class Prepared:
     skeleton: Skeleton
     document: etree._Element
     notes: tuple[str, ...]
+    given: Given
 
 
 @dataclass
@@ -78,8 +97,10 @@ class _Notes:
         )
 
 
-def prepare(source: Path, folder: Path) -> Prepared:
+def prepare(source: Path, folder: Path, given: Given | None = None) -> Prepared:
     """Read a URDF or a xacro file, and write a copy into `folder` that planning's readers take.
+
+    given: arguments and packages, if there are any.
 
     Raises:
         SetupError: it is neither, or not one robot.
@@ -87,8 +108,15 @@ def prepare(source: Path, folder: Path) -> Prepared:
     kind = "xacro" if _is_xacro(source) else "urdf"
     try:
         file = str(source.resolve())
-        given = PartSource(xacro=file) if kind == "xacro" else PartSource(urdf=file)
-        part = load_part("robot", given, source.parent, None)
+        asked = given or Given()
+        args: dict[str, str | bool | int | float] = dict(asked.args)
+        if kind == "xacro":
+            as_part = PartSource(xacro=file, args=args)
+        elif args:
+            raise SetupError(f"{source} is no xacro file: it takes no arguments")
+        else:
+            as_part = PartSource(urdf=file)
+        part = load_part("robot", as_part, source.parent, None, asked.package_path)
     except PartError as error:
         raise SetupError(str(error)) from None
     root = part.root
@@ -98,12 +126,14 @@ def prepare(source: Path, folder: Path) -> Prepared:
         _mend_joint(joint, notes)
     for link in root.findall("link"):
         for collision in link.findall("collision"):
-            _mend_shape(link, collision, source, notes)
+            _mend_shape(link, collision, part.packages, notes)
     path = folder / "robot.urdf"
     path.write_bytes(etree.tostring(root))
     _drop_flat(root, path, skeleton.root, notes)
+    inertials = _mend_inertials(root, path, skeleton.root, notes)
     path.write_bytes(etree.tostring(root))
-    return Prepared(source, kind, path, read_skeleton(Urdf(root)), root, notes.all())
+    known = replace(asked, inertials=inertials)
+    return Prepared(source, kind, path, read_skeleton(Urdf(root)), root, notes.all(), known)
 
 
 def _is_xacro(source: Path) -> bool:
@@ -151,7 +181,7 @@ def _is_stuck(kind: str, limit: etree._Element) -> bool:
 
 
 def _mend_shape(
-    link: etree._Element, collision: etree._Element, source: Path, notes: _Notes
+    link: etree._Element, collision: etree._Element, packages: Packages, notes: _Notes
 ) -> None:
     shape = collision.find("geometry/*")
     if shape is None or shape.tag not in SOLIDS:
@@ -159,31 +189,12 @@ def _mend_shape(
         notes.lines.append(f"a collision of {link.get('name')} is {what}; left out")
         link.remove(collision)
     elif shape.tag == "mesh":
-        path = find_mesh(shape.get("filename", ""), source)
+        path = packages.mesh(shape.get("filename", ""))
         if path is None:
             notes.missing.append(shape.get("filename", ""))
             link.remove(collision)
         else:
-            shape.set("filename", str(path))
-
-
-def find_mesh(name: str, source: Path) -> Path | None:
-    """Find the file of a mesh address: beside the URDF, or below a folder that contains it.
-
-    A package's folder may have another name than the package.
-    """
-    if name.startswith("file://"):
-        name = name.removeprefix("file://")
-        return Path(name) if Path(name).is_file() else None
-    relative = name.removeprefix("package://").lstrip("/")
-    tails = [relative]
-    if name.startswith("package://") and "/" in relative:
-        tails.append(relative.split("/", 1)[1])
-    for folder in (source.parent, *source.resolve().parents):
-        for tail in tails:
-            if (folder / tail).is_file():
-                return (folder / tail).resolve()
-    return None
+            shape.set("filename", str(path.resolve()))
 
 
 def _drop_flat(root: etree._Element, path: Path, base: str, notes: _Notes) -> None:
@@ -209,3 +220,38 @@ def _unusable(part: CollisionPart) -> str | None:
     except Exception as error:  # the mesh reader raises whatever its libraries raise
         return f"cannot be read ({error})"
     return None
+
+
+def _mend_inertials(
+    root: etree._Element, path: Path, base: str, notes: _Notes
+) -> dict[str, BoxInertial]:
+    """Give links with an impossible mass or inertia that of the solid box around their shapes."""
+    wrong = impossible_inertials(root)
+    if not wrong:
+        return {}
+    path.write_bytes(etree.tostring(root))
+    corners: dict[str, list[Array]] = {}
+    for part in Placed(path, base).cut().parts:
+        corners.setdefault(part.link, []).append(part_points(part))
+    links = {str(link.get("name")): link for link in root.findall("link")}
+    found = {}
+    for name, message in wrong.items():
+        points = np.vstack(corners.get(name, [np.zeros((1, 3))]))
+        found[name] = _box(points, links[name])
+        replace_inertial(links[name], found[name])
+        notes.lines.append(
+            f"{message}; it gets {found[name].mass:g} kg, as a solid box around its shapes"
+        )
+    return found
+
+
+def _box(points: Array, link: etree._Element) -> BoxInertial:
+    """The solid box around points (n, 3), of the link's own mass where it has one."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    edges = np.maximum(high - low, LEAST_EDGE)
+    own = link.find("inertial/mass")
+    mass = 0.0 if own is None else float(own.get("value", "0"))
+    mass = max(mass if mass > 0.0 else DENSITY * float(np.prod(edges)), LEAST_MASS)
+    x, y, z = (round(float(edge), 4) for edge in edges)
+    a, b, c = (round(float(middle), 4) + 0.0 for middle in (low + high) / 2)
+    return BoxInertial(mass=round(mass, 4), box=(x, y, z), xyz=(a, b, c))

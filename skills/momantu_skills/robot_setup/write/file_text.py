@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Iterator
 
 from momantu_bt.formats.yaml import writer
@@ -16,6 +17,11 @@ def number(value: float, digits: int = 4) -> str:
 def scalar(value: str) -> str:
     """A name or a path as YAML takes it: quoted where it would be read as anything else."""
     return writer.scalar(value, flow=True)
+
+
+def quoted(value: str) -> str:
+    """A text as YAML takes it: always in quotes, so that it stays a text."""
+    return json.dumps(value, ensure_ascii=False)
 
 
 def listed(names: Iterable[str]) -> str:

@@ -20,7 +20,7 @@ from momantu_skills.robot_setup.write.arm_writer import (
     limit_lines,
     pose_lines,
 )
-from momantu_skills.robot_setup.write.file_text import comment, listed, number, scalar
+from momantu_skills.robot_setup.write.file_text import comment, listed, number, quoted, scalar
 from momantu_skills.robot_setup.write.sensor_writer import sensor_frames, sensor_lines
 
 ON_FLOOR = 0.01
@@ -111,8 +111,24 @@ def _head(proposal: Proposal) -> Iterator[str]:
 
 def _parts(proposal: Proposal, folder: Path) -> Iterator[str]:
     path = _path(proposal.prepared.source.resolve(), folder.resolve())
+    given = proposal.prepared.given
     yield "parts:"
-    yield f"  {proposal.name}: {{{proposal.prepared.kind}: {scalar(path)}}}"
+    yield f"  {proposal.name}:"
+    yield f"    {proposal.prepared.kind}: {scalar(path)}"
+    if given.args:
+        args = ", ".join(f"{scalar(name)}: {quoted(value)}" for name, value in given.args.items())
+        yield f"    args: {{{args}}}"
+    if given.inertials:
+        yield "    # Guessed: the URDF's masses and inertias of these are impossible; boxes around"
+        yield "    # their shapes. Weigh the real ones."
+        yield "    inertials:"
+        for name, solid in given.inertials.items():
+            box, middle = (", ".join(number(v) for v in each) for each in (solid.box, solid.xyz))
+            body = f"mass: {number(solid.mass)}, box: [{box}], xyz: [{middle}]"
+            yield f"      {scalar(name)}: {{{body}}}"
+    if given.package_path:
+        folders = [_path(each.resolve(), folder.resolve()) for each in given.package_path]
+        yield f"packages: {listed(folders)}"
     if _put_on_floor(proposal):
         height, base = number(-proposal.stand.floor), proposal.base.frame
         link = "" if base == proposal.prepared.skeleton.root else f", link: {scalar(base)}"
