@@ -6,7 +6,10 @@ import json
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
+from momantu_skills.manipulation.model.arm_model import ArmModel
+from momantu_skills.manipulation.model.collision import CollisionWorld, body_pairs
 from momantu_skills.robot_setup.check.robot import check_robot
 from momantu_skills.robot_setup.check_verb import check
 from momantu_skills.robot_setup.find.proposal import Proposal
@@ -259,3 +262,38 @@ def test_a_shape_without_volume(rolling_proposal: Proposal, tmp_path: Path) -> N
     code, said = run(tmp_path)
     assert code == 2
     assert "cannot be used" in said
+
+
+def test_a_pose_in_which_only_the_open_hand_collides(
+    rolling_proposal: Proposal, tmp_path: Path
+) -> None:
+    """Motions are planned with the opening that the hand has then."""
+    (tmp_path / "robot.yaml").write_text(robot_file(rolling_proposal, tmp_path))
+    robot = read_robot(tmp_path)
+    model, draw = ArmModel(robot), np.random.default_rng(0)
+    names, head = model.group.names, robot.actuators["head"].joints
+
+    def free(q: np.ndarray, width: float) -> bool:
+        pose = dict(zip(names, q, strict=True))
+        return CollisionWorld(body_pairs(model), model.posture(pose, width), margin=0.004).free(q)
+
+    postures = (draw.uniform(-2.0, 2.0, len(names)) for _ in range(5000))
+    q = next(q for q in postures if free(q, 0.0) and not free(q, robot.hand.max_width))
+    home = {**dict(zip(names, map(float, q), strict=True)), **dict.fromkeys(head, 0.0)}
+    worse = robot.model_copy(update={"named_poses": {**robot.named_poses, "home": home}})
+    found = [f for f in check_robot(worse) if f.code == "pose-collides"]
+    assert found
+    assert all("in the pose home" in f.message for f in found)
+
+
+def test_every_pose_that_is_proposed_is_clear_with_any_opening(
+    rolling_proposal: Proposal, tmp_path: Path
+) -> None:
+    (tmp_path / "robot.yaml").write_text(robot_file(rolling_proposal, tmp_path))
+    robot = read_robot(tmp_path)
+    model = ArmModel(robot)
+    for name, pose in robot.named_poses.items():
+        q = np.array([pose[joint] for joint in model.group.names])
+        for width in np.linspace(0.0, robot.hand.max_width, 5):
+            posture = model.posture(pose, float(width))
+            assert CollisionWorld(body_pairs(model), posture, margin=0.004).free(q), (name, width)

@@ -86,7 +86,7 @@ class BodyPairs:
         return tuple(p for p, n in zip(pairs, touching, strict=True) if n < ALWAYS * SAMPLES)
 
     def _always_close(self) -> frozenset[tuple[int, int]]:
-        """Pairs of `pairs` that are nearer than SELF_MARGIN in one of the named poses."""
+        """Pairs of `pairs` nearer than SELF_MARGIN in a named pose, with the hand shut or open."""
         geometry = self.geometry.copy()
         for a, b in self.pairs:
             geometry.addCollisionPair(pin.CollisionPair(a, b))
@@ -94,8 +94,10 @@ class BodyPairs:
         for index in range(len(self.pairs)):
             shapes.collisionRequests[index].security_margin = SELF_MARGIN
         close: set[tuple[int, int]] = set()
-        for pose in self.model.description.named_poses.values():
-            q = self.model.posture(pose, 0.0)
+        effector = self.model.description.end_effector
+        widths = (0.0,) if effector is None else (0.0, effector.max_width)
+        for pose, width in product(self.model.description.named_poses.values(), widths):
+            q = self.model.posture(pose, width)
             pin.computeCollisions(self.model.pin, data, geometry, shapes, q, False)
             results = zip(self.pairs, shapes.collisionResults, strict=True)
             close |= {pair for pair, result in results if result.isCollision()}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from momantu_bt.findings import FindingAtKeys
 from momantu_bt.formats.problems import Severity
 from momantu_bt.formats.urdf import read_urdf
 from momantu_bt.robot import REQUIRED_POSES, ActuatorKind, RobotDescription
+from momantu_skills.manipulation.config import PlanningConfig
 from momantu_skills.manipulation.model.arm_model import ArmModel
 from momantu_skills.manipulation.model.collision import CollisionWorld, body_pairs
 from momantu_skills.robot_setup.find.base import ABOVE, Stand
@@ -45,14 +46,25 @@ def check_poses(description: RobotDescription, model: ArmModel) -> Iterator[Find
                 place,
             )
             continue
-        world = CollisionWorld(body_pairs(model), model.posture(pose, 0.0))
-        q = np.array([pose.get(joint, 0.0) for joint in model.group.names])
-        for pair in dict.fromkeys(_links(a, b) for a, b in world.touching(q)):
+        for pair in _meeting(model, pose):
             met.setdefault(pair, []).append(name)
     effector = description.end_effector
     hand = set() if effector is None else set(effector.touch_links)
     for pair, poses in met.items():
         yield _closed_hand(pair) if set(pair) <= hand else _collision(pair, poses)
+
+
+def _meeting(model: ArmModel, pose: Mapping[str, float]) -> Iterator[tuple[str, str]]:
+    """Pairs of links for which no motion is planned to a pose, with the hand shut or open."""
+    effector = model.description.end_effector
+    widest = 0.0 if effector is None else effector.max_width
+    q = np.array([pose.get(joint, 0.0) for joint in model.group.names])
+    margin = min(PlanningConfig().margins)
+    found: dict[tuple[str, str], None] = {}
+    for width in dict.fromkeys((0.0, widest / 2, widest)):
+        world = CollisionWorld(body_pairs(model), model.posture(pose, width), margin=margin)
+        found |= dict.fromkeys(_links(a, b) for a, b in world.touching(q))
+    yield from found
 
 
 def _collision(pair: tuple[str, str], poses: list[str]) -> FindingAtKeys:

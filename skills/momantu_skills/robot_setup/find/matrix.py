@@ -14,6 +14,7 @@ from itertools import combinations
 import numpy as np
 
 from momantu_bt.geometry import Array
+from momantu_skills.robot_setup.find.fingers import Hand
 from momantu_skills.robot_setup.urdf.body import Body, Contacts, hulls_meet, placed
 
 SAMPLES = 10_000
@@ -68,10 +69,12 @@ def sample_matrix(
     samples: int = SAMPLES,
     seed: int = 0,
     usual: Iterable[Mapping[str, float]] = (),
+    hands: Iterable[Hand] = (),
 ) -> CollisionMatrix:
     """The matrix from `samples` postures of a seed.
 
-    usual: postures that count as the one at rest does, such as a closed hand's.
+    usual: postures that count as the one at rest does, such as a closed hand's. hands: their own
+    links may meet each other at any opening.
     """
     every = tuple(combinations(body.hulls, 2))
     apart = tuple(pair for pair in every if not body.shapes.adjacent(*pair))
@@ -79,6 +82,10 @@ def sample_matrix(
     at_rest = contacts.meeting(body.configuration({}))
     for posture in usual:
         at_rest |= contacts.meeting(body.configuration(posture))
+    for hand in hands:
+        own = np.array([set(pair) <= set(hand.links) for pair in apart], dtype=bool)
+        for closed in (0.0, 0.5, 1.0):
+            at_rest |= own & contacts.meeting(body.configuration(hand.posture(closed)))
     met = _count(contacts, body.random_configurations(samples, seed))
     why = dict.fromkeys(every, Why.ADJACENT)
     share = dict.fromkeys(every, 0.0)

@@ -24,6 +24,8 @@ ROUNDS = 300
 """Small changes that improve the best one."""
 MARGINS = (0.03, 0.015, 0.005)
 """Clearances between links, m, tried in turn."""
+OPENINGS = (1.0, 0.0, 0.5)
+"""How far the hands are closed, as shares, where a posture must be clear."""
 PARTING = 60
 """Postures for detecting a pair that is always nearer than a margin."""
 AIMING = 6
@@ -106,6 +108,11 @@ class PoseFinder:
         moved = [pair for pair in pairs if set(pair) & set(self.links)]
         self._contacts = {m: Contacts(body, _parting(body, moved, m), m) for m in MARGINS}
         self._outline = _half_planes(stand.footprint)
+        hands = [limb.hand for limb in (limbs.arm, *limbs.others) if limb.hand is not None]
+        self._openings = [
+            {name: q for hand in hands for name, q in hand.posture(share).items()}
+            for share in OPENINGS
+        ]
         self.still = {name: body.rest()[name] for name in self._others()}
 
     def _others(self) -> tuple[str, ...]:
@@ -165,7 +172,13 @@ class PoseFinder:
         return math.acos(float(np.clip(way @ optical.rotation[:, 2] / length, -1.0, 1.0)))
 
     def clear(self, posture: Mapping[str, float], margin: float) -> bool:
-        """Whether links keep a margin from each other, and the arm from the floor."""
+        """Whether links keep a margin from each other, and the arm from the floor.
+
+        They do with every opening of the hands: motions are planned with whatever it is then.
+        """
+        return all(self._clear_with({**posture, **fingers}, margin) for fingers in self._openings)
+
+    def _clear_with(self, posture: Mapping[str, float], margin: float) -> bool:
         if self.corners(posture)[:, 2].min() < self.stand.floor + OVER_FLOOR:
             return False
         return self._contacts[margin].free(self.body.configuration(posture))

@@ -89,7 +89,8 @@ def _propose(prepared: Prepared, samples: int, seed: int) -> Proposal:
     }
     limits = find_limits(body, _actuated(limbs), _light(limbs))
     closed = [{n: rows[0][1] for n, rows in g.opening.items()} for g in grasps.values()]
-    matrix = sample_matrix(body, samples, seed, closed)
+    used = [limb.hand for limb in (limbs.arm, *limbs.others) if limb and limb.hand]
+    matrix = sample_matrix(body, samples, seed, closed, used)
     solver = _hand_solver(prepared, base, limbs, grasps.get("arm"), limits, seed)
     poses = _poses(prepared, base, body, stand, limbs, camera, limits, matrix, solver, seed)
     return Proposal(

@@ -113,8 +113,11 @@ def _parts(proposal: Proposal, folder: Path) -> Iterator[str]:
     path = _path(proposal.prepared.source.resolve(), folder.resolve())
     given = proposal.prepared.given
     yield "parts:"
-    yield f"  {proposal.name}:"
-    yield f"    {proposal.prepared.kind}: {scalar(path)}"
+    if given.args or given.inertials:
+        yield f"  {proposal.name}:"
+        yield f"    {proposal.prepared.kind}: {scalar(path)}"
+    else:
+        yield f"  {proposal.name}: {{{proposal.prepared.kind}: {scalar(path)}}}"
     if given.args:
         args = ", ".join(f"{scalar(name)}: {quoted(value)}" for name, value in given.args.items())
         yield f"    args: {{{args}}}"
