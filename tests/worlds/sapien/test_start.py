@@ -10,8 +10,8 @@ PROGRAM = f"""
 import sys
 from momantu_worlds.robots import fetch
 from momantu_worlds.sapien.simulator import Simulator
-from momantu_worlds.testing import plain_episode
-Simulator(fetch(), plain_episode(), 0, render=False)
+from momantu_worlds.worlds import four_rooms
+Simulator(fetch(), four_rooms.draw(0), 0, render=False)
 ran = {{name for name, module in sys.modules.items() if type(module) is type(sys)}}
 print(sorted(ran.intersection({NEVER!r})))
 """

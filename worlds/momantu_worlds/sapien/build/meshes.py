@@ -70,7 +70,7 @@ def collision_mesh(geometry: Geometry) -> TriangleMesh:
     if isinstance(geometry, Sphere):
         return _taken(trimesh.creation.icosphere(SPHERE_LEVEL, geometry.radius))
     if isinstance(geometry, Hull):
-        return _hull(np.ascontiguousarray(geometry.vertices, dtype=np.float64).tobytes())
+        return _hull(_data(geometry))[0]
     raise TypeError(f"a {type(geometry).__name__} has no collision shape")
 
 
@@ -83,7 +83,7 @@ def volume(geometry: Geometry) -> float:
     if isinstance(geometry, Sphere):
         return 4.0 / 3.0 * math.pi * geometry.radius**3
     if isinstance(geometry, Hull):
-        return float(trimesh.convex.convex_hull(np.asarray(geometry.vertices)).volume)
+        return _hull(_data(geometry))[1]
     raise TypeError(f"a {type(geometry).__name__} has no collision shape")
 
 
@@ -137,16 +137,21 @@ _QUAD = ((0, 4, 1), (1, 4, 5))
 """The two triangles between two points of a slice and those of the next, four points later."""
 
 
+def _data(hull: Hull) -> bytes:
+    return np.ascontiguousarray(hull.vertices, dtype=np.float64).tobytes()
+
+
 @lru_cache(maxsize=1024)
-def _hull(data: bytes) -> TriangleMesh:
-    """The convex hull of points (n, 3), given as their bytes."""
+def _hull(data: bytes) -> tuple[TriangleMesh, float]:
+    """The convex hull of points (n, 3), given as their bytes, and its volume, m3."""
     points = np.frombuffer(data).reshape(-1, 3)
     with suppress(QhullError):
         hull = hull_mesh(points)
         faces = hull.triangles.astype(np.int32)
         if _is_closed(faces):
-            return TriangleMesh(hull.vertices, faces)
-    return _taken(trimesh.convex.convex_hull(points))
+            return TriangleMesh(hull.vertices, faces), hull.volume
+    mesh = trimesh.convex.convex_hull(points)
+    return _taken(mesh), float(mesh.volume)
 
 
 def _is_closed(faces: NDArray[np.int32]) -> bool:
