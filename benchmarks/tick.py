@@ -25,7 +25,7 @@ fails      it fails at once with a code; Fail
 two ticks  it ends in its second tick; Sleep
 
 The cost is that of all ticks from the starts to the ends, divided by the leaves. The demand: a
-skill costs at most twice the built-in leaf.
+skill costs at most twice a bare py_trees leaf.
 """
 
 from __future__ import annotations
@@ -88,7 +88,7 @@ def main() -> None:
     for case in starts.CASES:
         compare_starts(case, asked.rounds)
         gc.collect()
-    print("demanded: at most                                             2.00")
+    print("demanded: at most                                                             2.00")
 
 
 if __name__ == "__main__":
