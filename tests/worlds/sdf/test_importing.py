@@ -234,7 +234,8 @@ def test_lights_are_carried_over(imported, box, tmp_path):
 
 TABLE = """<model name='table'><static>1</static><pose>{} 0 0 0 0 0.3</pose><link name='l'>
   <collision name='c'><pose>0 0 0.7 0 0 0</pose><geometry><box><size>0.8 1.4 0.04</size></box>
-  </geometry></collision></link></model>"""
+  </geometry></collision><visual name='v'><pose>0 0 0.7 0 0 0</pose><geometry><box>
+  <size>0.8 1.4 0.04</size></box></geometry></visual></link></model>"""
 
 
 def walls(box):
@@ -388,6 +389,7 @@ def test_a_top_of_several_pieces_is_one_surface(imported, box):
     """Two boards side by side are a table; two far apart are not."""
     board = """<collision name='{n}'><pose>{x} 0 0.7 0 0 0</pose><geometry><box>
       <size>0.6 1 0.04</size></box></geometry></collision>"""
+    board += board.replace("collision", "visual")
     for apart, width in ((0.6, 1.2), (2.0, 0.6)):
         boards = board.format(n="a", x=0) + board.format(n="b", x=apart)
         inside = f"<model name='m'><static>1</static><link name='l'>{boards}</link></model>"

@@ -12,6 +12,7 @@ from momantu_bt.formats.places import Place
 from momantu_bt.geometry import Pose2D, Transform
 from momantu_worlds.scenes.file.reader import parse_world
 from momantu_worlds.sdf.body.bodies import BodyMaker, ImportedBody, plain_name
+from momantu_worlds.sdf.body.flush_tops import flush
 from momantu_worlds.sdf.body.frames import PlacedModel
 from momantu_worlds.sdf.body.ground import find_ground
 from momantu_worlds.sdf.body.lighting import lighting
@@ -94,6 +95,8 @@ def import_world(
     )
     name, model = plain_name(output.stem), robot.model.name if robot else None
     site = propose(bodies, _start_of(robot, deviations))
+    tops = {name: surface.top for name, surface in site.surfaces.items()}
+    bodies = list(flush(bodies, tops, deviations))
     if site.clear < TIGHT:
         near = f"{site.clear:.2f} m around the start"
         deviations.changed(

@@ -16,6 +16,7 @@ from momantu_worlds.sdf.body.level_tops import (
     LOWEST,
     NARROWEST,
     SMALLEST,
+    Around,
     best_top,
 )
 from momantu_worlds.sdf.body.parts import Part
@@ -59,7 +60,7 @@ def test_a_box_is_a_table_by_its_height_and_size(
     long: float, wide: float, height: float, x: float, yaw: float
 ) -> None:
     table = block((long, wide, height), (x, -x / 2, height / 2), yaw)
-    top = best_top(table, hulls(table))
+    top = best_top(table, Around(hulls(table)))
     fits = min(long, wide) >= NARROWEST and long * wide >= SMALLEST and LOWEST <= height <= HIGHEST
     near = min(abs(min(long, wide) - NARROWEST), abs(long * wide - SMALLEST)) < 1e-4
     near = near or min(abs(height - LOWEST), abs(height - HIGHEST)) < 1e-4
@@ -82,10 +83,10 @@ def test_a_top_needs_free_height_above_its_middle(room: float, yaw: float) -> No
     table = block((1.0, 0.8, 0.7), (3.0, 2.0, 0.35), yaw)
     shelf = block((1.0, 0.8, 0.02), (3.0, 2.0, 0.7 + room + 0.01), yaw)
     if min(abs(room - HEADROOM), abs(room + 0.02)) > 1e-2:
-        free = best_top(table, hulls(table, shelf)) is not None
+        free = best_top(table, Around(hulls(table, shelf))) is not None
         assert free == (room > HEADROOM or room < -0.02)
     beside = block((0.1, 0.1, 2.0), (3.0 + 0.49 * math.cos(yaw), 2.0 + 0.49 * math.sin(yaw), 1.0))
-    assert best_top(table, hulls(table, beside)) is not None
+    assert best_top(table, Around(hulls(table, beside))) is not None
 
 
 @given(st.floats(0.3, 2.0), st.floats(-30, 30), st.floats(-math.pi, math.pi))

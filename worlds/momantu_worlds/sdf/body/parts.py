@@ -40,6 +40,7 @@ class Part:
     """One part of a body, in its own frame.
 
     hulls: convex points (n, 3) of all collision shapes. seen: corners (8, 3) around a visual mesh.
+    faces: triangles (n, 3, 3) of a visual mesh.
     """
 
     solid: Solid
@@ -49,6 +50,7 @@ class Part:
     collision: bool = True
     hulls: tuple[Array, ...] = field(default=(), compare=False)
     seen: Array | None = field(default=None, compare=False)
+    faces: Array | None = field(default=None, compare=False)
 
 
 def simple(shape: Box | Cylinder | Sphere, scale: tuple[float, float, float]) -> Solid:

@@ -84,7 +84,8 @@ class Shaping:
                 )
             path = self.assets.look(_stem(geometry), self._few(pieces, shape, subject), color)
             around = corners_around(np.concatenate([piece.vertices for piece in pieces]))
-            yield Part(MeshPart(path), at, None, collision=False, seen=around)
+            faces = np.concatenate([piece.vertices[piece.triangles] for piece in pieces])
+            yield Part(MeshPart(path), at, None, collision=False, seen=around, faces=faces)
 
     def touched(
         self,

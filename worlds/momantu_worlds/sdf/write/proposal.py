@@ -16,13 +16,15 @@ from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array, Pose2D
 from momantu_worlds.sdf.body.bodies import ImportedBody
-from momantu_worlds.sdf.body.level_tops import Top, best_top
+from momantu_worlds.sdf.body.level_tops import Top, proposed_tops
 from momantu_worlds.sdf.read.model import Box, Cylinder
 from momantu_worlds.sdf.write.free_floor import FreeFloor, free_floor
 from momantu_worlds.sdf.write.rooms import rooms
 
 STAND_OFF = 0.6
 """Distance from a top's edge to the centre of a robot that reaches onto it, m."""
+ASIDE = 0.25
+"""Share of a side's width by which a robot may stand beside its middle."""
 COMFORT = 0.8
 """Clearance above which a start pose is not rated better, m."""
 GRASPED = 0.09
@@ -63,8 +65,8 @@ def propose(bodies: Sequence[ImportedBody], start: Pose2D | None) -> Proposal:
     still = [hull for body in bodies if body.still for hull in body.hulls()]
     loose = [hull for body in bodies if not body.still for hull in body.hulls()]
     floor = free_floor([*still, *loose])
-    tops = {body.name: best_top(body, still) for body in bodies if body.still}
-    sides = {name: _sides(top, floor) for name, top in tops.items() if top is not None}
+    tops = proposed_tops(bodies)
+    sides = {name: _sides(top, floor) for name, top in tops.items()}
     if start is not None and (home := floor.region(start.x, start.y)):
         region = home
     else:
@@ -73,7 +75,7 @@ def propose(bodies: Sequence[ImportedBody], start: Pose2D | None) -> Proposal:
     for name, ways in sides.items():
         top = tops[name]
         angles = tuple(angle for angle, at in ways if at == region)
-        if top is not None and angles:
+        if angles:
             surfaces[name] = Surface(top, angles)
     if start is None:
         start = _start(floor, region, [surface.top for surface in surfaces.values()])
@@ -102,12 +104,18 @@ def _sides(top: Top, floor: FreeFloor) -> list[tuple[float, int]]:
         (math.pi, top.size[0]),
         (-math.pi / 2, top.size[1]),
     ):
-        away = reach / 2 + STAND_OFF
-        at = top.pose @ Pose2D(away * math.cos(angle), away * math.sin(angle))
-        region, index = floor.region(at.x, at.y), floor.index(at.x, at.y)
-        if region and index is not None:
+        away, width = reach / 2 + STAND_OFF, top.size[0] + top.size[1] - reach
+        spots = []
+        for beside in (0.0, -ASIDE * width, ASIDE * width):
+            c, s = math.cos(angle), math.sin(angle)
+            at = top.pose @ Pose2D(away * c - beside * s, away * s + beside * c)
+            region, index = floor.region(at.x, at.y), floor.index(at.x, at.y)
+            if region and index is not None:
+                spots.append((-round(float(floor.clearance[index]), 2), region))
+        if spots:
             # the nearer the middle of the top, the better; then the more room
-            found.append((round(reach, 3), -round(float(floor.clearance[index]), 2), angle, region))
+            room, region = min(spots)
+            found.append((round(reach, 3), room, angle, region))
     return [(angle, region) for *_, angle, region in sorted(found)]
 
 

@@ -1,0 +1,82 @@
+"""Tops are taken from what is drawn and what is touched; seats and walls are none."""
+
+import pytest
+
+GROUND = "<include><uri>model://ground_plane</uri></include>"
+TABLE = """<model name='{name}'><static>1</static><link name='l'>
+  <collision name='c'><pose>0 0 {touched} 0 0 0</pose><geometry><box><size>0.8 1.4 0.04</size></box>
+  </geometry></collision><visual name='v'><pose>0 0 {drawn} 0 0 0</pose><geometry><box>
+  <size>0.8 1.4 0.04</size></box></geometry></visual></link></model>"""
+TAG = """<model name='tag'><static>1</static><pose>0.1 0 {} 0 0 0</pose><link name='l'>
+  <visual name='v'><geometry><box><size>0.2 0.2 0.001</size></box></geometry></visual>
+  </link></model>"""
+CAN = """<model name='can'><pose>-0.1 0.3 {} 0 0 0</pose><link name='l'><inertial><mass>0.3</mass>
+  </inertial><collision name='c'><geometry><cylinder><radius>0.03</radius><length>0.1</length>
+  </cylinder></geometry></collision></link></model>"""
+
+
+def bodies(found):
+    return {body.name: body for body in found.world.bodies}
+
+
+def touched_top(body):
+    return max(float(hull[:, 2].max()) for hull in body.hulls())
+
+
+@pytest.mark.parametrize(
+    ("drawn", "words"),
+    [
+        (0.705, "touched where it is drawn"),
+        (0.695, "drawn where it is touched"),
+        (0.7, ""),
+    ],
+)
+def test_a_top_is_touched_where_it_is_drawn_and_what_lies_on_it_is_seen(imported, drawn, words):
+    """A table that is drawn 5 mm higher than it is touched would hide the tag that lies on it."""
+    inside = TABLE.format(name="table", touched=0.7, drawn=drawn)
+    found = imported(GROUND + inside + TAG.format(0.7205) + CAN.format(0.77))
+    top = found.world.site.surfaces["table"].top
+    assert top.height == pytest.approx(max(0.72, drawn + 0.02))
+    assert (top.drawn, top.touched) == pytest.approx((drawn + 0.02, 0.72))
+    own = bodies(found)
+    assert touched_top(own["table"]) == pytest.approx(top.height)
+    bottom = float(own["tag"].at.position[2]) - 0.0005
+    assert top.height - 1e-6 <= bottom <= top.height + 0.001
+    assert min(float(h[:, 2].min()) for h in own["can"].hulls()) == pytest.approx(
+        top.height, abs=1e-3
+    )
+    assert [f.instead for f in found.deviations if "a top that is drawn" in f.what] == (
+        [f"it is {words}"] if words else []
+    )
+
+
+def test_what_is_only_drawn_or_only_touched_is_no_top(imported):
+    table = TABLE.format(name="table", touched=0.7, drawn=0.7)
+    assert imported(GROUND + table).world.site.surfaces
+    for tag in ("visual", "collision"):
+        a, b = table.index(f"<{tag}"), table.index(f"</{tag}>") + len(f"</{tag}>")
+        assert not imported(GROUND + table[:a] + table[b:]).world.site.surfaces
+
+
+def test_seats_and_walls_are_no_tops_whatever_they_are_called(imported, box):
+    inside = box("thing", "0.6 0.6 0.45", "0 0 0.225 0 0 0").replace(
+        "</link>",
+        "<collision name='back'><pose>-0.25 0 0.4 0 0 0</pose><geometry><box>"
+        "<size>0.1 0.6 0.9</size>"
+        "</box></geometry></collision></link>",
+    )
+    inside += box("low_wall", "3 0.3 1", "0 5 0.5 0 0 0") + box(
+        "Sofa_2", "2 0.8 0.45", "5 0 0.225 0 0 0"
+    )
+    inside += box("plain", "0.6 0.6 0.45", "0 -4 0.225 0 0 0")
+    assert list(imported(GROUND + inside).world.site.surfaces) == ["plain"]
+
+
+def test_a_table_that_is_laid_is_a_table(imported, box):
+    inside = box("plain", "0.8 1.4 0.72", "0 0 0.36 0 0 0")
+    plates = "".join(
+        box(f"plate{n}", "0.2 0.2 0.04", f"0 {n / 3 - 0.5} 0.74 0 0 0") for n in range(4)
+    )
+    assert "plain" in imported(GROUND + inside + plates).world.site.surfaces
+    full = box("heap", "0.8 1.2 0.2", "0 0 0.82 0 0 0")
+    assert "plain" not in imported(GROUND + inside + full).world.site.surfaces
