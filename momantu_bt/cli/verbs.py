@@ -58,6 +58,9 @@ VERBS = {
         "momantu_bt.cli.robots.robots",
         "List robots, or show one with its actuators and named poses.",
     ),
+    "calibrate": Verb(
+        "momantu_bt.cli.calibrate", "Estimate where a camera is mounted, from recorded data."
+    ),
     "faults": Verb(
         "momantu_bt.cli.faults", "List what can be broken on purpose, or show one fault."
     ),

@@ -1,0 +1,1 @@
+"""Hand-eye calibration: estimate how a camera is mounted, from pairs of poses."""

@@ -1,0 +1,130 @@
+"""The whole estimate: a robust start, the joint refinement, and all methods on poses held back."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from momantu_bt.geometry import Array, Transform
+from momantu_skills.calibration.errors import CalibrationError
+from momantu_skills.calibration.hand_eye.closed_form import METHODS, closed_form
+from momantu_skills.calibration.hand_eye.refine import Refined, refine
+from momantu_skills.calibration.hand_eye.start import (
+    POSITION_NOISE,
+    ROTATION_NOISE,
+    starts,
+)
+from momantu_skills.calibration.hand_eye.views import Mounting, Views, residuals
+from momantu_skills.calibration.poses import Indices
+
+JOINT = "joint"
+"""The joint refinement's name among the methods."""
+LEAST_VIEWS = 5
+_FOLDS = 5
+
+
+@dataclass(frozen=True, slots=True)
+class Method:
+    """One method. rotation, position: medians of its residuals, rad and m, on views held back.
+
+    eye: by all views; None where the method fails, and then both residuals are NaN.
+    """
+
+    name: str
+    eye: Transform | None
+    rotation: float
+    position: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Estimate:
+    """The result. rotations, positions: the residuals of all views (N,), rad and m."""
+
+    refined: Refined
+    methods: tuple[Method, ...]
+    rotations: Array
+    positions: Array
+
+
+def solve(views: Views, seed: int) -> Refined:
+    """The joint refinement from the best of several robust starts.
+
+    Raises:
+        CalibrationError: there are too few views, or they determine nothing.
+    """
+    found = []
+    for start in starts(views, np.random.default_rng(seed)):
+        try:
+            found.append(refine(views, start.mounting))
+        except np.linalg.LinAlgError:
+            continue
+    if not found:
+        raise CalibrationError(
+            "the views determine no mounting: turn the hand more, about two axes or more"
+        )
+    return min(found, key=lambda each: _typical(views, each.mounting))
+
+
+def estimate(views: Views, seed: int = 0) -> Estimate:
+    """Estimate the mounting, and compare the methods on views held back.
+
+    Raises:
+        CalibrationError: there are too few views, they determine nothing, or fewer than half of
+            them agree.
+    """
+    if len(views) < LEAST_VIEWS:
+        raise CalibrationError(
+            f"{len(views)} different views; at least {LEAST_VIEWS} are needed, 15 or more are good"
+        )
+    refined = solve(views, seed)
+    wrong = int(refined.outliers.sum())
+    if 2 * wrong >= len(views):
+        raise CalibrationError(
+            f"{wrong} of {len(views)} views disagree with the rest: the files do not fit together"
+        )
+    rotations, positions = residuals(views, refined.mounting)
+    return Estimate(refined, _compared(views, refined, seed), rotations, positions)
+
+
+def _typical(views: Views, mounting: Mounting) -> float:
+    turned, away = residuals(views, mounting)
+    return float(np.median((turned / ROTATION_NOISE) ** 2 + (away / POSITION_NOISE) ** 2))
+
+
+def _compared(views: Views, refined: Refined, seed: int) -> tuple[Method, ...]:
+    """All methods; each view is held back once."""
+    folds = _folds(len(views), seed)
+    rows = []
+    for name in (*METHODS, JOINT):
+        held = [_held_back(views, fold, name, seed) for fold in folds]
+        turned, away = (np.concatenate(each) for each in zip(*held, strict=True))
+        whole = refined.mounting if name == JOINT else closed_form(views, name)
+        rows.append(
+            Method(
+                name,
+                None if whole is None else whole.eye,
+                float(np.median(turned)),
+                float(np.median(away)),
+            )
+        )
+    return tuple(rows)
+
+
+def _folds(count: int, seed: int) -> list[Indices]:
+    shuffled = np.random.default_rng(seed).permutation(count)
+    return [np.sort(each) for each in np.array_split(shuffled, min(_FOLDS, count))]
+
+
+def _held_back(views: Views, fold: Indices, name: str, seed: int) -> tuple[Array, Array]:
+    """Residuals of the views of a fold, by a method that saw the other views only."""
+    rest = views[np.setdiff1d(np.arange(len(views)), fold)]
+    mounting: Mounting | None
+    try:
+        mounting = solve(rest, seed).mounting if name == JOINT else closed_form(rest, name)
+    except CalibrationError:
+        mounting = None
+    if mounting is None:
+        lost = np.full(len(fold), np.nan)
+        return lost, lost
+    return residuals(views[fold], mounting)
