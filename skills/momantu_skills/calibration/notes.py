@@ -46,9 +46,7 @@ def _hardly_turned(found: Calibration) -> str:
     if found.turned[1] >= GOOD:
         return ""
     degrees = ", ".join(f"{math.degrees(angle):.1f}" for angle in found.turned)
-    return (
-        f"the hand turns little, by {degrees} deg about three axes; turn it more about two of them"
-    )
+    return f"the hand turns little, by {degrees} deg about three axes; turn it more about two"
 
 
 def _badly_known(found: Calibration) -> str:
@@ -92,8 +90,8 @@ def _swapped(found: Calibration) -> str:
         return ""
     return (
         f"the camera would be {eye:.2f} m from the {settings.carrier}, and the target "
-        f"{target:.2f} m from the {settings.holder}. If it is the other way round, the two files are swapped, or "
-        f"both are inverted; residuals do not show that"
+        f"{target:.2f} m from the {settings.holder}. If it is the other way round, the two files "
+        f"are swapped, or both are inverted; residuals do not show that"
     )
 
 
