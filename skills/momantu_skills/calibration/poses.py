@@ -12,6 +12,10 @@ from scipy.spatial.transform import Rotation
 
 from momantu_bt.geometry import Array, Transform
 
+_SMALL = 1e-9
+_HALF_TURN = 1e-3
+"""Twice the sine of an angle near pi, where the skew part hardly tells the axis."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Poses:
@@ -52,8 +56,15 @@ class Poses:
 
 def rotation_vectors(rotations: Array) -> Array:
     """Axis times angle in rad, (..., 3), of rotations (..., 3, 3)."""
-    flat = Rotation.from_matrix(rotations.reshape(-1, 3, 3)).as_rotvec()
-    return np.asarray(flat.reshape(rotations.shape[:-1]))
+    vectors = _axial(rotations)
+    sine = np.linalg.norm(vectors, axis=-1)
+    cosine = np.trace(rotations, axis1=-2, axis2=-1) - 1.0
+    if (sine[cosine < 0] < _HALF_TURN).any():
+        flat = Rotation.from_matrix(rotations.reshape(-1, 3, 3)).as_rotvec()
+        return np.asarray(flat.reshape(vectors.shape))
+    small = sine < _SMALL
+    scale = np.where(small, 0.5, np.arctan2(sine, cosine) / np.where(small, 1.0, sine))
+    return np.asarray(scale[..., None] * vectors)
 
 
 def rotations_of(vectors: Array) -> Array:
@@ -75,9 +86,21 @@ def rotations_of_quaternions(values: Array) -> Array:
 
 def angles(rotations: Array) -> Array:
     """The angles of rotations (..., 3, 3), rad in [0, pi]; exact for small angles too."""
-    skew = rotations - np.swapaxes(rotations, -1, -2)
-    sine = np.sqrt(skew[..., 2, 1] ** 2 + skew[..., 0, 2] ** 2 + skew[..., 1, 0] ** 2)
+    sine = np.linalg.norm(_axial(rotations), axis=-1)
     return np.asarray(np.arctan2(sine, np.trace(rotations, axis1=-2, axis2=-1) - 1.0))
+
+
+def _axial(matrices: Array) -> Array:
+    """The axes (..., 3) of rotations (..., 3, 3), of length twice the sine of the angle."""
+    m = matrices
+    return np.stack(
+        [
+            m[..., 2, 1] - m[..., 1, 2],
+            m[..., 0, 2] - m[..., 2, 0],
+            m[..., 1, 0] - m[..., 0, 1],
+        ],
+        axis=-1,
+    )
 
 
 def nearest_rotations(matrices: Array) -> Array:

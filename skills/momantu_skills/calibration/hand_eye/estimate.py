@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,6 +23,10 @@ JOINT = "joint"
 """The joint refinement's name among the methods."""
 LEAST_VIEWS = 5
 _FOLDS = 5
+_MOST_NOISE = math.radians(5.0)
+_UNEXPLAINED = 0.5
+"""Noise of positions per axis, as a share of how far the target moves in the camera's frame."""
+_LEAST_SPREAD = 0.02
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,13 +83,25 @@ def estimate(views: Views, seed: int = 0) -> Estimate:
             f"{len(views)} different views; at least {LEAST_VIEWS} are needed, 15 or more are good"
         )
     refined = solve(views, seed)
-    wrong = int(refined.outliers.sum())
-    if 2 * wrong >= len(views):
-        raise CalibrationError(
-            f"{wrong} of {len(views)} views disagree with the rest: the files do not fit together"
-        )
+    _check_fit(views, refined)
     rotations, positions = residuals(views, refined.mounting)
     return Estimate(refined, _compared(views, refined, seed), rotations, positions)
+
+
+def _check_fit(views: Views, refined: Refined) -> None:
+    """CalibrationError where the mounting explains hardly anything."""
+    positions = views.camera_from_target.positions
+    spread = np.linalg.norm(positions - np.median(positions, axis=0), axis=1)
+    most = max(_UNEXPLAINED * float(np.median(spread)), _LEAST_SPREAD)
+    wrong = refined.outliers.mean() >= 0.5
+    if wrong or refined.noise[0] > _MOST_NOISE or refined.noise[1] > most:
+        turned, away = residuals(views, refined.mounting)
+        raise CalibrationError(
+            f"the files do not fit together: half of the {len(views)} views are off by more than "
+            f"{math.degrees(np.median(turned)):.1f} deg and {1e3 * np.median(away):.0f} mm. Are "
+            f"they of the same recording, with the same clock (--align-time finds an offset), and "
+            f"did the target and the camera stay where they are fixed?"
+        )
 
 
 def _typical(views: Views, mounting: Mounting) -> float:

@@ -25,6 +25,7 @@ _MEDIAN = float(chi2.ppf(0.5, 3))
 _LEAST_NOISE = 1e-6
 """rad and m: no instrument is better, and rounding in files is no reason to call a view wrong."""
 _STEPS = 60
+_SMALLEST_STEP = 1e-9
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -58,23 +59,22 @@ def refine(views: Views, mounting: Mounting) -> Refined:
     Raises:
         numpy.linalg.LinAlgError: the views do not determine the unknowns.
     """
-    turned, moved, _, _ = _linearised(views, mounting)
-    noise = _median_noise(turned, moved)
+    line = _linearised(views, mounting)
+    noise = _median_noise(line.turned, line.moved)
     for _ in range(_STEPS):
-        turned, moved, rows, weights = _weighed(views, mounting, noise)
-        step = _step(rows, np.hstack([turned / noise[0], moved / noise[1]]), weights)
+        step = _step(*_weighed(line, noise))
         mounting = _moved(mounting, step)
-        turned, moved, _, _ = _linearised(views, mounting)
-        noise = _noise(turned, moved, noise)
-        if np.linalg.norm(step) < 1e-10:
+        line = _linearised(views, mounting)
+        noise = _noise(line.turned, line.moved, noise)
+        if np.linalg.norm(step) < _SMALLEST_STEP:
             break
-    turned, moved, rows, weights = _weighed(views, mounting, noise)
-    squares = _squares(turned, moved, noise)
+    rows, _, _ = _weighed(line, noise)
+    fine = _squares(line.turned, line.moved, noise) <= _OUTLIER
     return Refined(
         mounting,
-        np.linalg.inv(np.einsum("n,nri,nrj->ij", weights, rows, rows)),
+        np.linalg.inv(np.einsum("nri,nrj->ij", rows[fine], rows[fine])),
         noise,
-        squares > _OUTLIER,
+        ~fine,
     )
 
 
@@ -83,33 +83,38 @@ def scale_of_target(views: Views, refined: Refined) -> tuple[float, float]:
 
     It is not 1 where the size of the target's squares or tags is wrong.
     """
-    _, moved, rows, weights = _weighed(views, refined.mounting, refined.noise)
-    turned, _, _, _ = _linearised(views, refined.mounting)
+    rows, residual, weights = _weighed(_linearised(views, refined.mounting), refined.noise)
     scaled = np.zeros((len(views), 6, 1))
     scaled[:, 3:, 0] = views.camera_from_target.positions / refined.noise[1]
     rows = np.concatenate([rows, scaled], axis=2)
-    residual = np.hstack([turned / refined.noise[0], moved / refined.noise[1]])
     square = np.einsum("n,nri,nrj->ij", weights, rows, rows)
     side = -np.einsum("n,nri,nr->i", weights, rows, residual)
     covariance = np.linalg.pinv(square)
     return 1.0 + float(covariance[-1] @ side), float(np.sqrt(covariance[-1, -1]))
 
 
-def _weighed(
-    views: Views, mounting: Mounting, noise: tuple[float, float]
-) -> tuple[Array, Array, Array, Array]:
-    """Residuals (N, 3) twice, the Jacobian in units of noise (N, 6, 12), and weights (N,)."""
-    turned, moved, of_turned, of_moved = _linearised(views, mounting)
-    rows = np.concatenate([of_turned / noise[0], of_moved / noise[1]], axis=1)
-    inside = np.clip(1.0 - _squares(turned, moved, noise) / _CUT, 0.0, None)
-    return turned, moved, rows, inside**2
-
-
-def _linearised(views: Views, mounting: Mounting) -> tuple[Array, Array, Array, Array]:
+@dataclass(frozen=True, slots=True, eq=False)
+class _Line:
     """Residuals of rotation and position (N, 3), and their Jacobians (N, 3, 12).
 
     The Jacobians are with respect to turns `R Exp(turn)` and shifts of the eye and of the target.
     """
+
+    turned: Array
+    moved: Array
+    of_turned: Array
+    of_moved: Array
+
+
+def _weighed(line: _Line, noise: tuple[float, float]) -> tuple[Array, Array, Array]:
+    """The Jacobian (N, 6, 12) and residuals (N, 6) in units of noise, and weights (N,)."""
+    rows = np.concatenate([line.of_turned / noise[0], line.of_moved / noise[1]], axis=1)
+    residual = np.hstack([line.turned / noise[0], line.moved / noise[1]])
+    inside = np.clip(1.0 - _squares(line.turned, line.moved, noise) / _CUT, 0.0, None)
+    return rows, residual, inside**2
+
+
+def _linearised(views: Views, mounting: Mounting) -> _Line:
     expected, seen = predicted(views, mounting), views.camera_from_target
     turned = rotation_vectors(np.swapaxes(expected.rotations, -1, -2) @ seen.rotations)
     moved = seen.positions - expected.positions
@@ -122,7 +127,7 @@ def _linearised(views: Views, mounting: Mounting) -> tuple[Array, Array, Array, 
     of_moved[:, :, :3] = -skew(expected.positions)
     of_moved[:, :, 3:6] = camera_from_hand
     of_moved[:, :, 9:] = -camera_from_hand @ np.swapaxes(views.outer.rotations, -1, -2)
-    return turned, moved, of_turned, of_moved
+    return _Line(turned, moved, of_turned, of_moved)
 
 
 def _step(rows: Array, residual: Array, weights: Array) -> Array:

@@ -25,8 +25,8 @@ from momantu_skills.calibration.poses import (
 ROTATION_NOISE = 0.005
 POSITION_NOISE = 0.0015
 """Usual noise of a target's pose, rad and m: only their ratio matters, to compare tries."""
-_TRIES = 1500
-_JUDGED = 300
+_TRIES = 800
+_JUDGED = 200
 _MOST_VIEWS = 60
 """So many of the views judge a try."""
 
@@ -39,7 +39,7 @@ class Start:
     score: float
 
 
-def starts(views: Views, rng: np.random.Generator, count: int = 4) -> list[Start]:
+def starts(views: Views, rng: np.random.Generator, count: int = 2) -> list[Start]:
     """The best of many tries, the best one first; empty if no three views allow one."""
     triples = _triples(len(views), rng)
     eye, quality = _solve(views, triples)

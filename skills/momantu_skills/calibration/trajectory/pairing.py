@@ -55,14 +55,22 @@ def _no_overlap(hand: Trajectory, target: Trajectory, offset: float) -> str:
         f"{each.name} lasts from {each.times[0] + more:.3f} to {each.times[-1] + more:.3f} s"
         for each, more in ((hand, 0.0), (target, offset))
     )
-    ratio = abs(hand.times[0] / target.times[0]) if target.times[0] else 1.0
-    for factor, unit in _FACTORS.items():
-        for name, share in ((hand.name, ratio / factor), (target.name, 1 / (ratio * factor or 1))):
-            if 0.5 < share < 2.0:
-                return (
-                    f"no overlap in time: {spans}. The stamps of {name} look like {unit}; write s"
-                )
+    for each, other in ((hand, target), (target, hand)):
+        unit = _unit(each, other)
+        if unit:
+            return f"no overlap in time: {spans}. Stamps of {each.name} look like {unit}; write s"
     return (
         f"no overlap in time: {spans}. Are they of the same recording? If their clocks differ, "
         f"--align-time finds the offset from the motions"
     )
+
+
+def _unit(each: Trajectory, other: Trajectory) -> str:
+    """The unit of the stamps of `each`, if those of `other` are in s; empty for s."""
+    if not other.times[0]:
+        return ""
+    ratio = abs(each.times[0] / other.times[0])
+    for factor, unit in _FACTORS.items():
+        if 0.5 < ratio / factor < 2.0 and 1e-4 < each.step / factor < 10.0:
+            return unit
+    return ""
