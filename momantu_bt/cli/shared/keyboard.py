@@ -33,6 +33,7 @@ _SEQUENCES = {
     "\x7f": "backspace",
     "\x08": "backspace",
     "\x04": "leave",
+    "\x1a": "Ctrl-Z",
 }
 """Sequences that terminals send for special keys, and the end of the input, Ctrl-D."""
 _KEY = re.compile(r"\x1b\[[0-9;]*[A-Za-z~]|\x1bO[A-Z]|.", re.DOTALL)
@@ -40,15 +41,22 @@ _MOST = 1024
 
 
 class Keyboard:
-    """A context in which the terminal gives single keys. Standard input must be a terminal."""
+    """A context in which the terminal gives single keys. Standard input must be a terminal.
 
-    def __init__(self) -> None:
-        self._file = sys.stdin.fileno()
+    suspends: Ctrl-Z suspends the program, as usual; else it is a key like others.
+    """
+
+    def __init__(self, *, suspends: bool = True) -> None:
+        self._file, self._suspends = sys.stdin.fileno(), suspends
         self._before: list[Any] = []
 
     def __enter__(self) -> Keyboard:
         self._before = termios.tcgetattr(self._file)
         tty.setcbreak(self._file)
+        if not self._suspends:
+            modes = termios.tcgetattr(self._file)
+            modes[6][termios.VSUSP] = b"\0"
+            termios.tcsetattr(self._file, termios.TCSADRAIN, modes)
         return self
 
     def __exit__(

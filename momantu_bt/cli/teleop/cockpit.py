@@ -55,7 +55,7 @@ class Cockpit:
         """Take over keyboard and screen. Keys that were pressed before do not count."""
         with ExitStack() as opening:
             opening.push(self._stack)
-            keyboard = self._stack.enter_context(Keyboard())
+            keyboard = self._stack.enter_context(Keyboard(suspends=False))
             live = Live(console=self._console, screen=True, auto_refresh=False)
             self._live = self._stack.enter_context(live)
             keyboard.forget()

@@ -162,6 +162,8 @@ def _run(
     headline = f"{NAME}: {name} in {prepared.options.world_name}"
     if prepared.options.record is not None:
         headline += f", recorded in {prepared.options.record}"
+    if view_port is not None:
+        headline += f", view at port {view_port}"
     place = cockpit.Cockpit(console, drive.seat, headline)
     lost: list[str] = []
     outputs = sys.stdout, sys.stderr

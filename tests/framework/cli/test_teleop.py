@@ -185,7 +185,7 @@ def test_an_error_in_the_world_gives_the_terminal_back(room):
 
 def test_keys_pressed_before_the_start_do_not_count(room):
     there = Seat(room).type("wwwxxxx").wait_for("x leave")
-    there.hold("z", "'z' has no meaning").type("x")
+    there.hold("z", "'z' has no meaning").type("\x1a").wait_for("'Ctrl-Z' has no").type("x")
     assert there.end() == 0
 
 

@@ -165,6 +165,11 @@ def test_every_key_that_is_told_means_something(timeline):
             assert (seen, shown) != ((9, False, 1.0, "", None), (False, False, False)), name
 
 
+@pytest.mark.parametrize("before", ["", "t"])
+def test_the_end_of_the_input_leaves_also_from_a_prompt(timeline, before):
+    assert press(Stepper(timeline), *before, "leave").leaving
+
+
 def test_terminals_keys():
     assert keys_in("a\x1b[C\x1bOA\x1b[1;5C \r\x7f") == [
         "a",
