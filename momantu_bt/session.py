@@ -74,7 +74,9 @@ class Session:
     """A world that stays open between trees and calls of skills; `open_session` makes it.
 
     It is the engine of `momantu_bt.run`, ticked by hand: one tick is 0.05 s of the world's clock,
-    and equal calls in equal sessions do the same. When anything raises, also Ctrl-C, all actuators
+    and equal calls in equal sessions do the same. Each tree and each call draws random numbers of
+    its own; those of the first are the ones of `momantu_bt.run` with this seed. When anything
+    raises, also Ctrl-C, all actuators
     are stopped first.
     """
 
@@ -85,6 +87,7 @@ class Session:
         self._stack = ExitStack()
         self._open = True
         self._ended = True
+        self._loaded = 0
         self._failure: FailureValue | None = None
         with ExitStack() as opening:
             opening.push(self._stack)
@@ -205,6 +208,7 @@ class Session:
         context = self._setting.context
         if context.body is not None:
             context.body = replace(context.body, skills={**context.body.skills, **called})
+        context.earlier, self._loaded = self._loaded, self._loaded + 1
         self._run, self._failure = program(prepared, self._setting, kinds), None
         self._run.begin()
         self._ended = False

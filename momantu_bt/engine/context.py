@@ -32,6 +32,7 @@ class RunContext:
     now: time of the world's clock at this tick, s. tick: its number, from 1.
     writes: cells written in this tick, with their values before. changes: of statuses in this tick.
     logs: what skills have logged in this tick.
+    earlier: how many trees a session has run before this one; skills draw other numbers in each.
     person: answers questions.
     outside: source of everything that the tree gets from outside. watchdog: ends steps that hang.
     events: the stream of events, for observers.
@@ -45,6 +46,7 @@ class RunContext:
     writes: Journal = field(default_factory=list)
     changes: list[Change] = field(default_factory=list)
     logs: list[Logged] = field(default_factory=list)
+    earlier: int = 0
     person: Person = field(default_factory=Scripted)
     outside: Outside = field(default_factory=Outside)
     events: Events = field(default_factory=Events)

@@ -155,7 +155,8 @@ class Outside:
         )
         lease = body.actuators.lease(leaf.name, leaf.kind.uses)
         setup, seed, path = Setup(leaf.kind, lease, surroundings), context.seed, leaf.path
-        return lambda inputs: Session(setup, inputs, (seed, path, leaf.runs))
+        earlier = (context.earlier,) if context.earlier else ()
+        return lambda inputs: Session(setup, inputs, (seed, path, leaf.runs, *earlier))
 
     def ask(self, key: str, ask: Callable[[], T]) -> T:
         """Call `ask` and return its answer. key: the name of the question, such as `battery`."""

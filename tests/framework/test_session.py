@@ -92,6 +92,16 @@ def test_equal_sessions_do_the_same_and_the_seed_counts() -> None:
     assert numbers(1) == numbers(1) != numbers(2)
 
 
+def test_each_call_draws_numbers_of_its_own_in_a_fixed_sequence() -> None:
+    def numbers() -> list[float]:
+        with session(seed=3) as opened:
+            return [opened.call("drive", steps=1)["number"] for _ in range(4)]
+
+    first = numbers()
+    assert len(set(first)) == 4
+    assert numbers() == first
+
+
 def test_a_tree_in_a_session_does_what_a_run_does() -> None:
     tree = {"momantu_bt": 1, "trees": {"Main": [{"drive": {"steps": 5, "number": "$n"}}]}}
     report = momantu_bt.run(tree, world=ScriptedWorld(), registry=REGISTRY, seed=4)
