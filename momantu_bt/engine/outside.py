@@ -65,6 +65,11 @@ class Surroundings(Protocol):
         ...
 
     @property
+    def earlier(self) -> int:
+        """How many trees a session has run before this one."""
+        ...
+
+    @property
     def body(self) -> Body | None:
         """The robot and its surroundings; None in a run without a world."""
         ...

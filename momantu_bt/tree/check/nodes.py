@@ -11,6 +11,7 @@ from momantu_bt.formats.places import Place
 from momantu_bt.messages import VALUE_TYPES
 from momantu_bt.skill import MISSING, Port
 from momantu_bt.tree.catalogue import AUTOREMAP, MODIFIERS, NODES
+from momantu_bt.tree.check.bounds import converted
 from momantu_bt.tree.check.names import check_named
 from momantu_bt.tree.check.signatures import Context, Signature, known_type
 from momantu_bt.tree.model import (
@@ -276,7 +277,7 @@ def check_literal(context: Context, value: Literal, place: Place, port: Port) ->
         context.problems.error("bad-code", place, f"{value.value!r} is not a failure code", hint)
         return
     try:
-        found = convert(value.value, port)
+        found = converted(value.value, port)
     except ConversionError as error:
         message = f"{port.name!r}: {error}"
         hint = context.meant_key(value.value, place)

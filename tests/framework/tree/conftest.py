@@ -107,7 +107,7 @@ def _robot() -> SimpleNamespace:
         return "head" if use == CAMERA_CARRIER else use
 
     poses: dict[str, dict[str, float]] = {"home": {}, "carry": {}}
-    return SimpleNamespace(named_poses=poses, resolve_use=resolve)
+    return SimpleNamespace(named_poses=poses, resolve_use=resolve, sensors={})
 
 
 @pytest.fixture(scope="session")

@@ -67,7 +67,9 @@ def hall(tmp_path: Path) -> Hall:
 
 
 Found = Callable[[str], list[Problem]]
-ROBOT = SimpleNamespace(footprint=FOOTPRINT, named_poses={}, resolve_use=lambda use: use)
+ROBOT = SimpleNamespace(
+    footprint=FOOTPRINT, named_poses={}, resolve_use=lambda use: use, sensors={}
+)
 
 
 @pytest.fixture

@@ -17,6 +17,8 @@ from momantu_bt.tree.registry import Registry
 from momantu_bt.values.convert import convert
 from momantu_bt.values.words import ConversionError
 
+Check = Callable[[str], list[Problem]]
+
 Expect = Callable[..., None]
 NUMBERS = st.integers(-50, 50)
 
@@ -157,3 +159,27 @@ def test_a_skill_that_declares_what_cannot_be() -> None:
 
 def _body(port: object) -> dict[str, object]:
     return {"__module__": __name__, "__annotations__": {"n": int}, "n": port}
+
+
+@pytest.mark.parametrize(
+    ("node", "message"),
+    [
+        ("wait: 1e12 s", "at least 0 and at most 1e+07 s"),
+        ("wait: {msec: 100000000000}", "at least 0 and at most 1e+10"),
+        (
+            "distance_controller: {distance: 90000 m, child: succeed}",
+            "at least 0 and at most 10000 m",
+        ),
+        ("speed_controller: {max_speed: 90, child: succeed}", "did you mean 90 cm/s?"),
+        ("rate_controller: {hz: 1e9, child: succeed}", "at most 10000 Hz"),
+        ("is_within_path_tracking_bounds: {max_error_heading: 90}", "did you mean 90 deg?"),
+    ],
+)
+def test_what_no_robot_can_be_asked_for(check: Check, node: str, message: str) -> None:
+    text = f"momantu_bt: 1\ntrees:\n  Main:\n    - {node}\n"
+    wrong = [p for p in check(text) if p.severity.label == "error"]
+    assert [p.code for p in wrong] == ["wrong-value"]
+    assert message in wrong[0].message
+    if "{" not in node:
+        key = text.replace("trees:", "values: {t: 1e12 s}\ntrees:").replace("1e12 s\n", "$t\n")
+        assert [p.code for p in check(key) if p.severity.label == "error"] == ["wrong-value"]

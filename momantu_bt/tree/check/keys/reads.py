@@ -13,6 +13,7 @@ from momantu_bt.formats.units import UnitError, in_unit
 from momantu_bt.skill import Port
 from momantu_bt.tree.catalogue import AUTOREMAP, SUBTREE
 from momantu_bt.tree.catalogue.known import Key, Known, part_type
+from momantu_bt.tree.check.bounds import converted
 from momantu_bt.tree.check.keys.shared import Call, TreeKeys
 from momantu_bt.tree.check.names import check_name, check_named
 from momantu_bt.tree.check.nodes import autoremaps
@@ -219,7 +220,7 @@ class KeyReads:
             wire = self.context.wire_to(reference, place)
             for literal in key.literals:
                 try:
-                    found = convert(literal.value, port)
+                    found = converted(literal.value, port)
                 except ConversionError as error:
                     message = f"{wire} does not fit {port.name!r} of {said}: {error}"
                     self._report_misfit(key, place, message)
@@ -334,7 +335,7 @@ class KeyReads:
             if text and (port.unit is None or in_unit(str(value), port.unit) is None):
                 return
             if text or (isinstance(value, int | float) and not isinstance(value, bool)):
-                convert(value, port)
+                converted(value, port)
         except (UnitError, ConversionError) as error:
             self.context.problems.error("wrong-value", place, str(error))
 
