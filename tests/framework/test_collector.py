@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import gc
+import subprocess
+import sys
 import weakref
 
 import pytest
@@ -69,3 +71,21 @@ def test_who_has_switched_it_off_keeps_it_off() -> None:
             assert gc.get_threshold()[0] == 0
     finally:
         gc.set_threshold(*usual)
+
+
+@pytest.mark.parametrize(("said", "collections"), [("", 1), ("collector.skip_the_last()\n" * 2, 0)])
+def test_the_collection_at_the_end_of_a_process_may_be_left_out(
+    said: str, collections: int
+) -> None:
+    program = (
+        "import weakref\nfrom momantu_bt import collector\n"
+        f"{said}"
+        "class Loop:\n"
+        "    def __init__(self): self.itself = self\n"
+        "    def __del__(self, say=print): say('collected')\n"
+        "Loop()\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    )
+    assert done.stdout.count("collected") == collections

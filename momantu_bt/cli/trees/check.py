@@ -10,6 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
+from momantu_bt import collector
 from momantu_bt.cli.shared.given import given_goal, given_tree, given_values
 from momantu_bt.cli.shared.options import (
     GoalGiven,
@@ -73,6 +74,7 @@ def check(
       momantu-bt check their_tree.xml --undeclared warn --include their_trees/
       momantu-bt check --explain read-before-write
     """
+    collector.skip_the_last()
     if explain is not None:
         typer.echo(explanation(explain).rstrip())
         return ExitCode.SUCCESS
