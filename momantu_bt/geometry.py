@@ -34,7 +34,7 @@ def _read_only(values: ArrayLike, size: int) -> Array:
 
 def matrix_from_quaternion(quaternion: ArrayLike) -> Array:
     """Rotation matrix (3, 3) of a unit quaternion (w, x, y, z)."""
-    w, x, y, z = (float(v) for v in np.asarray(quaternion, dtype=np.float64))
+    w, x, y, z = np.asarray(quaternion, dtype=np.float64).tolist()
     return np.array(
         [
             [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
@@ -87,8 +87,8 @@ def quaternion_from_rpy(roll: float, pitch: float, yaw: float) -> Array:
 
 def quaternion_product(left: ArrayLike, right: ArrayLike) -> Array:
     """Hamilton product: rotates by `right` first, then by `left`."""
-    w1, x1, y1, z1 = (float(v) for v in np.asarray(left))
-    w2, x2, y2, z2 = (float(v) for v in np.asarray(right))
+    w1, x1, y1, z1 = np.asarray(left, dtype=np.float64).tolist()
+    w2, x2, y2, z2 = np.asarray(right, dtype=np.float64).tolist()
     return np.array(
         [
             w1 * w2 - x1 * x2 - y1 * y2 - z1 * z2,
@@ -113,8 +113,10 @@ class Transform:
         norm = math.sqrt(float(q @ q))
         if not norm > 1e-9:
             raise ValueError(f"quaternion {quaternion!r} has no length, expected unit (w, x, y, z)")
+        q /= norm
+        q.setflags(write=False)
         object.__setattr__(self, "position", _read_only(position, 3))
-        object.__setattr__(self, "quaternion", _read_only(q / norm, 4))
+        object.__setattr__(self, "quaternion", q)
 
     @classmethod
     def from_matrix(cls, matrix: ArrayLike) -> Transform:
@@ -153,7 +155,7 @@ class Transform:
 
     def inverse(self) -> Transform:
         """The transform that undoes this one."""
-        w, x, y, z = (float(v) for v in self.quaternion)
+        w, x, y, z = self.quaternion.tolist()
         return Transform(-(self.rotation.T @ self.position), (w, -x, -y, -z))
 
     def apply(self, points: ArrayLike) -> Array:

@@ -19,13 +19,12 @@ from momantu_bt.service import Localization
 from momantu_bt.skill import Failure, In, Needs, Run, Skill
 from momantu_bt.symptom import Symptom
 from momantu_skills.manipulation.scene.arm_scene import ArmScene
-from momantu_skills.navigation.control.footprint import discs
 from momantu_skills.navigation.localize.confidence import QUALITY, estimate, is_localized, sigmas
 from momantu_skills.navigation.map.sensing import Rays
 
 with lazily():
     from momantu_skills.manipulation import tucking
-    from momantu_skills.navigation.control import guard
+    from momantu_skills.navigation.control import footprint, guard
 
 
 WIDEN = (0.35, 0.35)
@@ -144,7 +143,7 @@ class Relocalize(Skill):
 
     def _discs(self, robot: Robot) -> Array:
         """Return discs (m, 3) of base, arm and load: walls in a scan may be as high as these."""
-        return discs(np.asarray(self.planning_scene.footprint(robot.state())))
+        return footprint.discs(np.asarray(self.planning_scene.footprint(robot.state())))
 
     def _share(self, robot: Robot, rate: float, discs: Array) -> float:
         scan = read_laser(robot)

@@ -16,11 +16,11 @@ from momantu_bt.skill import Failure, In, Out, Run
 from momantu_bt.symptom import Symptom
 from momantu_skills.nav2.action import OnCostmap
 from momantu_skills.nav2.goals import Goal, pose_at
-from momantu_skills.navigation.control.footprint import discs
 from momantu_skills.navigation.drive.vehicle import Vehicle
 
 with lazily():
     from momantu_skills.manipulation.model import hulls
+    from momantu_skills.navigation.control import footprint
     from momantu_skills.navigation.drive import ways
 
 LETHAL = 254
@@ -121,7 +121,7 @@ def _touching(vehicle: Vehicle, outline: Array | None) -> Callable[[Pose2D], boo
         return lambda pose: (
             not vehicle.costmap.grid.contains(pose.x, pose.y) or ways.occupied(vehicle, pose)
         )
-    shape = discs(outline)
+    shape = footprint.discs(outline)
     return lambda pose: vehicle.costmap.room(pose, shape) < 0.0
 
 

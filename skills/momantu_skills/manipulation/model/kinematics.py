@@ -36,10 +36,10 @@ class Chain(NamedTuple):
 
 
 @njit(cache=True)
-def _rotation(axis, angle):  # type: ignore[no-untyped-def]
+def _rotation(axis, angle, r):  # type: ignore[no-untyped-def]
+    """Write the rotation about an axis to r (3, 3)."""
     c, s = np.cos(angle), np.sin(angle)
     x, y, z = axis[0], axis[1], axis[2]
-    r = np.empty((3, 3))
     r[0, 0] = c + x * x * (1 - c)
     r[0, 1] = x * y * (1 - c) - z * s
     r[0, 2] = x * z * (1 - c) + y * s
@@ -49,18 +49,15 @@ def _rotation(axis, angle):  # type: ignore[no-untyped-def]
     r[2, 0] = z * x * (1 - c) - y * s
     r[2, 1] = z * y * (1 - c) + x * s
     r[2, 2] = c + z * z * (1 - c)
-    return r
 
 
 @njit(cache=True)
-def _product(ra, pa, rb, pb):  # type: ignore[no-untyped-def]
-    r = np.empty((3, 3))
-    p = np.empty(3)
+def _product(ra, pa, rb, pb, r, p):  # type: ignore[no-untyped-def]
+    """Write the product of two poses to r (3, 3) and p (3,)."""
     for i in range(3):
         for j in range(3):
             r[i, j] = ra[i, 0] * rb[0, j] + ra[i, 1] * rb[1, j] + ra[i, 2] * rb[2, j]
         p[i] = ra[i, 0] * pb[0] + ra[i, 1] * pb[1] + ra[i, 2] * pb[2] + pa[i]
-    return r, p
 
 
 @njit(cache=True)
@@ -71,29 +68,36 @@ def forward(chain, q):  # type: ignore[no-untyped-def]
     """
     origins, axes, slides, tip = chain.origins, chain.axes, chain.slides, chain.tip
     n = len(q)
+    # two poses that take turns, as new arrays for each joint would take most of the time
     r, p = np.eye(3), np.zeros(3)
+    next_r, next_p = np.empty((3, 3)), np.empty(3)
     directions, points = np.empty((n, 3)), np.empty((n, 3))
-    zero = np.zeros(3)
+    turn, zero = np.empty((3, 3)), np.zeros(3)
     for i in range(n):
-        r, p = _product(r, p, origins[i, :3, :3], origins[i, :3, 3])
+        _product(r, p, origins[i, :3, :3], origins[i, :3, 3], next_r, next_p)
+        r, p, next_r, next_p = next_r, next_p, r, p
         for k in range(3):
             directions[i, k] = r[k, 0] * axes[i, 0] + r[k, 1] * axes[i, 1] + r[k, 2] * axes[i, 2]
             points[i, k] = p[k]
         if slides[i]:
-            p = p + directions[i] * q[i]
+            for k in range(3):
+                p[k] += directions[i, k] * q[i]
         else:
-            r, p = _product(r, p, _rotation(axes[i], q[i]), zero)
-    r, p = _product(r, p, tip[:3, :3], tip[:3, 3])
+            _rotation(axes[i], q[i], turn)
+            _product(r, p, turn, zero, next_r, next_p)
+            r, p, next_r, next_p = next_r, next_p, r, p
+    _product(r, p, tip[:3, :3], tip[:3, 3], next_r, next_p)
+    r, p = next_r, next_p
     jacobian = np.zeros((6, n))
     for i in range(n):
         a = directions[i]
         if slides[i]:
             jacobian[:3, i] = a
         else:
-            d = p - points[i]
-            jacobian[0, i] = a[1] * d[2] - a[2] * d[1]
-            jacobian[1, i] = a[2] * d[0] - a[0] * d[2]
-            jacobian[2, i] = a[0] * d[1] - a[1] * d[0]
+            x, y, z = p[0] - points[i, 0], p[1] - points[i, 1], p[2] - points[i, 2]
+            jacobian[0, i] = a[1] * z - a[2] * y
+            jacobian[1, i] = a[2] * x - a[0] * z
+            jacobian[2, i] = a[0] * y - a[1] * x
             jacobian[3:, i] = a
     return r, p, jacobian
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+
+import numba
 import numpy as np
 from numpy.typing import NDArray
 
@@ -43,17 +46,23 @@ def discs(outline: Array) -> Array:
     return np.array(chosen)
 
 
+@numba.njit(cache=True)
 def _covers(points: Array, radii: Array) -> NDArray[np.bool_]:
     """Which discs around points (n, 2) with radii (n,) hold which of the points: (n, n).
 
     The exact distance is only computed where its square does not tell.
     """
-    across = points[:, None, 0] - points[None, :, 0]
-    along = points[:, None, 1] - points[None, :, 1]
-    excess = across * across + along * along - (radii * radii)[:, None]
-    covers: NDArray[np.bool_] = excess < 0.0
-    row, column = np.nonzero(np.abs(excess) < ROUNDING)
-    covers[row, column] = np.hypot(across[row, column], along[row, column]) <= radii[row]
+    n = len(points)
+    covers = np.empty((n, n), dtype=np.bool_)
+    for i in range(n):
+        square = radii[i] * radii[i]
+        for j in range(n):
+            x = points[i, 0] - points[j, 0]
+            y = points[i, 1] - points[j, 1]
+            excess = x * x + y * y - square
+            covers[i, j] = excess < 0.0
+            if abs(excess) < ROUNDING:
+                covers[i, j] = math.hypot(x, y) <= radii[i]
     return covers
 
 

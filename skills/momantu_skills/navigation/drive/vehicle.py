@@ -15,12 +15,11 @@ from momantu_bt.robot import CAMERA_CARRIER, CameraSensor, Robot, read_camera, r
 from momantu_bt.service import Localization, PlanningScene
 from momantu_bt.skill import Run, Skill
 from momantu_skills.navigation.config import NavigationConfig
-from momantu_skills.navigation.control.footprint import discs, half_width
 from momantu_skills.navigation.map.sensing import Rays, obstacles_and_floor
 from momantu_skills.perception.camera.aiming import aim
 
 with lazily():
-    from momantu_skills.navigation.control import guard
+    from momantu_skills.navigation.control import footprint, guard
     from momantu_skills.navigation.map import costmap
 
 GAZE = (2.0, 0.0, 0.1)
@@ -78,8 +77,8 @@ class Vehicle:
         self._frames, self._clock = skill.frames, skill.clock
         self._base_frame = description.base_frame
         outline = np.array(description.footprint)
-        self.base_discs = self.low_discs = self.discs = discs(outline)
-        self.half_width = half_width(outline)
+        self.base_discs = self.low_discs = self.discs = footprint.discs(outline)
+        self.half_width = footprint.half_width(outline)
         self._outline = self._low_outline = outline
         self._low = top + HANDS_OVER
         self._posture: Array | None = None
@@ -147,11 +146,11 @@ class Vehicle:
         self._posture = state.positions
         outline = np.asarray(self._scene.footprint(state))
         if not _same(outline, self._outline):
-            self._outline, self.discs = outline, discs(outline)
-            self.half_width = half_width(outline)
+            self._outline, self.discs = outline, footprint.discs(outline)
+            self.half_width = footprint.half_width(outline)
         low = np.asarray(self._scene.footprint(state, self._low))
         if not _same(low, self._low_outline):
-            self._low_outline, self.low_discs = low, discs(low)
+            self._low_outline, self.low_discs = low, footprint.discs(low)
 
     def _look_due(self, pose: Pose2D) -> bool:
         if not self._sees:

@@ -206,7 +206,8 @@ class JointDrive:
         wanted = np.array(self.position + self._offset if here else self._goal)
         for name, value in zip(goal.names, goal.positions, strict=True):
             wanted[self.names.index(name)] = value
-        self._check_positions(wanted[None])
+        if here or self._goal is None or not np.array_equal(wanted, self._goal):
+            self._check_positions(wanted[None])
         self._path, self._goal, self._braking = None, wanted, False
 
     def _toward(self, goal: Array) -> tuple[Array, Array] | None:

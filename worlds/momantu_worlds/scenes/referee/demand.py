@@ -97,13 +97,13 @@ class ItemDemand:
 
 def tilt(pose: Transform) -> float:
     """Angle between a body's z axis and the vertical, rad."""
-    _, x, y, _ = (float(v) for v in pose.quaternion)
+    _, x, y, _ = pose.quaternion.tolist()
     return math.acos(max(-1.0, 1.0 - 2.0 * (x * x + y * y)))
 
 
 def moved(before: Transform, now: Transform) -> float:
     """Distance between two positions, m."""
-    x, y, z = (float(v) for v in now.position - before.position)
+    x, y, z = (now.position - before.position).tolist()
     return math.sqrt(x * x + y * y + z * z)
 
 
