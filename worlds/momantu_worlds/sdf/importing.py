@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from momantu_bt.formats.files import write_whole
@@ -26,8 +26,10 @@ from momantu_worlds.sdf.mesh.assets import Assets
 from momantu_worlds.sdf.read.uris import search_folders
 from momantu_worlds.sdf.read.world import read_world
 from momantu_worlds.sdf.write.proposal import propose
+from momantu_worlds.sdf.write.task import Wanted, with_task
 from momantu_worlds.sdf.write.writing import Imported, world_text
 
+NOTHING = Wanted()
 MOST_BODIES = 2000
 """Most bodies in a world file."""
 TIGHT = 0.25
@@ -58,7 +60,12 @@ class Import:
 
 
 def import_world(
-    file: Path, output: Path, models: Iterable[Path] = (), *, heed_up: bool = False
+    file: Path,
+    output: Path,
+    models: Iterable[Path] = (),
+    *,
+    heed_up: bool = False,
+    wanted: Wanted = NOTHING,
 ) -> Import:
     """Turn an SDF world into a world file; nothing is written yet.
 
@@ -67,8 +74,10 @@ def import_world(
         output: where the world file will lie; its assets lie beside it.
         models: folders in which `model://` is looked up, before Gazebo's own and the file's.
         heed_up: turn COLLADA upright by its <up_axis>, which Gazebo does not.
+        wanted: what is to be brought, and where.
 
     Raises:
+        InputError: what is wanted is not there.
         SdfError: the file itself is broken, or nothing could be imported.
     """
     deviations = Deviations()
@@ -96,13 +105,15 @@ def import_world(
     name, model = plain_name(output.stem), robot.model.name if robot else None
     site = propose(bodies, _start_of(robot, deviations))
     tops = {name: surface.top for name, surface in site.surfaces.items()}
-    bodies = list(flush(bodies, tops, deviations))
+    bodies, task = with_task(list(flush(bodies, tops, deviations)), site.surfaces, wanted)
+    if task.sizes is not None:
+        site = replace(site, objects={**site.objects, task.item: task.sizes})
     if site.clear < TIGHT:
         near = f"{site.clear:.2f} m around the start"
         deviations.changed(
             Place(str(file)), "world", near, "no robot turns there; write another start"
         )
-    world = Imported(name, file.name, model, bodies, ground, light, site)
+    world = Imported(name, file.name, model, bodies, ground, light, site, task=task)
     return Import(world, world_text(world, deviations), assets, deviations)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 from itertools import groupby
 from pathlib import Path
 from typing import Annotated
@@ -15,6 +16,7 @@ from momantu_bt.world import WorldError
 from momantu_worlds.floor_plan.importing import import_floor_plan
 from momantu_worlds.sdf.deviations import Deviation, Outcome
 from momantu_worlds.sdf.importing import Import, import_world
+from momantu_worlds.sdf.write.task import Task, Wanted
 
 YAML = (".yaml", ".yml")
 
@@ -36,6 +38,14 @@ def import_sdf(
         bool,
         typer.Option("--heed-up-axis", help="Apply <up_axis> of COLLADA files; Gazebo does not."),
     ] = False,
+    bring: Annotated[str, typer.Option(help="The thing to bring: the name of a model.")] = "",
+    start: Annotated[
+        str, typer.Option("--from", help="The surface on which it stands, or is put.")
+    ] = "",
+    goal: Annotated[str, typer.Option("--to", help="The surface to which it is brought.")] = "",
+    tag: Annotated[
+        str, typer.Option(help="A surface that gets an AprilTag. Default: that of --to.")
+    ] = "",
     height: Annotated[
         float, typer.Option(min=0.1, max=20.0, help="Of the walls of a floor plan, m.")
     ] = 2.5,
@@ -53,6 +63,7 @@ def import_sdf(
 
     Examples:
       momantu-bt worlds import office.world --models ~/gazebo_models -o office.yaml
+      momantu-bt worlds import office.world -o office.yaml --bring can --from desk --to table
       momantu-bt worlds import map.yaml -o building.yaml --height 3
       momantu-bt worlds preview office.yaml -o office.png
       momantu-bt run trees/bring_object.yaml --world office.yaml
@@ -67,9 +78,12 @@ def import_sdf(
         raise OutputError(f"{output} cannot be written: there is no folder {output.parent}")
     try:
         if file.suffix.lower() in YAML:
+            if bring or start or goal or tag:
+                raise InputError("--bring, --from, --to and --tag are for Gazebo worlds")
             found = import_floor_plan(file, output, height)
         else:
-            found = import_world(file, output, models or (), heed_up=heed_up_axis)
+            wanted = Wanted(bring, start, goal, tag)
+            found = import_world(file, output, models or (), heed_up=heed_up_axis, wanted=wanted)
         count = found.write(output)
     except WorldError as error:
         raise InputError(str(error)) from None
@@ -95,6 +109,19 @@ def _print(found: Import, output: Path, assets: int) -> None:
             typer.echo(f"\n{title}")
         for line in _lines(listed):
             typer.echo(f"  {line}")
+    if world.task.item:
+        typer.echo(f"\nTo bring {world.task.item} from {world.task.start} to {world.task.on}:")
+        typer.echo(f"  {_run(world.task, output)}")
+
+
+def _run(task: Task, output: Path) -> str:
+    """The command that does the task."""
+    sizes = ", ".join(f"{key}: {value}" for key, value in (task.sizes or {}).items())
+    values = [f"object={{{sizes}}}", f"from={task.start}", f"to={task.on}"]
+    if task.tag is not None:
+        values += [f"tag_id={task.tag.id}", f"tag_edge={1000 * task.tag.edge:.4g} mm"]
+    given = " ".join(f"--set {shlex.quote(value)}" for value in values)
+    return f"momantu-bt run bring_object --world {output} {given}"
 
 
 def _lines(deviations: list[Deviation]) -> list[str]:

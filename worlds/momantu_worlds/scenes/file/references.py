@@ -147,7 +147,11 @@ def goal_names(world: WorldFile) -> dict[str, tuple[str, ...]]:
     """The names that a goal's keys can have."""
     surfaces = surface_names(world)
     return {
-        "item": (*([world.item.name] if world.item is not None else ()), *world.objects),
+        "item": (
+            *([world.item.name] if world.item is not None else ()),
+            *world.objects,
+            *(name for name, body in world.bodies.items() if not body.static),
+        ),
         "on": surfaces,
         "beside": (*world.all_tags, *world.objects, *surfaces, *world.bodies),
     }

@@ -36,7 +36,7 @@ _LONGEST = 50
 class ImportedBody:
     """One body. title: the models and links that it was made of. mass: kg, None if it is static.
 
-    friction: None if the SDF world gives none.
+    friction: None if the SDF world gives none. category: empty if it is none of the known ones.
     """
 
     name: str
@@ -47,6 +47,7 @@ class ImportedBody:
     still: bool
     mass: float | None = None
     friction: float | None = None
+    category: str = ""
 
     def hulls(self) -> Iterator[Array]:
         """Points (n, 3) of all collision shapes, piece by piece, in the map."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from momantu_bt.geometry import Pose2D, Transform
 from momantu_worlds.sdf.body.bodies import ImportedBody
@@ -15,6 +15,7 @@ from momantu_worlds.sdf.body.parts import MeshPart, Part
 from momantu_worlds.sdf.deviations import Deviation
 from momantu_worlds.sdf.read.model import Box, Cylinder, Sphere
 from momantu_worlds.sdf.write.proposal import Proposal, Surface
+from momantu_worlds.sdf.write.task import TAG, Task
 
 BARE = 20.0
 """Edge of a floor without any bodies, m."""
@@ -38,6 +39,7 @@ class Imported:
     light: Lighting | None
     site: Proposal
     map: str | None = None
+    task: Task = field(default_factory=Task)
 
 
 def world_text(imported: Imported, deviations: Iterable[Deviation]) -> str:
@@ -62,7 +64,7 @@ def world_text(imported: Imported, deviations: Iterable[Deviation]) -> str:
         lines.append("bodies:")
     for body in imported.bodies:
         lines += _body(body, imported.site.surfaces.get(body.name))
-    lines += ["", *_site(imported)]
+    lines += ["", *_task(imported.task), *_site(imported)]
     return "\n".join(lines) + "\n"
 
 
@@ -101,6 +103,8 @@ def _light(light: Lighting) -> list[str]:
 
 def _body(body: ImportedBody, surface: Surface | None) -> Iterator[str]:
     yield f"  {body.name}:  # {_comment(body.title)}"
+    if body.category:
+        yield f"    category: {body.category}"
     if not body.still:
         yield "    static: false"
         yield f"    mass: {_number(body.mass or 0.0)}"
@@ -139,6 +143,19 @@ def _part(part: Part) -> Iterator[str]:
         yield "visual: false"
     if not part.collision and not isinstance(solid, MeshPart):
         yield "collision: false"
+
+
+def _task(task: Task) -> Iterator[str]:
+    if task.tag is not None:
+        tag, at = task.tag, _row((task.tag.at.x, task.tag.at.y))
+        yield "# An AprilTag of the family 36h11; edge: of its black square."
+        yield "tag:"
+        yield f"  {{name: {TAG}, id: {tag.id}, edge: {_number(tag.edge)}, on: {tag.on}, at: {at},"
+        yield f"   yaw: {_number(tag.at.yaw)}, turn: 0}}"
+        yield ""
+    if task.item:
+        yield f"goal: {task.item} on {task.on} beside {TAG}"
+        yield ""
 
 
 def _site(imported: Imported) -> Iterator[str]:
