@@ -64,8 +64,8 @@ def _labels(recording: Recording) -> dict[str, list[Any]]:
 def _nodes(recording: Recording) -> dict[str, list[Any]]:
     """Columns by node.
 
-    row, above: see `rows_above`. prefix: what it is for the node above, such as `try: `. file: -1
-    where the record has it not.
+    row, above: see `rows_above`. prefix: what it is for the node above, such as `try: `. again: the
+    texts of its handlers that only try again. file: -1 where the record has it not.
     """
     places = [node.place.rpartition(":") for node in recording.nodes]
     runs, failures = _counts(recording)
@@ -76,6 +76,10 @@ def _nodes(recording: Recording) -> dict[str, list[Any]]:
         "row": own,
         "above": above,
         "prefix": _prefixes(recording.nodes),
+        "again": [
+            [f"{prefix}try again" for prefix, is_node in node.plan if not is_node]
+            for node in recording.nodes
+        ],
         "file": [_file_number(file, list(recording.files)) for file, _, _ in places],
         "line": [int(line) if line.isdigit() else 0 for _, _, line in places],
         "runs": runs,

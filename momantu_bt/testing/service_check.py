@@ -19,6 +19,7 @@ from momantu_bt.formats.problems import Problem, Severity
 from momantu_bt.frames import FrameBuffer
 from momantu_bt.messages import BaseVelocity, plain
 from momantu_bt.plugins import PluginError
+from momantu_bt.robot import Robot
 from momantu_bt.service import Service
 from momantu_bt.skill import Port
 from momantu_bt.testing.clock_rules import ClockWatch, clocks_in_source
@@ -120,6 +121,7 @@ class _Runs:
         services.start(site, frames, world, self.seed)
         if blind:
             robot.dead = set(robot.description.sensors)
+        updates = _counted(instances[self.name])
         for tick in range(round(SECONDS / TICK)):
             turning = 0.4 if tick % 40 > 20 else 0.0
             robot.command("base", BaseVelocity(0.2, turning))
@@ -129,6 +131,7 @@ class _Runs:
             self._look(services, take)
             if take.problems:
                 return
+        take.problems += _rate(self.service.rate, len(updates))
 
     def _look(self, services: Services, take: _Take) -> None:
         """Compare what is published with what is declared."""
@@ -150,6 +153,28 @@ class _Runs:
             message = "asking twice for what it publishes gives two answers"
             take.problems.append(Problem("published-changes", message))
         take.published.append(shown)
+
+
+def _counted(service: Service) -> list[float]:
+    """The times of a service's updates, which fill from now on."""
+    times: list[float] = []
+    update = service.update
+
+    def noting(robot: Robot, now: float) -> None:
+        times.append(now)
+        update(robot, now)
+
+    service.update = noting  # type: ignore[method-assign]
+    return times
+
+
+def _rate(declared: float, updates: int) -> Iterator[Problem]:
+    """Compare the rate that a service declares with the one that it gets in a run."""
+    if abs(updates - SECONDS * declared) <= 1.0 + 0.02 * SECONDS * declared:
+        return
+    got = updates / SECONDS
+    message = f"declares a rate of {declared:g} Hz and is updated at {got:g} Hz"
+    yield Problem("rate", f"{message}: the clock ticks at {1 / TICK:g} Hz")
 
 
 def _names(declared: Mapping[str, type], values: Mapping[str, Any]) -> Iterator[Problem]:

@@ -17,9 +17,11 @@ function showTree() {
   body.append(root);
   const rows = record.nodes.row.map((own, node) => (own === node ? treeRow(node, root) : null)).filter(Boolean);
   if (rows.length) rows[0].item.tabIndex = 0;
+  const again = record.nodes.again.flatMap((texts, node) => texts.map((text) => againRow(node, text, root)));
   watch((tick) => {
     const [statuses, notes] = [statusJournal.at(tick), noteJournal.at(tick)];
     for (const row of rows) paint(row, statuses[row.node], record.notes[notes[row.node]], record.nodes.prefix[row.node] + labelAt(tick, row.node));
+    for (const row of again) paintAgain(row, statuses[row.node], record.notes[notes[row.node]]);
     if (follows) followRows(rows, body);
   });
 
@@ -56,6 +58,27 @@ function treeRow(node, root) {
   hint(row.line, () => rowHint(row));
   treeRows[node] = row;
   return row;
+}
+
+/** A handler without a node, which only tries again; it has a row below its `recover`. */
+function againRow(node, text, root) {
+  const above = treeRows[record.nodes.row[node]];
+  const [sign, label] = ["sign", "label"].map((name) => make("span", { class: name }));
+  write(label, text);
+  const style = `--depth: ${Math.min(above.depth + 1, 24)}`;
+  const line = make("div", { class: "row again", style }, make("span", { class: "fold", "aria-hidden": "true" }), sign, label);
+  groupOf(above, root).append(make("li", { role: "none" }, line));
+  return { node, text, line, sign };
+}
+
+/** It runs while the note of its node says that it tries again because of one of its codes. */
+function paintAgain(row, status, note) {
+  const [code, how] = (note ?? "").split(": ");
+  const other = row.text.startsWith("on any") || row.text.includes(" more ");
+  const runs = status === RUNNING && how === "again" && (other || row.text.includes(code));
+  const shown = runs ? RUNNING : 0;
+  row.line.dataset.status = STATUSES[shown];
+  write(row.sign, SIGNS[shown]);
 }
 
 function groupOf(row, root) {

@@ -218,6 +218,7 @@ def test_a_row_says_what_the_node_is_for_the_one_above(recording):
     nodes = tuple(replace(node, plan=plan if node.index == 3 else ()) for node in run.nodes)
     shown = page_data(replace(run, nodes=nodes))["nodes"]
     assert shown["prefix"] == ["", "", "", "", "try: ", "on SLIPPED → "]
+    assert shown["again"] == [[], [], [], ["on LOST → try again"], [], []]
 
 
 def test_labels_have_the_values_of_the_newest_start(recording):

@@ -55,6 +55,12 @@ class Slow(Fine):
         self.drawn = time.time()
 
 
+class Hasty(Fine):
+    """Wants more updates than there are ticks."""
+
+    rate = 50.0
+
+
 class Random(Fine):
     """Draws from a generator that all share."""
 
@@ -133,6 +139,7 @@ class Patient(Fine):
         (Fine, set()),
         (Patient, set()),
         (Slow, {"wall-clock", "not-deterministic"}),
+        (Hasty, {"rate"}),
         (Random, {"unseeded-random", "not-deterministic"}),
         (Meddling, {"commands"}),
         (Silent, {"undeclared-key", "key-never-given"}),
