@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from momantu_bt import collector
 from momantu_bt.cli.shared.given import given_tree, given_values
 from momantu_bt.cli.shared.options import TREE, Include, Settings, Values
 from momantu_bt.drawing.boxes import pictures
@@ -64,6 +65,7 @@ def show(
       momantu-bt show bring_object --svg -o bring_object.svg
       momantu-bt show trees/bring_object.yaml my_tree.yaml
     """
+    collector.skip_the_last()
     kinds = [name for name, on in (("svg", as_svg), ("dot", as_dot), ("mermaid", as_mermaid)) if on]
     if len(kinds) > 1:
         raise typer.BadParameter(f"choose one of --{' and --'.join(kinds)}")
