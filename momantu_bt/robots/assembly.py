@@ -19,7 +19,13 @@ from momantu_bt.robots.errors import PartError
 from momantu_bt.robots.inertia import inertia_problems, replace_inertial
 from momantu_bt.robots.joining import KEPT, VIRTUAL_JOINTS, Joining
 from momantu_bt.robots.limits import complete_limits
-from momantu_bt.robots.meshes import locate_meshes, replace_meshes, users_folder, write_paths
+from momantu_bt.robots.meshes import (
+    locate_meshes,
+    replace_meshes,
+    textures,
+    users_folder,
+    write_paths,
+)
 from momantu_bt.robots.parts import LoadedPart, load_part, shown
 from momantu_bt.robots.robot_file import RobotFile
 from momantu_bt.robots.structure import root_link, wrong_structure
@@ -105,7 +111,8 @@ def _is_whole(robot: RobotFile, parts: list[LoadedPart]) -> bool:
     """Whether the first part's file is the whole robot, with the limits that it has."""
     own, *others = parts
     drive = robot.base.drive
-    changed = own.source.xacro or own.source.namespace or own.meshes or own.source.inertials
+    source = own.source
+    changed = source.xacro or source.namespace or own.meshes or source.inertials or textures(own)
     unread = any(element.tag not in KEPT for element in own.root)
     added = others or robot.mounts or robot.frames or (drive is not None and drive.joints is None)
     return not (changed or unread or added)

@@ -92,9 +92,24 @@ def locate_meshes(part: LoadedPart) -> Located:
 
 
 def write_paths(part: LoadedPart, found: Mapping[str, Path]) -> None:
-    """Name every mesh by its absolute path."""
+    """Name every mesh and every texture by its absolute path.
+
+    A texture that is nowhere is left out: its link keeps its colour.
+    """
     for mesh in part.root.findall("link/*/geometry/mesh"):
         mesh.set("filename", str(found[str(mesh.get("filename", ""))]))
+    for texture in textures(part):
+        path = part.packages.mesh(str(texture.get("filename")))
+        above = texture.getparent()
+        if path is None and above is not None:
+            above.remove(texture)
+        elif path is not None:
+            texture.set("filename", str(path.resolve()))
+
+
+def textures(part: LoadedPart) -> list[etree._Element]:
+    """The elements that name a picture."""
+    return [each for each in part.root.iter("texture") if each.get("filename")]
 
 
 def _looked(name: str, packages: Packages) -> str:

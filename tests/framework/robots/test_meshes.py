@@ -83,3 +83,19 @@ def test_a_folder_with_nothing_that_fits_is_refused(carter: Write, tmp_path: Pat
     file = carter(robot=("namespace: arm,", "namespace: arm, meshes: none,"))
     with pytest.raises(RobotFileError, match="there is no folder .*none"):
         read_robot(file)
+
+
+def test_a_texture_is_found_like_a_mesh_or_left_out(carter: Write, tmp_path: Path) -> None:
+    """The simulator ended in a filesystem error where it did not find the picture."""
+    robot = carter()
+    picture = tmp_path / "carter" / "looks" / "paint.png"
+    picture.parent.mkdir()
+    picture.write_bytes(b"")
+    cart = tmp_path / "carter" / "cart.urdf"
+    materials = "".join(
+        f'<material name="{name}"><texture filename="package://looks/{name}.png"/></material>'
+        for name in ("paint", "gone")
+    )
+    cart.write_text(cart.read_text().replace("</robot>", f"{materials}</robot>"))
+    root = etree.fromstring(read_robot(robot).urdf.read_bytes())
+    assert [texture.get("filename") for texture in root.iter("texture")] == [str(picture)]

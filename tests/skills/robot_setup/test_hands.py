@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from momantu_skills.robot_setup.find.arms import find_limbs
 from momantu_skills.robot_setup.find.fingers import NEAR, STEPS, Hand, find_hands
 from momantu_skills.robot_setup.find.grasp import APART, LINEAR, STRONGEST, Grasp, find_grasp
 from momantu_skills.robot_setup.urdf.body import Body, placed
@@ -264,3 +265,30 @@ def test_without_efforts_the_force_is_a_guess() -> None:
         only_hand(body_of(*palm(0.06), *fingers, *slides(0.04, e)))[1].max_force for e in (1, 9, 70)
     ]
     assert forces == [2.0, 18.0, STRONGEST]
+
+
+def test_finger_hinges_without_a_range_are_a_hand() -> None:
+    """As in files whose ranges come from a calibration: from 0 to 0, each with its own motor."""
+    fingers = [
+        link("lf", box(0.02, 0.01, 0.1), "0 0 0.05"),
+        link("rf", box(0.02, 0.01, 0.1), "0 0 0.05"),
+    ]
+    body = body_of(*palm(0.06), *fingers, *hinges(0.0, 0.03))
+    (hand,) = find_hands(body)
+    assert set(hand.leaders) == {"lh", "rh"}
+    assert 0.05 < hand.widths[0] < 0.3
+    assert max(abs(q) for ends in hand.leaders.values() for q in ends) < 1.0
+
+
+def test_joints_of_fingers_are_no_joints_of_an_arm() -> None:
+    """Where no hand is found, the longest chain is the arm, without what is called a finger."""
+    links = [BASE, *(link(f"l{i}", box(0.05, 0.05, 0.2), "0 0 0.1") for i in range(5))]
+    arm = [
+        joint(f"j{i}", "base_link" if i == 0 else f"l{i - 1}", f"l{i}", "0 0 0.2", "0 1 0")
+        for i in range(5)
+    ]
+    finger = [link("finger_1", box(0.01, 0.01, 0.3), "0 0 0.15")]
+    body = body_of(*links, *arm, *finger, joint("f", "l4", "finger_1", "0 0 0.2", "0 0 1"))
+    limbs = find_limbs(body, (), None, ())
+    assert limbs.arm is not None
+    assert limbs.arm.joints == tuple(f"j{i}" for i in range(5))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from momantu_skills.robot_setup.find.fingers import Hand
+from momantu_skills.robot_setup.find.fingers import JAW, Hand
 from momantu_skills.robot_setup.urdf.body import Body
 
 LEAST_JOINTS = 4
@@ -100,7 +100,7 @@ def _arms(body: Body, hands: tuple[Hand, ...], draft: _Draft) -> list[Limb]:
 def _bare_arm(body: Body, wheels: tuple[str, ...], draft: _Draft) -> list[Limb]:
     """The longest chain without a hand, if no chain ends in a hand."""
     ends = [name for name in body.hulls if name not in wheels]
-    chains = {end: own_chain(body, end) for end in ends}
+    chains = {end: _without_fingers(body, own_chain(body, end)) for end in ends}
     tip = max(ends, key=lambda end: len(chains[end]), default=None)
     if tip is None or len(chains[tip]) < LEAST_JOINTS:
         draft.notes.append(f"no chain of {LEAST_JOINTS} or more joints was found: no arm")
@@ -111,6 +111,13 @@ def _bare_arm(body: Body, wheels: tuple[str, ...], draft: _Draft) -> list[Limb]:
         f"to {joint.child}, is taken for the arm"
     )
     return [Limb("arm", chains[tip], joint.child)]
+
+
+def _without_fingers(body: Body, chain: tuple[str, ...]) -> tuple[str, ...]:
+    """The joints of a chain without those at its end that are called like a finger's."""
+    while chain and JAW.search(chain[-1] + body.skeleton.joints[chain[-1]].child):
+        chain = chain[:-1]
+    return chain
 
 
 def _head(body: Body, camera: str | None, taken: set[str]) -> Limb | None:

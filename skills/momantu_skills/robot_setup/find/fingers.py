@@ -19,6 +19,10 @@ NEAR = 0.03
 """Fingers that stay farther apart than this do not close, m."""
 TRAVEL = 0.008
 """Least change of the gap between fingers that open, m."""
+FREE = 6.2
+"""Range of a hinge, rad, from which it counts as one without limits."""
+SWING = 0.6
+"""Assumed range of a finger's hinge without limits to each side of its place at rest, rad."""
 JAW = re.compile(r"gripper|jaw|finger|claw|pinc|grasp", re.IGNORECASE)
 """Usual names of the joint of a single jaw; without them it looks like a last wrist joint."""
 STEPS = 41
@@ -125,7 +129,7 @@ def _joints_of(body: Body, branches: tuple[Branch, ...]) -> list[str]:
 
 def _gripper(body: Body, link: str, branches: tuple[Branch, ...]) -> Hand | None:
     joints = _joints_of(body, branches)
-    ranges = {name: body.skeleton.joints[name].range for name in joints}
+    ranges = {name: _span(body, name) for name in joints}
     middle = {name: (low + high) / 2 for name, (low, high) in ranges.items()}
 
     def spread(posture: dict[str, float]) -> float:
@@ -147,6 +151,13 @@ def _gripper(body: Body, link: str, branches: tuple[Branch, ...]) -> Hand | None
         if behind:
             return _measured(body, link, branches, leaders, closing, ahead, behind)
     return None
+
+
+def _span(body: Body, name: str) -> tuple[float, float]:
+    """The range of a finger's joint, rad or m; of a hinge without limits a guess."""
+    low, high = body.skeleton.joints[name].range
+    unknown = body.skeleton.joints[name].kind != "prismatic" and high - low > FREE
+    return (-SWING, SWING) if unknown else (low, high)
 
 
 def _tips(body: Body, branches: tuple[Branch, ...], posture: dict[str, float]) -> Array:

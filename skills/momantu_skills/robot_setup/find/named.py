@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from functools import partial
 
 import numpy as np
 
 from momantu_bt.geometry import Transform
+from momantu_skills.robot_setup.find.arms import Limbs
+from momantu_skills.robot_setup.find.base import Stand
 from momantu_skills.robot_setup.find.limits import short_range
 from momantu_skills.robot_setup.find.poses import (
     AROUND,
@@ -23,7 +26,10 @@ from momantu_skills.robot_setup.find.poses import (
     posed,
 )
 from momantu_skills.robot_setup.urdf.arm_ik import LimbSolver
+from momantu_skills.robot_setup.urdf.body import Body
 
+RAISED = (0.3, 0.5, 0.7)
+"""Shares of a lift's range that are tried where the arm cannot be folded with it down."""
 DIGITS = 3
 """Decimals of a pose: a thousandth of a radian or a millimetre is enough for a draft."""
 
@@ -41,7 +47,7 @@ def find_poses(
     table = np.array([front + 0.5, 0.0, floor + TABLE])
     far = np.array([front + AROUND, 0.0, floor + TABLE])
     closed = {**finder.still, **posed(finder.arm.hand, 1.0)}
-    home = _fold(finder, {**closed, **finder.lifted(LOW)}, ahead)
+    home = _folded_low(finder, closed, ahead)
     if camera is None:
         ready = _raised(finder, home, table) or _fold(finder, _at_work(finder, closed), table)
         around = _raised(finder, home, far) or _fold(finder, _at_work(finder, closed), far)
@@ -51,6 +57,42 @@ def find_poses(
     carry = _carry(finder, hand, ahead) or home
     found = {"home": home, "ready": ready, "carry": carry, "look_around": around}
     return {name: _finished(finder, pose) for name, pose in found.items()}
+
+
+def fold_others(
+    body: Body, limbs: Limbs, stand: Stand, pairs: Sequence[tuple[str, str]], seed: int
+) -> dict[str, float]:
+    """Joints of the arms that skills do not use, folded on their own side of the robot."""
+    folded: dict[str, float] = {}
+    for other in limbs.others:
+        if not other.joints:
+            continue
+        rest = tuple(name for limb in (limbs.arm, *limbs.others) if limb for name in limb.joints)
+        held = tuple(name for name in rest if name not in other.joints)
+        finder = PoseFinder(
+            body, Limbs(other, (), None, (*limbs.rest, *held)), stand, pairs, None, seed, folded
+        )
+        side = float(np.sign(body.link_poses({}, [other.tip])[other.tip][1, 3]))
+        closed = {**finder.still, **posed(other.hand, 1.0)}
+        posture, _ = finder.folded(partial(_on_its_side, finder, side), closed)
+        folded |= {name: posture[name] for name in other.joints}
+    return folded
+
+
+def _folded_low(finder: PoseFinder, closed: dict[str, float], ahead: np.ndarray) -> FoundPose:
+    """Folded with the arm's lift as low as it can be without a collision."""
+    low = _fold(finder, {**closed, **finder.lifted(LOW)}, ahead)
+    if low.clear is not None or not finder.lifted(LOW):
+        return low
+    higher = (_fold(finder, {**closed, **finder.lifted(share)}, ahead) for share in RAISED)
+    return next((pose for pose in higher if pose.clear is not None), low)
+
+
+def _on_its_side(finder: PoseFinder, side: float, posture: Mapping[str, float]) -> float:
+    """The cost of a folded arm: m out of the footprint, and over the middle of the robot."""
+    corners = finder.corners(posture)
+    across = np.maximum(0.0, -side * corners[:, 1])
+    return 2 * finder.outside(corners) + 4 * float(across.mean() + across.max())
 
 
 def _fold(finder: PoseFinder, fixed: dict[str, float], target: np.ndarray) -> FoundPose:

@@ -96,8 +96,9 @@ class PoseFinder:
         pairs: Iterable[tuple[str, str]],
         eye: Eye | None,
         seed: int = 0,
+        still: Mapping[str, float] | None = None,
     ) -> None:
-        """pairs: of links whose meeting is a collision."""
+        """pairs: of links whose meeting is a collision. still: joints of other limbs."""
         assert limbs.arm is not None
         self.body, self.limbs, self.stand, self.eye = body, limbs, stand, eye
         self.arm = limbs.arm
@@ -113,7 +114,8 @@ class PoseFinder:
             {name: q for hand in hands for name, q in hand.posture(share).items()}
             for share in OPENINGS
         ]
-        self.still = {name: body.rest()[name] for name in self._others()}
+        at = {**body.rest(), **(still or {})}
+        self.still = {name: at[name] for name in self._others()}
 
     def _others(self) -> tuple[str, ...]:
         other = tuple(name for limb in self.limbs.others for name in limb.joints)

@@ -16,7 +16,7 @@ from momantu_skills.robot_setup.find.fingers import find_hands
 from momantu_skills.robot_setup.find.grasp import Grasp, find_grasp
 from momantu_skills.robot_setup.find.limits import FoundLimit, find_limits, plain_limits
 from momantu_skills.robot_setup.find.matrix import SAMPLES, CollisionMatrix, Why, sample_matrix
-from momantu_skills.robot_setup.find.named import find_poses
+from momantu_skills.robot_setup.find.named import find_poses, fold_others
 from momantu_skills.robot_setup.find.poses import VIEW, Eye, FoundPose, PoseFinder
 from momantu_skills.robot_setup.find.reach import Reach, find_reach
 from momantu_skills.robot_setup.find.sensors import FoundSensor, find_sensors
@@ -187,7 +187,8 @@ def _poses(
             joints, known = limbs.arm.joints, plain_limits(limits)
             view = LimbSolver(tree, joints, known, camera.link, place, seed)
     pairs = matrix.pairs(Why.SOMETIMES, Why.NEVER)
-    finder = PoseFinder(body, limbs, stand, pairs, eye, seed)
+    folded = fold_others(body, limbs, stand, pairs, seed)
+    finder = PoseFinder(body, limbs, stand, pairs, eye, seed, folded)
     return find_poses(finder, hand, view)
 
 

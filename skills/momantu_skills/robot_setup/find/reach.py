@@ -27,6 +27,8 @@ SEEDS = 8
 """Start postures of the inverse kinematics per pose."""
 GOOD = 0.8
 """Share of the heights that must be reached for a distance to count."""
+SIDES = {"to its right": -math.pi / 2, "to its left": math.pi / 2, "behind it": math.pi}
+"""Directions in which an arm may reach that does not reach ahead, rad."""
 ROOM = 0.13
 """Distance between the footprint and a table's edge, m."""
 BESIDE = 0.08
@@ -48,6 +50,10 @@ class Reach:
     look_off: float
     reach: tuple[float, float, float]
     measured: bool
+    aside: str = ""
+    """Where the hand reaches such grasps instead, if it reaches none ahead; empty: nowhere."""
+    freedoms: int = 6
+    """In how many of its six directions and turns the arm moves the hand."""
 
 
 def find_reach(solver: LimbSolver | None, stand: Stand) -> Reach:
@@ -61,7 +67,10 @@ def find_reach(solver: LimbSolver | None, stand: Stand) -> Reach:
     good = np.flatnonzero((heights >= GOOD) & (distances >= least - 1e-9))
     if not len(good):
         fallback = (least, least + 0.2, least + 0.4)
-        return Reach(distances, shares, stand_off, stand_off + LOOK_BACK, _cm(fallback), False)
+        aside = "" if solver is None else _aside(solver, distances, stand.floor)
+        freedoms = 0 if solver is None else _freedoms(solver)
+        off = stand_off + LOOK_BACK
+        return Reach(distances, shares, stand_off, off, _cm(fallback), False, aside, freedoms)
     near, far = float(distances[good[0]]), float(distances[good[-1]])
     strong = good[shares[good] >= 0.8 * shares[good].max()]
     best = float(distances[strong].mean())
@@ -70,12 +79,32 @@ def find_reach(solver: LimbSolver | None, stand: Stand) -> Reach:
     )
 
 
-def reached(solver: LimbSolver, distances: Array, floor: float) -> tuple[Array, Array]:
-    """What is reached straight ahead at distances (k,), m.
+def _freedoms(solver: LimbSolver) -> int:
+    """The largest rank of the hand's Jacobian in some postures."""
+    ranks = [
+        np.linalg.matrix_rank(solver.group.jacobian(q), tol=1e-4) for q in solver.starts(SEEDS)
+    ]
+    return int(max(ranks))
+
+
+def _aside(solver: LimbSolver, distances: Array, floor: float) -> str:
+    """The side on which the hand reaches grasps on most heights of tables; empty if none."""
+    for side, turned in SIDES.items():
+        _, heights = reached(solver, distances, floor, turned)
+        if heights.max() >= GOOD:
+            return side
+    return ""
+
+
+def reached(
+    solver: LimbSolver, distances: Array, floor: float, turned: float = 0.0
+) -> tuple[Array, Array]:
+    """What is reached at distances (k,), m, straight ahead or in a direction `turned` rad from it.
 
     Returns the share of grasps (k,), and the share of the tables' heights with one of them (k,).
     """
-    targets = np.array([_poses(distance, floor) for distance in distances])
+    turn = Transform.from_rpy((0.0, 0.0, 0.0), (0.0, 0.0, turned)).matrix
+    targets = np.array([turn @ _poses(distance, floor) for distance in distances])
     flat = solver.reaches(targets.reshape(-1, 4, 4), SEEDS)
     good = flat.reshape(len(distances), len(HEIGHTS), -1)
     return good.mean(axis=(1, 2)), good.any(axis=2).mean(axis=1)

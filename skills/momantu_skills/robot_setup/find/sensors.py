@@ -46,6 +46,14 @@ NARROW = 1.0
 PREFERRED = re.compile(r"rgb|color", re.IGNORECASE)
 """The preferred one of a camera's optical frames: that of a registered picture."""
 
+WITH_DEPTH = re.compile(r"rgb_?d|depth|kinect|realsense|xtion|astra|orbbec|(^|_)d4\d\d|zed", re.I)
+WITHOUT_DEPTH = re.compile(
+    r"stereo|(^|_)(left|right|l|r|wide|narrow|fish_?eye|infra\d?|high_def)(_|$)", re.I
+)
+"""Usual names of cameras that measure depth, and of those that do not: one eye of two."""
+DEPTH_KINDS = ("depth", "depth_camera", "rgbd_camera", "rgbd")
+"""Gazebo's types of cameras that measure depth."""
+
 PICTURE = (0.01, 3.09)
 """Range of horizontal fields of view of a flat picture, rad."""
 PIXELS = (1, 100_000)
@@ -67,7 +75,7 @@ class FoundSensor:
 
     written: whether a `<sensor>` element says so; otherwise the link's name does.
     The numbers are None where nothing says them: fov rad, width and height px, near and far m,
-    angles rad, beams counts, rings rad.
+    angles rad, beams counts, rings rad. depth: whether it is written as a camera with depth.
     """
 
     kind: str
@@ -81,6 +89,7 @@ class FoundSensor:
     angles: tuple[float, float] | None = None
     beams: int | None = None
     rings: tuple[float, ...] | None = None
+    depth: bool = False
 
 
 def find_sensors(
@@ -97,7 +106,16 @@ def find_sensors(
         names = [n for n in names if not NO_FRAME.search(n) and not RANGER.search(n)]
         if names:
             found += _by_name(kind, names, skeleton)
-    return found
+    return sorted(found, key=_behind)
+
+
+def _behind(sensor: FoundSensor) -> int:
+    """Cameras with depth come before others: skills look with the first camera."""
+    if sensor.kind != "camera":
+        return 0
+    if sensor.depth or WITH_DEPTH.search(sensor.link):
+        return 0
+    return 2 if WITHOUT_DEPTH.search(sensor.link) else 1
 
 
 def _by_name(kind: str, names: list[str], skeleton: Skeleton) -> list[FoundSensor]:
@@ -165,6 +183,7 @@ def _camera(element: etree._Element, link: str, skeleton: Skeleton) -> FoundSens
         optical=bool(OPTICAL.search(frame)),
         fov=_number(element, ".//horizontal_fov", *PICTURE),
         size=(int(width), int(height)) if width and height else None,
+        depth=element.get("type", "").lower() in DEPTH_KINDS,
     )
 
 

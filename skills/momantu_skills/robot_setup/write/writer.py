@@ -12,7 +12,7 @@ import numpy as np
 from momantu_bt.geometry import Transform
 from momantu_skills.robot_setup.find.matrix import Why
 from momantu_skills.robot_setup.find.proposal import Proposal
-from momantu_skills.robot_setup.find.reach import HEIGHTS
+from momantu_skills.robot_setup.find.reach import HEIGHTS, Reach
 from momantu_skills.robot_setup.write.arm_writer import (
     actuator_lines,
     end_effector_lines,
@@ -72,12 +72,30 @@ def without(proposal: Proposal) -> tuple[str, ...]:
             "no hand: no two links were found that open and close against each other. It moves "
             "its arm, and trees that pick or place are refused"
         )
+    if proposal.grasp is not None and not proposal.reach.measured:
+        found.append(_no_reach(proposal.reach))
     kinds = {sensor.kind for sensor in proposal.sensors}
     if "camera" not in kinds:
         found.append("no camera: trees that look for anything are refused")
     if not kinds & {"laser", "lidar"}:
         found.append("no laser: trees that drive are refused, as it cannot localize itself")
     return tuple(found)
+
+
+def _no_reach(reach: Reach) -> str:
+    """Why the hand reaches no grasp."""
+    why = ""
+    if reach.freedoms < 6:
+        why = (
+            f": it moves the hand in {reach.freedoms} of the six directions and turns that a grasp "
+            "has, and the base does not help it"
+        )
+    elif reach.aside:
+        why = f", but {reach.aside}, and skills stand with a table ahead"
+    return (
+        "no reach: the arm brings the hand to no grasp on a table straight ahead"
+        f"{why}. Trees that pick or place fail"
+    )
 
 
 def base_frame(proposal: Proposal) -> str:

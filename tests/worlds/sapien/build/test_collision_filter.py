@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from itertools import combinations
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from momantu_worlds.sapien.build.collision_filter import FLOOR_BIT, MOST_BITS, ignore_bits
-
-from momantu_bt.world import WorldError
 
 LINKS = [f"link_{i}" for i in range(7)]
 PAIRS = list(combinations(LINKS, 2))
@@ -29,8 +26,14 @@ def test_many_links_that_all_ignore_each_other_need_one_bit() -> None:
     assert set(ignore_bits(combinations(names, 2)).values()) == {1}
 
 
-def test_too_many_groups_are_refused() -> None:
-    apart = [(f"a{i}", f"b{i}") for i in range(MOST_BITS + 1)]
-    assert len(ignore_bits(apart[:-1])) == 2 * MOST_BITS
-    with pytest.raises(WorldError, match="31 pairs"):
-        ignore_bits(apart)
+def test_a_robot_with_more_groups_than_bits_ignores_a_few_more_pairs() -> None:
+    apart = [(f"a{i}", f"b{i}") for i in range(MOST_BITS + 3)]
+    exact = ignore_bits(apart[:MOST_BITS])
+    assert len(exact) == 2 * MOST_BITS
+    joined = ignore_bits(apart)
+    assert max(joined.values()).bit_length() <= MOST_BITS
+    assert all(joined[one] & joined[other] for one, other in apart)
+    known = {frozenset(pair) for pair in apart}
+    sharing = [p for p in combinations(joined, 2) if joined[p[0]] & joined[p[1]]]
+    others = [pair for pair in sharing if frozenset(pair) not in known]
+    assert len(others) == 3 * 4

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from momantu_bt.world import WorldError
-
 FLOOR_BIT = 1 << 30
 """Collision bit of the floor and of parts that may roll on it: shapes that share it ignore each
 other."""
@@ -14,34 +12,45 @@ MOST_BITS = 30
 
 
 def ignore_bits(pairs: Iterable[tuple[str, str]]) -> Mapping[str, int]:
-    """Bits by link, so that two links share one exactly if their pair is among `pairs`.
+    """Bits by link, so that two links share one if their pair is among `pairs`.
 
     If all pairs of a group of links ignore each other, the group shares one bit; otherwise a robot
-    with many pairs would need more bits than there are.
-
-    Raises:
-        WorldError: more groups than bits.
+    with many pairs would need more bits than there are. Of a robot that still needs more, those
+    groups are joined that ignore the fewest other pairs together: two links of one robot that pass
+    through each other do less harm than two that push each other apart for good.
     """
     wanted = list(dict.fromkeys((min(pair), max(pair)) for pair in pairs))
     known = set(wanted)
-    bits: dict[str, int] = {}
     done: set[tuple[str, str]] = set()
-    groups = 0
+    groups: list[frozenset[str]] = []
     for pair in wanted:
         if pair in done:
             continue
         group = _grown(pair, wanted, known)
         done |= {(a, b) for a in group for b in group if a < b}
-        if groups == MOST_BITS:
-            raise WorldError(
-                f"`ignored_collisions` has {len(wanted)} pairs, which fall into more than "
-                f"{MOST_BITS} groups of links that all ignore each other; leave out pairs of links "
-                "that cannot reach each other anyway"
-            )
-        for link in group:
-            bits[link] = bits.get(link, 0) | 1 << groups
-        groups += 1
+        groups.append(frozenset(group))
+    bits: dict[str, int] = {}
+    for number, links in enumerate(_joined(groups, known)):
+        for link in links:
+            bits[link] = bits.get(link, 0) | 1 << number
     return bits
+
+
+def _joined(groups: list[frozenset[str]], known: set[tuple[str, str]]) -> list[frozenset[str]]:
+    """At most MOST_BITS groups, the cheapest ones joined."""
+
+    def added(links: frozenset[str]) -> int:
+        return sum((a, b) not in known for a in links for b in links if a < b)
+
+    while len(groups) > MOST_BITS:
+        costs = [
+            (added(one | other), i, k)
+            for i, one in enumerate(groups)
+            for k, other in enumerate(groups[:i])
+        ]
+        _, i, k = min(costs)
+        groups = [g for n, g in enumerate(groups) if n not in (i, k)] + [groups[i] | groups[k]]
+    return groups
 
 
 def _grown(
