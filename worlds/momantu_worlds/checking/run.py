@@ -37,18 +37,20 @@ def check_world(
     draw: Callable[[int], Episode],
     description: RobotDescription,
     seeds: Sequence[int],
+    begun: Callable[[int], None] = lambda seed: None,
 ) -> list[Finding]:
     """Everything that is wrong with a world for a robot.
 
-    path: the world file. draw: gives the episode of a seed.
+    path: the world file. draw: gives the episode of a seed. begun: is told each seed first.
 
     Raises:
         WorldError: the world file cannot be read.
     """
     where, robot = Where(path), measured(description)
-    remarks = [
-        (seed, remark) for seed in seeds for remark in _of_seed(draw, seed, robot, where.body)
-    ]
+    remarks = []
+    for seed in seeds:
+        begun(seed)
+        remarks += [(seed, remark) for remark in _of_seed(draw, seed, robot, where.body)]
     return worst_first(_together(remarks, where))
 
 
