@@ -48,7 +48,7 @@ class Pick(Skill):
 
     object: DetectedObject = In(doc="the detected object to grasp; recent pose in odom")
     lift: float = In(0.12, unit="m", least=0, most=1, doc="height to lift it, straight up")
-    also_called = ("grab", "grasp", "take", "pick_up", "lift", "fetch", "get", "grip")
+    also_called = ("grab", "grasp", "take", "pick_up", "lift", "get", "grip")
     failures = {
         "STALE_POSE": "the pose is too old, or something was touched since it was seen",
         "NOTHING_THERE": "the camera sees nothing where the object should stand",

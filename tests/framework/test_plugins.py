@@ -137,7 +137,7 @@ def test_a_broken_skill_is_named_with_the_reason(
     ("group", "value", "reason"),
     [
         (SERVICES, "momantu_bt.skill:Skill", "not a subclass of momantu_bt.Service"),
-        (ROBOTS, "momantu_bt.skill:NAMES", "not a function"),
+        (ROBOTS, "momantu_bt.port:NAMES", "not a function"),
         (WORLDS, "momantu_bt.skill:Skill", "has no name and no default_robot and no site"),
     ],
 )

@@ -2,6 +2,7 @@
 
 import dataclasses
 
+import numpy as np
 import pytest
 from momantu_worlds.robots import fetch
 from momantu_worlds.scenes import loading
@@ -13,6 +14,7 @@ from momantu_worlds.scenes.site.maps import MOST_CACHED, with_maps
 from momantu_bt.descriptions.reading import DescriptionError
 from momantu_bt.formats.cache import CACHE_VARIABLE
 from momantu_bt.formats.files import write_whole
+from momantu_bt.formats.maps import MapPicture, write_map
 from momantu_bt.robot import laser_band
 
 PATH = world_path("four_rooms")
@@ -119,7 +121,7 @@ def test_a_map_that_the_file_names_is_taken(copy):
     change(copy, "  resolution: 5 cm", "  resolution: 5 cm\n  map: own.yaml")
     with pytest.raises(WorldFileError, match=r"no file 'own.yaml'"):
         load_world(copy)
-    own.write_text("image: own.pgm\n")
+    write_map(own, MapPicture(np.full((4, 4), 254, dtype=np.uint8), 0.05, (0.0, 0.0)))
     assert maps(copy) == (own, None)
 
 
