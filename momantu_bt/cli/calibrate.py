@@ -4,8 +4,14 @@ from __future__ import annotations
 
 import typer
 
-calibrate = typer.Typer(
-    rich_markup_mode=None,
-    no_args_is_help=True,
-    help="Estimate where a camera is mounted, from recorded data.",
-)
+from momantu_bt.errors import ExitCode
+
+calibrate = typer.Typer(rich_markup_mode=None, invoke_without_command=True)
+
+
+@calibrate.callback(help="Estimate a camera's lens or mounting, from recorded data.")
+def every(context: typer.Context) -> None:
+    """Print the help, unless a calibration is named."""
+    if context.invoked_subcommand is None:
+        typer.echo(context.get_help())
+        raise typer.Exit(ExitCode.WRONG_INPUT)

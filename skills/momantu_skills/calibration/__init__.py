@@ -1,4 +1,4 @@
-"""Calibration: where a camera is mounted, from poses that somebody recorded.
+"""Calibration: a camera's lens and where it is mounted, from recorded data.
 
-The estimation takes poses and knows neither files nor robots; `trajectory` reads files.
+The estimation takes poses and points and knows no robots; `trajectory` and `pictures` read files.
 """

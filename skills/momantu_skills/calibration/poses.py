@@ -112,6 +112,22 @@ def nearest_rotations(matrices: Array) -> Array:
     return np.asarray(left @ right)
 
 
+def turns_between(poses: Poses) -> tuple[Array, Array]:
+    """Typical angles (3,) in rad between two views about three axes, largest first, and the axes.
+
+    The axes (3, 3), a row each, are in the frame whose pose is given, such as the hand of
+    `base_from_hand`.
+    """
+    first, second = np.triu_indices(len(poses), 1)
+    if len(first) > 20_000:
+        even = np.linspace(0, len(first) - 1, 20_000).astype(int)
+        first, second = first[even], second[even]
+    between = np.swapaxes(poses.rotations[second], -1, -2) @ poses.rotations[first]
+    vectors = 2.0 * quaternions(between)[:, 1:]
+    values, axes = np.linalg.eigh(np.einsum("mi,mj->ij", vectors, vectors) / len(vectors))
+    return np.sqrt(np.clip(values[::-1], 0.0, None)), axes[:, ::-1].T
+
+
 def skew(vectors: Array) -> Array:
     """Matrices (..., 3, 3) of the cross products with vectors (..., 3)."""
     matrices = np.zeros((*vectors.shape, 3))

@@ -8,36 +8,20 @@ import numpy as np
 
 from momantu_bt.geometry import Array
 from momantu_skills.calibration.errors import CalibrationError
-from momantu_skills.calibration.poses import Poses, quaternions
+from momantu_skills.calibration.poses import Poses, turns_between
 
 LEAST = math.radians(1.0)
 """rad; turns about an axis that are smaller than this determine nothing."""
 GOOD = math.radians(10.0)
 
 
-def spread(outer: Poses) -> tuple[Array, Array]:
-    """Typical angles (3,) in rad between two views about three axes, largest first, and the axes.
-
-    The axes (3, 3), a row each, are in the hand's frame with the eye in the hand, and in the base's
-    frame with the eye on the base: the frame in which the eye is fixed.
-    """
-    first, second = np.triu_indices(len(outer), 1)
-    if len(first) > 20_000:
-        even = np.linspace(0, len(first) - 1, 20_000).astype(int)
-        first, second = first[even], second[even]
-    between = np.swapaxes(outer.rotations[second], -1, -2) @ outer.rotations[first]
-    vectors = 2.0 * quaternions(between)[:, 1:]
-    values, axes = np.linalg.eigh(np.einsum("mi,mj->ij", vectors, vectors) / len(vectors))
-    return np.sqrt(np.clip(values[::-1], 0.0, None)), axes[:, ::-1].T
-
-
 def check_spread(outer: Poses, frame: str) -> Array:
-    """The typical angles of `spread`; frame: "hand" or "base", in which the eye is fixed.
+    """The typical angles of `turns_between`; frame: "hand" or "base", in which the eye is fixed.
 
     Raises:
         CalibrationError: the hand does not turn, or about one axis only.
     """
-    turned, axes = spread(outer)
+    turned, axes = turns_between(outer)
     degrees = ", ".join(f"{math.degrees(each):.2g}" for each in turned)
     if turned[0] < LEAST:
         raise CalibrationError(

@@ -1,0 +1,1 @@
+"""Calibration of a camera's lens from pictures of a board."""

@@ -1,0 +1,123 @@
+"""Boards of known size: what `--board` says, and their points in a picture."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from momantu_bt.geometry import Array
+from momantu_bt.lazy import lazily
+from momantu_skills.calibration.errors import CalibrationError
+
+with lazily():
+    import cv2
+
+KINDS = ("chessboard", "charuco")
+_WORDS = re.compile(r"([a-z]+)[ :]+([0-9]+)x([0-9]+)")
+_LEAST_POINTS = 8
+"""Of a board that may be partly hidden; fewer hardly tell where it is."""
+
+
+@dataclass(frozen=True, slots=True)
+class Board:
+    """A board. columns, rows: inner corners of a chessboard, squares of a ChArUco board.
+
+    square: edge of a square, m. marker: edge of a ChArUco board's marker, m. dictionary: of its
+    markers, as OpenCV names it.
+    """
+
+    kind: str
+    columns: int
+    rows: int
+    square: float
+    marker: float = 0.0
+    dictionary: str = "4X4_50"
+
+    def __str__(self) -> str:
+        """As `--board` has it: `chessboard 9x6`."""
+        return f"{self.kind} {self.columns}x{self.rows}"
+
+    def points(self) -> Array:
+        """All points (N, 3) of the board in its own frame, m."""
+        columns, rows = self.columns, self.rows
+        if self.kind == "charuco":
+            columns, rows = columns - 1, rows - 1
+        grid = np.mgrid[0:columns, 0:rows].T.reshape(-1, 2).astype(float)
+        return np.column_stack([grid * self.square, np.zeros(len(grid))])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Seen:
+    """The points of a board that a picture shows.
+
+    indices: (N,) of `Board.points`. pixels: (N, 2).
+    """
+
+    indices: NDArray[np.intp]
+    pixels: Array
+
+
+def read_board(text: str, square: float, marker: float, dictionary: str) -> Board:
+    """The board that `--board`, `--square`, `--marker` and `--dictionary` describe.
+
+    Raises:
+        CalibrationError: one of them is not valid.
+    """
+    found = _WORDS.fullmatch(text.strip().lower())
+    if found is None or found[1] not in KINDS:
+        raise CalibrationError(
+            f"--board {text!r} is no board; expected 'chessboard 9x6' (inner corners) or "
+            f"'charuco 7x5' (squares)"
+        )
+    board = Board(found[1], int(found[2]), int(found[3]), square, marker, dictionary)
+    if min(board.columns, board.rows) < 3 or max(board.columns, board.rows) > 50:
+        raise CalibrationError(f"--board {text!r}: expected 3 to 50 columns and rows")
+    if not 0.0 < square < 10.0:
+        raise CalibrationError(f"--square {square:g} m; expected a length such as 25mm")
+    if board.kind == "charuco":
+        if not 0.0 < marker < square:
+            raise CalibrationError(
+                "a ChArUco board needs --marker, a length below --square, such as 18mm"
+            )
+        if not hasattr(cv2.aruco, f"DICT_{dictionary}"):
+            names = [name[5:] for name in dir(cv2.aruco) if name.startswith("DICT_")]
+            raise CalibrationError(f"--dictionary {dictionary!r}; expected {', '.join(names)}")
+    return board
+
+
+def find(board: Board, gray: NDArray[np.uint8]) -> Seen | None:
+    """The board's points in a gray picture (H, W); None if it is not there."""
+    return _find_charuco(board, gray) if board.kind == "charuco" else _find_corners(board, gray)
+
+
+def size_of_chessboard(gray: NDArray[np.uint8]) -> tuple[int, int] | None:
+    """Columns and rows of inner corners of whatever chessboard a picture shows; None without."""
+    flags = cv2.CALIB_CB_LARGER | cv2.CALIB_CB_NORMALIZE_IMAGE
+    found, _, meta = cv2.findChessboardCornersSBWithMeta(gray, (3, 3), flags)
+    if not found or meta is None or meta.ndim != 2:
+        return None
+    return int(meta.shape[1]), int(meta.shape[0])
+
+
+def _find_corners(board: Board, gray: NDArray[np.uint8]) -> Seen | None:
+    flags = cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_ACCURACY
+    size = (board.columns, board.rows)
+    found, corners = cv2.findChessboardCornersSB(gray, size, None, flags)
+    if not found:
+        return None
+    pixels = np.asarray(corners, dtype=float).reshape(-1, 2)
+    return Seen(np.arange(len(pixels)), pixels)
+
+
+def _find_charuco(board: Board, gray: NDArray[np.uint8]) -> Seen | None:
+    family = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, f"DICT_{board.dictionary}"))
+    size = (board.columns, board.rows)
+    charuco = cv2.aruco.CharucoBoard(size, board.square, board.marker, family)
+    corners, ids, _, _ = cv2.aruco.CharucoDetector(charuco).detectBoard(gray)
+    if ids is None or len(ids) < _LEAST_POINTS:
+        return None
+    pixels = np.asarray(corners, dtype=float).reshape(-1, 2)
+    return Seen(np.asarray(ids).ravel().astype(np.intp), pixels)

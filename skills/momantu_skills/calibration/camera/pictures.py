@@ -1,0 +1,86 @@
+"""The pictures of a folder, and where each shows the board."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from momantu_bt.lazy import lazily
+from momantu_skills.calibration.camera.board import Board, Seen, find, size_of_chessboard
+from momantu_skills.calibration.camera.lens import LEAST_PICTURES
+from momantu_skills.calibration.errors import CalibrationError
+
+with lazily():
+    import cv2
+
+SUFFIXES = frozenset({".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".pgm", ".ppm", ".webp"})
+_ASKED = 5
+"""Pictures that are searched for a board of another size."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Pictures:
+    """size: width and height, px. names: of the pictures with the board; without: of the others."""
+
+    size: tuple[int, int]
+    names: tuple[str, ...]
+    seen: tuple[Seen, ...]
+    without: tuple[str, ...]
+
+
+def read_pictures(folder: Path, board: Board) -> Pictures:
+    """Look for the board in every picture of a folder, by name.
+
+    Raises:
+        CalibrationError: there are no pictures, they are of different sizes, or too few show the
+            board.
+    """
+    if not folder.is_dir():
+        raise CalibrationError(f"{folder} is no folder; expected a folder of pictures")
+    files = sorted(each for each in folder.iterdir() if each.suffix.lower() in SUFFIXES)
+    if not files:
+        raise CalibrationError(f"{folder} has no pictures; expected PNG, JPEG, TIFF, …")
+    size: tuple[int, int] | None = None
+    names, seen, without = [], [], []
+    for file in files:
+        gray = _gray(file)
+        if size is not None and gray.shape[::-1] != size:
+            raise CalibrationError(
+                f"{file} has {gray.shape[1]} x {gray.shape[0]} pixels, {files[0].name} "
+                f"{size[0]} x {size[1]}: one camera's pictures are of one size"
+            )
+        size = (gray.shape[1], gray.shape[0])
+        points = find(board, gray)
+        if points is None:
+            without.append(file.name)
+        else:
+            names.append(file.name)
+            seen.append(points)
+    assert size is not None
+    if len(seen) < LEAST_PICTURES:
+        raise CalibrationError(_too_few(folder, board, len(seen), files))
+    return Pictures(size, tuple(names), tuple(seen), tuple(without))
+
+
+def _gray(file: Path) -> NDArray[np.uint8]:
+    gray = cv2.imread(str(file), cv2.IMREAD_GRAYSCALE)
+    if gray is None:
+        raise CalibrationError(f"{file} is no picture that can be read; delete it from the folder")
+    return np.asarray(gray)
+
+
+def _too_few(folder: Path, board: Board, count: int, files: list[Path]) -> str:
+    how = f"{count} of {len(files)} pictures" if count else "no picture"
+    said = f"{how} in {folder} shows a {board}; at least {LEAST_PICTURES} are needed"
+    sizes: dict[str, tuple[int, int]] = {}
+    for file in files[:_ASKED] if board.kind == "chessboard" else []:
+        found = size_of_chessboard(_gray(file))
+        if found is not None and sorted(found) != sorted((board.columns, board.rows)):
+            sizes[file.name] = max(found), min(found)
+    if sizes:
+        name, (columns, rows) = next(iter(sizes.items()))
+        return f"{said}. {name} shows another one: --board 'chessboard {columns}x{rows}'"
+    return f"{said}. Is the whole board in the picture, sharp and evenly lit, with a white rim?"

@@ -1,0 +1,85 @@
+"""`momantu-bt calibrate camera`: a camera's lens, from pictures of a board."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from momantu_bt.errors import ExitCode, InputError
+from momantu_bt.formats.files import check_writable, write_whole
+from momantu_bt.formats.units import UnitError, in_unit
+from momantu_bt.lazy import lazily
+from momantu_skills.calibration.models import Model
+
+with lazily():
+    from momantu_skills.calibration import camera_text
+    from momantu_skills.calibration.camera import board as boards
+    from momantu_skills.calibration.camera import camera_info, coverage, lens, pictures
+
+
+def camera(
+    folder: Annotated[Path, typer.Argument(help="A folder with pictures of the board.")],
+    board: Annotated[
+        str,
+        typer.Option(help="'chessboard 9x6' (inner corners) or 'charuco 7x5' (squares)."),
+    ],
+    square: Annotated[str, typer.Option(help="The edge of a square, such as 25mm.")],
+    marker: Annotated[
+        str, typer.Option(help="The edge of a ChArUco board's marker, such as 18mm.")
+    ] = "0 m",
+    dictionary: Annotated[
+        str, typer.Option(help="The dictionary of a ChArUco board's markers.")
+    ] = "4X4_50",
+    model: Annotated[
+        Model, typer.Option(help="Of the lens: pinhole with 5 or 8 coefficients, or fisheye.")
+    ] = Model.PINHOLE,
+    name: Annotated[str, typer.Option(help="The camera's name in the file.")] = "camera",
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Write camera_info, as ROS reads it.")
+    ] = None,
+    plot: Annotated[
+        Path | None, typer.Option(help="Draw where the boards were, and the residuals: a PNG.")
+    ] = None,
+) -> ExitCode:
+    """Estimate a camera's focal lengths, centre and distortion from pictures of a board.
+
+    Pictures that fit far worse than the others are named and do not count.
+
+    Exit code 0: the calibration is printed; 2: the pictures do not allow one.
+
+    Examples:
+      momantu-bt calibrate camera pictures/ --board "chessboard 9x6" --square 25mm -o camera.yaml
+      momantu-bt calibrate camera pictures/ --board "charuco 7x5" --square 30mm --marker 22mm
+      momantu-bt calibrate camera wide/ --board "chessboard 9x6" --square 25mm --model fisheye
+    """
+    for path in (output, plot):
+        if path is not None:
+            check_writable(path)
+    sizes = _length("--square", square), _length("--marker", marker)
+    given = boards.read_board(board, *sizes, dictionary)
+    shown = pictures.read_pictures(folder, given)
+    found = lens.fit(given, shown.seen, shown.size, model)
+    for line in camera_text.lines(shown, found):
+        typer.echo(line)
+    for note in camera_text.notes(shown, found):
+        typer.echo(f"note: {note}")
+    if output is not None:
+        write_whole(output, camera_info.camera_info(found, shown.size, name))
+        typer.echo(f"written to {output}")
+    if plot is not None:
+        write_whole(plot, coverage.plot(shown, found))
+        typer.echo(f"drawn in {plot}")
+    return ExitCode.SUCCESS
+
+
+def _length(option: str, text: str) -> float:
+    """A length with its unit, m."""
+    try:
+        value = in_unit(text, "m")
+    except UnitError as error:
+        raise InputError(f"{option}: {error}") from None
+    if value is None:
+        raise InputError(f"{option} {text!r}; expected a length with its unit, such as 25mm")
+    return value

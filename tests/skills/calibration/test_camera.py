@@ -1,0 +1,143 @@
+"""`calibrate camera`: exact on exact points, wrong pictures, boards, each mistake's sentence."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from momantu_skills.calibration.camera.board import Board, Seen
+from momantu_skills.calibration.camera.lens import fit
+from momantu_skills.calibration.errors import CalibrationError
+from momantu_skills.calibration.models import Model
+
+from momantu_bt.cli import main
+from tests.skills.scenery.boards import CHESSBOARD, DISTORTION, MATRIX, SIZE, folder, seen
+
+CHARUCO = Board("charuco", 7, 5, 0.03, 0.022)
+
+
+@pytest.mark.parametrize("model", list(Model))
+def test_a_lens_is_exact_on_exact_points(model: Model) -> None:
+    found = fit(CHESSBOARD, seen(model, 0.0), SIZE, model)
+    assert found.error < 0.01
+    assert found.matrix == pytest.approx(MATRIX, abs=0.5)
+    if model is not Model.PINHOLE8:  # of 8 coefficients, several sets give the same lens
+        assert found.distortion == pytest.approx(DISTORTION[model], abs=0.02)
+
+
+@pytest.mark.parametrize("model", [Model.PINHOLE, Model.FISHEYE])
+def test_standard_deviations_are_those_of_the_errors(model: Model) -> None:
+    ratios = []
+    for seed in range(6):
+        found = fit(CHESSBOARD, seen(model, 0.2, seed=seed), SIZE, model)
+        off = [found.matrix[0, 0] - 520, found.matrix[1, 1] - 515, found.matrix[0, 2] - 330]
+        ratios += list(np.array(off) / found.deviations[:3])
+    assert 0.5 < np.sqrt(np.mean(np.square(ratios))) < 1.7
+
+
+def test_a_wrong_picture_does_not_count() -> None:
+    pictures = seen(Model.PINHOLE, 0.1)
+    right = fit(CHESSBOARD, pictures, SIZE, Model.PINHOLE)
+    assert right.used.all()
+    pixels = pictures[5].pixels + np.random.default_rng(0).normal(size=(54, 2)) * 6.0
+    pictures[5] = Seen(pictures[5].indices, pixels)
+    found = fit(CHESSBOARD, pictures, SIZE, Model.PINHOLE)
+    assert list(np.flatnonzero(~found.used)) == [5]
+    assert found.matrix == pytest.approx(right.matrix, abs=2.0)
+
+
+def test_a_board_that_is_never_tilted_tells_no_focal_length() -> None:
+    pictures = []
+    for shift in np.random.default_rng(0).uniform((-0.2, -0.1, 0.3), (0.0, 0.0, 0.5), (8, 3)):
+        points = CHESSBOARD.points().reshape(-1, 1, 3)
+        pixels, _ = cv2.projectPoints(points, np.zeros(3), shift, MATRIX, np.zeros(5))
+        pictures.append(Seen(np.arange(54), np.asarray(pixels).reshape(-1, 2)))
+    with pytest.raises(CalibrationError, match="all views are alike: between pictures the board"):
+        fit(CHESSBOARD, pictures, SIZE, Model.PINHOLE)
+
+
+def run(capsys: pytest.CaptureFixture[str], *options: object) -> tuple[int, str]:
+    code = main(["calibrate", "camera", *map(str, options)])
+    shown = capsys.readouterr()
+    return code, shown.out if code == 0 else shown.err
+
+
+CHESS = ("--board", "chessboard 9x6", "--square", "25mm")
+
+
+def test_pictures_of_a_chessboard(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pictures = folder(tmp_path / "in", CHESSBOARD, 9)
+    cv2.imwrite(str(pictures / "zz.png"), np.full(SIZE[::-1], 128, np.uint8))
+    yaml, plot = tmp_path / "camera.yaml", tmp_path / "plot.png"
+    code, said = run(capsys, pictures, *CHESS, "-o", yaml, "--plot", plot, "--name", "eye")
+    assert code == 0, said
+    assert "9 pictures of 640 x 480 pixels count, of 10; model pinhole" in said
+    assert "zz.png                         no board" in said
+    assert "9 pictures are few" in said
+    text = yaml.read_text()
+    assert "camera_name: eye\n" in text
+    assert "distortion_model: plumb_bob\n" in text
+    numbers = text.split("data: [")[1].split("]")[0].split(", ")
+    assert np.reshape(list(map(float, numbers)), (3, 3)) == pytest.approx(MATRIX, abs=4.0)
+    drawn = cv2.imread(str(plot))
+    assert drawn is not None
+    assert drawn.shape == (480, 640, 3)
+
+
+def test_pictures_of_a_charuco_board(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pictures = folder(tmp_path / "in", CHARUCO, 8)
+    board = ("--board", "charuco 7x5", "--square", "30mm", "--marker", "22mm")
+    code, said = run(capsys, pictures, *board)
+    assert code == 0, said
+    assert "8 pictures of 640 x 480 pixels count" in said
+
+
+@pytest.fixture(scope="module")
+def four(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return folder(tmp_path_factory.mktemp("four") / "in", CHESSBOARD, 4)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (
+            ["--board", "chessboard 8x6", "--square", "25mm"],
+            "png shows another one: --board 'chessboard 9x6'",
+        ),
+        (["--board", "checkers 9x6", "--square", "25mm"], "is no board; expected 'chessboard 9x6'"),
+        (["--board", "chessboard 9x2", "--square", "25mm"], "expected 3 to 50 columns and rows"),
+        (["--board", "chessboard 9x6", "--square", "25"], "expected a length with its unit"),
+        (["--board", "chessboard 9x6", "--square", "25 deg"], "is an angle; expected a length"),
+        (["--board", "chessboard 9x6", "--square", "0mm"], "expected a length such as 25mm"),
+        (["--board", "charuco 7x5", "--square", "3cm"], "needs --marker, a length below --square"),
+        (
+            ["--board", "charuco 7x5", "--square", "3cm", "--marker", "2cm", "--dictionary", "9X9"],
+            "--dictionary '9X9'; expected",
+        ),
+        (
+            ["--board", "charuco 7x5", "--square", "3cm", "--marker", "2cm"],
+            "no picture in {folder} shows a charuco 7x5",
+        ),
+    ],
+)
+def test_wrong_options(
+    four: Path, capsys: pytest.CaptureFixture[str], options: list[str], message: str
+) -> None:
+    code, said = run(capsys, four, *options)
+    assert code == 2
+    assert message.format(folder=four) in said
+
+
+def test_folders_without_usable_pictures(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert "is no folder" in run(capsys, tmp_path / "no", *CHESS)[1]
+    assert "has no pictures" in run(capsys, tmp_path, *CHESS)[1]
+    cv2.imwrite(str(tmp_path / "a.png"), np.zeros((48, 64), np.uint8))
+    assert "no picture in" in run(capsys, tmp_path, *CHESS)[1]
+    cv2.imwrite(str(tmp_path / "b.png"), np.zeros((64, 48), np.uint8))
+    assert "has 48 x 64 pixels, a.png 64 x 48: one" in run(capsys, tmp_path, *CHESS)[1]
+    (tmp_path / "b.png").write_text("no picture")
+    assert "b.png is no picture that can be read" in run(capsys, tmp_path, *CHESS)[1]
