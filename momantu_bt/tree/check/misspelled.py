@@ -196,4 +196,8 @@ def _meant(node: Node, name: str, signature: Signature) -> str | None:
     lacking = [
         port for port in signature.ports if port not in node.ports and port not in node.port_places
     ]
-    return nearest(name, lacking)
+    near = nearest(name, lacking)
+    needed = [port for port in lacking if signature.ports[port].required]
+    others = [n for n in node.ports if n not in signature.ports and n != FIRST_INPUT]
+    sole = needed[0] if len(needed) == 1 and others == [name] else None
+    return near or sole  # the only unknown port is the only one that is missing

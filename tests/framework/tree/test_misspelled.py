@@ -90,6 +90,7 @@ def test_the_text_is_right(check: Check) -> None:
         ("outputs: {seen", "outputs: {sen", "unknown-port", "seen"),
         # names where they are used
         ("- Find: {place: $from", "- Find: {plce: $from", "unknown-port", "place"),
+        ("pick: {object: $seen}", "pick: {what: $seen}", "unknown-port", "object"),
         ("seen: $seen", "sen: $seen", "unknown-port", "seen"),
         ("found: $seen", "fond: $seen", "unknown-port", "found"),
         ("seen: $other", "seen: other", "not-a-key", "$other"),
