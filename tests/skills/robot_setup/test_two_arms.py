@@ -10,6 +10,7 @@ from momantu_skills.robot_setup.find.arms import Limbs, find_limbs
 from momantu_skills.robot_setup.find.base import find_stand
 from momantu_skills.robot_setup.find.fingers import find_hands
 from momantu_skills.robot_setup.find.named import fold_others
+from momantu_skills.robot_setup.find.poses import PoseFinder
 from momantu_skills.robot_setup.urdf.body import Body, Contacts
 
 from tests.skills.robot_setup.conftest import body_of, box, joint, link, rod
@@ -56,3 +57,14 @@ def test_the_other_arm_stands_on_its_own_side_and_clear(twins: tuple[Body, Limbs
     assert Contacts(body, pairs).free(body.configuration(folded))
     reach = body.corners(body.skeleton.subtree(other.tip), {})[:, 0].max()
     assert moved[:, 0].max() < reach - 0.2
+
+
+def test_parts_of_one_hand_that_are_near_each_other_keep_no_pose_from_being_found(
+    twins: tuple[Body, Limbs],
+) -> None:
+    body, limbs = twins
+    pairs = [p for p in combinations(body.hulls, 2) if not body.shapes.adjacent(*p)]
+    finder = PoseFinder(body, limbs, find_stand(body), pairs, None)
+    posture, margin = finder.folded(lambda q: finder.outside(finder.corners(q)), dict(finder.still))
+    assert margin is not None
+    assert finder.clear(posture, margin)

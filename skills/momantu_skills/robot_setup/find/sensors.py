@@ -106,13 +106,12 @@ def find_sensors(
         names = [n for n in names if not NO_FRAME.search(n) and not RANGER.search(n)]
         if names:
             found += _by_name(kind, names, skeleton)
-    return sorted(found, key=_behind)
+    cameras = iter(sorted((s for s in found if s.kind == "camera"), key=_behind))
+    return [next(cameras) if sensor.kind == "camera" else sensor for sensor in found]
 
 
 def _behind(sensor: FoundSensor) -> int:
     """Cameras with depth come before others: skills look with the first camera."""
-    if sensor.kind != "camera":
-        return 0
     if sensor.depth or WITH_DEPTH.search(sensor.link):
         return 0
     return 2 if WITHOUT_DEPTH.search(sensor.link) else 1
