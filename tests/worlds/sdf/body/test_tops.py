@@ -80,3 +80,14 @@ def test_a_table_that_is_laid_is_a_table(imported, box):
     assert "plain" in imported(GROUND + inside + plates).world.site.surfaces
     full = box("heap", "0.8 1.2 0.2", "0 0 0.82 0 0 0")
     assert "plain" not in imported(GROUND + inside + full).world.site.surfaces
+
+
+@pytest.mark.parametrize(
+    ("depth", "still", "bottom"), [(0.0, False, 0.0), (0.01, False, 0.0), (0.05, True, -0.05)]
+)
+def test_what_begins_in_the_floor_is_not_thrown_out_of_it(imported, box, depth, still, bottom):
+    found = imported(GROUND + box("b", "1 1 1", "3 0 0.5 0 0 0") + CAN.format(0.05 - depth))
+    can = bodies(found)["can"]
+    assert can.still == still
+    assert min(float(h[:, 2].min()) for h in can.hulls()) == pytest.approx(bottom, abs=1e-6)
+    assert len([f for f in found.deviations if "in the floor" in f.what]) == (depth > 0)

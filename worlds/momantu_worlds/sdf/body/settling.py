@@ -16,6 +16,8 @@ FLAT = 0.03
 """Height below which the robot drives over a static part, m, such as a carpet or a marking."""
 FLUSH = 0.002
 """Depth below the floor, m, down to which a part is still meant to be visible on it."""
+DEEP = 0.02
+"""Depth below the floor, m, down to which a loose body is set on it."""
 WIDE, LIFTED = 10.0, (0.001, 0.003)
 """Least area of a wide part, m2; least height above the floor of parts on it, m: of wide ones, and
 of parts on those. Two faces at the same height flicker in pictures."""
@@ -27,9 +29,23 @@ def settled(
     """Bodies with the floor at z = 0; height: of the floor in the SDF world, m."""
     for body in bodies:
         lowered = body.lifted(-height) if height else body
-        parts = tuple(_flattened(lowered, deviations)) if body.still else body.parts
+        lowered = lowered if lowered.still else _raised(lowered, deviations)
+        parts = tuple(_flattened(lowered, deviations)) if lowered.still else lowered.parts
         if parts:
             yield replace(lowered, parts=parts)
+
+
+def _raised(body: ImportedBody, deviations: Deviations) -> ImportedBody:
+    """A loose body that begins in the floor: set on it, or held where it is if it is deep in it."""
+    lowest = min((float(hull[:, 2].min()) for hull in body.hulls()), default=0.0)
+    if lowest > -FLUSH:
+        return body
+    what = f"it begins {-lowest:.3f} m in the floor"
+    if lowest > -DEEP:
+        deviations.changed(body.place, body.title, what, "it stands on it")
+        return body.lifted(-lowest)
+    deviations.changed(body.place, body.title, what, "it stays there, as it would be thrown out")
+    return replace(body, still=True, mass=None)
 
 
 def _flattened(body: ImportedBody, deviations: Deviations) -> Iterator[Part]:
