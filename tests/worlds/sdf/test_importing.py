@@ -95,7 +95,8 @@ def corners(poses, size):
 
 def test_masses_are_kept_and_joined_links_are_one_body(imported):
     found = imported(
-        f"""{GROUND}<model name='tool'><pose>0 0 0.05 0 0 0</pose><link name='a'>{CAN.format(mass=0.25)}</link>
+        f"""{GROUND}<model name='tool'><pose>0 0 0.05 0 0 0</pose>
+        <link name='a'>{CAN.format(mass=0.25)}</link>
         <link name='b'><pose>0 0 0.1 0 0 0</pose>{CAN.format(mass=0.5)}</link>
         <joint name='j' type='fixed'><parent>a</parent><child>b</child></joint></model>
         <model name='pair'><pose>1 0 0.05 0 0 0</pose><link name='a'>{CAN.format(mass=0.1)}</link>
@@ -106,7 +107,8 @@ def test_masses_are_kept_and_joined_links_are_one_body(imported):
     assert len(by_name(found)["tool"].parts) == 2
 
 
-DOOR = """<model name='cupboard'><pose>0 0 0.05 0 0 0</pose><link name='box'>{}</link><link name='door'>{}</link>
+DOOR = """<model name='cupboard'><pose>0 0 0.05 0 0 0</pose>
+  <link name='box'>{}</link><link name='door'>{}</link>
   <joint name='hinge' type='revolute'><parent>box</parent><child>door</child></joint>{}</model>"""
 
 
@@ -126,7 +128,8 @@ def test_a_joint_to_the_world_holds_a_body(imported):
 
 
 def test_joints_reach_through_frames_and_models(imported):
-    inside = f"""{GROUND}<model name='m'><pose>0 0 0.05 0 0 0</pose><frame name='f' attached_to='a'/>
+    inside = f"""{GROUND}<model name='m'><pose>0 0 0.05 0 0 0</pose>
+      <frame name='f' attached_to='a'/>
       <link name='a'>{CAN.format(mass=1)}</link>
       <model name='n'><link name='b'>{CAN.format(mass=2)}</link></model>
       <joint name='j' type='fixed'><parent>f</parent><child>n::b</child></joint>
