@@ -13,6 +13,8 @@ from momantu_skills.calibration.poses import turns_between
 _FEW = 10
 _TILT = np.radians(20.0)
 _COVERED = 0.7
+_BAD_ERROR = 0.7
+"""px; sharp pictures of a flat board are better."""
 _NAMES = {
     Model.PINHOLE: ("k1", "k2", "p1", "p2", "k3"),
     Model.PINHOLE8: ("k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"),
@@ -35,19 +37,19 @@ def lines(pictures: Pictures, lens: Lens) -> list[str]:
             for name, value, deviation in zip(names, values, lens.deviations, strict=True)
         ),
         "",
-        "picture                         error       covers alone",
         *_pictures(pictures, lens),
-        *(f"{name:<28}   no board" for name in pictures.without),
     ]
 
 
 def _pictures(pictures: Pictures, lens: Lens) -> list[str]:
-    said = []
+    width = max(map(len, (*pictures.names, *pictures.without)))
+    said = [f"{'picture':<{width}}     error      covers alone"]
     for name, error, used, share in zip(
         pictures.names, lens.errors, lens.used, gain(pictures, lens), strict=True
     ):
-        alone = f"{100 * share:7.0f} %" if used else "   outlier, does not count"
-        said.append(f"{name:<28} {error:8.3f} px {alone}")
+        alone = f"{100 * share:7.0f} %" if used else "  outlier, does not count"
+        said.append(f"{name:<{width}}  {error:8.3f} px {alone}")
+    said += [f"{name:<{width}}  no board" for name in pictures.without]
     return said
 
 
@@ -62,6 +64,11 @@ def notes(pictures: Pictures, lens: Lens) -> list[str]:
         said.append(
             f"the boards cover {100 * share:.0f} % of the picture; add pictures with the board at "
             f"{_empty(cells > 0)}"
+        )
+    if lens.error > _BAD_ERROR:
+        said.append(
+            f"the error is large: {lens.error:.2f} px. Is the board flat, are the pictures sharp, "
+            f"and does another --model fit better?"
         )
     turned, _ = turns_between(lens.camera_from_board[lens.used])
     if turned[1] < _TILT:

@@ -94,12 +94,16 @@ def find(board: Board, gray: NDArray[np.uint8]) -> Seen | None:
 
 
 def size_of_chessboard(gray: NDArray[np.uint8]) -> tuple[int, int] | None:
-    """Columns and rows of inner corners of whatever chessboard a picture shows; None without."""
+    """Columns and rows of inner corners of whatever chessboard a picture shows; None without.
+
+    It has to have more than 3 x 3: so many are seen in parts of any board.
+    """
     flags = cv2.CALIB_CB_LARGER | cv2.CALIB_CB_NORMALIZE_IMAGE
     found, _, meta = cv2.findChessboardCornersSBWithMeta(gray, (3, 3), flags)
     if not found or meta is None or meta.ndim != 2:
         return None
-    return int(meta.shape[1]), int(meta.shape[0])
+    size = int(meta.shape[1]), int(meta.shape[0])
+    return None if size == (3, 3) else size
 
 
 def _find_corners(board: Board, gray: NDArray[np.uint8]) -> Seen | None:

@@ -73,14 +73,14 @@ def _gray(file: Path) -> NDArray[np.uint8]:
 
 
 def _too_few(folder: Path, board: Board, count: int, files: list[Path]) -> str:
-    how = f"{count} of {len(files)} pictures" if count else "no picture"
-    said = f"{how} in {folder} shows a {board}; at least {LEAST_PICTURES} are needed"
-    sizes: dict[str, tuple[int, int]] = {}
+    how = f"{count} of {len(files)} pictures show" if count else "no picture shows"
+    said = f"in {folder}, {how} a {board}; at least {LEAST_PICTURES} are needed"
+    sizes = []
     for file in files[:_ASKED] if board.kind == "chessboard" else []:
         found = size_of_chessboard(_gray(file))
         if found is not None and sorted(found) != sorted((board.columns, board.rows)):
-            sizes[file.name] = max(found), min(found)
+            sizes.append((max(found), min(found), file.name))
     if sizes:
-        name, (columns, rows) = next(iter(sizes.items()))
+        columns, rows, name = max(sizes)
         return f"{said}. {name} shows another one: --board 'chessboard {columns}x{rows}'"
     return f"{said}. Is the whole board in the picture, sharp and evenly lit, with a white rim?"
