@@ -1,5 +1,7 @@
 """What is where on a plan: metres become pixels, and each thing has its colour."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -9,8 +11,11 @@ from momantu_worlds.checking.scenario import Scenario
 from momantu_worlds.preview.canvas import Canvas
 from momantu_worlds.preview.plan import DARK, PAPER, WAY, draw_plan, extent
 from momantu_worlds.robots import fetch
+from momantu_worlds.scenes.geometry.bodies import Body, Box, Part
 from momantu_worlds.scenes.loading import draw_episode
 from PIL import Image
+
+from momantu_bt.geometry import Transform
 
 WHITE, RED = (255, 255, 255), (255, 0, 0)
 
@@ -49,6 +54,19 @@ def test_walls_ways_and_what_nobody_gets_to() -> None:
     table = scenario.episode.body("table_b").map_from_body.position
     brown = pixel(table[0] - 0.2, table[1] + 0.4)
     assert brown[0] > brown[1] > brown[2]
+
+
+def test_a_floor_hides_no_way_and_a_carpet_is_drawn() -> None:
+    episode = draw_episode("four_rooms", 0)
+    for wide, hidden in ((6.0, False), (1.0, True)):
+        part = Part(Box((wide, wide, 0.02)), color=(1.0, 0.0, 0.0), collision=False)
+        slab = Body("slab", "body", Transform((-1.0, 0.6, 0.01)), (part,))
+        whole = replace(episode, bodies=(*episode.bodies, slab))
+        scenario = Scenario(whole, measured(fetch()), lambda name: ())
+        plan, (low, high) = draw_plan(scenario, 1000), extent(scenario)
+        scale = plan.width / (high[0] - low[0])
+        found = plan.getpixel((int((-0.65 - low[0]) * scale), int((high[1] - 0.25) * scale)))
+        assert (found != pytest.approx(WAY, abs=3)) == hidden
 
 
 def test_words_keep_apart_and_are_left_out_where_there_is_no_room() -> None:

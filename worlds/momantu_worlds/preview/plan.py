@@ -35,6 +35,8 @@ ARROW = 0.28
 """m; length of the mark that tells which way a place looks."""
 CUT = 1.8
 """m; what begins above this is left out of meshes, so that a ceiling hides no room."""
+FLOOR, WIDE = 0.03, 3.0
+"""m; what ends below the first and is wider than the second either way is a floor."""
 MOST_TRIANGLES = 60_000
 """A mesh of more triangles is drawn as its convex outline."""
 
@@ -82,6 +84,8 @@ def _bodies(canvas: Canvas, scenario: Scenario) -> None:
         if part.visual
     ]
     for body, part, points in sorted(parts, key=lambda entry: float(entry[2][:, 2].max())):
+        if _is_floor(points):
+            continue
         shape = _outline(points)
         if isinstance(part.geometry, Mesh) and len(part.geometry.triangles) <= MOST_TRIANGLES:
             _mesh(canvas, part, points)
@@ -93,6 +97,12 @@ def _bodies(canvas: Canvas, scenario: Scenario) -> None:
             canvas.polygon(shape, DARK, DARK)
         else:
             canvas.polygon(shape, rgb(part.color), rgb(part.color, 0.55))
+
+
+def _is_floor(points: Array) -> bool:
+    """Whether a part is a floor, which would hide where the robot gets."""
+    flat = float(points[:, 2].max()) <= FLOOR
+    return flat and bool((np.ptp(points[:, :2], axis=0) > WIDE).all())
 
 
 def _mesh(canvas: Canvas, part: Part, points: Array) -> None:
