@@ -81,4 +81,6 @@ def __getattr__(name: str) -> Any:
     """A public name, imported from the module that defines it."""
     if name not in _HOMES:
         raise AttributeError(f"momantu_bt has no {name!r}; it has: {', '.join(__all__)}")
+    if name in ("run", "open_session"):
+        import_module("momantu_bt.threads")  # before numpy, which the next import loads
     return getattr(import_module(f"momantu_bt.{_HOMES[name]}"), name)

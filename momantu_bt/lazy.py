@@ -45,6 +45,16 @@ class _Pending(ModuleType):
         return getattr(self, name)
 
 
+class _PutOff(_Pending):
+    """A pending package that does not run when a module in it is imported."""
+
+    def __getattribute__(self, name: str) -> Any:
+        if name == "__path__":
+            return ModuleType.__getattribute__(self, name)
+        inside = sys.modules.get(f"{ModuleType.__getattribute__(self, '__name__')}.{name}")
+        return super().__getattribute__(name) if inside is None else inside
+
+
 class _Missing(ModuleType):
     """Stands for a module of a library that is not installed; its first use raises."""
 
@@ -90,12 +100,12 @@ class _MissingFinder(MetaPathFinder, Loader):
 class _PendingLoader(Loader):
     """Makes a pending module, and runs it with the loader that Python would have used."""
 
-    def __init__(self, loader: SourceFileLoader) -> None:
-        self._loader = loader
+    def __init__(self, loader: SourceFileLoader, kind: type[_Pending]) -> None:
+        self._loader, self._kind = loader, kind
 
     def exec_module(self, module: ModuleType) -> None:
         """Defer running the module until one of its names is used."""
-        module.__class__ = _Pending
+        module.__class__ = self._kind
         module.__loader__ = self._loader
 
     def load(self, module: ModuleType) -> None:
@@ -110,7 +120,7 @@ class _PendingLoader(Loader):
             self._loader.exec_module(module)
         except BaseException:  # the next use tries again and raises the same error
             module.__spec__.loader = self
-            module.__class__ = _Pending
+            module.__class__ = self._kind
             raise
         finally:
             sys.meta_path[:] = [*first, *sys.meta_path, *last]
@@ -119,6 +129,8 @@ class _PendingLoader(Loader):
 class _LazyFinder(MetaPathFinder):
     """Finds modules as Python does, and puts off running those that are Python source."""
 
+    kind: type[_Pending] = _Pending
+
     def find_spec(
         self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
@@ -126,12 +138,14 @@ class _LazyFinder(MetaPathFinder):
         spec = PathFinder.find_spec(fullname, path, target)
         if spec is None or not isinstance(spec.loader, SourceFileLoader):
             return None
-        spec.loader = _PendingLoader(spec.loader)
+        spec.loader = _PendingLoader(spec.loader, self.kind)
         return spec
 
 
 class _NamedFinder(_LazyFinder):
     """Puts off running certain modules, whoever imports them."""
+
+    kind = _PutOff
 
     def __init__(self, names: frozenset[str]) -> None:
         self._names = names

@@ -133,3 +133,19 @@ def test_after_the_block_nothing_is_put_off(package: Path) -> None:
 def test_a_missing_module_may_be_named(package: Path) -> None:
     with putting_off("slow_tools.none"), pytest.raises(ModuleNotFoundError, match="none"):
         importlib.import_module("slow_tools.none")
+
+
+def test_a_package_that_is_put_off_runs_after_the_modules_in_it(package: Path) -> None:
+    (package / "__init__.py").write_text("import sys\nsys.unpacked = True\nNAME = 'tools'\n")
+    sys.unpacked = False  # type: ignore[attr-defined]
+    with putting_off("slow_tools", "slow_tools.blade"):
+        import slow_tools
+        import slow_tools.blade as blade
+
+        importlib.import_module("slow_tools.saw")
+    assert sys.unpacked is sys.blades is False  # type: ignore[attr-defined]
+    assert blade.sys is sys
+    assert sys.blades is True  # type: ignore[attr-defined]
+    assert slow_tools.NAME == "tools"
+    assert slow_tools.blade is blade
+    assert sys.unpacked is True  # type: ignore[attr-defined]

@@ -8,17 +8,15 @@ from itertools import pairwise
 import numpy as np
 
 from momantu_bt.geometry import Array
-from momantu_bt.lazy import lazily
+from momantu_bt.lazy import putting_off
 from momantu_bt.messages import JointTrajectory, frozen
 from momantu_skills.manipulation.config import PlanningConfig
 from momantu_skills.manipulation.model.arm_model import Group
 
-with lazily():
-    # toppra imports it for plots that nobody draws here, and it takes longer than toppra itself
-    import matplotlib.pyplot  # noqa: F401
-
-import toppra
-from toppra import algorithm, constraint
+# for plots that nobody draws here, and it takes longer than toppra itself
+with putting_off("matplotlib", "matplotlib.pyplot"):
+    import toppra
+    from toppra import algorithm, constraint
 
 PER_WAYPOINT = 10
 """Grid points between two waypoints: with fewer the spline's curvature at corners is missed."""

@@ -27,8 +27,6 @@ def discs(outline: Array) -> Array:
     The algorithm is greedy: each step takes the disc that covers most points that are not covered
     yet, so the first disc is that of the base.
 
-    Greedy: the disc that covers most of what is still bare comes next, so the first is the base.
-
     Raises:
         ValueError: the outline has no inside.
     """
