@@ -23,15 +23,20 @@ def camera(
     folder: Annotated[Path, typer.Argument(help="A folder with pictures of the board.")],
     board: Annotated[
         str,
-        typer.Option(help="'chessboard 9x6' (inner corners) or 'charuco 7x5' (squares)."),
+        typer.Option(
+            help="'chessboard 9x6' (inner corners), 'charuco 7x5' (squares) or 'aprilgrid 6x6'."
+        ),
     ],
-    square: Annotated[str, typer.Option(help="The edge of a square, such as 25mm.")],
+    square: Annotated[str, typer.Option(help="The edge of a square or tag, such as 25mm.")],
     marker: Annotated[
         str, typer.Option(help="The edge of a ChArUco board's marker, such as 18mm.")
     ] = "0 m",
     dictionary: Annotated[
         str, typer.Option(help="The dictionary of a ChArUco board's markers.")
     ] = "4X4_50",
+    gap: Annotated[
+        str, typer.Option(help="Between two tags of an AprilGrid, such as 9mm.")
+    ] = "0 m",
     model: Annotated[
         Model, typer.Option(help="Of the lens: pinhole with 5 or 8 coefficients, or fisheye.")
     ] = Model.PINHOLE,
@@ -57,8 +62,13 @@ def camera(
     for path in (output, plot):
         if path is not None:
             check_writable(path)
-    sizes = _length("--square", square), _length("--marker", marker)
-    given = boards.read_board(board, *sizes, dictionary)
+    given = boards.read_board(
+        board,
+        _length("--square", square),
+        _length("--marker", marker),
+        dictionary,
+        _length("--gap", gap),
+    )
     shown = pictures.read_pictures(folder, given)
     found = lens.fit(given, shown.seen, shown.size, model)
     for line in camera_text.lines(shown, found):

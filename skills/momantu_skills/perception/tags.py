@@ -52,9 +52,13 @@ class SeenTag:
 
 def find_tags(image: CameraImage) -> dict[int, Array]:
     """Corners (4, 2) in px of every tag in a picture, by id; the larger one if an id repeats."""
-    grey = _linear()[image.color[..., 1]]
+    return tags_in(np.ascontiguousarray(image.color[..., 1]))
+
+
+def tags_in(gray: NDArray[np.uint8]) -> dict[int, Array]:
+    """As `find_tags`, in a gray picture (H, W)."""
     found: dict[int, Array] = {}
-    for detection in _detector().detect(np.ascontiguousarray(grey)):
+    for detection in _detector().detect(np.ascontiguousarray(_linear()[gray])):
         if detection.hamming > 1 or detection.decision_margin < LEAST_MARGIN:
             continue
         corners = np.asarray(detection.corners, dtype=np.float64) - PIXEL_CENTRE

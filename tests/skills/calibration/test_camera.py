@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from momantu_skills.calibration.camera.board import Board, Seen
 from momantu_skills.calibration.camera.lens import fit
+from momantu_skills.calibration.camera.pictures import read_pictures
 from momantu_skills.calibration.errors import CalibrationError
 from momantu_skills.calibration.models import Model
 
@@ -16,6 +17,7 @@ from momantu_bt.cli import main
 from tests.skills.scenery.boards import CHESSBOARD, DISTORTION, MATRIX, SIZE, folder, seen
 
 CHARUCO = Board("charuco", 7, 5, 0.03, 0.022)
+APRILGRID = Board("aprilgrid", 4, 3, 0.04, gap=0.01)
 
 
 @pytest.mark.parametrize("model", list(Model))
@@ -94,6 +96,18 @@ def test_pictures_of_a_charuco_board(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert "8 pictures of 640 x 480 pixels count" in said
 
 
+def test_pictures_of_an_aprilgrid(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pictures = folder(tmp_path / "in", APRILGRID, 6)
+    board = ("--board", "aprilgrid 4x3", "--square", "40mm", "--gap", "10mm")
+    code, said = run(capsys, pictures, *board)
+    assert code == 0, said
+    assert "6 pictures of 640 x 480 pixels count" in said
+    shown = read_pictures(pictures, APRILGRID)
+    lens = fit(APRILGRID, shown.seen, shown.size, Model.PINHOLE)
+    assert lens.error < 0.5
+    assert lens.matrix[0, 0] == pytest.approx(MATRIX[0, 0], rel=0.02)
+
+
 @pytest.fixture(scope="module")
 def four(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder(tmp_path_factory.mktemp("four") / "in", CHESSBOARD, 4)
@@ -112,6 +126,7 @@ def four(tmp_path_factory: pytest.TempPathFactory) -> Path:
         (["--board", "chessboard 9x6", "--square", "25 deg"], "is an angle; expected a length"),
         (["--board", "chessboard 9x6", "--square", "0mm"], "expected a length such as 25mm"),
         (["--board", "charuco 7x5", "--square", "3cm"], "needs --marker, a length below --square"),
+        (["--board", "aprilgrid 4x3", "--square", "4cm"], "an AprilGrid needs --gap, the length"),
         (
             ["--board", "charuco 7x5", "--square", "3cm", "--marker", "2cm", "--dictionary", "9X9"],
             "--dictionary '9X9'; expected",

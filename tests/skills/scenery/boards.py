@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 from momantu_skills.calibration.camera.board import Board, Seen
 from momantu_skills.calibration.models import Model
+from momantu_worlds.scenes.catalogue.tag36h11 import tag_cells
 
 from momantu_bt.geometry import Array
 
@@ -49,10 +50,24 @@ def sheet(board: Board, square: int = 40) -> Array:
         size = (board.columns, board.rows)
         charuco = cv2.aruco.CharucoBoard(size, board.square, board.marker, family)
         image = charuco.generateImage((board.columns * square, board.rows * square))
+    elif board.kind == "aprilgrid":
+        image = tags(board, square)
     else:
         dark = np.indices((board.rows + 1, board.columns + 1)).sum(axis=0) % 2 == 0
         image = np.kron(np.where(dark, 0, 255), np.ones((square, square))).astype(np.uint8)
     return np.pad(np.asarray(image), square, constant_values=255)
+
+
+def tags(board: Board, edge: int) -> Array:
+    """The tags of an AprilGrid, `edge` pixels for each; its gap is a quarter of a tag."""
+    step = edge + edge // 4
+    image = np.full((board.rows * step, board.columns * step), 255, dtype=np.uint8)
+    for index in range(board.columns * board.rows):
+        row, column = divmod(index, board.columns)
+        top, left = (board.rows - 1 - row) * step, column * step
+        cells = np.kron(tag_cells(index)[1:-1, 1:-1], np.ones((edge // 8, edge // 8)))
+        image[top : top + edge, left : left + edge] = np.where(cells > 0, 255, 0)
+    return image
 
 
 def picture(board: Board, turn: Array, shift: Array, square: int = 40) -> Array:
@@ -61,7 +76,7 @@ def picture(board: Board, turn: Array, shift: Array, square: int = 40) -> Array:
     # pixels of the sheet to metres of the board, whose first inner corner is its origin
     scale = board.square / square
     onto = np.array([[scale, 0, -2 * board.square], [0, scale, -2 * board.square], [0, 0, 1.0]])
-    if board.kind == "charuco":
+    if board.kind != "chessboard":
         onto[:2, 2] = -board.square
     away = MATRIX @ np.column_stack([rotation[:, 0], rotation[:, 1], shift]) @ onto
     flat = cv2.warpPerspective(sheet(board, square), away, SIZE, borderValue=(128,))

@@ -15,18 +15,22 @@ from momantu_skills.calibration.errors import CalibrationError
 with lazily():
     import cv2
 
-KINDS = ("chessboard", "charuco")
+    from momantu_skills.perception import tags
+
+KINDS = ("chessboard", "charuco", "aprilgrid")
 _WORDS = re.compile(r"([a-z]+)[ :]+([0-9]+)x([0-9]+)")
+_WINDOW = (3, 3)
+"""Half of the window in which a tag's corner is refined, px."""
 _LEAST_POINTS = 8
 """Of a board that may be partly hidden; fewer hardly tell where it is."""
 
 
 @dataclass(frozen=True, slots=True)
 class Board:
-    """A board. columns, rows: inner corners of a chessboard, squares of a ChArUco board.
+    """A board. columns, rows: inner corners of a chessboard, squares of a ChArUco board, tags.
 
-    square: edge of a square, m. marker: edge of a ChArUco board's marker, m. dictionary: of its
-    markers, as OpenCV names it.
+    square: edge of a square, or of an AprilGrid's black tags, m. marker: edge of a ChArUco board's
+    marker, m. dictionary: of its markers, as OpenCV names it. gap: between an AprilGrid's tags, m.
     """
 
     kind: str
@@ -35,6 +39,7 @@ class Board:
     square: float
     marker: float = 0.0
     dictionary: str = "4X4_50"
+    gap: float = 0.0
 
     def __str__(self) -> str:
         """As `--board` has it: `chessboard 9x6`."""
@@ -42,11 +47,19 @@ class Board:
 
     def points(self) -> Array:
         """All points (N, 3) of the board in its own frame, m."""
+        if self.kind == "aprilgrid":
+            return self._corners_of_tags()
         columns, rows = self.columns, self.rows
         if self.kind == "charuco":
             columns, rows = columns - 1, rows - 1
         grid = np.mgrid[0:columns, 0:rows].T.reshape(-1, 2).astype(float)
         return np.column_stack([grid * self.square, np.zeros(len(grid))])
+
+    def _corners_of_tags(self) -> Array:
+        """Four corners of each tag. As Kalibr prints it, tag 0 is at the bottom left; y is up."""
+        cells = np.mgrid[0 : self.columns, 0 : self.rows].T.reshape(-1, 1, 2)
+        flat = cells * (self.square + self.gap) + (tags.UNIT_CORNERS + 0.5) * self.square
+        return np.column_stack([flat.reshape(-1, 2), np.zeros(4 * len(cells))])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -60,8 +73,10 @@ class Seen:
     pixels: Array
 
 
-def read_board(text: str, square: float, marker: float, dictionary: str) -> Board:
-    """The board that `--board`, `--square`, `--marker` and `--dictionary` describe.
+def read_board(
+    text: str, square: float, marker: float = 0.0, dictionary: str = "4X4_50", gap: float = 0.0
+) -> Board:
+    """The board that `--board`, `--square`, `--marker`, `--dictionary` and `--gap` describe.
 
     Raises:
         CalibrationError: one of them is not valid.
@@ -69,10 +84,10 @@ def read_board(text: str, square: float, marker: float, dictionary: str) -> Boar
     found = _WORDS.fullmatch(text.strip().lower())
     if found is None or found[1] not in KINDS:
         raise CalibrationError(
-            f"--board {text!r} is no board; expected 'chessboard 9x6' (inner corners) or "
-            f"'charuco 7x5' (squares)"
+            f"--board {text!r} is no board; expected 'chessboard 9x6' (inner corners), "
+            f"'charuco 7x5' (squares) or 'aprilgrid 6x6' (tags)"
         )
-    board = Board(found[1], int(found[2]), int(found[3]), square, marker, dictionary)
+    board = Board(found[1], int(found[2]), int(found[3]), square, marker, dictionary, gap)
     if min(board.columns, board.rows) < 3 or max(board.columns, board.rows) > 50:
         raise CalibrationError(f"--board {text!r}: expected 3 to 50 columns and rows")
     if not 0.0 < square < 10.0:
@@ -85,12 +100,18 @@ def read_board(text: str, square: float, marker: float, dictionary: str) -> Boar
         if not hasattr(cv2.aruco, f"DICT_{dictionary}"):
             names = [name[5:] for name in dir(cv2.aruco) if name.startswith("DICT_")]
             raise CalibrationError(f"--dictionary {dictionary!r}; expected {', '.join(names)}")
+    if board.kind == "aprilgrid" and gap <= 0.0:
+        raise CalibrationError(
+            "an AprilGrid needs --gap, the length between two tags, such as 9mm (Kalibr's "
+            "tagSpacing times tagSize)"
+        )
     return board
 
 
 def find(board: Board, gray: NDArray[np.uint8]) -> Seen | None:
     """The board's points in a gray picture (H, W); None if it is not there."""
-    return _find_charuco(board, gray) if board.kind == "charuco" else _find_corners(board, gray)
+    kinds = {"chessboard": _find_corners, "charuco": _find_charuco, "aprilgrid": _find_tags}
+    return kinds[board.kind](board, gray)
 
 
 def size_of_chessboard(gray: NDArray[np.uint8]) -> tuple[int, int] | None:
@@ -125,3 +146,15 @@ def _find_charuco(board: Board, gray: NDArray[np.uint8]) -> Seen | None:
         return None
     pixels = np.asarray(corners, dtype=float).reshape(-1, 2)
     return Seen(np.asarray(ids).ravel().astype(np.intp), pixels)
+
+
+def _find_tags(board: Board, gray: NDArray[np.uint8]) -> Seen | None:
+    found = tags.tags_in(gray)
+    own = sorted(each for each in found if each < board.columns * board.rows)
+    if 4 * len(own) < _LEAST_POINTS:
+        return None
+    indices = 4 * np.repeat(own, 4) + np.tile(np.arange(4), len(own))
+    pixels = np.concatenate([found[each] for each in own]).astype(np.float32)
+    ends = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_COUNT, 30, 0.01)
+    refined = cv2.cornerSubPix(gray, pixels.reshape(-1, 1, 2), _WINDOW, (-1, -1), ends)
+    return Seen(indices.astype(np.intp), np.asarray(refined, dtype=float).reshape(-1, 2))
