@@ -50,7 +50,8 @@ def test_one_command_makes_a_world_for_the_main_task(run, tmp_path, can):
     own = world.bodies["coke"]
     assert (own.category, own.static, own.mass) == ("can", False, 0.3)
     assert own.parts[0].color == (0.7, 0, 0)
-    assert own.at[2] == pytest.approx(0.78)
+    assert own.at[2] == pytest.approx(0.72)  # its frame lies in its base, as the referee judges
+    assert own.parts[0].at[2] == pytest.approx(0.06)
     assert world.site.objects["coke"].diameter == pytest.approx(0.066)
     assert "momantu-bt run bring_object --world" in out
     assert "--set from=desk --set to=table --set tag_id=1" in out
@@ -98,3 +99,14 @@ def test_what_is_not_there_is_told_and_nothing_is_written(run, tmp_path, options
     assert code == 2
     assert words in err
     assert not (tmp_path / "r.yaml").exists()
+
+
+def test_a_turned_box_is_told_as_it_is(run, box, tmp_path):
+    packet = box("packet", "0.06 0.1 0.15", "0.1 0.1 0.795 0 0 0.7").replace(
+        "<static>1</static>", ""
+    )
+    assert run("--bring", "packet", *BRING[2:], more=packet)[0] == 0
+    world = read_world(tmp_path / "r.yaml")
+    sizes = world.site.objects["packet"]
+    assert (sizes.category, sizes.width, sizes.depth, sizes.height) == ("box", 0.06, 0.1, 0.15)
+    assert world.bodies["packet"].at[2:] == pytest.approx((0.72, 0, 0, 0.7))

@@ -82,9 +82,11 @@ def with_task(
         start = _surface(surfaces, "--from", wanted.start)
         on = _surface(surfaces, "--to", wanted.goal)
         item = _thing(bodies, wanted.bring, surfaces)
-        placed = _on_top(_as_item(item), surfaces[start], bodies)
+        placed = _based(_on_top(_as_item(item), surfaces[start], bodies))
+        sizes = sizes_of(placed)
+        placed = replace(placed, category=str(sizes["category"]))
         found = [placed if body is item else body for body in bodies]
-        task = Task(item.name, start, on, sizes_of(placed))
+        task = Task(item.name, start, on, sizes)
     for option, name in (("--from", wanted.start), ("--to", wanted.goal)):
         if name and not wanted.bring:
             raise InputError(f"{option} needs --bring MODEL, the thing to bring")
@@ -120,15 +122,13 @@ def _touched(body: ImportedBody) -> bool:
 
 def _as_item(body: ImportedBody) -> ImportedBody:
     """A body that can be carried, with its mesh and its colours."""
-    category = str(sizes_of(body)["category"])
-    return replace(body, still=False, mass=body.mass or ITEM_MASS, category=category)
+    return replace(body, still=False, mass=body.mass or ITEM_MASS)
 
 
 def sizes_of(body: ImportedBody) -> dict[str, str | float]:
-    """What the robot is told about a thing: round or a box, and its size as it stands, m."""
+    """What the robot is told about a thing in an upright frame: round or a box, and its size, m."""
     points = np.concatenate([p.body_from_part.apply(h) for p in body.parts for h in p.hulls])
-    turned = points @ body.at.rotation.T
-    width, depth, height = (round(float(v), 3) for v in np.ptp(turned, axis=0))
+    width, depth, height = (round(float(v), 3) for v in np.ptp(points, axis=0))
     around = np.unique(np.round(points[:, :2], 3), axis=0)
     if abs(width - depth) < ROUND * max(width, depth) and len(around) > len(range(8)):
         return {"category": "can", "diameter": max(width, depth), "height": height}
@@ -165,6 +165,17 @@ def _on_top(item: ImportedBody, surface: Surface, bodies: Sequence[ImportedBody]
     middle = (low + high) / 2
     step = (x - float(middle[0]), y - float(middle[1]), top.height - float(low[2]))
     return replace(item, at=Transform(step) @ item.at)
+
+
+def _based(item: ImportedBody) -> ImportedBody:
+    """The item with its frame upright in the middle of its base, as the referee judges objects."""
+    points = np.concatenate(list(item.hulls()))
+    low, high = points.min(axis=0), points.max(axis=0)
+    x, y = ((low + high)[:2] / 2).tolist()
+    at = Transform((0.0, 0.0, float(low[2]))) @ Pose2D(x, y, item.at.yaw).transform()
+    step = at.inverse() @ item.at
+    parts = tuple(replace(p, body_from_part=step @ p.body_from_part) for p in item.parts)
+    return replace(item, at=at, parts=parts)
 
 
 def _free_spot(top: Top, side: float, taken: Sequence[Array]) -> tuple[float, float]:
