@@ -79,9 +79,14 @@ def calibrate(hand: Trajectory, target: Trajectory, settings: Settings) -> Calib
     """Calibrate from `base_from_hand` and `camera_from_target` over time.
 
     Raises:
-        CalibrationError: the records have no common time, too few different views, or do not
-            determine the mounting. MisreadError: they are probably inverted or in other units.
+        CalibrationError: the records are the same, have no common time or too few different views,
+            or do not determine the mounting. MisreadError: they are probably inverted or in other units.
     """
+    if hand.times.shape == target.times.shape and np.array_equal(hand.positions, target.positions):
+        raise CalibrationError(
+            f"{hand.name} and {target.name} hold the same poses; expected those of the hand in one "
+            f"file, and those of the target in the camera's frame in the other"
+        )
     offset = time_offset(hand, target) if settings.align else 0.0
     views, lines, matched = _views(hand, target, offset, settings)
     _check_count(len(views), matched, target)

@@ -159,6 +159,10 @@ def few(files: Files) -> None:
     files.target = files.target[:4]
 
 
+def the_same(files: Files) -> None:
+    files.target = files.hand
+
+
 def later(files: Files) -> None:
     files.target[:, 0] += 100.0
 
@@ -175,6 +179,7 @@ def later(files: Files) -> None:
         (one_axis, "the hand turns about one axis only, (0.00, 0.00, 1.00) of the hand"),
         (other_recording, "the files do not fit together: half of the 25 views are off by more"),
         (few, "4 of 4 poses of DIR/tag.csv have a pose of the hand at the same time; at least 5"),
+        (the_same, "DIR/hand.csv and DIR/tag.csv hold the same poses; expected those of the hand"),
         (later, "no overlap in time: DIR/hand.csv lasts from 0.000 to 11.980 s and DIR/tag.csv"),
     ],
 )
