@@ -80,7 +80,8 @@ def calibrate(hand: Trajectory, target: Trajectory, settings: Settings) -> Calib
 
     Raises:
         CalibrationError: the records are the same, have no common time or too few different views,
-            or do not determine the mounting. MisreadError: they are probably inverted or in other units.
+            or do not determine the mounting.
+        MisreadError: they are probably inverted, or in other units.
     """
     if hand.times.shape == target.times.shape and np.array_equal(hand.positions, target.positions):
         raise CalibrationError(
