@@ -24,7 +24,8 @@ from momantu_bt.cli.shared.options import (
     UndeclaredAre,
     Values,
 )
-from momantu_bt.errors import TRACEBACK, ExitCode, InputError, MomantuError
+from momantu_bt.cli.shared.starting import before_the_first_tick
+from momantu_bt.errors import TRACEBACK, ExitCode, InputError
 from momantu_bt.formats.files import check_writable
 from momantu_bt.lazy import lazily
 
@@ -141,16 +142,8 @@ def run(
         remark=notice,
     )
     shown = _Shown(video, view_port if view else None, report, quiet, terminal, break_ or [])
-    try:
+    with before_the_first_tick():
         return _run(tree, options, shown).exit_code
-    except KeyboardInterrupt:
-        raise NotStarted("interrupted before the first tick; nothing was started") from None
-
-
-class NotStarted(MomantuError):
-    """Ctrl-C came before the first tick."""
-
-    exit_code = ExitCode.INTERRUPTED
 
 
 @dataclass(frozen=True, slots=True)

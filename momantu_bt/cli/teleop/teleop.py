@@ -17,7 +17,8 @@ from momantu_bt import collector
 from momantu_bt.cli.shared import streams
 from momantu_bt.cli.shared.notices import notice
 from momantu_bt.cli.shared.options import Robot
-from momantu_bt.errors import ExitCode, InputError, MomantuError
+from momantu_bt.cli.shared.starting import before_the_first_tick
+from momantu_bt.errors import ExitCode, InputError
 from momantu_bt.lazy import lazily
 
 with lazily():
@@ -91,18 +92,10 @@ def teleop(
     console = consoles.Console(file=sys.stdout)
     if console.is_dumb_terminal:
         raise InputError("teleop draws on the terminal, and TERM says that this one cannot")
-    try:
+    with before_the_first_tick():
         with collector.paused():
             drive = _prepared(world, robot, seed, record)
         return _run(drive, console, view_port if view else None, report).exit_code
-    except KeyboardInterrupt:
-        raise NotStarted("interrupted before the first tick; nothing was started") from None
-
-
-class NotStarted(MomantuError):
-    """Ctrl-C came before the first tick."""
-
-    exit_code = ExitCode.INTERRUPTED
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,7 +158,6 @@ def _run(
     if view_port is not None:
         headline += f", view at port {view_port}"
     place = cockpit.Cockpit(console, drive.seat, headline)
-    lost: list[str] = []
     outputs = sys.stdout, sys.stderr
     streams.keep_on(lambda text: None)
     with ExitStack() as stack:
@@ -191,7 +183,6 @@ def _run(
                 notice(remark)
         with interrupts.Interrupts() as late:
             late.patient = True
-            result = replace(result, lost=(*result.lost, *lost))
             if file is not None:
                 result = file.write(result)
             _say_end(result, options, report)
