@@ -110,6 +110,7 @@ def test_only_what_is_in_a_robots_way_takes_floor() -> None:
     wall = block((0.1, 6.0, 2.0), (0.0, 0.0, 1.0))
     for other, blocks in (
         (block((4.0, 4.0, 0.02), (2.0, 0.0, 0.01)), False),  # a carpet
+        (block((4.0, 4.0, 0.1), (2.0, 0.0, -0.02 + 1e-9)), False),  # a floor
         (block((4.0, 4.0, 0.2), (2.0, 0.0, 2.2)), False),  # a ceiling
         (block((4.0, 4.0, 0.2), (2.0, 0.0, 1.0)), True),
     ):

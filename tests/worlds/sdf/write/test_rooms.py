@@ -63,3 +63,14 @@ def test_without_walls_everything_is_inside(imported, box):
     site = imported(GROUND + box("desk", "0.8 1.4 0.72", "0 0 0.36 0 0 0")).world.site
     assert list(site.places) == ["home"]
     assert 0.7 < math.hypot(site.start.x, site.start.y) < 3
+
+
+def test_nobody_stands_outside_to_reach_a_table_at_a_wall(imported, box):
+    """The floor around a house is one large region, and a table at the wall is near to it."""
+    inside = GROUND + walls(box)
+    inside += box("desk", "0.5 0.8 0.72", "-4.7 0 0.36 0 0 0")
+    inside += box("gate", "0.1 1.4 2.5", "5 0 1.25 0 0 0")
+    site = imported(inside).world.site
+    assert site.surfaces["desk"].sides[0] == 0.0
+    assert all(abs(abs(side) - math.pi) > 0.1 for side in site.surfaces["desk"].sides)
+    assert all(abs(pose.x) < 4.6 and abs(pose.y) < 2.6 for pose in site.places.values())

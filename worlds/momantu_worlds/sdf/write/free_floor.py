@@ -21,6 +21,8 @@ MARGIN = 2.0
 """Margin of floor around everything, m."""
 LOWEST, HIGHEST = 0.03, 1.5
 """Range of heights of obstacles for a robot, m."""
+EXACT = 0.001
+"""Tolerance of heights, m: a slab of exactly the lowest height is driven over."""
 WALL = 1.5
 """What is so high may be a wall, m."""
 SMALLEST = 4.0
@@ -80,7 +82,7 @@ class FreeFloor:
 
 def free_floor(hulls: Iterable[Array]) -> FreeFloor:
     """The free floor between convex things, each given by points (n, 3) in the map."""
-    obstacles = [h for h in hulls if h[:, 2].max() > LOWEST and h[:, 2].min() < HIGHEST]
+    obstacles = [h for h in hulls if h[:, 2].max() > LOWEST + EXACT and h[:, 2].min() < HIGHEST]
     footprints = [hull[:, :2] for hull in obstacles]
     everything = np.concatenate(footprints) if footprints else np.zeros((1, 2))
     low, high = everything.min(axis=0) - MARGIN, everything.max(axis=0) + MARGIN

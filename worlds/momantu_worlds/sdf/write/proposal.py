@@ -110,7 +110,7 @@ def _sides(top: Top, floor: FreeFloor) -> list[tuple[float, int]]:
             c, s = math.cos(angle), math.sin(angle)
             at = top.pose @ Pose2D(away * c - beside * s, away * s + beside * c)
             region, index = floor.region(at.x, at.y), floor.index(at.x, at.y)
-            if region and index is not None:
+            if region and index is not None and floor.inside[index]:
                 spots.append((-round(float(floor.clearance[index]), 2), region))
         if spots:
             # the nearer the middle of the top, the better; then the more room
