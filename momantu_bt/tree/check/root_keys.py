@@ -145,7 +145,10 @@ def _written_by(context: Context, node: Node) -> Iterator[tuple[Scope, str, bool
         elif port is not None and port.type is ScriptText and isinstance(value, Literal):
             scripts.append(str(value.value))
     for script in scripts:
-        parsed = parse(script)
+        try:
+            parsed = parse(script)
+        except ScriptSyntaxError:
+            continue  # it is an error of its own
         needed = {variable.key for variable in parsed.needs}
         for variable in parsed.writes:
             scope = Scope.ROOT if variable.key.startswith("@") else Scope.LOCAL
