@@ -63,7 +63,8 @@ def test_ends_of_a_cut_lie_on_the_body_and_the_ring_is_closed(
 
 
 @pytest.mark.parametrize(
-    ("x", "z", "reach"), [(0.0, HEIGHT, 5.0), (0.0, -HEIGHT, 5.0), (3.0, 0.0, 2.0)]
+    ("x", "z", "reach"),
+    [(0.0, HEIGHT, 5.0), (0.0, -HEIGHT, 5.0), (0.0, 0.16, 5.0), (0.0, -0.16, 5.0), (3.0, 0.0, 2.0)],
 )
 def test_what_lies_above_below_or_too_far_is_not_cut(x: float, z: float, reach: float) -> None:
     body = can_at(posed(x, 0.0, z, 0.0, 0.0, 0.0))

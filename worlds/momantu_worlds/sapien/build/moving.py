@@ -18,6 +18,9 @@ with lazily():
 KEPT = 32
 """How many cuts of a body at rest are kept: the height of a scanner hardly changes."""
 
+TOUCHES = 1e-6
+"""Distance from the plane, m, within which trimesh decides whether a vertex lies in it."""
+
 
 class MovingBody:
     """A loose body and its outline in a horizontal plane."""
@@ -61,6 +64,9 @@ class MovingBody:
     def _cut(self, map_from_body: Transform, height: float) -> Array:
         origin = map_from_body.inverse().apply(np.array([0.0, 0.0, height]))
         normal = map_from_body.rotation.T[:, 2]
+        heights = np.dot(self._mesh.vertices - origin, normal)
+        if heights.min() > TOUCHES or heights.max() < -TOUCHES:
+            return np.zeros((0, 2, 2))  # most bodies: trimesh need not be loaded
         cut: Any = trimesh.intersections.mesh_plane
         lines = cut(self._solid, normal, origin)
         return np.asarray(map_from_body.apply(lines)[..., :2])
