@@ -1,9 +1,11 @@
 """Misspelled words and names: one error each, in their line, and the rest is read as meant."""
 
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 
+from momantu_bt.cli import main
 from momantu_bt.formats.problems import Problem
 
 Check = Callable[[str], list[Problem]]
@@ -167,3 +169,18 @@ def test_a_declared_input_in_xml(check: Check) -> None:
     (problem,) = wrong(check, XML.replace('name="place"', 'name="plce"'))
     assert (problem.code, problem.place.line) == ("unknown-port", 13)
     assert problem.hint == "did you mean place?"
+
+
+@pytest.mark.parametrize("name", ["ReactiveParallel", "reactive_parallel", "Sequenz"])
+def test_a_node_of_others_with_a_near_name_comes_back_from_yaml(tmp_path: Path, name: str) -> None:
+    """The writer spells `node: NAME` where the reader would take the name for a slip."""
+    text = (
+        f'<root BTCPP_format="4"><BehaviorTree ID="Main"><{name} limit="3"><AlwaysSuccess/>'
+        f"<AlwaysFailure/></{name}></BehaviorTree></root>"
+    )
+    there, back = tmp_path / "tree.yaml", tmp_path / "back.xml"
+    (tmp_path / "tree.xml").write_text(text)
+    assert main(["convert", str(tmp_path / "tree.xml"), "-o", str(there)]) == 0
+    assert main(["convert", str(there), "-o", str(back)]) == 0
+    assert f'<{name} limit="3">' in back.read_text()
+    assert f"node: {name}" in there.read_text()

@@ -10,6 +10,7 @@ from momantu_bt.plugins import PluginError
 from momantu_bt.tree.catalogue import MODIFIERS, NODES, SPELLED, SUBTREE
 from momantu_bt.tree.files.scalars import CannotWrite, port_text
 from momantu_bt.tree.files.yaml.lines import STEP, WIDTH, above, beside, is_nested, signed, spread
+from momantu_bt.tree.files.yaml.misspelled import meant_above
 from momantu_bt.tree.files.yaml.scripts import script_spelling, script_text
 from momantu_bt.tree.files.yaml.words import NAMED
 from momantu_bt.tree.language import AGAIN
@@ -110,13 +111,19 @@ class LeafWriter:
         return scalar(node.target or node.type)
 
     def can_be_key(self, node: Node) -> bool:
-        """Whether the name of a skill or of a tree can be the key of its node."""
+        """Whether the name of a skill or of a tree can be the key of its node.
+
+        A name that is near to a word of the language cannot where the reader takes it for a slip.
+        """
         tree = node.type == SUBTREE
         name = node.target if tree else node.type
         words = (*SPELLED, *NODES, *MODIFIERS, *NAMED, SUBTREE, AGAIN)
         if not name or "$" in name or name.startswith("_") or name in words:
             return False
-        return (name in self.trees) is tree
+        if tree:
+            return name in self.trees
+        having = {*node.ports, *(["children"] if node.children else [])}
+        return name not in self.trees and meant_above(name, having) is None
 
 
 def _text(value: PortValue) -> str:

@@ -113,21 +113,27 @@ def _is_companion(key: Scalar, node: Scalar, words: Collection[str]) -> bool:
 def meant_word(name: str, value: Raw) -> str | None:
     """The node with nodes below it that an unknown name means, by what stands below; else None."""
     if isinstance(value, Items):
-        able = [word for word, spec in SPELLED.items() if spec.kind is Kind.CONTROL]
-    elif isinstance(value, Entries):
-        able = [word for word, spec in SPELLED.items() if _fits(value, spec)]
-    else:
-        return None
+        return _near(name, [word for word, spec in SPELLED.items() if spec.kind is Kind.CONTROL])
+    if isinstance(value, Entries):
+        return meant_above(name, {key.text for key, _ in value.entries})
+    return None
+
+
+def meant_above(name: str, having: Collection[str]) -> str | None:
+    """The same, for a mapping with these keys."""
+    return _near(name, [word for word, spec in SPELLED.items() if _fits(having, spec)])
+
+
+def _near(name: str, able: Collection[str]) -> str | None:
     meant = meant_type(name)
     other = None if meant is None else in_spelling(meant, xml=False)
     return other if other in able else nearest(name, able)
 
 
-def _fits(value: Entries, spec: NodeSpec) -> bool:
-    """Whether a mapping has the keys with nodes that this node has."""
-    having = {key.text for key, _ in value.entries}
+def _fits(having: Collection[str], spec: NodeSpec) -> bool:
+    """Whether some of the keys hold nodes of this node."""
     if spec.handlers:
-        return not having.isdisjoint(("try", "catch"))
+        return "try" in having or "catch" in having
     kind = spec.kind
     return (kind is Kind.DECORATOR and "child" in having) or (
         kind is Kind.CONTROL and "children" in having

@@ -107,7 +107,8 @@ class NodeReader:
         Names of skills and trees stay.
         """
         name = key.text
-        if self.reading.is_known(name) or name in NODES or not KEY.fullmatch(name):
+        known = self.reading.is_known(name) or name in self.reading.skills
+        if known or name in NODES or not KEY.fullmatch(name):
             return key
         near = None if why_broken(name) else meant_word(name, value)
         if near is None:

@@ -19,11 +19,13 @@ from momantu_bt.tree.problems import Problems
 class Reading:
     """Takes problems, and values at node positions.
 
-    trees: names of the document's trees. attributes: reads attributes in XML's spelling. explicit:
-    whether the file's nodes usually have explicit tags in XML.
+    trees, skills: names of the document's trees and of the installed skills. attributes: reads
+    attributes in XML's spelling. explicit: whether the file's nodes usually have explicit tags in
+    XML.
     """
 
     trees: Collection[str]
+    skills: Collection[str]
     problems: Problems
     attributes: AttributeReader
     explicit: bool = False

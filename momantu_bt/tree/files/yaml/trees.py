@@ -50,7 +50,8 @@ def read_trees(
     give_ports(document, problems)
     ports = {name: tree.ports for name, tree in {**outside, **document.trees}.items()}
     attributes = AttributeReader(ports, registry, problems)
-    reader = NodeReader(Reading(ports.keys(), problems, attributes, document.explicit))
+    reading = Reading(ports.keys(), registry.skills, problems, attributes, document.explicit)
+    reader = NodeReader(reading)
     for tree, body in bodies:
         _read_nodes(tree, body, reader)
 
