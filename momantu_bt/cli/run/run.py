@@ -16,13 +16,19 @@ from momantu_bt.cli.shared import streams
 from momantu_bt.cli.shared.notices import notice
 from momantu_bt.cli.shared.options import (
     TREE,
+    VIEW_PORT,
     GoalGiven,
     Include,
+    RecordFolder,
+    ReportTo,
     Robot,
+    Seed,
     Settings,
     Undeclared,
     UndeclaredAre,
     Values,
+    View,
+    ViewPort,
 )
 from momantu_bt.cli.shared.starting import before_the_first_tick
 from momantu_bt.errors import TRACEBACK, ExitCode, InputError
@@ -54,8 +60,6 @@ if TYPE_CHECKING:
     from momantu_bt.running.options import RunOptions
     from momantu_bt.running.prepare import Prepared
 
-VIEW_PORT = 8080
-
 
 def run(
     tree: Annotated[str, typer.Argument(help=TREE)],
@@ -63,18 +67,14 @@ def run(
         str | None, typer.Option(help="A world's name or file, or none. Default: the tree's own.")
     ] = None,
     robot: Robot = None,
-    seed: Annotated[
-        int, typer.Option(min=0, help="Varies the episode. The same seed gives the same run.")
-    ] = 0,
+    seed: Seed = 0,
     set_: Settings = None,
     values: Values = None,
     video: Annotated[Path | None, typer.Option(help="Film the run to this MP4 file.")] = None,
-    view: Annotated[bool, typer.Option("--view", help="Serve the scene to a browser.")] = False,
-    view_port: Annotated[int, typer.Option(help="The port of --view.")] = VIEW_PORT,
-    record: Annotated[
-        Path | None, typer.Option(help="A new folder for the report and a log of the whole run.")
-    ] = None,
-    report: Annotated[Path | None, typer.Option(help="Write the report to this JSON file.")] = None,
+    view: View = False,
+    view_port: ViewPort = VIEW_PORT,
+    record: RecordFolder = None,
+    report: ReportTo = None,
     realtime: Annotated[
         bool, typer.Option("--realtime", help="Run no faster than real time.")
     ] = False,

@@ -15,6 +15,17 @@ Jobs: TypeAlias = Annotated[
 Robot: TypeAlias = Annotated[
     str | None, typer.Option(help="A robot's name or file. Default: the world's own.")
 ]
+Seed: TypeAlias = Annotated[
+    int, typer.Option(min=0, help="Varies the episode. The same seed gives the same run.")
+]
+View: TypeAlias = Annotated[bool, typer.Option("--view", help="Serve the scene to a browser.")]
+ViewPort: TypeAlias = Annotated[int, typer.Option(help="The port of --view.")]
+RecordFolder: TypeAlias = Annotated[
+    Path | None, typer.Option(help="A new folder for the report and a log of the whole run.")
+]
+ReportTo: TypeAlias = Annotated[
+    Path | None, typer.Option(help="Write the report to this JSON file.")
+]
 Include: TypeAlias = Annotated[
     list[Path] | None,
     typer.Option(help="A file, or a folder of files, with trees that the tree runs."),
@@ -67,6 +78,8 @@ Kept: TypeAlias = Annotated[
 
 TREE = "A tree file, the name of a bundled tree, or - for standard input."
 """Help of the argument that is a tree."""
+VIEW_PORT = 8080
+"""The default port of `--view`."""
 OUT = Path("runs/bench")
 """The default folder for results, with a folder for each tree."""
 RECORD = ("failures", "all", "none")

@@ -16,7 +16,15 @@ import typer
 from momantu_bt import collector
 from momantu_bt.cli.shared import streams
 from momantu_bt.cli.shared.notices import notice
-from momantu_bt.cli.shared.options import Robot
+from momantu_bt.cli.shared.options import (
+    VIEW_PORT,
+    RecordFolder,
+    ReportTo,
+    Robot,
+    Seed,
+    View,
+    ViewPort,
+)
 from momantu_bt.cli.shared.starting import before_the_first_tick
 from momantu_bt.errors import ExitCode, InputError
 from momantu_bt.lazy import lazily
@@ -50,7 +58,6 @@ if TYPE_CHECKING:
     from momantu_bt.running.prepare import Prepared
     from momantu_bt.tree.registry import Registry
 
-VIEW_PORT = 8080
 NAME = "teleop"
 """Name of the tree that runs, as reports and records have it."""
 
@@ -60,15 +67,11 @@ def teleop(
         str | None, typer.Option(help="A world's name or file. Default: the first installed.")
     ] = None,
     robot: Robot = None,
-    seed: Annotated[
-        int, typer.Option(min=0, help="Varies the episode. The same seed gives the same start.")
-    ] = 0,
-    view: Annotated[bool, typer.Option("--view", help="Serve the scene to a browser.")] = False,
-    view_port: Annotated[int, typer.Option(help="The port of --view.")] = VIEW_PORT,
-    record: Annotated[
-        Path | None, typer.Option(help="A new folder for the report and a log of the whole run.")
-    ] = None,
-    report: Annotated[Path | None, typer.Option(help="Write the report to this JSON file.")] = None,
+    seed: Seed = 0,
+    view: View = False,
+    view_port: ViewPort = VIEW_PORT,
+    record: RecordFolder = None,
+    report: ReportTo = None,
 ) -> ExitCode:
     """Drive a robot with the keyboard of this terminal.
 

@@ -166,6 +166,17 @@ class Installed:
         """The variables of a process that finds it."""
         return {**os.environ, "PYTHONPATH": str(self.folder)}
 
+    def command(self, line: str) -> subprocess.CompletedProcess[str]:
+        """Run `momantu-bt LINE` in the folder."""
+        return subprocess.run(
+            [sys.executable, "-m", "momantu_bt", *line.split()],
+            cwd=self.folder,
+            env=self.environment(),
+            capture_output=True,
+            text=True,
+            timeout=DEADLINE,
+        )
+
     def tree(self, folder: Path, how: str) -> Path:
         """A tree that breaks in a way."""
         file = folder / "tree.yaml"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
 import sys
 import time
 
@@ -40,21 +39,10 @@ def installed(tmp_path, install):
     return make
 
 
-def run(package, line):
-    return subprocess.run(
-        [sys.executable, "-m", "momantu_bt", *line.split()],
-        cwd=package.folder,
-        env=package.environment(),
-        capture_output=True,
-        text=True,
-        timeout=60.0,
-    )
-
-
 @pytest.mark.parametrize("how", BREAKS)
 def test_the_json_of_a_verb_is_pure_and_names_a_broken_plug_in(installed, how):
     package = installed(how, BREAKS[how])
-    done = run(package, "skills --json")
+    done = package.command("skills --json")
     (about,) = (each for each in json.loads(done.stdout) if each["name"] == how)
     assert about["ok"] is (how == "prints")
     if how == "prints":
@@ -68,7 +56,7 @@ def test_the_json_of_a_verb_is_pure_and_names_a_broken_plug_in(installed, how):
 def test_what_a_plug_in_prints_does_not_get_into_json(installed, line):
     package = installed("prints", BREAKS["prints"])
     (package.folder / "tree.yaml").write_text("momantu_bt: 1\ntrees: {Main: [prints]}\n")
-    done = run(package, line)
+    done = package.command(line)
     json.loads(done.stdout)
     assert "hello" in done.stderr
 

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -99,25 +97,14 @@ def package(tmp_path_factory: pytest.TempPathFactory, install: Callable[..., Any
     yard = {"momantu_world": 1, "name": "yard", "start": {"at": [2, 2, 0]}}
     yard |= {"rooms": {"yard": {"corner": [0, 0], "size": [6, 5]}}}
     (folder / "yard.yaml").write_text(yaml.safe_dump(yard))
-    done = run(found, "run quiet.yaml -q --record record")
+    done = found.command("run quiet.yaml -q --record record")
     assert done.returncode == 0, done.stderr
     return found
 
 
-def run(package: Any, line: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "momantu_bt", *line.split()],
-        cwd=package.folder,
-        env=package.environment(),
-        capture_output=True,
-        text=True,
-        timeout=120.0,
-    )
-
-
 @pytest.mark.parametrize("line", LINES)
 def test_standard_output_is_one_json_document(package: Any, line: str) -> None:
-    done = run(package, line)
+    done = package.command(line)
     json.loads(done.stdout or "null")
     wrong = done.returncode == 2  # then standard error alone says what is wrong
     assert bool(done.stdout) is not wrong, done.stderr
