@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 import time
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple, Protocol
 
 from momantu_bt import collector
@@ -19,8 +19,10 @@ from momantu_bt.engine.interrupts import Interrupts
 from momantu_bt.engine.node import TreeNode, ticked_in
 from momantu_bt.engine.pace import Pace
 from momantu_bt.engine.raised import raised_at
+from momantu_bt.engine.skills.body import Body
 from momantu_bt.engine.skills.services import ServiceError, Services
 from momantu_bt.engine.skills.session import CLOCK_SLACK
+from momantu_bt.engine.standstill import Standstill
 from momantu_bt.engine.status import FAILURE, IDLE, RUNNING, Status
 from momantu_bt.errors import StopRequested, words_of
 from momantu_bt.failure import TIMEOUT, FailureValue
@@ -28,7 +30,11 @@ from momantu_bt.messages import RobotState
 from momantu_bt.world import Verdict, World
 
 SETTLE = 1.5
-"""Simulated time after the end, s, for everything to stop; the referee needs 1 s of stillness."""
+"""Least simulated time after the end, s, for everything to stop; the referee needs 1 s of
+stillness."""
+LONGEST_SETTLE = 12.0
+"""Most simulated time after the end for a robot that still moves, s: a heavy base that brakes from
+2 m/s at 0.25 m/s2 needs 8 s."""
 
 
 class Stepper(Protocol):
@@ -271,8 +277,7 @@ class Executor:
         body = self.context.body
         if body is None:
             return
-        until = self._stepper.now() + SETTLE
-        while self._stepper.now() < until - CLOCK_SLACK:
+        for _ in self._coming_to_rest(body):
             self._note()
             self._step()
             self.context.begin_tick()
@@ -281,11 +286,32 @@ class Executor:
 
     def _settle_unseen(self) -> None:
         """Let the world come to rest after an error, without observers, as one may be the cause."""
-        if self.world is None or not self._world_is_sound:
+        body = self.context.body
+        if self.world is None or body is None or not self._world_is_sound:
             return
-        until = self._stepper.now() + SETTLE
-        while self._stepper.now() < until - CLOCK_SLACK:
+        for _ in self._coming_to_rest(body):
             self._step()
+
+    def _coming_to_rest(self, body: Body) -> Iterator[None]:
+        """One item for each step until the robot is measured to stand still.
+
+        A robot that moves longer than usual is told to stop again at each step.
+        """
+        robot, standstill = body.actuators.robot, Standstill()
+        began = self._stepper.now()
+        standstill.add(robot.state())
+        while True:
+            after = self._stepper.now() - began + CLOCK_SLACK
+            if after >= SETTLE and standstill.still:
+                return
+            if after >= LONGEST_SETTLE:
+                what = standstill.moving or "the robot"
+                self.context.remark(f"{what} still moves {after:.0f} s after the end of the run")
+                return
+            if after >= SETTLE:
+                body.actuators.stop_all()
+            yield
+            standstill.add(robot.state())
 
 
 def _told(error: BaseException) -> str:
