@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from momantu_skills.manipulation.scene.surroundings import (
     Support,
     Surroundings,
     cells_of,
+    faces_of,
     known_support,
     merged,
     same_surface,
@@ -103,6 +105,48 @@ def test_a_box_takes_out_the_cells_whose_middle_is_in_it(
     outside = (np.abs(local) > half).any(axis=1)
     assert np.array_equal(left.cells, around.cells[outside])
     assert left.stamp == 3.0
+
+
+BOX, GROWN = (0.07, 0.11, 0.14), (0.06, 0.08, 0.10)
+"""A box, m, and half of it with the margin that a grasp ignores around it."""
+
+
+def seen_from(eye: np.ndarray, pose: Transform, size: tuple[float, float, float]) -> Surroundings:
+    """What remains of the faces of a box that a camera sees."""
+    half = np.array(size) / 2
+    steps = [np.arange(-h, h + 1e-9, 0.004) for h in half]
+    local = np.stack(np.meshgrid(*steps, indexing="ij"), axis=-1).reshape(-1, 3)
+    toward = pose.inverse().apply(eye)
+    sides = [
+        local[np.abs(local[:, k] - math.copysign(steps[k].max(), toward[k])) < 0.002]
+        for k in range(3)
+        if abs(toward[k]) > half[k]
+    ]
+    points = pose.apply(np.vstack(sides))
+    cells, faces = cells_of(points, eye, 0.06, CONFIG), faces_of(points, 0.06, CONFIG)
+    return Surroundings(cells, (), 0.0, faces, CONFIG.thickness + CONFIG.voxel)
+
+
+@pytest.mark.parametrize("degrees", range(0, 180, 15))
+def test_nothing_remains_of_a_box_that_is_seen_over_its_corner(degrees: int) -> None:
+    pose = Pose2D(0.8, 0.1, math.radians(degrees)).transform(0.8)
+    around = seen_from(np.array([0.0, 0.0, 1.1]), pose, BOX)
+    assert len(around.without(pose, GROWN).cells) == 0
+    # without the faces, what is assumed behind its edges lies beside it
+    assert len(replace(around, faces=None).without(pose, (0.04, 0.06, 0.08)).cells) > 0
+
+
+@given(st.floats(0.09, 0.3), st.floats(-1.5, 1.5))
+def test_a_neighbour_and_what_may_be_behind_it_remain(away: float, turn: float) -> None:
+    pose = Pose2D(0.8, 0.1, turn).transform(0.8)
+    eye = np.array([0.0, 0.0, 1.1])
+    other = pose @ Transform((0.0, GROWN[1] + away, 0.0))
+    alone, near = seen_from(eye, pose, BOX), seen_from(eye, other, (0.05, 0.05, 0.14))
+    faces = np.vstack([alone.faces, near.faces])  # type: ignore[list-item]
+    both = replace(alone, cells=np.vstack([alone.cells, near.cells]), faces=faces)
+    left = both.without(pose, GROWN).cells
+    outside = near.without(pose, GROWN).cells
+    assert {tuple(cell) for cell in outside} <= {tuple(cell) for cell in left}
 
 
 @settings(max_examples=40)

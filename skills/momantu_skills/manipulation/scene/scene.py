@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import cached_property
 from typing import TypeAlias
 
@@ -29,6 +30,7 @@ from momantu_skills.manipulation.scene.surroundings import (
     Support,
     Surroundings,
     cells_of,
+    faces_of,
     merged,
     same_surface,
     shelved,
@@ -85,16 +87,23 @@ class Scene:
         self.seen_space.add(image, odom_from_camera, nearest)
         self.points = self._seen(snapshot, held)
         new = cells_of(self.points, odom_from_camera.position, FLOOR_BAND, self.config)
-        old = self.surroundings.cells
-        old = old[self._still_believed(old, snapshot)]
+        cells = self._with_older(new, self.surroundings.cells, snapshot)
+        new = faces_of(self.points, FLOOR_BAND, self.config)
+        faces = self._with_older(new, self.surroundings.faces, snapshot)
         near = [
             support
             for support in self.surroundings.supports
             if _distance(support.outline, snapshot.odom_from_base) < FORGET
         ]
-        places = np.rint(np.vstack([old, new]) * PER_METRE).astype(np.int64)
-        cells = unique_rows(places)[0] / PER_METRE
-        self.surroundings = Surroundings(cells, tuple(near), image.stamp)
+        fill = self.config.thickness + self.config.voxel
+        self.surroundings = Surroundings(cells, tuple(near), image.stamp, faces, fill)
+
+    def _with_older(self, new: Array, old: Array | None, snapshot: Snapshot) -> Array:
+        """Cells (n, 3) of a picture and older ones that it does not contradict, each once."""
+        if old is not None:
+            new = np.vstack([old[self._still_believed(old, snapshot)], new])
+        places = np.rint(new * PER_METRE).astype(np.int64)
+        return np.asarray(unique_rows(places)[0] / PER_METRE)
 
     def _seen(self, snapshot: Snapshot, held: HeldObject | None) -> Array:
         """Points (n, 3) in odom of the picture, without the robot, within its reach."""
@@ -147,9 +156,7 @@ class Scene:
             if abs(other.height - support.height) > SAME_HEIGHT
             or float(np.linalg.norm(other.outline - centre, axis=1).min()) > 1.0
         ]
-        self.surroundings = Surroundings(
-            self.surroundings.cells, (*others, support), self.surroundings.stamp
-        )
+        self.surroundings = replace(self.surroundings, supports=(*others, support))
         return support
 
     # the robot's own body

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull, QhullError
+from scipy.spatial import ConvexHull, QhullError, cKDTree
 
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.messages import CameraImage, SupportPlane
@@ -36,6 +36,8 @@ BOARD_DEPTH = 0.06
 BOARDS_APART = 0.2
 """Height difference above which two surfaces above each other are two boards, not one with errors,
 m."""
+FLAT = 10.0
+"""Factor on height differences between a filled cell and its face, which are at one height."""
 LEAST_CELLS = 6
 """Fewest grid cells of a patch that counts as a surface."""
 
@@ -70,18 +72,46 @@ class Support:
 
 @dataclass(frozen=True, eq=False)
 class Surroundings:
-    """cells: centres (n, 3) of occupied cells, odom, m. stamp: of the newest picture, s."""
+    """cells: centres (n, 3) of occupied cells, odom, m. stamp: of the newest picture, s.
+
+    faces: (m, 3) those of the cells in which a camera saw something; the others are filled in
+    behind them. None: all of them. fill: how far behind its face a cell may be, m.
+    """
 
     cells: Array = field(default_factory=lambda: np.empty((0, 3)))
     supports: tuple[Support, ...] = ()
     stamp: float = -np.inf
+    faces: Array | None = None
+    fill: float = 0.0
 
     def without(self, pose: Transform, half_size: tuple[float, float, float]) -> Surroundings:
-        """A copy without the cells in a box (`odom_from_box`, half its edges in m)."""
-        local = np.abs(pose.inverse().apply(self.cells))
-        return Surroundings(
-            self.cells[~(local <= np.array(half_size)).all(axis=1)], self.supports, self.stamp
+        """A copy without the cells in a box (`odom_from_box`, half its edges in m).
+
+        Cells beside the box that are filled in behind faces in it are left out too: the thickness
+        that is assumed behind the edge of a box seen over a corner lies outside of it.
+        """
+        kept = self.cells[~_in_box(self.cells, pose, half_size)]
+        if self.faces is None or not len(kept):
+            return replace(self, cells=kept)
+        x, y, z = half_size
+        beside = _in_box(kept, pose, (x + self.fill, y + self.fill, z))
+        others = self.faces[~_in_box(self.faces, pose, half_size)]
+        if not (beside.any() and len(others)):
+            return replace(self, cells=kept[~beside])
+        flat = np.array((1.0, 1.0, FLAT))
+        behind, _ = cKDTree(others * flat).query(
+            kept[beside] * flat, distance_upper_bound=self.fill
         )
+        beside[beside] = ~np.isfinite(behind)
+        return replace(self, cells=kept[~beside])
+
+
+def _in_box(
+    points: Array, pose: Transform, half_size: tuple[float, float, float]
+) -> NDArray[np.bool_]:
+    """Which points (n, 3) lie in a box (`odom_from_box`, half its edges in m): (n,)."""
+    local = np.abs(pose.inverse().apply(points))
+    return np.asarray((local <= np.array(half_size)).all(axis=1))
 
 
 def cells_of(points: Array, viewpoint: Array, floor: float, config: SceneConfig) -> Array:
@@ -90,11 +120,9 @@ def cells_of(points: Array, viewpoint: Array, floor: float, config: SceneConfig)
     As a camera sees only front faces, a thickness behind each face is filled, away from `viewpoint`
     (3,) along the floor. Points below `floor` are left out.
     """
-    points = points[points[:, 2] > floor]
-    if not len(points):
-        return np.empty((0, 3))
-    keys, counts = unique_rows(_keys(points, config))
-    centres = (keys[counts >= config.points_per_voxel] + 0.5) * config.voxel
+    centres = faces_of(points, floor, config)
+    if not len(centres):
+        return centres
     away = centres[:, :2] - viewpoint[:2]
     away /= np.maximum(np.linalg.norm(away, axis=1, keepdims=True), 1e-6)
     layers = [centres]
@@ -102,6 +130,15 @@ def cells_of(points: Array, viewpoint: Array, floor: float, config: SceneConfig)
         layers.append(centres + np.column_stack([away * depth, np.zeros(len(away))]))
     filled, _ = unique_rows(_keys(np.vstack(layers), config))
     return np.asarray((filled + 0.5) * config.voxel)
+
+
+def faces_of(points: Array, floor: float, config: SceneConfig) -> Array:
+    """Centres (n, 3) of the cells in which points (m, 3) lie; points below `floor` are left out."""
+    points = points[points[:, 2] > floor]
+    if not len(points):
+        return np.empty((0, 3))
+    keys, counts = unique_rows(_keys(points, config))
+    return np.asarray((keys[counts >= config.points_per_voxel] + 0.5) * config.voxel)
 
 
 def _keys(points: Array, config: SceneConfig) -> NDArray[np.int64]:
