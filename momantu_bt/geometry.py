@@ -148,6 +148,16 @@ class Transform:
         return m
 
     @property
+    def rpy(self) -> tuple[float, float, float]:
+        """Roll, pitch, yaw about fixed axes, rad; at a pitch of +-90 degrees the roll is 0."""
+        r = self.rotation
+        level = math.hypot(r[0, 0], r[1, 0])
+        pitch = math.atan2(-r[2, 0], level)
+        if level < 1e-9:
+            return 0.0, pitch, math.atan2(-r[0, 1], r[1, 1])
+        return math.atan2(r[2, 1], r[2, 2]), pitch, math.atan2(r[1, 0], r[0, 0])
+
+    @property
     def yaw(self) -> float:
         """Heading of the x axis in the xy plane, rad."""
         r = self.rotation

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated, TypeAlias
 
 from pydantic import Field
@@ -100,3 +101,5 @@ class SimulationModel(Contacts):
     """How the base is carried and driven."""
     drives: dict[str, JointGains] = {}
     """Gains by joint."""
+    urdf: Path | None = None
+    """The robot as built, if a calibration says that it is elsewhere; None: as described."""

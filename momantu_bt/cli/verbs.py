@@ -59,7 +59,8 @@ VERBS = {
         "List robots, or show one with its actuators and named poses.",
     ),
     "calibrate": Verb(
-        "momantu_bt.cli.calibrate", "Estimate a camera's lens or mounting, from recorded data."
+        "momantu_bt.cli.calibrate",
+        "Estimate a camera's lens or mounting, or a whole robot, from recorded data.",
     ),
     "faults": Verb(
         "momantu_bt.cli.faults", "List what can be broken on purpose, or show one fault."

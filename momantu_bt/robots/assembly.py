@@ -76,7 +76,7 @@ def assemble(robot: RobotFile, folder: Path) -> Assembled:
     complete_limits(joining.root.findall("joint"), limits)
     etree.cleanup_namespaces(joining.root)
     etree.indent(joining.root)
-    path = _keep_urdf(robot.name, etree.tostring(joining.root, encoding="utf-8"))
+    path = keep_urdf(robot.name, etree.tostring(joining.root, encoding="utf-8"))
     return Assembled(joining.root, path, (), files, joints)
 
 
@@ -151,7 +151,7 @@ def _raise(troubles: list[PartError]) -> None:
         raise ExceptionGroup("the robot cannot be assembled", troubles)
 
 
-def _keep_urdf(name: str, text: bytes) -> Path:
+def keep_urdf(name: str, text: bytes) -> Path:
     """Write a URDF whole or not at all, under a name that its text decides; its path.
 
     Raises:

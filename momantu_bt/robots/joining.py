@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -134,7 +133,7 @@ class Joining:
         self, name: str, kind: str, parent: str, child: str, pose: Transform
     ) -> etree._Element:
         joint = etree.SubElement(self.root, "joint", name=name, type=kind)
-        etree.SubElement(joint, "origin", xyz=_numbers(pose.position), rpy=_numbers(_rpy(pose)))
+        etree.SubElement(joint, "origin", xyz=numbers(pose.position), rpy=numbers(pose.rpy))
         etree.SubElement(joint, "parent", link=parent)
         etree.SubElement(joint, "child", link=child)
         return joint
@@ -206,15 +205,6 @@ def _root_from_link(part: LoadedPart, root: str, link: str) -> Transform:
     return tree.base_from_frame(link, {})
 
 
-def _numbers(values: object) -> str:
+def numbers(values: object) -> str:
+    """Numbers as URDF's attributes have them."""
     return " ".join(repr(round(float(value), 12) + 0.0) for value in np.asarray(values))
-
-
-def _rpy(pose: Transform) -> tuple[float, float, float]:
-    """Roll, pitch, yaw about fixed axes; at a pitch of +-90 degrees the roll is 0."""
-    r = pose.rotation
-    level = math.hypot(r[0, 0], r[1, 0])
-    pitch = math.atan2(-r[2, 0], level)
-    if level < 1e-9:
-        return 0.0, pitch, math.atan2(-r[0, 1], r[1, 1])
-    return math.atan2(r[2, 1], r[2, 2]), pitch, math.atan2(r[1, 0], r[0, 0])

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from lxml import etree
+
 from momantu_bt.descriptions.reading import Reading, read_text
 from momantu_bt.descriptions.validation import checked
 from momantu_bt.robot import RobotDescription
 from momantu_bt.robot_parts import BaseLimits
 from momantu_bt.robot_simulation import JointGains, PlanarDrive, SimulationModel
-from momantu_bt.robots.assembly import Assembled, assemble
+from momantu_bt.robots.assembly import Assembled, assemble, keep_urdf
+from momantu_bt.robots.calibrated import corrected
 from momantu_bt.robots.checks import findings
 from momantu_bt.robots.errors import PartError, RobotFileError
-from momantu_bt.robots.robot_file import RobotFile
+from momantu_bt.robots.robot_file import Calibration, RobotFile
 
 FILE = "robot.yaml"
 
@@ -31,12 +34,13 @@ def read_robot(path: Path) -> RobotDescription:
     file = reading.path.absolute()
     try:
         assembled = assemble(robot, file.parent)
+        believed = _calibrated(robot, assembled)
     except ExceptionGroup as group:
         troubles = [e for e in group.exceptions if isinstance(e, PartError)]
         reading.refuse((trouble.place, trouble.message) for trouble in troubles)
         raise
     reading.refuse(findings(robot, assembled.root, reading))
-    return _description(robot, file, assembled)
+    return _description(robot, file, assembled, believed)
 
 
 def read_robot_file(path: Path) -> RobotFile:
@@ -50,13 +54,23 @@ def _read(path: Path) -> tuple[Reading, RobotFile]:
     return reading, checked(reading, RobotFile, RobotFileError)
 
 
-def _description(robot: RobotFile, file: Path, assembled: Assembled) -> RobotDescription:
+def _calibrated(robot: RobotFile, assembled: Assembled) -> Path:
+    """The URDF that skills believe: the assembled one, or a corrected copy of it."""
+    if robot.calibration == Calibration():
+        return assembled.path
+    root = corrected(robot, assembled.root)
+    return keep_urdf(robot.name, etree.tostring(root, encoding="utf-8"))
+
+
+def _description(
+    robot: RobotFile, file: Path, assembled: Assembled, believed: Path
+) -> RobotDescription:
     return RobotDescription(
         name=robot.name,
         source=file,
         files={file.name: file, **assembled.files},
-        urdf=assembled.path,
-        mesh_directories=assembled.mesh_directories,
+        urdf=believed,
+        mesh_directories=_mesh_directories(assembled, believed),
         base_frame=robot.base_frame,
         footprint=robot.footprint,
         height=robot.height,
@@ -73,12 +87,21 @@ def _description(robot: RobotFile, file: Path, assembled: Assembled) -> RobotDes
     )
 
 
+def _mesh_directories(assembled: Assembled, believed: Path) -> tuple[Path, ...]:
+    """Where the URDF's meshes are; a corrected copy lies elsewhere than its meshes."""
+    own = assembled.path.parent
+    if believed == assembled.path or own in assembled.mesh_directories:
+        return assembled.mesh_directories
+    return (*assembled.mesh_directories, own)
+
+
 def _simulation(robot: RobotFile, assembled: Assembled) -> SimulationModel | None:
     drive, contacts = robot.base.drive, robot.simulation
     if drive is None or contacts is None or assembled.base_joints is None:
         return None
     base = PlanarDrive(joints=assembled.base_joints, force=drive.force, torque=drive.torque)
-    return SimulationModel(base=base, drives=_drives(robot), **dict(contacts))
+    own = None if robot.calibration == Calibration() else assembled.path
+    return SimulationModel(base=base, drives=_drives(robot), urdf=own, **dict(contacts))
 
 
 def _drives(robot: RobotFile) -> dict[str, JointGains]:

@@ -108,6 +108,24 @@ class Base(BaseLimits):
     """Not given: the robot cannot be simulated."""
 
 
+class CameraCorrection(Part):
+    """Where a camera really is, in the frame that the description gives it."""
+
+    xyz: Point = (0.0, 0.0, 0.0)
+    """Position in the described optical frame: right, down, ahead."""
+    rpy: Turns = (0.0, 0.0, 0.0)
+    """Roll, pitch and yaw about that frame's fixed axes, as in a URDF."""
+
+
+class Calibration(Part):
+    """What `calibrate robot` found. Skills use it; a simulator builds the robot without it."""
+
+    joints: dict[str, JointPosition] = {}
+    """What is added to the position that a joint reports."""
+    cameras: dict[str, CameraCorrection] = {}
+    """How far each camera is off, by the sensor's name."""
+
+
 class RobotFile(Part):
     """A whole robot file. Lengths in m, angles in rad, or with a unit: `5 cm`, `30 deg`."""
 
@@ -151,6 +169,8 @@ class RobotFile(Part):
     """Gains for simulation, by actuator or joint; a joint's own win."""
     simulation: Contacts | None = None
     """What touches what in a simulator. Not given: the robot cannot be simulated."""
+    calibration: Calibration = Calibration()
+    """How this robot differs from its description."""
 
     def as_written(self) -> dict[str, Any]:
         """Plain data for a YAML file that reads as this: SI units, nothing that is usual."""

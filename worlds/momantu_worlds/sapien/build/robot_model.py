@@ -106,7 +106,7 @@ def _parse(
     for link in simulation.finger_links:
         friction = simulation.finger_friction
         loader.set_link_material(link, friction, friction, 0.0)
-    articulations, _, _ = loader.parse(str(description.urdf), srdf_file="")
+    articulations, _, _ = loader.parse(str(simulation.urdf or description.urdf), srdf_file="")
     builder = articulations[0]
     links = {link.name: link for link in builder.link_builders}
     for link in builder.link_builders:
