@@ -22,6 +22,9 @@ def frozen(array: NDArray[Any]) -> NDArray[Any]:
     return array
 
 
+ENCODED_IF_SET = {"encoded_if_set": True}
+"""Metadata of a field that only some robots have: a run's fingerprint leaves out its default."""
+
 # What a robot reports.
 
 
@@ -34,6 +37,7 @@ class RobotState:
     odom_from_base: the base's pose from wheel odometry; it drifts.
     linear, angular: the base's measured velocity, m/s along x and rad/s about z.
     gripper_width: opening between the finger pads, m. gripper_effort: closing force, N.
+    lateral: the measured velocity of an omnidirectional base along y, m/s; of others 0.
     """
 
     stamp: float
@@ -46,6 +50,7 @@ class RobotState:
     angular: float
     gripper_width: float
     gripper_effort: float
+    lateral: float = field(default=0.0, metadata=ENCODED_IF_SET)
 
     def position(self, joint: str) -> float:
         """Position of one joint; an unknown name raises a KeyError that lists the known ones."""
@@ -114,10 +119,11 @@ class WrenchReading:
 
 @dataclass(frozen=True, slots=True)
 class BaseVelocity:
-    """Goal of a base: m/s along x and rad/s about z."""
+    """Goal of a base: m/s along x, rad/s about z, and m/s along y if it is omnidirectional."""
 
     linear: float
     angular: float
+    lateral: float = field(default=0.0, metadata=ENCODED_IF_SET)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

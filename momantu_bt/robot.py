@@ -21,6 +21,7 @@ from momantu_bt.messages import (
 from momantu_bt.robot_parts import (
     Actuator,
     ActuatorKind,
+    BaseKind,
     BaseLimits,
     CameraSensor,
     EndEffector,
@@ -51,6 +52,7 @@ __all__ = [
     "Actuator",
     "ActuatorKind",
     "BaseJoints",
+    "BaseKind",
     "BaseLimits",
     "CameraSensor",
     "Cuts",

@@ -248,17 +248,44 @@ def _on_line(xs: Sequence[float], ys: Sequence[float], x: float) -> float:
     return ys[piece - 1] + slope * (x - xs[piece - 1])
 
 
-class BaseLimits(Part):
-    """The base's limits of speed and acceleration."""
+class BaseKind(StrEnum):
+    """How a base moves: it turns and drives along its x alone, or drives in every direction."""
 
+    DIFFERENTIAL = "differential"
+    OMNIDIRECTIONAL = "omnidirectional"
+
+
+class BaseLimits(Part):
+    """The kind of the base, and its limits of speed and acceleration."""
+
+    kind: BaseKind = BaseKind.DIFFERENTIAL
+    """differential: it turns and drives ahead and back. omnidirectional: it drives sideways too."""
     linear: LinearSpeed
     """Greatest speed ahead."""
+    lateral: LinearSpeed | None = None
+    """Greatest speed sideways of an omnidirectional base; not given: that ahead."""
     angular: AngularSpeed
     """Greatest turning speed."""
     linear_acceleration: LinearAcceleration
     """How fast it may change its speed."""
     angular_acceleration: AngularAcceleration
     """How fast it may change its turning."""
+
+    @model_validator(mode="after")
+    def _only_where_it_goes(self) -> Self:
+        if self.lateral is not None and self.kind is not BaseKind.OMNIDIRECTIONAL:
+            raise ValueError(
+                f"a {self.kind} base does not drive sideways: leave out `lateral`, or say "
+                "`kind: omnidirectional`"
+            )
+        return self
+
+    @property
+    def sideways(self) -> float:
+        """Greatest speed sideways, m/s; 0 for a base that does not drive sideways."""
+        if self.kind is not BaseKind.OMNIDIRECTIONAL:
+            return 0.0
+        return self.linear if self.lateral is None else self.lateral
 
 
 class Working(Part):

@@ -26,7 +26,7 @@ class BaseJoints(Part):
 
 
 class PlanarDrive(Part):
-    """A base on virtual joints, driven by velocity; it never goes sideways."""
+    """A base on virtual joints, driven by velocity."""
 
     joints: BaseJoints
     """The joints that carry it."""

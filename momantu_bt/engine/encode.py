@@ -13,6 +13,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from momantu_bt.failure import FailureValue
+from momantu_bt.messages import ENCODED_IF_SET
 from momantu_bt.skill import MISSING
 
 _FLOAT = struct.Struct("<d").pack
@@ -93,12 +94,16 @@ def _failure(value: FailureValue, out: list[bytes]) -> None:
 
 def _dataclass(kind: Any) -> _Writer:
     name, names = kind.__qualname__.encode(), [field.name for field in fields(kind)]
+    unset = {
+        f.name: f.default for f in fields(kind) if ENCODED_IF_SET.items() <= f.metadata.items()
+    }
 
     def write(value: Any, out: list[bytes]) -> None:
         out.append(name)
         for each in names:
             item = getattr(value, each)
-            _writer(type(item))(item, out)
+            if each not in unset or item != unset[each]:
+                _writer(type(item))(item, out)
 
     return write
 

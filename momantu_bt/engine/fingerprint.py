@@ -85,5 +85,6 @@ def _state_bytes(state: RobotState) -> bytes:
             state.efforts.tobytes(),
             pose.position.tobytes(),
             pose.quaternion.tobytes(),
+            struct.pack("<d", state.lateral) if state.lateral else b"",
         )
     )

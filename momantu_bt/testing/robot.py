@@ -50,7 +50,7 @@ class ScriptedRobot:
         self._description = description or small_robot()
         self.time = 0.0
         self.base = base or Pose2D(0.0, 0.0, 0.0)
-        self.linear = self.angular = 0.0
+        self.linear = self.angular = self.lateral = 0.0
         names = [n for a in self._description.actuators.values() for n in a.joints]
         self.joints = dict.fromkeys(names, 0.0) | dict(joints or {})
         self.speeds = dict.fromkeys(self.joints, 0.0)
@@ -92,6 +92,7 @@ class ScriptedRobot:
             angular=self.angular,
             gripper_width=self.gripper_width,
             gripper_effort=self.gripper_effort,
+            lateral=self.lateral,
         )
 
     def read(self, sensor: str) -> SensorReading:
@@ -182,10 +183,15 @@ class ScriptedRobot:
             _clamp(target.angular, limits.angular) - self.angular,
             limits.angular_acceleration * seconds,
         )
+        self.lateral += _clamp(
+            _clamp(target.lateral, limits.sideways) - self.lateral,
+            limits.linear_acceleration * seconds,
+        )
         middle = self.base.yaw + 0.5 * self.angular * seconds
+        c, s = math.cos(middle), math.sin(middle)
         self.base = Pose2D(
-            self.base.x + self.linear * math.cos(middle) * seconds,
-            self.base.y + self.linear * math.sin(middle) * seconds,
+            self.base.x + self.linear * c * seconds - self.lateral * s * seconds,
+            self.base.y + self.linear * s * seconds + self.lateral * c * seconds,
             wrap_angle(self.base.yaw + self.angular * seconds),
         )
 

@@ -150,5 +150,7 @@ class Relocalize(Skill):
         base = robot.description.base_frame
         rays = Rays.from_scan(scan, self.frames.lookup(base, scan.frame, scan.stamp))
         state = robot.state()
-        speed = (state.linear, state.angular)
-        return guard.safe_share((0.0, rate), speed, robot.description.base, discs, rays.points())
+        speed = (state.linear, state.angular, state.lateral)
+        return guard.safe_share(
+            (0.0, rate, 0.0), speed, robot.description.base, discs, rays.points()
+        )

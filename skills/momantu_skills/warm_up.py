@@ -9,10 +9,10 @@ import numpy as np
 
 from momantu_bt.formats.maps import OCCUPIED
 from momantu_bt.geometry import Pose2D
-from momantu_bt.robot import BaseLimits
+from momantu_bt.robot import BaseKind, BaseLimits
 from momantu_skills.manipulation.model import arm_model
 from momantu_skills.navigation.config import LocalizationConfig, NavigationConfig
-from momantu_skills.navigation.control import graceful
+from momantu_skills.navigation.control import glide, graceful
 from momantu_skills.navigation.control.guard import safe_share
 from momantu_skills.navigation.control.mppi import Mppi
 from momantu_skills.navigation.localize.localizer import Localizer
@@ -36,6 +36,7 @@ def compile_navigation() -> None:
     grid = GridMap(cells, 0.05, (0.0, 0.0))
     config = NavigationConfig()
     limits = BaseLimits(linear=1.0, angular=1.0, linear_acceleration=1.0, angular_acceleration=1.0)
+    gliding = limits.model_copy(update={"kind": BaseKind.OMNIDIRECTIONAL})
     here, goal, disc = Pose2D(1.0, 1.0), Pose2D(2.0, 1.5), np.array([[0.0, 0.0, 0.2]])
     ways = np.array([[1.0, 0.0], [0.0, 1.0]])
     rays = Rays(np.zeros(2), ways, np.array([1.9, 1.9]), np.ones(2, np.bool_))
@@ -48,10 +49,13 @@ def compile_navigation() -> None:
     localizer.observe(rays)
     way = plan(costmap, here, goal, 0.25, config.comfort, config.planner)
     if way is not None:
-        Mppi(limits, config, random).command(here, (0.0, 0.0), costmap, disc, way)
-    graceful.simulate(here, (0.0, 0.0), goal, limits, costmap, disc)
+        Mppi(limits, config, random).command(here, (0.0, 0.0, 0.0), costmap, disc, way)
+        Mppi(gliding, config, random).command(here, (0.0, 0.0, 0.0), costmap, disc, way)
+    graceful.simulate(here, (0.0, 0.0, 0.0), goal, limits, costmap, disc)
+    glide.simulate(here, (0.0, 0.0, 0.0), goal, gliding, costmap, disc)
+    glide.command(here, goal, gliding)
     graceful.command(here, goal, limits)
-    safe_share((0.5, 0.1), (0.0, 0.0), limits, disc, rays.points())
+    safe_share((0.5, 0.1, 0.0), (0.0, 0.0, 0.0), limits, disc, rays.points())
 
 
 if __name__ == "__main__":

@@ -153,4 +153,4 @@ def _still(state: RobotState, goal: JointPositions) -> bool:
 
 
 def _base_still(state: RobotState) -> bool:
-    return abs(state.linear) <= STILL and abs(state.angular) <= STILL
+    return all(abs(speed) <= STILL for speed in (state.linear, state.angular, state.lateral))

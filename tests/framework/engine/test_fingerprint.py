@@ -43,6 +43,7 @@ CHANGED = {
     "angular": 1e-9,
     "gripper_width": np.nextafter(STATE.gripper_width, 1.0),
     "gripper_effort": 30.0,
+    "lateral": 1e-9,
 }
 
 
@@ -73,6 +74,7 @@ COMMANDS = [
     (),
     (Issued("base", BaseVelocity(0.1, 0.0)),),
     (Issued("base", BaseVelocity(0.0, 0.1)),),
+    (Issued("base", BaseVelocity(0.0, 0.0, 0.1)),),
     (Issued("base", None),),
     (Issued("arm", None),),
     (Issued("base", None), Issued("arm", None)),

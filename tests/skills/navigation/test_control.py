@@ -22,6 +22,7 @@ from momantu_bt.robot import BaseLimits
 LIMITS = BaseLimits(linear=1.0, angular=1.5, linear_acceleration=1.0, angular_acceleration=3.0)
 CONFIG = NavigationConfig()
 DISC = np.array([[0.0, 0.0, 0.3]])
+REST = (0.0, 0.0, 0.0)
 
 
 def _costmap(*boxes: tuple[int, int, int, int]) -> Costmap:
@@ -40,7 +41,7 @@ class _Unicycle:
     def __init__(self, pose: Pose2D) -> None:
         self.pose, self.v, self.w = pose, 0.0, 0.0
 
-    def drive(self, command: tuple[float, float], seconds: float = 0.1) -> None:
+    def drive(self, command: tuple[float, ...], seconds: float = 0.1) -> None:
         for _ in range(10):
             dt = seconds / 10
             self.v += float(np.clip(command[0] - self.v, -1.0 * dt, 1.0 * dt))
@@ -56,7 +57,7 @@ def _drive(
     assert way is not None
     base, mppi, least = _Unicycle(start), Mppi(LIMITS, CONFIG, np.random.default_rng(0)), 9.0
     for _ in range(int(seconds / 0.1)):
-        base.drive(mppi.command(base.pose, (base.v, base.w), costmap, DISC, way))
+        base.drive(mppi.command(base.pose, (base.v, base.w, 0.0), costmap, DISC, way))
         least = min(least, costmap.room(base.pose, DISC))
         if base.pose.distance_to(goal) < 0.4:
             break
@@ -122,7 +123,7 @@ def test_the_approach_ends_on_the_goal(offset: Pose2D, yaw: float) -> None:
 def test_the_simulated_approach_foretells_the_real_one(offset: Pose2D) -> None:
     goal = Pose2D(4.0, 3.0, 0.7)
     costmap = _costmap()
-    foretold = graceful.simulate(goal @ offset, (0.0, 0.0), goal, LIMITS, costmap, DISC)
+    foretold = graceful.simulate(goal @ offset, REST, goal, LIMITS, costmap, DISC)
     base = _Unicycle(goal @ offset)
     for _ in range(120):
         base.drive(graceful.command(base.pose, goal, LIMITS) or (0.0, 0.0))
@@ -135,7 +136,7 @@ def test_the_simulated_approach_foretells_the_real_one(offset: Pose2D) -> None:
 def test_an_approach_past_a_wall_has_no_room() -> None:
     goal = Pose2D(4.0, 3.0, 0.0)
     costmap = _costmap((55, 60, 8, 4))
-    end = graceful.simulate(Pose2D(2.4, 3.0, 0.0), (0.0, 0.0), goal, LIMITS, costmap, DISC)
+    end = graceful.simulate(Pose2D(2.4, 3.0, 0.0), REST, goal, LIMITS, costmap, DISC)
     assert end.room < 0.0
     assert not end.within(0.05, 0.2, 0.0)
 
@@ -152,7 +153,7 @@ def test_what_the_guard_lets_through_can_still_stop(
     hit: tuple[float, float], v: float, w: float
 ) -> None:
     point = np.array([[hit[0] * math.cos(hit[1]), hit[0] * math.sin(hit[1])]])
-    share = safe_share((v, w), (0.0, 0.0), LIMITS, DISC, point)
+    share = safe_share((v, w, 0.0), REST, LIMITS, DISC, point)
     base = _Unicycle(Pose2D(0.0, 0.0, 0.0))
     base.drive((v * share, w * share))
     for _ in range(15):
@@ -165,7 +166,7 @@ def test_what_the_guard_lets_through_can_still_stop(
     ("hit", "speed", "expected"), [(0.9, 0.0, 1.0), (0.33, 0.0, 0.0), (0.55, 1.0, 0.0)]
 )
 def test_the_guard_minds_braking_distance(hit: float, speed: float, expected: float) -> None:
-    share = safe_share((0.6, 0.0), (speed, 0.0), LIMITS, DISC, np.array([[hit, 0.0]]))
+    share = safe_share((0.6, 0.0, 0.0), (speed, 0.0, 0.0), LIMITS, DISC, np.array([[hit, 0.0]]))
     assert share == expected
 
 
@@ -173,13 +174,13 @@ def test_the_guard_minds_braking_distance(hit: float, speed: float, expected: fl
 def test_a_round_base_may_always_turn(w: float) -> None:
     assume(abs(w) > 0.01)
     hits = np.array([[0.31, 0.0], [0.0, 0.31], [-0.2, -0.24]])
-    assert safe_share((0.0, w), (0.0, 0.0), LIMITS, DISC, hits) == 1.0
+    assert safe_share((0.0, w, 0.0), REST, LIMITS, DISC, hits) == 1.0
 
 
 def test_backing_away_from_a_touch_is_allowed() -> None:
     touching = np.array([[0.29, 0.0]])
-    assert safe_share((-0.2, 0.0), (0.0, 0.0), LIMITS, DISC, touching) == 1.0
-    assert safe_share((0.2, 0.0), (0.0, 0.0), LIMITS, DISC, touching) == 0.0
+    assert safe_share((-0.2, 0.0, 0.0), REST, LIMITS, DISC, touching) == 1.0
+    assert safe_share((0.2, 0.0, 0.0), REST, LIMITS, DISC, touching) == 0.0
 
 
 def test_the_approach_keeps_a_slow_base_slow() -> None:
@@ -208,5 +209,5 @@ def test_the_plan_of_controls_moves_on_by_the_period(period: float) -> None:
     mppi._controls = np.column_stack([ramp, np.zeros(steps)])
     # Of all rollouts only the plan itself, at full speed and at rest differ: weigh them out.
     moved = np.concatenate([ramp[round(period / 0.05) :], ramp[-1:].repeat(round(period / 0.05))])
-    mppi.command(start, (0.1, 0.0), costmap, DISC, way)
+    mppi.command(start, (0.1, 0.0, 0.0), costmap, DISC, way)
     assert mppi._controls[0, 0] == pytest.approx(moved[0], abs=0.05)

@@ -22,25 +22,29 @@ Boxes = Sequence[tuple[float, float, float, float]]
 
 
 class Obedient:
-    """A perfect unicycle within its accelerations. least: room that the base had on its way.
+    """A perfect base within its accelerations. least: room that the base had on its way.
 
     stuck: it is commanded but stands. arm: how far an arm reaches ahead of the outline, m.
     """
 
-    def __init__(self, start: Pose2D, boxes: Boxes = (), arm: float = 0.0) -> None:
+    def __init__(
+        self, start: Pose2D, boxes: Boxes = (), arm: float = 0.0, limits: BaseLimits = LIMITS
+    ) -> None:
         cells = np.zeros((120, 160), np.uint8)
         cells[[0, -1], :] = OCCUPIED
         cells[:, [0, -1]] = OCCUPIED
         for x0, y0, x1, y1 in boxes:
             rows = slice(round(y0 / 0.05), round(y1 / 0.05))
             cells[rows, round(x0 / 0.05) : round(x1 / 0.05)] = OCCUPIED
-        self.config, self.limits = NavigationConfig(), LIMITS
+        self.config, self.limits = NavigationConfig(), limits
+        self.glides = limits.sideways > 0.0
         self.costmap = Costmap(GridMap(cells, 0.05, (0.0, 0.0)), None, self.config)
         self.base_discs = self.low_discs = discs(OUTLINE)
         reach = np.array([[0.25 + arm - 0.05, 0.0, 0.05]]) if arm else np.empty((0, 3))
         self.discs = np.vstack([self.base_discs, reach])
         self.half_width = half_width(OUTLINE)
-        self.start, self.at, self.time, self.v, self.w = start, Pose2D(0.0, 0.0), 0.0, 0.0, 0.0
+        self.start, self.at, self.time = start, Pose2D(0.0, 0.0), 0.0
+        self.v = self.w = self.u = 0.0
         self.shift = Pose2D(0.0, 0.0)
         self.blocked_for = self.blocked_total = 0.0
         self.stuck, self.least, self.phases = False, np.inf, list[str]()
@@ -60,8 +64,8 @@ class Obedient:
     def show(self, path: Array) -> None:
         """Nobody watches."""
 
-    def speed(self) -> tuple[float, float]:
-        return self.v, self.w
+    def speed(self) -> tuple[float, float, float]:
+        return self.v, self.w, self.u
 
     def sense(self, *, depth: bool = True) -> None:
         self.least = min(self.least, self.room(self.pose(), whole=False))
@@ -69,19 +73,23 @@ class Obedient:
     def room(self, pose: Pose2D, *, whole: bool) -> float:
         return self.costmap.room(pose, self.discs if whole else self.low_discs)
 
-    def drive(self, linear: float, angular: float, phase: str) -> Generator[str, None, None]:
+    def drive(
+        self, linear: float, angular: float, phase: str, lateral: float = 0.0
+    ) -> Generator[str, None, None]:
+        assert lateral == 0.0 or self.glides
         self.phases.append(phase)
         self.blocked_for = self.blocked_for + 0.1 if self.stuck else 0.0
         if not self.stuck:
             for _ in range(10):
                 self.v += float(np.clip(linear - self.v, -0.01, 0.01))
                 self.w += float(np.clip(angular - self.w, -0.03, 0.03))
-                self.at = self.at @ Pose2D(0.01 * self.v, 0.0, 0.01 * self.w)
+                self.u += float(np.clip(lateral - self.u, -0.01, 0.01))
+                self.at = self.at @ Pose2D(0.01 * self.v, 0.01 * self.u, 0.01 * self.w)
         self.time += 0.1
         yield phase
 
     def stands(self) -> bool:
-        return abs(self.v) < 0.01 and abs(self.w) < 0.01
+        return all(abs(speed) < 0.01 for speed in self.speed())
 
     def stop(self, phase: str) -> Generator[str, None, None]:
         while not self.stands():

@@ -187,6 +187,10 @@ class SimulatedRobot:
         vx, vy, wz = (float(speeds[i]) for i in self._base_columns)
         forward = vx * np.cos(base.yaw) + vy * np.sin(base.yaw)
         linear, angular = self._odometry.speeds(float(forward), wz, stamp)
+        lateral = 0.0
+        if self._description.base.sideways:
+            lateral = float(vy * np.cos(base.yaw) - vx * np.sin(base.yaw))
+            lateral = self._odometry.sideways(lateral, stamp)
         return RobotState(
             stamp,
             self._names,
@@ -198,6 +202,7 @@ class SimulatedRobot:
             angular,
             width,
             grip,
+            lateral,
         )
 
     def _measure_gripper(self, true: Array, stamp: float) -> tuple[float, float]:

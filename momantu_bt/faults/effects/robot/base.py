@@ -27,7 +27,7 @@ class Slow(GoalLayer):
         if not isinstance(goal, BaseVelocity):
             return goal
         factor = self.number("factor")
-        return BaseVelocity(goal.linear * factor, goal.angular * factor)
+        return BaseVelocity(goal.linear * factor, goal.angular * factor, goal.lateral * factor)
 
 
 class Offset(GoalLayer):
@@ -43,4 +43,4 @@ class Offset(GoalLayer):
             return goal
         limit = max(self.description.base.angular, abs(goal.angular))
         angular = goal.angular + self.number("curvature") * goal.linear
-        return BaseVelocity(goal.linear, max(-limit, min(limit, angular)))
+        return BaseVelocity(goal.linear, max(-limit, min(limit, angular)), goal.lateral)

@@ -56,15 +56,16 @@ class OdometryLayer(Layer):
         moving = max(abs(moved.x), abs(moved.y), abs(moved.yaw)) > STANDING
         told = Pose2D.from_transform(self._told.odom_from_base) @ self.moved(moved, seconds, moving)
         self._told_from_odom = told @ here.inverse()
-        linear, angular = self.speeds(now, moving)
-        return replace(now, odom_from_base=told.transform(), linear=linear, angular=angular)
+        linear, angular, lateral = self.speeds(now, moving)
+        odom = told.transform()
+        return replace(now, odom_from_base=odom, linear=linear, angular=angular, lateral=lateral)
 
     def moved(self, moved: Pose2D, seconds: float, moving: bool) -> Pose2D:
         """The motion to report for a true one between two states, in the base's frame before it."""
         raise NotImplementedError(f"{type(self).__name__} has no moved()")
 
-    def speeds(self, now: RobotState, moving: bool) -> tuple[float, float]:
-        """The speeds to report with that motion, m/s and rad/s."""
+    def speeds(self, now: RobotState, moving: bool) -> tuple[float, float, float]:
+        """The speeds to report with that motion: m/s ahead, rad/s, m/s sideways."""
         raise NotImplementedError(f"{type(self).__name__} has no speeds()")
 
 
@@ -76,10 +77,10 @@ class Slip(OdometryLayer):
         scale = self.number("scale")
         return Pose2D(moved.x * scale, moved.y * scale, wrap_angle(moved.yaw * scale))
 
-    def speeds(self, now: RobotState, moving: bool) -> tuple[float, float]:
+    def speeds(self, now: RobotState, moving: bool) -> tuple[float, float, float]:
         """Scaled."""
         scale = self.number("scale")
-        return now.linear * scale, now.angular * scale
+        return now.linear * scale, now.angular * scale, now.lateral * scale
 
 
 class Bias(OdometryLayer):
@@ -90,6 +91,7 @@ class Bias(OdometryLayer):
         turn = self.number("rate") * seconds if moving else 0.0
         return Pose2D(moved.x, moved.y, wrap_angle(moved.yaw + turn))
 
-    def speeds(self, now: RobotState, moving: bool) -> tuple[float, float]:
+    def speeds(self, now: RobotState, moving: bool) -> tuple[float, float, float]:
         """The rate on top."""
-        return now.linear, now.angular + (self.number("rate") if moving else 0.0)
+        turning = self.number("rate") if moving else 0.0
+        return now.linear, now.angular + turning, now.lateral

@@ -76,14 +76,17 @@ def command(pose: Pose2D, goal: Pose2D, limits: BaseLimits) -> tuple[float, floa
 
 def simulate(
     pose: Pose2D,
-    speed: tuple[float, float],
+    speed: tuple[float, float, float],
     goal: Pose2D,
     limits: BaseLimits,
     costmap: Costmap,
     discs: Array,
 ) -> Arrival:
-    """Simulate the approach from a pose and a measured (m/s, rad/s), with its least clearance."""
-    start = np.array([pose.x, pose.y, pose.yaw, *speed], dtype=np.float64)
+    """Simulate the approach from a pose and a measured speed, with its least clearance.
+
+    speed: m/s ahead, rad/s, and m/s to the left, which no unicycle has.
+    """
+    start = np.array([pose.x, pose.y, pose.yaw, *speed[:2]], dtype=np.float64)
     end = np.array([goal.x, goal.y, goal.yaw], dtype=np.float64)
     bounds = np.array(
         [

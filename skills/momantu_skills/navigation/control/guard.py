@@ -23,22 +23,22 @@ STEP = 0.05
 
 
 def safe_share(
-    command: tuple[float, float],
-    speed: tuple[float, float],
+    command: tuple[float, float, float],
+    speed: tuple[float, float, float],
     limits: BaseLimits,
     discs: Array,
     hits: Array,
 ) -> float:
     """Return the largest of 1, 3/4, 1/2, 1/4, 0 that scales a command to a safe one.
 
-    command, speed: (m/s, rad/s), commanded and measured. discs: footprint (m, 3). hits: (n, 2) of
-    the newest scan; both in the base frame. A hit that is inside the margin already does not forbid
-    motion: only commands that bring it nearer are refused.
+    command, speed: (m/s ahead, rad/s, m/s to the left), commanded and measured. discs: footprint
+    (m, 3). hits: (n, 2) of the newest scan; both in the base frame. A hit that is inside the margin
+    already does not forbid motion: only commands that bring it nearer are refused.
     """
     near = hits[np.hypot(hits[:, 0], hits[:, 1]) < NEAR]
     bounds = np.array([limits.linear_acceleration, limits.angular_acceleration])
     for share in (1.0, 0.75, 0.5, 0.25):
-        wanted = np.array([command[0] * share, command[1] * share, *speed])
+        wanted = np.array([*(part * share for part in command), *speed])
         if _clear(wanted, bounds, discs, near):
             return share
     return 0.0
@@ -50,24 +50,27 @@ def _clear(wanted: Array, bounds: Array, discs: Array, hits: Array) -> bool:
     for j in range(hits.shape[0]):
         allowed[j] = min(HARD_MARGIN, _away(0.0, 0.0, 1.0, 0.0, discs, hits[j]) - NOISE)
     x = y = yaw = 0.0
-    v = wanted[2]
-    w = wanted[3]
+    v = wanted[3]
+    w = wanted[4]
+    u = wanted[5]
     t = 0.0
     while t < 3.0:
         to_v = wanted[0] if t < REACTION else 0.0
         to_w = wanted[1] if t < REACTION else 0.0
+        to_u = wanted[2] if t < REACTION else 0.0
         v += min(max(to_v - v, -bounds[0] * STEP), bounds[0] * STEP)
         w += min(max(to_w - w, -bounds[1] * STEP), bounds[1] * STEP)
+        u += min(max(to_u - u, -bounds[0] * STEP), bounds[0] * STEP)
         yaw += w * STEP
-        x += v * math.cos(yaw) * STEP
-        y += v * math.sin(yaw) * STEP
+        x += v * math.cos(yaw) * STEP - u * math.sin(yaw) * STEP
+        y += v * math.sin(yaw) * STEP + u * math.cos(yaw) * STEP
         t += STEP
         c = math.cos(yaw)
         s = math.sin(yaw)
         for j in range(hits.shape[0]):
             if _away(x, y, c, s, discs, hits[j]) < allowed[j]:
                 return False
-        if t > REACTION and abs(v) < 1e-9 and abs(w) < 1e-9:
+        if t > REACTION and abs(v) < 1e-9 and abs(w) < 1e-9 and abs(u) < 1e-9:
             break
     return True
 

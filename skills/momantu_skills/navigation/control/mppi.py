@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from momantu_bt.geometry import Array, Pose2D
 from momantu_bt.robot import BaseLimits
 from momantu_skills.navigation.config import NavigationConfig
-from momantu_skills.navigation.control import critics
+from momantu_skills.navigation.control import critics, glide
 from momantu_skills.navigation.map.costmap import Costmap, room
 from momantu_skills.navigation.map.fields import Field, sample
 from momantu_skills.navigation.plan.planner import Plan
@@ -23,6 +23,8 @@ SLOPE = 0.1
 FARTHEST, STEEPEST = 1e5, 100.0
 """Limits of the remaining distance, m, and of its change over 2 `SLOPE`; above them a cell counts
 as having no path to the goal."""
+SIDE_NOISE = 0.5
+"""Standard deviation of the speeds sideways that are drawn, relative to the greatest one."""
 DETOUR = 3.0
 """Largest distance that a rollout may seem to move away from the goal, m."""
 
@@ -36,6 +38,7 @@ class Mppi:
         navigation: NavigationConfig,
         random: np.random.Generator,
     ) -> None:
+        sideways = glide.sideways(limits)
         self._config, self._period = navigation.controller, navigation.period
         self._random = random
         self._limits = np.array(
@@ -44,8 +47,12 @@ class Mppi:
                 limits.angular,
                 limits.linear_acceleration,
                 limits.angular_acceleration,
+                sideways,
             ]
         )
+        self._noise = np.array([self._config.speed_noise, self._config.turn_noise])
+        if sideways > 0.0:
+            self._noise = np.append(self._noise, SIDE_NOISE * sideways)
         c = self._config
         self._critics = critics.Critics(
             **c.weights.model_dump(),
@@ -61,54 +68,66 @@ class Mppi:
 
     def restart(self) -> None:
         """Forget the last controls, because another controller has driven the base."""
-        self._controls = np.zeros((self._config.steps, 2))
+        self._controls = np.zeros((self._config.steps, len(self._noise)))
 
     def command(
-        self, pose: Pose2D, speed: tuple[float, float], costmap: Costmap, discs: Array, plan: Plan
-    ) -> tuple[float, float]:
-        """Return the next (m/s, rad/s) for a pose in the map and the measured (m/s, rad/s)."""
+        self,
+        pose: Pose2D,
+        speed: tuple[float, float, float],
+        costmap: Costmap,
+        discs: Array,
+        plan: Plan,
+    ) -> tuple[float, float, float]:
+        """Return the next speeds for a pose in the map and the measured speeds.
+
+        Both are (m/s ahead, rad/s, m/s to the left).
+        """
         c = self._config
         shift = max(1, round(self._period / c.step))
         self._controls = np.concatenate(
             [self._controls[shift:], self._controls[-1:].repeat(shift, 0)]
         )
-        noise = self._random.standard_normal((c.samples, c.knots, 2))
-        noise *= (c.speed_noise, c.turn_noise)
+        noise = self._random.standard_normal((c.samples, c.knots, len(self._noise)))
+        noise *= self._noise
         controls = _controls(self._controls, noise, self._before, self._share, self._limits)
-        start = np.array([pose.x, pose.y, pose.yaw, speed[0], speed[1]])
+        start = np.array([pose.x, pose.y, pose.yaw, *speed])
         costs = _costs(
             start, controls, c.step, costmap.field, costmap.frame, discs, plan.cost, self._limits,
             self._critics,
         )  # fmt: skip
         weights = np.exp((costs.min() - costs) / c.temperature)
         self._controls = np.einsum("s,stc->tc", weights / weights.sum(), controls)
-        return float(self._controls[0, 0]), float(self._controls[0, 1])
+        linear, angular, *lateral = map(float, self._controls[0])
+        return linear, angular, lateral[0] if lateral else 0.0
 
 
 @numba.njit(cache=True)
 def _controls(
     last: Array, noise: Array, before: NDArray[np.int64], share: Array, limits: Array
 ) -> Array:
-    """Control sequences (samples, steps, 2) around the `last` (steps, 2), within the limits.
+    """Control sequences (samples, steps, 2 or 3) around the `last` (steps, 2 or 3), in the limits.
 
-    noise: (samples, knots, 2). before, share (steps,): the knot before each step, and the share of
-    the next one. Three sequences are the last one, standing still, and full speed straight ahead.
+    noise: (samples, knots, 2 or 3). before, share (steps,): the knot before each step, and the
+    share of the next one. Three sequences are the last one, standing still, and full speed ahead.
     """
-    controls = np.empty((noise.shape[0], last.shape[0], 2))
+    kinds = last.shape[1]
+    controls = np.empty((noise.shape[0], last.shape[0], kinds))
     for s in range(controls.shape[0]):
         for t in range(controls.shape[1]):
             k = before[t]
-            for c in range(2):
+            for c in range(kinds):
                 shift = (1.0 - share[t]) * noise[s, k, c] + share[t] * noise[s, k + 1, c]
                 controls[s, t, c] = last[t, c] + shift
     controls[0] = last
     controls[1] = 0.0
+    controls[2] = 0.0
     controls[2, :, 0] = limits[0]
-    controls[2, :, 1] = 0.0
     for s in range(controls.shape[0]):
         for t in range(controls.shape[1]):
             controls[s, t, 0] = min(max(controls[s, t, 0], 0.0), limits[0])
             controls[s, t, 1] = min(max(controls[s, t, 1], -limits[1]), limits[1])
+            if kinds == 3:
+                controls[s, t, 2] = min(max(controls[s, t, 2], -limits[4]), limits[4])
     return controls
 
 
@@ -142,12 +161,12 @@ def _cost(
     limits: Array,
     weights: critics.Critics,
 ) -> float:
-    """Simulate a rollout of a unicycle within acceleration limits; return its `critics`' sum.
+    """Simulate a rollout within acceleration limits; return its `critics`' sum.
 
     A rollout ends at its first collision.
     """
-    x, y, yaw, v, w = start[0], start[1], start[2], start[3], start[4]
-    steps = controls.shape[0]
+    x, y, yaw, v, w, u = start[0], start[1], start[2], start[3], start[4], start[5]
+    steps, kinds = controls.shape
     total = 0.0
     here = min(_to_go(cost_to_go, frame, x, y), FARTHEST)
     last = here
@@ -156,17 +175,23 @@ def _cost(
         before = w
         v += min(max(controls[t, 0] - v, -limits[2] * dt), limits[2] * dt)
         w += min(max(controls[t, 1] - w, -limits[3] * dt), limits[3] * dt)
+        speed = v
         yaw += 0.5 * w * dt
         x += v * math.cos(yaw) * dt
         y += v * math.sin(yaw) * dt
+        if kinds == 3:
+            u += min(max(controls[t, 2] - u, -limits[2] * dt), limits[2] * dt)
+            x -= u * math.sin(yaw) * dt
+            y += u * math.cos(yaw) * dt
+            speed = math.hypot(v, u)
         yaw += 0.5 * w * dt
         spare = room(field, frame, discs, x, y, yaw) - weights.margin
         last = min(_to_go(cost_to_go, frame, x, y), worst)
         if spare < 0.0:
             total += critics.collision(weights, spare, t, steps)
             break
-        total += critics.nearness(weights, spare, v, dt)
-        total += critics.haste(weights, spare, v, limits[0], dt)
+        total += critics.nearness(weights, spare, speed, dt)
+        total += critics.haste(weights, spare, speed, limits[0], dt)
         total += critics.smoothness(weights, w, before) + critics.progress(last, steps)
     total += last
     if last > CLOSE:

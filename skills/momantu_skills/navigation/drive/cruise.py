@@ -26,6 +26,8 @@ NEAR = 0.25
 """Distance from the lead-in, in weighted metres, at which cruising ends."""
 APPROACH_FROM = 2.0
 """Distance from the goal pose within which the approach is simulated, m."""
+GLIDE_FROM = 0.8
+"""The same for a base that glides there, which goes slowly sideways, m."""
 DETOURS = 8
 """Replans to a longer path before the base is reported to drive in circles."""
 LONGEST_BACK = 0.8
@@ -64,7 +66,7 @@ def cruise(vehicle: Vehicle, mppi: Mppi, route: Route, distance: float) -> Drive
     while True:
         vehicle.sense()
         pose = vehicle.pose()
-        near = pose.distance_to(route.stand) < APPROACH_FROM
+        near = pose.distance_to(route.stand) < (GLIDE_FROM if vehicle.glides else APPROACH_FROM)
         if near and approach_is_sure(vehicle, route.stand, distance):
             return
         if route.to_go(vehicle, pose) < NEAR:
@@ -78,10 +80,10 @@ def cruise(vehicle: Vehicle, mppi: Mppi, route: Route, distance: float) -> Drive
         if turn_first and (yield from turn_to(vehicle, pose.yaw + off, "turn to the path")):
             mppi.restart()
             continue
-        linear, angular = mppi.command(
+        linear, angular, lateral = mppi.command(
             pose, vehicle.speed(), vehicle.costmap, vehicle.discs, route.plan
         )
-        yield from vehicle.drive(linear, angular, "drive")
+        yield from vehicle.drive(linear, angular, "drive", lateral)
 
 
 def _replanned(vehicle: Vehicle, route: Route, watch: _Watch) -> Generator[Any, Any, Route]:

@@ -207,7 +207,7 @@ class Follower:
             self._mppi.restart()
             return
         assert self._plan is not None
-        linear, angular = self._mppi.command(
+        linear, angular, lateral = self._mppi.command(
             pose, vehicle.speed(), vehicle.costmap, vehicle.discs, self._plan
         )
-        yield from vehicle.drive(linear, angular, "drive")
+        yield from vehicle.drive(linear, angular, "drive", lateral)

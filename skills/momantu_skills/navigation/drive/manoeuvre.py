@@ -10,9 +10,9 @@ import numpy as np
 
 from momantu_bt.failure import Failure
 from momantu_bt.geometry import Pose2D, wrap_angle
-from momantu_skills.navigation.control import graceful
+from momantu_skills.navigation.control import glide, graceful
 from momantu_skills.navigation.drive.moves import Move, back_off, can_turn, clear_behind, turn_to
-from momantu_skills.navigation.drive.vehicle import Vehicle
+from momantu_skills.navigation.drive.vehicle import Speed, Vehicle
 
 AIM = 0.5
 """Share of the tolerance that a simulated approach must meet, as a reserve for noise."""
@@ -87,7 +87,7 @@ def quickest_retreat(vehicle: Vehicle, goal: Pose2D, distance: float) -> Retreat
         if back > 0.0 and not clear_behind(vehicle, pose, back):
             break
         start = pose @ Pose2D(-back, 0.0, 0.0)
-        speed = vehicle.speed() if back == 0.0 else (0.0, 0.0)
+        speed = vehicle.speed() if back == 0.0 else (0.0, 0.0, 0.0)
         end = _arrival(vehicle, start, speed, goal)
         seconds = end.seconds + (back / BACK_SPEED + SWITCH if back else 0.0)
         sure = end.within(distance * AIM, TURN_AT_END, _margin(vehicle, goal))
@@ -96,10 +96,9 @@ def quickest_retreat(vehicle: Vehicle, goal: Pose2D, distance: float) -> Retreat
     return best
 
 
-def _arrival(
-    vehicle: Vehicle, pose: Pose2D, speed: tuple[float, float], goal: Pose2D
-) -> graceful.Arrival:
-    return graceful.simulate(pose, speed, goal, vehicle.limits, vehicle.costmap, vehicle.low_discs)
+def _arrival(vehicle: Vehicle, pose: Pose2D, speed: Speed, goal: Pose2D) -> graceful.Arrival:
+    law = glide.simulate if vehicle.glides else graceful.simulate
+    return law(pose, speed, goal, vehicle.limits, vehicle.costmap, vehicle.low_discs)
 
 
 def _margin(vehicle: Vehicle, goal: Pose2D) -> float:
@@ -142,7 +141,7 @@ def _hop(vehicle: Vehicle, goal: Pose2D, bearing: float) -> Move:
 
 
 def run_in(vehicle: Vehicle, goal: Callable[[], Pose2D]) -> Move:
-    """Follow the approach to `goal()` (map); True at its line, False when time runs out.
+    """Follow the approach to `goal()` (map); True at its end, False when time or room runs out.
 
     Raises:
         Failure: PATH_BLOCKED when something stands in the way.
@@ -150,10 +149,13 @@ def run_in(vehicle: Vehicle, goal: Callable[[], Pose2D]) -> Move:
     deadline = vehicle.now() + graceful.LONGEST
     while vehicle.now() < deadline:
         vehicle.sense()
-        wanted = graceful.command(vehicle.pose(), goal(), vehicle.limits)
+        wanted = _towards(vehicle, goal())
         if wanted is None:
             return True
-        yield from vehicle.drive(*wanted, "approach")
+        if vehicle.glides and not _stays_clear(vehicle, goal()):
+            return False
+        linear, angular, lateral = wanted
+        yield from vehicle.drive(linear, angular, "approach", lateral)
         if vehicle.blocked_for > vehicle.config.blocked_patience:
             raise Failure(
                 "PATH_BLOCKED",
@@ -161,3 +163,17 @@ def run_in(vehicle: Vehicle, goal: Callable[[], Pose2D]) -> Move:
                 to_go=vehicle.pose().distance_to(goal()),
             )
     return False
+
+
+def _towards(vehicle: Vehicle, goal: Pose2D) -> Speed | None:
+    if vehicle.glides:
+        return glide.command(vehicle.pose(), goal, vehicle.limits)
+    wanted = graceful.command(vehicle.pose(), goal, vehicle.limits)
+    return None if wanted is None else (*wanted, 0.0)
+
+
+def _stays_clear(vehicle: Vehicle, goal: Pose2D) -> bool:
+    """Whether what was seen leaves room to the goal: no laser looks where a base glides to."""
+    pose = vehicle.pose()
+    least = min(_margin(vehicle, goal), vehicle.room(pose, whole=False) - 0.005)
+    return _arrival(vehicle, pose, vehicle.speed(), goal).room > min(0.0, least)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import TypeAlias
 
 import numpy as np
 
@@ -42,6 +43,10 @@ AT_REST = 0.01
 """Speed below which the base counts as standing, m/s and rad/s."""
 
 
+Speed: TypeAlias = tuple[float, float, float]
+"""m/s ahead, rad/s, and m/s to the left."""
+
+
 class Vehicle:
     """Sense once per control period and drive for one. Poses are in the map unless said otherwise.
 
@@ -49,7 +54,7 @@ class Vehicle:
 
     base_discs: discs of the base alone, which collides with every obstacle. low_discs: with the
     parts of arm and load that are lower than the surface that the base drives up to. discs: with
-    all of arm and load.
+    all of arm and load. glides: whether the base drives sideways.
     """
 
     def __init__(
@@ -71,6 +76,7 @@ class Vehicle:
         """
         description = robot.description
         self.config, self.limits = config, description.base
+        self.glides = description.base.sideways > 0.0
         self.costmap = costmap.of_site(skill.site, config) if shared is None else shared
         self.localization = localization
         self._skill, self._robot, self._scene = skill, robot, scene
@@ -119,10 +125,10 @@ class Vehicle:
             Grid("costmap", costs, (x, y), cell, frame=MAP, color="purple", seconds=SHOWN),
         )
 
-    def speed(self) -> tuple[float, float]:
-        """Return the measured m/s and rad/s."""
+    def speed(self) -> Speed:
+        """Return the measured m/s ahead, rad/s, and m/s to the left."""
         state = self._robot.state()
-        return state.linear, state.angular
+        return state.linear, state.angular, state.lateral
 
     def sense(self, *, depth: bool = True) -> None:
         """Add a scan to the costmap, and a depth picture if the last one was taken far behind."""
@@ -187,20 +193,24 @@ class Vehicle:
         )
         return JointPositions(joints, aimed.positions)
 
-    def allowed(self, linear: float, angular: float) -> float:
-        """Return the share of a command, m/s and rad/s, that the newest scan allows; 0: none."""
+    def allowed(self, linear: float, angular: float, lateral: float = 0.0) -> float:
+        """Return the share of a command, as of `drive`, that the newest scan allows; 0: none."""
         return guard.safe_share(
-            (linear, angular), self.speed(), self.limits, self.base_discs, self._hits
+            (linear, angular, lateral), self.speed(), self.limits, self.base_discs, self._hits
         )
 
-    def drive(self, linear: float, angular: float, phase: str) -> Run:
-        """Command the base for one control period, as far as the newest scan allows."""
-        share = self.allowed(linear, angular)
+    def drive(self, linear: float, angular: float, phase: str, lateral: float = 0.0) -> Run:
+        """Command the base for one control period, as far as the newest scan allows.
+
+        linear, angular, lateral: m/s ahead, rad/s, and m/s to the left of an omnidirectional base.
+        """
+        share = self.allowed(linear, angular, lateral)
         period = self.config.period
-        stuck = share == 0.0 and (linear, angular) != (0.0, 0.0)
+        stuck = share == 0.0 and (linear, angular, lateral) != (0.0, 0.0, 0.0)
         self.blocked_for = self.blocked_for + period if stuck else 0.0
         self.blocked_total += period if stuck else 0.0
-        yield from self._command(BaseVelocity(linear * share, angular * share), phase)
+        goal = BaseVelocity(linear * share, angular * share, lateral * share)
+        yield from self._command(goal, phase)
 
     def _command(self, goal: BaseVelocity, phase: str) -> Run:
         slot = self._slot()
@@ -225,8 +235,7 @@ class Vehicle:
 
     def stands(self) -> bool:
         """Return whether the base is at rest."""
-        linear, angular = self.speed()
-        return abs(linear) < AT_REST and abs(angular) < AT_REST
+        return all(abs(speed) < AT_REST for speed in self.speed())
 
     def wait(self, seconds: float, phase: str) -> Run:
         """Wait without moving."""

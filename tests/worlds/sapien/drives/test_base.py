@@ -1,4 +1,4 @@
-"""The base's driver ramps within its limits, never goes sideways and stops by itself."""
+"""The base's driver ramps within its limits, goes sideways if it can, and stops by itself."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from momantu_worlds.sapien.config import STEP, SUB_STEPS
 from momantu_worlds.sapien.drives.base import BaseDrive
 
 from momantu_bt.messages import BaseVelocity, GripperCommand
-from momantu_bt.robot import BaseLimits
+from momantu_bt.robot import BaseKind, BaseLimits
 from momantu_bt.world import TICK
 
 LIMITS = BaseLimits(linear=1.0, angular=1.5, linear_acceleration=1.0, angular_acceleration=3.0)
@@ -26,9 +26,25 @@ class FakeJoint:
         self.speed = value
 
 
-def bench() -> tuple[BaseDrive, list[FakeJoint]]:
+def bench(limits: BaseLimits = LIMITS) -> tuple[BaseDrive, list[FakeJoint]]:
     joints = [FakeJoint(), FakeJoint(), FakeJoint()]
-    return BaseDrive(*joints, LIMITS), joints
+    return BaseDrive(*joints, limits), joints
+
+
+@given(yaw=st.floats(-10.0, 10.0), lateral=st.floats(-0.4, 0.4))
+def test_an_omnidirectional_base_goes_sideways(yaw: float, lateral: float) -> None:
+    drive, (x, y, turn) = bench(
+        LIMITS.model_copy(update={"kind": BaseKind.OMNIDIRECTIONAL, "lateral": 0.4})
+    )
+    drive.command(BaseVelocity(0.0, 0.0, lateral), 0.0)
+    drive.begin_tick(0.0)
+    for _ in range(round(0.5 / STEP)):
+        drive.apply(yaw)
+    along = x.speed * math.cos(yaw) + y.speed * math.sin(yaw)
+    across = -x.speed * math.sin(yaw) + y.speed * math.cos(yaw)
+    assert (along, across, turn.speed) == pytest.approx((0.0, lateral, 0.0), abs=1e-9)
+    with pytest.raises(ValueError, match=r"sideways at 0.5 m/s; the limit is 0.4 m/s"):
+        drive.command(BaseVelocity(0.0, 0.0, 0.5), 0.0)
 
 
 @settings(deadline=None)
@@ -76,6 +92,8 @@ def test_it_stops_when_nobody_commands() -> None:
         BaseVelocity(1.2, 0.0),
         BaseVelocity(0.0, -1.6),
         BaseVelocity(math.nan, 0.0),
+        BaseVelocity(0.0, 0.0, 0.1),
+        BaseVelocity(0.0, 0.0, math.nan),
     ],
 )
 def test_what_it_cannot_take_is_refused(goal: object) -> None:

@@ -1,4 +1,4 @@
-"""The driver of a differential base: velocity within acceleration limits, no sideways motion."""
+"""The driver of a base: velocity within its limits; only an omnidirectional one drives sideways."""
 
 from __future__ import annotations
 
@@ -19,10 +19,11 @@ class BaseDrive:
     def __init__(self, x_joint: Any, y_joint: Any, yaw_joint: Any, limits: BaseLimits) -> None:
         self._x, self._y, self._yaw = x_joint, y_joint, yaw_joint
         self._limits = limits
-        self._goal = (0.0, 0.0)
+        self._goal = (0.0, 0.0, 0.0)
         self._last_command = -math.inf
         self.linear = 0.0
         self.angular = 0.0
+        self.lateral = 0.0
 
     def command(self, goal: object, now: float) -> None:
         """Set a new speed.
@@ -37,16 +38,18 @@ class BaseDrive:
             raise ValueError(f"linear speed {goal.linear} m/s; the limit is {limits.linear} m/s")
         if not abs(goal.angular) <= limits.angular + TOLERANCE:
             raise ValueError(f"turning at {goal.angular} rad/s; the limit is {limits.angular}")
-        self._goal = (goal.linear, goal.angular)
+        if not abs(goal.lateral) <= limits.sideways + (TOLERANCE if limits.sideways else 0.0):
+            raise ValueError(f"sideways at {goal.lateral} m/s; the limit is {limits.sideways} m/s")
+        self._goal = (goal.linear, goal.angular, goal.lateral)
         self._last_command = now
 
     def stop(self) -> None:
         """Brake at the acceleration limits."""
-        self._goal = (0.0, 0.0)
+        self._goal = (0.0, 0.0, 0.0)
 
     def place(self) -> None:
         """Stop at once; the last command then continues from rest."""
-        self.linear = self.angular = 0.0
+        self.linear = self.angular = self.lateral = 0.0
 
     def begin_tick(self, now: float) -> None:
         """Stop if no command has come for too long."""
@@ -57,8 +60,10 @@ class BaseDrive:
         """Set the targets for one physics step; `yaw` is the base's current heading, rad."""
         self.linear = _ramp(self.linear, self._goal[0], self._limits.linear_acceleration * STEP)
         self.angular = _ramp(self.angular, self._goal[1], self._limits.angular_acceleration * STEP)
-        self._x.set_drive_velocity_target(self.linear * math.cos(yaw))
-        self._y.set_drive_velocity_target(self.linear * math.sin(yaw))
+        self.lateral = _ramp(self.lateral, self._goal[2], self._limits.linear_acceleration * STEP)
+        c, s = math.cos(yaw), math.sin(yaw)
+        self._x.set_drive_velocity_target(self.linear * c - self.lateral * s)
+        self._y.set_drive_velocity_target(self.linear * s + self.lateral * c)
         self._yaw.set_drive_velocity_target(self.angular)
 
 

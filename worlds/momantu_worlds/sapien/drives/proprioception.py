@@ -85,6 +85,11 @@ class Odometry:
         """Accept a new true pose after the base was lifted: the wheels did not turn."""
         self._true = map_from_base
 
+    def sideways(self, lateral: float, stamp: float) -> float:
+        """Speed to the left as the wheels of an omnidirectional base report it, m/s."""
+        noise = float(seeded(self._seed, "odometry sideways", stamp).standard_normal())
+        return lateral * self._linear_scale + self._errors.speed_noise * noise
+
     def speeds(self, linear: float, angular: float, stamp: float) -> tuple[float, float]:
         """Speeds as the wheels report them, m/s and rad/s."""
         noise = seeded(self._seed, "odometry speed", stamp).standard_normal(2)
