@@ -22,6 +22,7 @@ from momantu_bt.descriptions.quantities import (
     LinearAcceleration,
     LinearSpeed,
     Size,
+    Time,
 )
 
 Count: TypeAlias = Annotated[int, Field(gt=0, le=100_000)]
@@ -76,6 +77,35 @@ class JointLimit(Part):
     """Greatest acceleration."""
 
 
+class Exposure(Part):
+    """How a camera's colour sensor takes light: longer in the dark, then with more gain."""
+
+    usual: Annotated[Time, Field(gt=0)] = 0.008
+    """Exposure in good light: white paper under a light of 1 is just white."""
+    longest: Annotated[Time, Field(gt=0)] = 0.033
+    """Longest exposure: the time of one picture."""
+    most_gain: Annotated[float, Field(ge=1)] = 16.0
+    """Greatest gain, used where the longest exposure does not suffice; it amplifies noise too."""
+    full_well: Annotated[float, Field(gt=0)] = 8000.0
+    """Electrons of a white pixel at gain 1. Fewer give more shot noise."""
+    read_noise: Annotated[float, Field(ge=0)] = 4.0
+    """Electrons; sigma of the noise that each reading of a pixel adds."""
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Self:
+        if self.longest < self.usual:
+            raise ValueError(
+                f"the longest exposure, {self.longest:g} s, is shorter than the usual one,"
+                f" {self.usual:g} s"
+            )
+        return self
+
+    @property
+    def most(self) -> float:
+        """How many times brighter than usual a picture can become: by time and gain together."""
+        return self.longest / self.usual * self.most_gain
+
+
 class CameraSensor(Part):
     """An RGB-D camera."""
 
@@ -96,6 +126,8 @@ class CameraSensor(Part):
     """Farthest depth that it measures."""
     depth_noise: Annotated[float, Field(ge=0)] | None = None
     """1/m; sigma of depth z is this times z squared. Not given: usual for such cameras."""
+    exposure: Exposure = Exposure()
+    """How its colours take light; the defaults are those of a usual small camera."""
 
 
 class LaserSensor(Part):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import cv2
@@ -13,6 +14,7 @@ from momantu_skills.find_apriltag import FindAprilTag
 
 from momantu_bt.claim import TagAt, TagOn
 from momantu_bt.geometry import Pose2D, Transform, quaternion_from_rpy
+from momantu_bt.messages import CameraImage
 from momantu_bt.testing import ScriptedRobot, SkillResult, run_skill, scripted_site
 from momantu_bt.testing.painting import Block, Card, Round, Solid
 from momantu_bt.world import Surface
@@ -58,6 +60,66 @@ def find(
 Find = Callable[..., SkillResult]
 
 
+class Dim:
+    """A camera in little light: the picture of another one, darker and with noise."""
+
+    def __init__(self, painted: Callable[[ScriptedRobot], CameraImage], share: float, noise: float):
+        self._painted, self._share, self._noise = painted, share, noise
+
+    def __call__(self, robot: ScriptedRobot) -> CameraImage:
+        image = self._painted(robot)
+        random = np.random.default_rng(round(1000 * robot.now()))
+        grain = self._noise * random.standard_normal(image.color.shape)
+        color = np.clip(np.rint(self._share * image.color + grain), 0, 255).astype(np.uint8)
+        return replace(image, color=color)
+
+
+@pytest.fixture
+def find_dim(
+    onlooker: Callable[..., ScriptedRobot], seen_scene: Callable[..., Any]
+) -> Callable[..., SkillResult]:
+    """`find_dim(things, share, noise)`: as `find`, in little light."""
+
+    def run(things: list[Solid], share: float, noise: float) -> SkillResult:
+        robot = onlooker([TABLE, *things], seed=5)
+        robot.joints["lift"] = 0.3
+        robot.readings["camera"] = Dim(robot.readings["camera"], share, noise)
+        return run_skill(
+            FindAprilTag,
+            robot=robot,
+            inputs={"tag_id": 1, "edge": EDGE, "on": "table"},
+            services={"planning_scene": seen_scene(), "localization": None},
+            site=SITE,
+            map_from_odom=Transform(),
+        )
+
+    return run
+
+
+@pytest.mark.parametrize(("share", "noise"), [(0.12, 0.0), (0.2, 8.0)])
+def test_a_tag_in_little_light_is_measured_as_well(
+    find_dim: Find, share: float, noise: float
+) -> None:
+    result = find_dim([card(1, 0.9, 0.0)], share, noise)
+    assert result.status == "SUCCESS", result.explain()
+    assert result.outputs["tag_pose"].position == pytest.approx((0.9, 0.0, TOP), abs=0.006)
+
+
+def test_where_it_is_too_dark_the_failure_says_so_and_what_helps(find_dim: Find) -> None:
+    result = find_dim([card(1, 0.9, 0.0)], 0.01, 6.0)
+    assert result.code == "TAG_NOT_SEEN"
+    assert "it was too dark (mean brightness " in result.explain()
+    assert "longer exposure or more gain" in result.explain()
+    assert result.failure is not None
+    assert result.failure.data["dark_pictures"] > 0
+
+
+def test_a_tag_that_is_missing_in_good_light_is_not_called_dark(find: Find) -> None:
+    result = find([])
+    assert result.code == "TAG_NOT_SEEN"
+    assert "too dark" not in result.explain()
+
+
 @pytest.mark.parametrize(("x", "y", "yaw"), [(0.9, 0.0, 0.0), (1.15, 0.3, 2.0), (1.0, -0.4, -1.2)])
 def test_the_tag_is_measured_within_its_uncertainty(
     find: Find, x: float, y: float, yaw: float
@@ -87,7 +149,9 @@ def test_the_asked_tag_is_taken_from_several(find: Find) -> None:
 
 
 def test_a_tag_of_another_size_is_another_tag(find: Find) -> None:
-    assert find([card(1, 0.9, 0.0, edge=0.10)]).code == "TAG_NOT_SEEN"
+    result = find([card(1, 0.9, 0.0, edge=0.10)])
+    assert result.code == "TAG_NOT_SEEN"
+    assert "its edge is not 0.15 m" in result.explain()
 
 
 def test_a_covered_tag_is_not_seen(find: Find) -> None:

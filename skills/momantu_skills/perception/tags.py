@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -14,16 +14,16 @@ from numpy.typing import NDArray
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.messages import CameraImage
 from momantu_bt.service import Snapshot
+from momantu_skills.perception.light import levels, lift_of, light_of
 
 FAMILY = "tag36h11"
-GAMMA = 2.2
-"""Gamma of the camera's colours. It is reversed, because otherwise white bleeds into a tag's black
-border and the tag seems 1.6 % farther away."""
 PIXEL_CENTRE = 0.5
 """Pixel coordinate of the first pixel's centre, px: 0.5 in the tag library, 0 in the pinhole
 matrices here."""
 LEAST_MARGIN = 15.0
 """Decision margin of the decoded bits below which a tag is ignored."""
+WRONG_BITS = 1
+"""Most bits of a tag that may be wrong in a clear picture; in a lifted or averaged one, none."""
 EDGE_TOLERANCE = 0.12
 """Largest relative difference between the measured and the given edge of the tag."""
 LEAST_DEPTHS = 30
@@ -50,16 +50,34 @@ class SeenTag:
     misfit: float
 
 
-def find_tags(image: CameraImage) -> dict[int, Array]:
-    """Corners (4, 2) in px of every tag in a picture, by id; the larger one if an id repeats."""
-    return tags_in(np.ascontiguousarray(image.color[..., 1]))
+def find_tags(images: Sequence[CameraImage]) -> dict[int, Array]:
+    """Corners (4, 2) in px of every tag in pictures from one place, by id.
+
+    The larger one if an id repeats. Several pictures are averaged. Dim ones are searched in lifted
+    light too, as the library counts light in whole levels of 255.
+    """
+    grays = [np.ascontiguousarray(image.color[..., 1]) for image in images]
+    found = tags_in(grays[0]) if len(grays) == 1 else {}
+    mean = light_of(grays)
+    if len(grays) > 1:
+        found = _detect(levels(mean), wrong_bits=0)
+    lift = lift_of(mean)
+    return found if lift is None else {**_detect(levels(mean, lift), wrong_bits=0), **found}
 
 
 def tags_in(gray: NDArray[np.uint8]) -> dict[int, Array]:
-    """As `find_tags`, in a gray picture (H, W)."""
+    """Corners (4, 2) in px of every tag in a gray picture (H, W), by id.
+
+    Its gamma is reversed, because otherwise white bleeds into a tag's black border and the tag
+    seems 1.6 % farther away.
+    """
+    return _detect(levels(light_of([gray])), WRONG_BITS)
+
+
+def _detect(light: NDArray[np.uint8], wrong_bits: int) -> dict[int, Array]:
     found: dict[int, Array] = {}
-    for detection in _detector().detect(np.ascontiguousarray(_linear()[gray])):
-        if detection.hamming > 1 or detection.decision_margin < LEAST_MARGIN:
+    for detection in _detector().detect(np.ascontiguousarray(light)):
+        if detection.hamming > wrong_bits or detection.decision_margin < LEAST_MARGIN:
             continue
         corners = np.asarray(detection.corners, dtype=np.float64) - PIXEL_CENTRE
         other = found.get(int(detection.tag_id))
@@ -151,12 +169,6 @@ def _area(corners: Array) -> float:
 
 
 @lru_cache(maxsize=1)
-def _linear() -> NDArray[np.uint8]:
-    """Table (256,) from a colour's value to light."""
-    return np.round(255.0 * (np.arange(256) / 255.0) ** GAMMA).astype(np.uint8)
-
-
-@lru_cache(maxsize=1)
 def _detector() -> pyapriltags.Detector:
     return pyapriltags.Detector(families=FAMILY, nthreads=1, quad_decimate=1.0)
 
@@ -170,16 +182,32 @@ class TagSighting:
     stamp: float
 
 
-def search(snapshot: Snapshot, tag_id: int, edge: float) -> tuple[set[int], TagSighting | None]:
-    """Find the ids of all tags in a picture, and the requested tag's pose if it can be measured."""
-    tags = find_tags(snapshot.image)
+def search(
+    snapshots: Sequence[Snapshot], tag_id: int, edge: float
+) -> tuple[set[int], TagSighting | None]:
+    """Find the ids of all tags in pictures from one place, and the requested tag's pose.
+
+    The pose is None if it cannot be measured. It belongs to the last picture's stamp.
+    """
+    last = snapshots[-1]
+    tags = find_tags([each.image for each in snapshots])
     if tag_id not in tags:
         return set(tags), None
-    seen = locate(snapshot.image, tag_id, tags[tag_id], edge)
+    image = last.image
+    if len(snapshots) > 1:
+        image = replace(image, depth=_mean_depth([each.image.depth for each in snapshots]))
+    seen = locate(image, tag_id, tags[tag_id], edge)
     if seen is None:
         return set(tags), None
-    pose = snapshot.odom_from_camera @ seen.camera_from_tag
-    return set(tags), TagSighting(pose, max(FLOOR, seen.misfit), snapshot.image.stamp)
+    pose = last.odom_from_camera @ seen.camera_from_tag
+    return set(tags), TagSighting(pose, max(FLOOR, seen.misfit), image.stamp)
+
+
+def _mean_depth(depths: Sequence[NDArray[np.float32]]) -> NDArray[np.float32]:
+    """Mean of the measured values of each pixel; 0 where nothing was measured."""
+    measured = np.sum([depth > 0.0 for depth in depths], axis=0)
+    total = np.sum(depths, axis=0, dtype=np.float64)
+    return np.asarray(total / np.maximum(measured, 1), dtype=np.float32)
 
 
 def average(sightings: Sequence[TagSighting]) -> TagSighting:

@@ -64,7 +64,17 @@ def test_pictures_without_tags_have_none() -> None:
     random = np.random.default_rng(3)
     color = random.integers(0, 255, (480, 640, 3), dtype=np.uint8)
     depth = np.ones((480, 640), dtype=np.float32)
-    assert find_tags(CameraImage(0.0, "camera", color, depth, K)) == {}
+    assert find_tags([CameraImage(0.0, "camera", color, depth, K)]) == {}
+
+
+def test_noise_in_the_dark_is_no_tag_however_it_is_lifted() -> None:
+    random = np.random.default_rng(4)
+    for sigma in (3.0, 8.0, 15.0):
+        grays = np.clip(20 + sigma * random.standard_normal((8, 480, 640, 3)), 0, 255)
+        depth = np.ones((480, 640), dtype=np.float32)
+        images = [CameraImage(0.0, "camera", gray.astype(np.uint8), depth, K) for gray in grays]
+        assert find_tags(images[:1]) == {}
+        assert find_tags(images) == {}
 
 
 def test_the_average_leans_on_the_surer_and_is_surer_itself() -> None:

@@ -17,6 +17,7 @@ from momantu_bt.world import seeded
 from momantu_worlds.sapien.config import CameraErrors
 from momantu_worlds.sapien.poses import pose_of, transform_of
 from momantu_worlds.sapien.sensors.culling import Culling
+from momantu_worlds.sapien.sensors.exposure import expose, metered, well_lit
 
 with lazily():
     import cv2
@@ -66,7 +67,7 @@ class Camera:
         # the renderer draws in a thread of its own: meanwhile the noise is drawn
         random = seeded(self._seed, self._name, stamp)
         noise = draw_noise(random, self._sensor.height, self._sensor.width)
-        color = self._camera.get_picture("Color")
+        color = self._exposed(self._camera.get_picture("Color"), random)
         for body in unseen:
             body.enable()
         depth = -self._camera.get_picture("Position")[..., 2]
@@ -77,6 +78,13 @@ class Camera:
             frozen(noisy_depth(depth, noise, self._sensor, self._errors)),
             self.intrinsics,
         )
+
+    def _exposed(self, color: NDArray[np.uint8], random: np.random.Generator) -> NDArray[np.uint8]:
+        """The colours (h, w, 4) as they are in good light, else with the exposure chosen anew."""
+        if well_lit(color):
+            return color
+        radiance = self._camera.get_picture("Radiance")[..., :3]
+        return expose(radiance, metered(radiance, self._sensor.exposure), random)
 
     def exact_depth(self) -> NDArray[np.float32]:
         """Depth (h, w) of the last picture without errors, m; 0 where there is no surface."""
@@ -103,10 +111,13 @@ def draw_noise(random: np.random.Generator, height: int, width: int) -> Noise:
 
 
 def noisy_color(color: NDArray[np.uint8], noise: Noise, errors: CameraErrors) -> NDArray[np.uint8]:
-    """Colour (h, w, 3), from (h, w, 4), with uniform noise of the configured sigma, grey levels."""
+    """Colour (h, w, 3) with uniform noise of the configured sigma, grey levels.
+
+    color: (h, w, 3 or 4).
+    """
     span = round(errors.color_noise * math.sqrt(3.0))
     levels = (np.arange(256) % (2 * span + 1) - span).astype(np.int16)
-    exact = cv2.cvtColor(color, cv2.COLOR_RGBA2RGB)
+    exact = cv2.cvtColor(color, cv2.COLOR_RGBA2RGB) if color.shape[2] == 4 else color
     noisy = cv2.add(exact, cv2.LUT(noise.color, levels), dtype=cv2.CV_8U)
     return np.asarray(noisy, dtype=np.uint8)
 

@@ -1,5 +1,6 @@
 #version 450
-// Fragment stage: Lambert shading by every light, no shadows, gamma 2.2; and the exact position.
+// Fragment stage: Lambert shading by every light, no shadows, gamma 2.2; the exact position; and the
+// light before it is cut off at white and rounded, of which a camera takes what its exposure gives.
 
 layout(constant_id = 0) const int NUM_DIRECTIONAL_LIGHTS = 0;
 layout(constant_id = 1) const int NUM_POINT_LIGHTS = 0;
@@ -73,6 +74,7 @@ layout(location = 2) in vec3 inNormal;
 
 layout(location = 0) out vec4 outColor;
 layout(location = 1) out vec4 outPosition;
+layout(location = 2) out vec4 outRadiance;
 
 const float PI = 3.14159265;
 
@@ -96,7 +98,9 @@ void main() {
     float facing = max(dot(normal, toward) * inversesqrt(square), 0.0);
     light += sceneBuffer.pointLights[i].emission.rgb * facing / (PI * square);
   }
-  vec3 shade = clamp(albedo * light + materialBuffer.emission.rgb, 0.0, 1.0);
+  vec3 radiance = albedo * light + materialBuffer.emission.rgb;
+  vec3 shade = clamp(radiance, 0.0, 1.0);
   outColor = vec4(pow(shade, vec3(1.0 / 2.2)), 1.0);
   outPosition = inPosition;
+  outRadiance = vec4(radiance, 1.0);
 }
