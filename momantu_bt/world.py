@@ -46,7 +46,7 @@ class Surface:
     map_from_surface: centre of its top on the floor plan. size: (x, y) extent of the top, m.
     height: of the top above the floor, m. sides: the directions from which the robot can approach
     it, as angles in the surface's frame, rad; the first is preferred. over: solids above it that
-    are not surfaces themselves.
+    are not surfaces themselves. round: the top is a disc of that diameter, else a rectangle.
     """
 
     map_from_surface: Pose2D
@@ -54,6 +54,7 @@ class Surface:
     height: float
     sides: tuple[float, ...]
     over: tuple[Overhang, ...] = ()
+    round: bool = False
 
 
 @dataclass(frozen=True, slots=True)

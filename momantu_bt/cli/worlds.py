@@ -60,7 +60,8 @@ def show_one(
     typer.echo("\nSurfaces")
     for surface_name, surface in site.surfaces.items():
         x, y = surface.size
-        typer.echo(f"  {surface_name}: {x:g} x {y:g} m, {surface.height:g} m high")
+        top = f"round, {x:g} m across" if surface.round else f"{x:g} x {y:g} m"
+        typer.echo(f"  {surface_name}: {top}, {surface.height:g} m high")
     typer.echo("\nPlaces")
     for place_name, pose in site.places.items():
         typer.echo(f"  {place_name}: x {pose.x:g} m, y {pose.y:g} m, yaw {pose.yaw:g} rad")

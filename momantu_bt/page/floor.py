@@ -59,7 +59,14 @@ def _site(recording: Recording) -> Site:
 
 def _surface(name: str, surface: Any) -> dict[str, Any]:
     pose = surface.map_from_surface
-    return {"name": name, "x": pose.x, "y": pose.y, "yaw": pose.yaw, "size": list(surface.size)}
+    return {
+        "name": name,
+        "x": pose.x,
+        "y": pose.y,
+        "yaw": pose.yaw,
+        "size": list(surface.size),
+        "round": getattr(surface, "round", False),
+    }
 
 
 def _path(recording: Recording) -> dict[str, list[float]]:

@@ -127,6 +127,9 @@ class Check(Skill):
                 min(max(v, -edge / 2), edge / 2)
                 for v, edge in zip((local.x, local.y), surface.size, strict=True)
             )
+            away = math.hypot(local.x, local.y)
+            if surface.round and away > surface.size[0] / 2:
+                x, y = (v * surface.size[0] / 2 / away for v in (local.x, local.y))
             return surface.map_from_surface @ Pose2D(x, y)
         known = ", ".join(self.site.known_places()) or "none"
         raise Failure("BAD_QUESTION", f"the site has no place {self.place!r}; it has: {known}")

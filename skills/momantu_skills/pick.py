@@ -171,7 +171,7 @@ class Pick(Skill):
         )
         self.planning_scene.touched()
         effort = arm.state.gripper_effort
-        fits = abs(width - plan.grasp.width) <= hand.width_tolerance
+        fits = plan.grasp.fits(width, hand.width_tolerance)
         if not fits or effort < arm.scene.config.least_effort:
             yield from self._give_up(arm, plan)
             raise Failure(

@@ -82,10 +82,11 @@ function label(x, y, unit, name) {
   return draw("text", { x, y: -y, "font-size": 2.6 * unit }, name);
 }
 
-function surface({ name, x, y, yaw, size }, unit) {
+function surface({ name, x, y, yaw, size, round }, unit) {
   const [depth, width] = size;
   const transform = `translate(${x} ${-y}) rotate(${(-yaw * 180) / Math.PI})`;
-  const top = draw("rect", { x: -depth / 2, y: -width / 2, width: depth, height: width, transform });
+  const box = { x: -depth / 2, y: -width / 2, width: depth, height: width, rx: round ? depth / 2 : 0, transform };
+  const top = draw("rect", box);
   return draw("g", { class: "surface" }, top, label(x, y + Math.max(depth, width) / 2 + 1.2 * unit, unit, name));
 }
 

@@ -46,6 +46,10 @@ class SceneConfig(Tunables):
         default=0.012,
         description="change of the opening above which the held object counts as lost",
     )
+    closed_width: Size = Field(
+        default=0.002,
+        description="opening below which nothing is held: the thinnest wall is that of a bowl",
+    )
     least_effort: Force = Field(
         default=3.0,
         description="closing force below which nothing is held: the sensor's noise is 1 N",

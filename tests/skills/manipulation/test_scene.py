@@ -153,6 +153,17 @@ def test_the_footprint_below_a_height_is_of_what_hangs_lower(
     assert front[0] < front[1] == front[2]
 
 
+def test_a_thin_wall_is_held_until_the_fingers_are_closed() -> None:
+    belief = Holding(CONFIG)
+    belief.claim(HELD, 0.011, 1.0)
+    for width in np.linspace(0.011, 0.004, 10):
+        belief.judge(state(float(width), 45.0))
+    assert belief.held is HELD
+    for _ in range(CONFIG.doubt):
+        belief.judge(state(0.0005, 45.0))
+    assert belief.held is None
+
+
 def test_an_outline_is_convex_and_holds_every_corner() -> None:
     corners = np.random.default_rng(0).normal(size=(50, 3))
     outline = floor_outline(corners)

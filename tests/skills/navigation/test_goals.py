@@ -5,7 +5,7 @@ import math
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from momantu_skills.navigation.plan.goals import before_surface, within_reach
+from momantu_skills.navigation.plan.goals import before_surface, surface_at, within_reach
 
 from momantu_bt.geometry import Pose2D, wrap_angle
 from momantu_bt.robot import Working
@@ -104,3 +104,41 @@ def test_a_point_in_the_open_is_faced_from_all_round(spot: Pose2D, base: Pose2D)
         seen = stand.pose.inverse() @ spot
         assert seen.x == pytest.approx(WORKING.reach[1], abs=1e-9)
         assert seen.y == pytest.approx(0.0, abs=1e-9)
+
+
+DISCS = st.builds(
+    lambda pose, across: Surface(pose, (across, across), 0.7, (0.0, math.pi / 2), round=True),
+    POSES,
+    st.floats(0.5, 1.2),
+)
+
+
+@given(DISCS, st.floats(0.0, 1.0), st.floats(-math.pi, math.pi), POSES)
+def test_a_round_table_is_approached_from_all_around_its_sides(
+    surface: Surface, share: float, turn: float, base: Pose2D
+) -> None:
+    away = share * surface.size[0] / 2
+    here = Pose2D(away * math.cos(turn), away * math.sin(turn), 0.0)
+    spot = surface.map_from_surface @ here
+    stands = within_reach((spot.x, spot.y), [surface], base, WORKING)
+    for stand in stands:
+        own = surface.map_from_surface.inverse() @ stand.pose
+        assert math.hypot(own.x, own.y) >= surface.size[0] / 2 + WORKING.stand_off - 1e-6
+        # nobody told that it can be approached from the other side
+        assert min(abs(wrap_angle(own.yaw + math.pi - side)) for side in surface.sides) < 0.9
+
+
+@given(DISCS)
+def test_what_lies_beside_a_round_table_is_not_on_it(surface: Surface) -> None:
+    corner = 0.5 * surface.size[0] + 0.1
+    beside = surface.map_from_surface @ Pose2D(corner, corner, 0.0)
+    far = math.hypot(corner, corner) - surface.size[0] / 2
+    found = surface_at((beside.x, beside.y), [surface])
+    assert (found is surface) is (far < 0.20)
+
+
+@given(DISCS)
+def test_stands_before_a_round_table_keep_off_its_edge(surface: Surface) -> None:
+    for stand in before_surface(surface, WORKING):
+        own = surface.map_from_surface.inverse() @ stand.pose
+        assert math.hypot(own.x, own.y) >= surface.size[0] / 2 + WORKING.look_off - 1e-6

@@ -139,6 +139,7 @@ def _spots(scenario: Scenario, goal: Goal, item: Body) -> Array:
     Without a marker: anywhere on the support. The positions keep FLUSH from everything.
     """
     map_from_top, size = scenario.surfaces[goal.support]
+    top = SupportTop(scenario.episode.body(goal.support)).top
     marker, within = map_from_top.position, math.hypot(*size) / 2
     if goal.marker is not None:
         marker = scenario.episode.body(goal.marker).map_from_body.position
@@ -153,7 +154,7 @@ def _spots(scenario: Scenario, goal: Goal, item: Body) -> Array:
         for dy in steps:
             at = (float(marker[0] + dx), float(marker[1] + dy), float(map_from_top.position[2]))
             own = map_from_top.inverse().apply(at)
-            inside = bool((np.abs(own[:2]) <= np.array(size) / 2 - radius).all())
+            inside = top.margin(float(own[0]), float(own[1])) >= radius
             if inside and math.hypot(dx, dy) <= within:
                 moved = Transform(np.array(at) - foot.position + (0.0, 0.0, FLUSH))
                 if _free(beside, replace(item, map_from_body=moved @ item.map_from_body)):

@@ -136,12 +136,15 @@ def _outline(points: Array) -> Array:
 def _surfaces(canvas: Canvas, scenario: Scenario) -> None:
     """Tops that have a name, and ticks at the sides to stand at; the preferred one is longer."""
     for name, (map_from_top, size) in scenario.surfaces.items():
-        half = np.array(size) / 2
+        half, surface = np.array(size) / 2, scenario.episode.site.surfaces[name]
         own = np.array([(1, 1), (-1, 1), (-1, -1), (1, -1)]) * half
+        if surface.round:
+            turns = np.linspace(0.0, 2 * np.pi, 48, endpoint=False)
+            own = half * np.stack([np.cos(turns), np.sin(turns)], axis=1)
         canvas.polygon(_flat(map_from_top, own), None, GREEN, 2.5)
-        for rank, side in enumerate(scenario.episode.site.surfaces[name].sides):
+        for rank, side in enumerate(surface.sides):
             cos, sin = math.cos(side), math.sin(side)
-            edge = half[0] if abs(cos) > abs(sin) else half[1]
+            edge = half[0] if abs(cos) > abs(sin) or surface.round else half[1]
             ends = np.array([(edge, 0.0), (edge + (0.3 if rank == 0 else 0.15), 0.0)])
             turned = ends @ np.array([(cos, sin), (-sin, cos)])
             canvas.line(_flat(map_from_top, turned), GREEN, 2.5)

@@ -21,6 +21,7 @@ DESCRIPTIONS: Mapping[str, str] = MappingProxyType(
         "*.shift": "An episode moves it by up to so much, along x and along y.",
         "*.turn": "An episode turns it by up to so much, either way.",
         "*.sides": "Directions to stand at, in its own frame; the first is preferred.",
+        "*.round": "Its top is a disc; depth and width are its diameter.",
         "*.radius": "Of something round.",
         "*.height": "How high it is.",
         "*.size": "[depth along x, width along y, height].",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
@@ -44,6 +44,18 @@ TILT_PENALTY = 1.5
 OFF_CENTRE_PENALTY = 4.0
 """Cost of a distance from HEIGHTS[0], s per share of the height: an object held far from its middle
 may swing."""
+RIM_WALL = 0.010
+"""Assumed thickness of a wall between the pads, m: a bowl's is 3 to 8 mm and leans."""
+THINNEST = 0.0025
+"""Least opening at which a wall is between the pads, m: twice what a closed gripper may show."""
+RIM_DEPTH = 0.035
+"""Depth of the fingers' tips below a rim, m: more than half of a usual pad."""
+RIM_LEAST = 0.020
+"""Least such depth for a firm hold, m."""
+RIM_FLOOR = 0.025
+"""Height of the fingers' tips above what the object stands on, m: its bottom, and room below."""
+RIM_SHARES = (0.0, 0.5, -0.5)
+"""Places along a side of a box, as shares of half the side."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,30 +64,38 @@ class Grasp:
 
     object_from_grasp: the grasp frame's pose when the fingers close. width: between the pads then,
     m. penalty: cost in seconds; another grasp may take this much longer and still be preferred.
+    rim: one finger is inside the object, and its wall is between the pads.
     """
 
     object_from_grasp: Transform
     width: float
     penalty: float
+    rim: bool = False
+
+    def fits(self, width: float, tolerance: float) -> bool:
+        """Whether fingers that closed to `width` m may hold the object like this."""
+        least = THINNEST if self.rim else 0.0
+        return max(least, self.width - tolerance) <= width <= self.width + tolerance
 
 
 def grasps_for(
     thing: DetectedObject, hand: EndEffector, palm: Array, fingers: Sequence[Array] = ()
 ) -> list[Grasp]:
-    """All useful grasps, in a fixed order; empty if the object is too wide.
+    """All useful grasps, in a fixed order; those over its rim if the object is too wide for others.
 
     palm: corners (n, 3) of the hand's body in the grasp frame, m. fingers: planes (k, 4) around
     each open finger in the same frame, outward normal and offset. If the clearance near the
     knuckles is less than between the pads, the fingers hold the object farther out.
     """
     found: list[Grasp] = []
-    for width, direction, top in _approaches(thing):
-        if width > hand.max_width - OPENING:
-            continue
+    fitting = [a for a in _approaches(thing) if a[0] <= hand.max_width - OPENING]
+    for width, direction, top in fitting:
         if top:
             found += _from_above(thing, hand, fingers, direction, width)
         else:
             found += _from_side(thing, hand, palm, fingers, direction, width)
+    if not fitting:
+        found = list(_over_rim(thing, hand))
     return [flipped for grasp in found for flipped in (grasp, _flipped(grasp))]
 
 
@@ -176,10 +196,37 @@ def _from_above(
     yield Grasp(Transform.from_rotation(rotation, centre), width, TOP_PENALTY)
 
 
+def _over_rim(thing: DetectedObject, hand: EndEffector) -> Iterator[Grasp]:
+    """One finger inside, one outside, the hand above; whether it is hollow is not known here."""
+    overlap = min(RIM_DEPTH, thing.size[2] - RIM_FLOOR)
+    if overlap < RIM_LEAST or overlap - hand.pad_length / 2 > hand.hand_clearance - SLACK:
+        return
+    height = (thing.size[2] + hand.pad_length) / 2 - overlap
+    x = np.array([0.0, 0.0, -1.0])
+    for (along, across), direction in _rim_places(thing):
+        y = np.array([math.cos(direction), math.sin(direction), 0.0])
+        rotation = np.stack([x, y, np.cross(x, y)], axis=1)
+        place = np.array([along, across, height]) - RIM_WALL / 2 * y
+        yield Grasp(Transform.from_rotation(rotation, place), RIM_WALL, TOP_PENALTY, rim=True)
+
+
+def _rim_places(thing: DetectedObject) -> Iterator[tuple[tuple[float, float], float]]:
+    """Points (x, y) on the outline of an object's top, and the outward direction there, rad."""
+    half = (thing.size[0] / 2, thing.size[1] / 2)
+    if thing.shape == "cylinder":
+        for i in range(AZIMUTHS):
+            turn = 2 * math.pi * i / AZIMUTHS
+            yield (max(half) * math.cos(turn), max(half) * math.sin(turn)), turn
+        return
+    for i, share in product(range(4), RIM_SHARES):
+        c, s = round(math.cos(i * math.pi / 2)), round(math.sin(i * math.pi / 2))
+        yield ((c - share * s) * half[0], (s + share * c) * half[1]), i * math.pi / 2
+
+
 def _flipped(grasp: Grasp) -> Grasp:
     """The same grasp with the hand rotated by 180 degrees about its approach direction."""
     turn = Transform((0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0))
-    return Grasp(grasp.object_from_grasp @ turn, grasp.width, grasp.penalty)
+    return replace(grasp, object_from_grasp=grasp.object_from_grasp @ turn)
 
 
 def _surface(thing: DetectedObject) -> Array:

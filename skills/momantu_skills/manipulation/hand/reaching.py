@@ -13,6 +13,7 @@ from momantu_bt.messages import DetectedObject, JointTrajectory, RobotState
 from momantu_bt.service import HeldObject
 from momantu_skills.manipulation.arm import Arm
 from momantu_skills.manipulation.hand.grasps import Grasp, grasps_for
+from momantu_skills.manipulation.hand.rims import seen_hollow, wall_pieces
 from momantu_skills.manipulation.model.collision import CollisionWorld, Obstacle
 from momantu_skills.manipulation.model.hulls import object_corners
 
@@ -93,12 +94,16 @@ def reachable(arm: Arm, thing: DetectedObject, lift: float) -> list[Reach]:
     effector = arm.scene.model.description.hand
     model = arm.scene.model
     grasps = grasps_for(thing, effector, model.palm, model.open_fingers)
+    wide = bool(grasps) and grasps[0].rim
+    space = arm.scene.seen_space
+    grasps = [g for g in grasps if not wide or seen_hollow(space, thing, g, model.open_fingers)]
     if not grasps:
+        rim = ", and no picture shows room for a finger behind its rim" if wide else ""
         raise Failure(
             "NO_GRASP",
             f"the {thing.category} measures {thing.size[0] * 1000:.0f} x "
             f"{thing.size[1] * 1000:.0f} mm, the gripper opens to "
-            f"{effector.max_width * 1000:.0f} mm",
+            f"{effector.max_width * 1000:.0f} mm{rim}",
         )
     check = _Check(arm, thing, lift)
     found: list[Reach] = []
@@ -153,20 +158,20 @@ class _Check:
         self._cut = cut
         margin = arm.hand.near_margin
         self._open = arm.scene.world(self._state, None, margin, width=arm.open_width, cut=cut)
-        self._around = _around(arm, self._state, thing)
+        solids = [object_corners(thing)]
+        self._around = _around(arm, self._state, thing, solids)
+        self._walls = _around(arm, self._state, thing, wall_pieces(thing))
         self.lost = {"hand collides": 0, "approach": 0, "lift": 0}
 
     def __call__(self, grasp: Grasp, q: Array, cost: float) -> Reach | None:
-        arm = self._arm
-        if not (self._open.free(q) and self._around.free(q)):
+        arm, around = self._arm, self._walls if grasp.rim else self._around
+        if not (self._open.free(q) and around.free(q)):
             self.lost["hand collides"] += 1
             return None
         base_from_tip = arm.group.tip_pose(q)
         back = base_from_tip @ Transform((-arm.hand.approach, 0.0, 0.0))
         approach = arm.line(q, back)
-        if approach is None or not (
-            self._open.path_free(approach) and self._around.path_free(approach)
-        ):
+        if approach is None or not (self._open.path_free(approach) and around.path_free(approach)):
             self.lost["approach"] += 1
             return None
         x, y, z = base_from_tip.position
@@ -194,12 +199,17 @@ class _Check:
         return counts or "no posture of the arm reaches any of them"
 
 
-def _around(arm: Arm, state: RobotState, thing: DetectedObject) -> CollisionWorld:
-    """The object alone, as an obstacle that an open hand must not touch before it closes."""
+def _around(
+    arm: Arm, state: RobotState, thing: DetectedObject, pieces: Sequence[Array]
+) -> CollisionWorld:
+    """The object alone, as an obstacle that an open hand must not touch before it closes.
+
+    pieces: corners (n, 3) of each of its convex pieces, in its frame, m.
+    """
     base_from_object = state.odom_from_base.inverse() @ thing.pose.transform
-    solid = Obstacle("target", base_from_object.apply(object_corners(thing)))
+    solids = [Obstacle("target", base_from_object.apply(corners)) for corners in pieces]
     posture = arm.scene.model.configuration(state, arm.open_width)
-    return CollisionWorld(arm.scene.body, posture, [solid], margin=BESIDE)
+    return CollisionWorld(arm.scene.body, posture, solids, margin=BESIDE)
 
 
 def _cut(thing: DetectedObject) -> tuple[float, float, float]:

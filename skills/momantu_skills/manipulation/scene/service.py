@@ -152,7 +152,9 @@ class Holding:
         if self.held is None:
             return
         config = self._config
-        moved = abs(state.gripper_width - self._width) > config.width_tolerance
+        # a bowl's wall is thinner than the tolerance, and comes to lie flat between the pads
+        closed = state.gripper_width < config.closed_width
+        moved = closed or abs(state.gripper_width - self._width) > config.width_tolerance
         weak = state.gripper_effort < config.least_effort
         self._doubts = self._doubts + 1 if moved or weak else 0
         if self._doubts >= config.doubt:

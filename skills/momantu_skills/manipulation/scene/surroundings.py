@@ -38,10 +38,14 @@ BOARDS_APART = 0.2
 m."""
 FLAT = 10.0
 """Factor on height differences between a filled cell and its face, which are at one height."""
+ROUND = 24
+"""Corners of the polygon that replaces a round top's edge."""
 LEAST_CELLS = 6
 """Fewest grid cells of a patch that counts as a surface."""
 
 
+STRIDE = 4
+"""Every n-th pixel of a kept picture's depth, in each direction."""
 KEPT = 12
 """Number of pictures whose views are kept: those of a search and of two views of a grasp."""
 
@@ -195,6 +199,9 @@ def known_support(surface: Surface, odom_from_map: Transform) -> Support:
     half = np.array(surface.size) / 2
     corners = [(-half[0], -half[1], 0.0), (half[0], -half[1], 0.0), (*half, 0.0)]
     corners.append((-half[0], half[1], 0.0))
+    if surface.round:
+        turns = np.arange(ROUND) * (2 * np.pi / ROUND)
+        corners = [(*(half[0] * np.array([np.cos(t), np.sin(t)])), 0.0) for t in turns]
     odom_from_surface = odom_from_map @ surface.map_from_surface.transform(surface.height)
     placed = odom_from_surface.apply(corners)
     return Support(placed[:, :2], float(placed[:, 2].mean()) + KNOWN_HEIGHT)
@@ -245,19 +252,40 @@ def support_of_plane(plane: SupportPlane) -> Support:
 
 @dataclass(frozen=True, eq=False)
 class _View:
+    """A picture's view. depth: every STRIDE-th pixel of the picture, m; 0 where not measured."""
+
     odom_from_camera: Transform
     intrinsics: Array
     shape: tuple[int, int]
     nearest: float
+    depth: NDArray[np.float32]
 
     def shows(self, points: Array) -> NDArray[np.bool_]:
+        z, u, v = self._pixels(points)
+        return self._inside(z, u, v)
+
+    def passes(self, points: Array, slack: float, doubt: float) -> NDArray[np.bool_]:
+        """Which points (n, 3) lie before what the picture shows; see `SeenSpace.free`."""
+        z, u, v = self._pixels(points)
+        inside = np.flatnonzero(self._inside(z, u, v))
+        rows, columns = (v[inside] / STRIDE).astype(np.int64), (u[inside] / STRIDE).astype(np.int64)
+        before = self.depth[rows, columns] > z[inside] * (1.0 + doubt) + slack
+        passed = np.zeros(len(points), dtype=np.bool_)
+        passed[inside] = before
+        return passed
+
+    def _pixels(self, points: Array) -> tuple[Array, Array, Array]:
+        """Depth, column and row (n,) each of points (n, 3)."""
         own = self.odom_from_camera.inverse().apply(points)
         z = np.maximum(own[:, 2], 1e-6)
         u = own[:, 0] / z * self.intrinsics[0, 0] + self.intrinsics[0, 2]
         v = own[:, 1] / z * self.intrinsics[1, 1] + self.intrinsics[1, 2]
+        return own[:, 2], u, v
+
+    def _inside(self, z: Array, u: Array, v: Array) -> NDArray[np.bool_]:
         height, width = self.shape
         inside = (u >= 0) & (u < width) & (v >= 0) & (v < height)
-        return np.asarray(inside & (own[:, 2] > self.nearest))
+        return np.asarray(inside & (z > self.nearest))
 
 
 class SeenSpace:
@@ -265,12 +293,16 @@ class SeenSpace:
 
     def __init__(self) -> None:
         self._views: deque[_View] = deque(maxlen=KEPT)
+        self.count = 0
+        """Number of pictures added so far."""
 
     def add(self, image: CameraImage, odom_from_camera: Transform, nearest: float) -> None:
         """Add a picture's view. nearest: least depth that the camera measures, m."""
         height, width = image.depth.shape
-        view = _View(odom_from_camera, image.intrinsics, (height, width), nearest)
+        depth = np.array(image.depth[::STRIDE, ::STRIDE])
+        view = _View(odom_from_camera, image.intrinsics, (height, width), nearest, depth)
         self._views.append(view)
+        self.count += 1
 
     def show(self, points: Array) -> NDArray[np.bool_]:
         """Which points (n, 3) in odom were in the view of one of the pictures: (n,)."""
@@ -278,3 +310,15 @@ class SeenSpace:
         for view in self._views:
             shown |= view.shows(points)
         return shown
+
+    def free(self, points: Array, slack: float, doubt: float) -> NDArray[np.bool_]:
+        """Which points (n, 3) in odom a picture has shown to be free: (n,).
+
+        What the picture shows must lie behind them by `slack` m and by the share `doubt` of their
+        depth.
+        """
+        free = np.zeros(len(points), dtype=np.bool_)
+        for view in self._views:
+            left = np.flatnonzero(~free)
+            free[left] = view.passes(points[left], slack, doubt)
+        return free

@@ -30,6 +30,8 @@ NEARER = 0.05
 AS_NEAR = 0.1
 """If no stand is near enough, stands up to this much farther than the nearest one count as equal,
 m."""
+BESIDE_SIDE = math.radians(50.0)
+"""Largest angle to a round surface's side of directions from which it is approached too, rad."""
 RING = 16
 """Number of directions from which a pose away from surfaces is approached."""
 
@@ -116,6 +118,8 @@ def surface_at(target: tuple[float, float], surfaces: Iterable[Surface]) -> Surf
     for surface in surfaces:
         here = surface.map_from_surface.inverse() @ Pose2D(*target)
         beyond = max(abs(here.x) - surface.size[0] / 2, abs(here.y) - surface.size[1] / 2)
+        if surface.round:
+            beyond = math.hypot(here.x, here.y) - surface.size[0] / 2
         if beyond < ON_SURFACE:
             return surface
     return None
@@ -126,7 +130,7 @@ def _square_stands(
 ) -> Iterable[tuple[float, Stand]]:
     """All stands that face one of the sides squarely, with their distance from the target, m."""
     nearest, best, _ = working.reached
-    for number, angle in enumerate(surface.sides):
+    for number, angle in enumerate(_directions(surface, target)):
         edge, _ = _edge(surface, angle)
         c, s = math.cos(angle), math.sin(angle)
         out, along = c * target.x + s * target.y, -s * target.x + c * target.y
@@ -149,6 +153,24 @@ def _square_stands(
                 yield distance, Stand(pose, number * (len(SHIFTS) + 1) + index, cost)
 
 
+def _directions(surface: Surface, target: Pose2D) -> tuple[float, ...]:
+    """Directions in a surface's frame from which it is approached squarely, preferred first.
+
+    A round one has no corners: beside its sides these are the directions in between, next to a
+    side, the nearest to the target first.
+    """
+    if not surface.round:
+        return surface.sides
+    bearing = math.atan2(target.y, target.x)
+    between = [
+        angle
+        for angle in (wrap_angle(2 * math.pi * k / RING) for k in range(RING))
+        if 1e-6 < min(abs(wrap_angle(angle - side)) for side in surface.sides) <= BESIDE_SIDE
+    ]
+    every = (*surface.sides, *between)
+    return tuple(sorted(every, key=lambda angle: round(abs(wrap_angle(angle - bearing)), 6)))
+
+
 def _straight_ahead(base: Pose2D, stand: Pose2D) -> bool:
     """Whether the base only has to drive straight ahead to the stand."""
     seen = stand.inverse() @ base
@@ -159,6 +181,8 @@ def _edge(surface: Surface, angle: float) -> tuple[float, float]:
     """Distance from the centre to the edge in direction `angle`, and half that edge's length."""
     c, s = abs(math.cos(angle)), abs(math.sin(angle))
     x, y = surface.size[0] / 2, surface.size[1] / 2
+    if surface.round:
+        return x, x
     return c * x + s * y, s * x + c * y
 
 

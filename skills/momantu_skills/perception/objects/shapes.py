@@ -28,6 +28,8 @@ RIM = 0.015
 """Distance below the highest point within which an inner point belongs to a closed top, m."""
 STEEP = math.radians(15.0)
 """Least elevation at which a camera can tell that an object has no closed top, rad."""
+EDGE = 95.0
+"""Percentile of the points near the upper edge that lies at the edge itself: noise is beyond."""
 HANDLE = 0.012
 """Least distance that a handle extends from the body, m."""
 BEYOND = 0.008
@@ -98,6 +100,8 @@ def _round(thing: Thing, body: Revolution, eyes: Array) -> Shape:
     widest = float(np.percentile(body.radii[known], 90.0))
     category = _round_category(thing, body, height, eyes)
     radius = body.radius if category in ("can", "mug") else widest
+    if category == "bowl":
+        radius = max(widest, _rim_radius(thing, body))
     return Shape(
         "cylinder",
         category,
@@ -108,6 +112,12 @@ def _round(thing: Thing, body: Revolution, eyes: Array) -> Shape:
         body.radius_sigma,
         float((_distances(thing, body) > widest + BEYOND).mean()),
     )
+
+
+def _rim_radius(thing: Thing, body: Revolution) -> float:
+    """Radius of the upper edge of an object that is wider there than below, m."""
+    upper = _distances(thing, body)[thing.points[:, 2] > thing.height - RIM]
+    return float(np.percentile(upper, EDGE)) if len(upper) >= LEAST_SIDE else 0.0
 
 
 def _round_category(thing: Thing, body: Revolution, height: float, eyes: Array) -> str:

@@ -91,6 +91,8 @@ class BoxRow:
         for disc in self.things:
             away = np.hypot(*(cells - (disc.x, disc.y)).T) - disc.radius
             free &= away >= wanted.radius + FINGERS
+        if self._table.round:
+            free &= np.hypot(*cells.T) <= half[0]
         return np.asarray(cells[free])
 
     def _harmless(self, x: float, y: float, placed: list[Disc]) -> bool:

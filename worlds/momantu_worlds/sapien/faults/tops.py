@@ -12,7 +12,7 @@ from momantu_bt.geometry import Pose2D, Transform
 from momantu_worlds.sapien.faults.stage import Stage
 from momantu_worlds.scenes.arrange.layout import PlacedTable
 from momantu_worlds.scenes.arrange.spots import Disc
-from momantu_worlds.scenes.geometry.bodies import Body, Cylinder
+from momantu_worlds.scenes.geometry.bodies import Body, BodyTop, Cylinder
 from momantu_worlds.scenes.geometry.prisms import Prism, body_points, prism_around
 from momantu_worlds.scenes.geometry.support import SupportTop
 
@@ -27,27 +27,32 @@ UPRIGHT = math.cos(0.1)
 
 @dataclass(frozen=True, slots=True)
 class TableTop:
-    """One top. name: of its body. size: extent along its own x and y, m.
+    """One top, where its body stands now. name: of its body.
 
     side: direction from which it is preferably approached, in its own frame, rad.
     """
 
     name: str
     map_from_top: Transform
-    size: tuple[float, float]
+    top: BodyTop
     side: float
 
     @property
     def placed(self) -> PlacedTable:
         """The same as a layout's type."""
         height = float(self.map_from_top.position[2])
-        return PlacedTable(Pose2D.from_transform(self.map_from_top), height, self.size)
+        pose = Pose2D.from_transform(self.map_from_top)
+        return PlacedTable(pose, height, self.top.size, round=self.top.round)
+
+    def within(self, x: float, y: float) -> bool:
+        """Whether a point in its frame is above the top."""
+        return self.top.margin(x, y) >= 0.0
 
     def holds(self, prism: Prism) -> bool:
         """Whether a whole prism is above the top, RIM inside its edges."""
         corners = np.column_stack([prism.base.corners(), np.zeros(4)])
-        own = np.abs(self.map_from_top.inverse().apply(corners)[:, :2])
-        return bool(np.all(own <= np.array(self.size) / 2 - RIM))
+        own = self.map_from_top.inverse().apply(corners)[:, :2]
+        return all(self.top.margin(float(x), float(y)) >= RIM for x, y in own)
 
 
 def table_top(stage: Stage, name: str) -> TableTop:
@@ -55,7 +60,7 @@ def table_top(stage: Stage, name: str) -> TableTop:
     top = SupportTop(stage.episode.body(name))
     surface = stage.episode.site.surfaces.get(name)
     side = surface.sides[0] if surface is not None and surface.sides else 0.0
-    return TableTop(name, top.surface(stage.simulator.truth.pose(name)), top.size, side)
+    return TableTop(name, top.surface(stage.simulator.truth.pose(name)), top.top, side)
 
 
 def item_top(stage: Stage) -> TableTop:
@@ -72,8 +77,10 @@ def item_top(stage: Stage) -> TableTop:
         if body.category in TABLES or body.name in stage.episode.site.surfaces:
             top = table_top(stage, body.name)
             x, y, _ = top.map_from_top.inverse().apply(stage.item_pose().position)
-            within = abs(x) <= top.size[0] / 2 and abs(y) <= top.size[1] / 2
-            if within and abs(foot - float(top.map_from_top.position[2])) <= STANDING:
+            if (
+                top.within(float(x), float(y))
+                and abs(foot - float(top.map_from_top.position[2])) <= STANDING
+            ):
                 return top
     raise FaultError(f"{item} stands on no table now")
 
@@ -88,8 +95,7 @@ def things_on(stage: Stage, top: TableTop, *without: str) -> list[Disc]:
         top_from_body = top.map_from_top.inverse() @ stage.simulator.truth.pose(body.name)
         prism = prism_around(top_from_body.apply(points), top_from_body.yaw)
         at = prism.base.pose
-        within = abs(at.x) <= top.size[0] / 2 and abs(at.y) <= top.size[1] / 2
-        if within and abs(prism.bottom) <= STANDING:
+        if top.within(at.x, at.y) and abs(prism.bottom) <= STANDING:
             reach = _reach(body, top_from_body, math.hypot(*prism.base.size) / 2)
             discs.append(Disc(at.x, at.y, reach, prism.top))
     return discs

@@ -14,7 +14,7 @@ from momantu_worlds.scenes.arrange.layout import FRICTION, Layout, PlacedTag, Pl
 from momantu_worlds.scenes.arrange.mesh_files import mesh_parts
 from momantu_worlds.scenes.arrange.obstacles import floor_extent
 from momantu_worlds.scenes.arrange.surfaces import board_part, carriers
-from momantu_worlds.scenes.catalogue.furniture import furniture
+from momantu_worlds.scenes.catalogue.furniture import furniture, round_table
 from momantu_worlds.scenes.catalogue.shelves import boarded
 from momantu_worlds.scenes.catalogue.tag36h11 import picture_edge, tag_picture
 from momantu_worlds.scenes.file.furniture import Piece, Table
@@ -115,13 +115,15 @@ def table_bodies(world: WorldFile, layout: Layout) -> Iterator[Body]:
             continue
         parts = table_parts(world, table, (*placed.size, placed.height))
         top = None
-        if table.mesh is not None:
-            top = BodyTop(Transform((0.0, 0.0, placed.height)), placed.size)
+        if table.mesh is not None or table.round:
+            top = BodyTop(Transform((0.0, 0.0, placed.height)), placed.size, table.round)
         yield Body(name, "table", placed.pose.transform(), parts, friction=FRICTION, top=top)
 
 
 def table_parts(world: WorldFile, table: Table, size: Size3) -> tuple[Part, ...]:
     """The parts of a table that is not a board, in its own frame."""
+    if table.mesh is None and table.round:
+        return round_table(size, table.color)
     if table.mesh is None:
         return furniture(table.kind, size, table.color)
     use = table.mesh.model_copy(update={"size": size})

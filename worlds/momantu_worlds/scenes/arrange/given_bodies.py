@@ -48,7 +48,7 @@ def _top(note: BodyNote, map_from_body: Transform) -> BodyTop | None:
     if note.surface is None:
         return None
     map_from_top = pose2d(note.surface.at).transform(note.surface.height)
-    return BodyTop(map_from_body.inverse() @ map_from_top, note.surface.size)
+    return BodyTop(map_from_body.inverse() @ map_from_top, note.surface.size, note.surface.round)
 
 
 def _parts(world: WorldFile, given: BodyPart) -> Iterator[Part]:

@@ -22,6 +22,7 @@ class PlacedTable:
     """A surface at its true pose on the floor plan, with the height and extent of its top, m.
 
     sides: directions in its own frame to stand at, preferred first. above: free height over it, m.
+    round: the top is a disc.
     """
 
     pose: Pose2D
@@ -29,6 +30,7 @@ class PlacedTable:
     size: tuple[float, float]
     sides: tuple[float, ...] = (0.0,)
     above: float = math.inf
+    round: bool = False
 
     @property
     def map_from_top(self) -> Transform:

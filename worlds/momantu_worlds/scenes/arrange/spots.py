@@ -141,6 +141,7 @@ def free_spots(
                 math.hypot(dx, dy) <= near
                 and abs(x) <= half[0]
                 and abs(y) <= half[1]
+                and not (table.round and math.hypot(x, y) > half[0])
                 and edge - (x * cos + y * sin) <= SPOT_REACH
                 and all(gap(spot, disc) >= SPOT_GAP for disc in discs)
                 and lane(spot, discs, side)

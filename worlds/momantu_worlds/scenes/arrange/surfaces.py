@@ -18,7 +18,9 @@ def nominal_surfaces(world: WorldFile) -> dict[str, PlacedTable]:
     for name, body in world.bodies.items():
         if body.surface is not None:
             top = body.surface
-            found[name] = PlacedTable(Pose2D(*top.at), top.height, top.size, top.sides)
+            found[name] = PlacedTable(
+                Pose2D(*top.at), top.height, top.size, top.sides, round=top.round
+            )
     return found
 
 
@@ -28,7 +30,8 @@ def _nominal(world: WorldFile, table: Table) -> PlacedTable:
         return board_surface(shelf, table, shelf.pose)
     assert table.at is not None
     assert table.size is not None
-    return PlacedTable(Pose2D(*table.at), table.size[2], table.size[:2], table.sides)
+    flat = table.size[:2]
+    return PlacedTable(Pose2D(*table.at), table.size[2], flat, table.sides, round=table.round)
 
 
 def board_surface(shelf: Piece, table: Table, pose: Pose2D) -> PlacedTable:

@@ -130,6 +130,8 @@ def _on_top(tables: Mapping[str, PlacedTable], seed: int, spot: Spot) -> Iterato
         else:
             shift = draw.uniform(-spot.shift, spot.shift, 2)
             x, y = np.clip(np.array(spot.at) + shift, -half, half)
+        if tables[spot.table].round:
+            x, y = np.array((x, y)) * min(1.0, half[0] / max(math.hypot(x, y), 1e-9))
         yield Pose2D(float(x), float(y), spot.yaw + float(draw.uniform(-spot.turn, spot.turn)))
 
 
@@ -158,6 +160,8 @@ def place_things(
             half = np.array(tables[table].size) / 2 - thing.reach - RIM
             for _ in range(TRIES if (half > 0).all() else 0):
                 x, y = draw.uniform(-half, half)
+                if tables[table].round and math.hypot(x, y) > half[0]:
+                    continue
                 yaw = float(draw.uniform(-math.pi, math.pi))
                 at = Pose2D(float(x), float(y), yaw)
                 candidate = PlacedThing(name, thing, table, at)

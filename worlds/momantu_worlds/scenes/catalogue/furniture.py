@@ -19,6 +19,8 @@ Maker: TypeAlias = Callable[[Size3, Color], tuple[Part, ...]]
 
 LEG = 0.05
 """m; thickness of table legs."""
+FOOT = 0.03
+"""m; height of the foot of a round table."""
 
 
 def table(size: Size3, color: Color) -> tuple[Part, ...]:
@@ -33,6 +35,18 @@ def table(size: Size3, color: Color) -> tuple[Part, ...]:
             block((LEG, LEG, under), (a * at_x, b * at_y, under / 2), shade(color, 0.7))
             for a, b in legs
         ),
+    )
+
+
+def round_table(size: Size3, color: Color | None = None) -> tuple[Part, ...]:
+    """A disc on a column with a round foot; its colour is a table's usual one unless given."""
+    diameter, _, height = size
+    paint = color or CATALOGUE["table"][2]
+    dark = shade(paint, 0.7)
+    return (
+        column(diameter / 2, height - BOARD, height, paint),
+        column(LEG, FOOT, height - BOARD, dark),
+        column(0.3 * diameter, 0.0, FOOT, dark),
     )
 
 

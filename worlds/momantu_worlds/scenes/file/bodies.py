@@ -17,6 +17,7 @@ from momantu_worlds.scenes.file.values import (
     Rgb,
     Sides,
     Size3D,
+    with_one_diameter,
 )
 from momantu_worlds.scenes.geometry.bodies import GREY
 
@@ -54,12 +55,22 @@ class BodyPart(Part):
 
 
 class BodySurface(Part):
-    """The top of a body, as a surface of the site; in the map. height: above the floor, m."""
+    """The top of a body, as a surface of the site; in the map.
+
+    height: above the floor, m. round: it is a disc, and `size` has its diameter twice.
+    """
 
     at: PlanarPose
     size: tuple[Size, Size]
     height: Size
     sides: Sides
+    round: bool = False
+
+    @model_validator(mode="after")
+    def _one_diameter(self) -> Self:
+        if self.round:
+            with_one_diameter(self.size)
+        return self
 
 
 class BodyNote(Part):

@@ -20,6 +20,7 @@ from momantu_worlds.scenes.file.values import (
     Size3D,
     Turn,
     pose2d,
+    with_one_diameter,
 )
 from momantu_worlds.scenes.geometry.parts import Size3
 
@@ -121,7 +122,8 @@ class Table(Part):
     """A body with a top that is a surface of the site: a table, a mesh, or a board of a shelf.
 
     board_of, board: a piece of `furniture`, and the number of its board, counted from 1 at the
-    lowest. sides: the directions, in its own frame, to stand at; the first is preferred.
+    lowest. sides: the directions, in its own frame, to stand at; the first is preferred. round: its
+    top is a disc, on a column if it is no mesh, and depth and width are its diameter.
     """
 
     kind: TableKind = "table"
@@ -135,6 +137,7 @@ class Table(Part):
     turn: Turn = 0.0
     lift: NotNegative = 0.0
     sides: Sides
+    round: bool = False
 
     @model_validator(mode="after")
     def _one_way(self) -> Self:
@@ -143,6 +146,14 @@ class Table(Part):
                 raise ValueError("needs at and size, or board_of and board")
             if self.mesh is not None and self.mesh.size is not None:
                 raise ValueError("a mesh that is a table has the table's own size, not mesh.size")
+            if self.round:
+                if self.kind != "table" or (
+                    self.mesh is not None and "kind" in self.model_fields_set
+                ):
+                    raise ValueError(
+                        f"a {self.kind} is not round; write kind: table, or a mesh alone"
+                    )
+                with_one_diameter(self.size[:2])
         elif self.board is None:
             raise ValueError("needs the key 'board': which board, counted from 1 at the lowest")
         elif set(self.model_fields_set) - {"board_of", "board", "sides", "color"}:

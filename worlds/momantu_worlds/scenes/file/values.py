@@ -72,3 +72,11 @@ def pose2d(pose: tuple[float, float, float]) -> Pose2D:
 def transform(pose: tuple[float, float, float, float, float, float]) -> Transform:
     """Convert a 3D pose of the file to the type used by all other modules."""
     return Transform.from_rpy(pose[:3], pose[3:])
+
+
+def with_one_diameter(size: tuple[float, float]) -> None:
+    """Raise ValueError if the size of a round top is longer than wide."""
+    if abs(size[0] - size[1]) > 1e-9:
+        raise ValueError(
+            f"a round top is as deep as wide, its diameter; this one is {size[0]:g} x {size[1]:g} m"
+        )

@@ -6,6 +6,7 @@ in 0..1. Every transform is named `target_from_source`.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
@@ -92,10 +93,20 @@ class Part:
 
 @dataclass(frozen=True, slots=True)
 class BodyTop:
-    """A level top of a body: the frame in its middle, z up, and its extent along x and y, m."""
+    """A level top of a body: the frame in its middle, z up, and its extent along x and y, m.
+
+    round: a disc of that diameter, else a rectangle.
+    """
 
     body_from_top: Transform
     size: tuple[float, float]
+    round: bool = False
+
+    def margin(self, x: float, y: float) -> float:
+        """How far a point in its frame lies within the nearest edge, m; below 0 beyond it."""
+        if self.round:
+            return self.size[0] / 2 - math.hypot(x, y)
+        return min(self.size[0] / 2 - abs(x), self.size[1] / 2 - abs(y))
 
 
 @dataclass(frozen=True, slots=True)

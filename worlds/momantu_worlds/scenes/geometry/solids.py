@@ -120,11 +120,11 @@ class PlacedBody:
 
 @dataclass(frozen=True, slots=True)
 class LevelTop:
-    """A level rectangle on which things stand. half: (2,) m along its own x and y."""
+    """A level top on which things stand, where its body stands now."""
 
     body: str
     map_from_top: Transform
-    half: Array
+    top: BodyTop
 
     @property
     def height(self) -> float:
@@ -134,7 +134,7 @@ class LevelTop:
     def margin(self, point: Array) -> float:
         """How far within its nearest edge a point (2 or 3,) in the map lies, m; below 0 beyond."""
         own = self.map_from_top.inverse().apply((point[0], point[1], self.height))
-        return float((self.half - np.abs(own[:2])).min())
+        return self.top.margin(float(own[0]), float(own[1]))
 
 
 class Scene:
@@ -166,9 +166,7 @@ class Scene:
         for name, body in self._bodies.items():
             if body.static:
                 for top in (body.top,) if body.top is not None else box_tops(body):
-                    yield LevelTop(
-                        name, self._pose(name) @ top.body_from_top, np.array(top.size) / 2
-                    )
+                    yield LevelTop(name, self._pose(name) @ top.body_from_top, top)
 
     def below(self, thing: PlacedBody) -> tuple[str, float]:
         """What is highest below a body, and how far its lowest point is above that, m."""

@@ -56,11 +56,11 @@ class SupportTop:
         if not tops:
             raise ValueError(f"the support {body.name!r} has no box to stand on")
         top = max(tops, key=lambda top: float(top.body_from_top.position[2]))
-        self._body_from_surface, self.size = top.body_from_top, top.size
+        self.top, self.size = top, top.size
 
     def surface(self, map_from_body: Transform) -> Transform:
         """Frame of the surface, z up, its origin in the middle, in the map."""
-        return map_from_body @ self._body_from_surface
+        return map_from_body @ self.top.body_from_top
 
     def _on(self, map_from_body: Transform, pose: Transform) -> tuple[float, float, float]:
         x, y, z = self.surface(map_from_body).inverse().apply(pose.position)
@@ -69,7 +69,7 @@ class SupportTop:
     def margin(self, map_from_body: Transform, pose: Transform) -> float:
         """How far a point lies within the nearest edge, m; below 0 beyond it."""
         x, y, _ = self._on(map_from_body, pose)
-        return min(self.size[0] / 2 - abs(x), self.size[1] / 2 - abs(y))
+        return self.top.margin(x, y)
 
     def height_above(self, map_from_body: Transform, pose: Transform) -> float:
         """Height of a point above the surface, m."""

@@ -63,6 +63,7 @@ def _read(data: dict[str, Any]) -> Site:
             entry["height"],
             tuple(entry["sides"]),
             tuple(_overhang(one) for one in entry["over"]),
+            entry["round"],
         )
         for surface, entry in data["surfaces"].items()
     }

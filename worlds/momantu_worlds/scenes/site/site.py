@@ -30,7 +30,7 @@ def site_of(world: WorldFile, start: Pose2D) -> Site:
     tops = nominal_surfaces(world)
     over = overhangs(world, tops)
     surfaces = {
-        name: Surface(top.pose, top.size, top.height, top.sides, over[name])
+        name: Surface(top.pose, top.size, top.height, top.sides, over[name], top.round)
         for name, top in tops.items()
     }
     notes = world.site
