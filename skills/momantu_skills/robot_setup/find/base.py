@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -122,8 +123,8 @@ def find_stand(body: Body) -> Stand:
     floor = min(body.lowest({}), 0.0)
     wheels = tuple(
         link
-        for joint in skeleton.branches(body.base_frame)
-        if joint.child in below and _rolls(body, joint, floor)
+        for joint in _rolling(body, floor)
+        if joint.child in below
         for link in skeleton.subtree(joint.child)
     )
     points = body.points((*fixed, *wheels), {})
@@ -137,6 +138,16 @@ def find_stand(body: Body) -> Stand:
 def _touches(body: Body, link: str, floor: float) -> bool:
     corners = body.corners((link,), {})
     return len(corners) > 0 and float(corners[:, 2].min()) < floor + OVER_FLOOR
+
+
+def _rolling(body: Body, floor: float) -> Iterator[SetupJoint]:
+    """The joints that carry wheels: on the base, or on what it is suspended by."""
+    for joint in body.skeleton.branches(body.base_frame):
+        if _rolls(body, joint, floor):
+            yield joint
+        else:
+            below = body.skeleton.branches(joint.child)
+            yield from (each for each in below if _rolls(body, each, floor))
 
 
 def _rolls(body: Body, joint: SetupJoint, floor: float) -> bool:

@@ -20,6 +20,7 @@ from momantu_skills.robot_setup.find.named import find_poses, fold_others
 from momantu_skills.robot_setup.find.poses import VIEW, Eye, FoundPose, PoseFinder
 from momantu_skills.robot_setup.find.reach import Reach, find_reach
 from momantu_skills.robot_setup.find.sensors import FoundSensor, find_sensors
+from momantu_skills.robot_setup.find.wheels import Driving, find_driving
 from momantu_skills.robot_setup.urdf.arm_ik import LimbSolver
 from momantu_skills.robot_setup.urdf.body import Body
 from momantu_skills.robot_setup.urdf.cells import cuts_of, swallowed
@@ -43,6 +44,7 @@ class Proposal:
     base: BaseFrame
     virtual: tuple[str, str, str] | None
     stand: Stand
+    driving: Driving
     limbs: Limbs
     grasp: Grasp | None
     grasps: dict[str, Grasp]
@@ -93,12 +95,14 @@ def _propose(prepared: Prepared, samples: int, seed: int) -> Proposal:
     matrix = sample_matrix(body, samples, seed, closed, used)
     solver = _hand_solver(prepared, base, limbs, grasps.get("arm"), limits, seed)
     poses = _poses(prepared, base, body, stand, limbs, camera, limits, matrix, solver, seed)
+    virtual = planar(skeleton, base.virtual)
     return Proposal(
         robot_name(prepared),
         prepared,
         base,
-        planar(skeleton, base.virtual),
+        virtual,
         stand,
+        find_driving(body, prepared.document, stand.wheels, virtual is not None),
         limbs,
         grasps.get("arm"),
         grasps,

@@ -17,6 +17,7 @@ def lines(proposal: Proposal) -> Iterator[str]:
     moving = sum(joint.moving for joint in skeleton.joints.values())
     yield f"{proposal.name}: {len(skeleton.links)} links, {moving} moving joints"
     yield f"base         {base_frame(proposal)}, {stand.mass:.1f} kg, {_wheels(proposal)}"
+    yield f"drive        {proposal.driving.kind}: {proposal.driving.why}"
     if stand.footprint is not None:
         corners = stand.footprint
         size = corners.max(axis=0) - corners.min(axis=0)
@@ -72,6 +73,7 @@ def plain(proposal: Proposal) -> dict[str, Any]:
         "base_frame": base_frame(proposal),
         "mass": proposal.stand.mass,
         "wheels": list(proposal.stand.wheels),
+        "drive": str(proposal.driving.kind),
         "footprint": None if outline is None else outline.tolist(),
         "arm": None if arm is None else list(arm.joints),
         "head": None if head is None else list(head.joints),

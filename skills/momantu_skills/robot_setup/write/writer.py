@@ -234,10 +234,13 @@ def _base(proposal: Proposal) -> Iterator[str]:
     stand = proposal.stand
     force = float(np.clip(stand.mass * PUSH, 50.0, 1000.0))
     torque = force * max(stand.width, 0.2) / 2
+    driving = proposal.driving
+    yield f"# {'Measured' if driving.measured else 'Guessed'}: {driving.why}."
     yield "# Guessed: a brisk walk. Its makers' data sheet knows better."
     if not stand.wheels and proposal.virtual is None:
         yield "# Look at it: nothing that rolls was found. Without `drive` it is not simulated."
     yield "base:"
+    yield f"  kind: {driving.kind}"
     yield "  linear: 0.8"
     yield "  angular: 1.5"
     yield "  linear_acceleration: 0.8"
