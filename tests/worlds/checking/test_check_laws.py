@@ -11,19 +11,31 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from momantu_worlds.checking.access import places, start, surfaces
+from momantu_worlds.checking.legible import light_on
+from momantu_worlds.checking.measures import Measures
 from momantu_worlds.checking.overlaps import TOUCHING, overlaps
 from momantu_worlds.checking.run import CHECKS
 from momantu_worlds.checking.scenario import Scenario
 from momantu_worlds.checking.upright import TIPPING, upright
-from momantu_worlds.scenes.geometry.bodies import Body, Box, Cylinder, Gap, Part
+from momantu_worlds.scenes.geometry.bodies import (
+    Body,
+    Box,
+    Cylinder,
+    Gap,
+    Part,
+    Picture,
+    PointLight,
+)
 from momantu_worlds.scenes.geometry.solids import FLUSH
 
 from momantu_bt.findings import FindingAtKeys
 from momantu_bt.geometry import Pose2D, Transform
+from momantu_bt.robot_parts import CameraSensor, Exposure
 from tests.worlds.checking.test_checks import (
     BODIES,
     EPISODE,
     HEIGHT,
+    PIXELS,
     ROBOT,
     all_codes,
     can,
@@ -271,3 +283,45 @@ def test_a_robot_without_a_camera_is_not_asked_about_tags() -> None:
     hidden = tag(Transform((2.0, 1.85, 0.4)))
     assert remarks(changed(hidden), "tag-unseen")
     assert remarks(changed(hidden, robot=replace(ROBOT, eyes=())), "tag-unseen") == []
+
+
+def sighted(**exposure: float) -> Measures:
+    """The robot with a camera of 640 x 480 pixels."""
+    camera = CameraSensor(
+        frame="eye",
+        horizontal_fov=1.05,
+        min_depth=0.3,
+        max_depth=4.0,
+        exposure=Exposure(**exposure),
+    )
+    return replace(ROBOT, camera=camera)
+
+
+def lit(light: float) -> dict[str, tuple[float, float, float]]:
+    return {"ambient": (light, light, light)}
+
+
+def test_a_tag_in_the_dark_is_told_and_light_or_a_longer_exposure_cures_it() -> None:
+    (remark,) = remarks(changed(robot=sighted(), **lit(1e-4)), "tag-unseen")
+    assert "too dark there from everywhere: the light on it is 0.0001" in remark.message
+    assert "longer exposure" in remark.hint
+    assert remarks(changed(robot=sighted(), **lit(0.002)), "tag-unseen") == []
+    patient = sighted(longest=0.3)
+    assert remarks(changed(robot=patient, **lit(1e-4)), "tag-unseen") == []
+
+
+def test_a_lamp_lights_the_tag_that_it_shines_on_and_not_one_that_faces_away() -> None:
+    up, at = np.array([0.0, 0.0, 1.0]), np.array([2.0, 1.85, HEIGHT])
+    lamp = PointLight((2.0, 1.85, HEIGHT + 2.0), (4.0, 4.0, 4.0))
+    episode = changed(lamps=(lamp,), **lit(0.0)).episode
+    assert light_on(episode, at, up) == pytest.approx(1.0 / math.pi)
+    assert light_on(episode, at, -up) == 0.0
+
+
+@pytest.mark.parametrize(("edge", "codes"), [(0.15, []), (0.006, ["tag-unseen"])])
+def test_a_tag_smaller_than_the_cameras_pixels_is_told(edge: float, codes: list[str]) -> None:
+    paper = Part(Picture((edge, edge), PIXELS), collision=False)
+    small = Body("tag", "tag", Transform((2.0, 1.85, HEIGHT + 0.0005)), (paper,))
+    found = remarks(changed(small, robot=sighted()), "tag-unseen")
+    assert [each.code for each in found] == codes
+    assert all("it is too small from" in each.message for each in found)

@@ -11,7 +11,7 @@ import shapely
 from momantu_bt.failure import Failure
 from momantu_bt.frames import KinematicTree
 from momantu_bt.geometry import Array, Pose2D
-from momantu_bt.robot import RobotDescription
+from momantu_bt.robot import CameraSensor, RobotDescription
 from momantu_bt.world import seeded
 
 SAMPLES = 2000
@@ -30,7 +30,7 @@ class Measures:
     edge, m. height: below which everything is in its way, m. reach: (nearest, best, farthest) m
     from the middle of the base. eyes: heights of the camera, m. hand: (n, 2) where the grasp
     frame gets: distance from the base's middle along the floor, and height, m. max_width: of what
-    the hand can hold, m.
+    the hand can hold, m. camera: the one that looks at tags.
     """
 
     name: str
@@ -41,6 +41,7 @@ class Measures:
     eyes: tuple[float, ...]
     hand: Array
     max_width: float
+    camera: CameraSensor | None = None
 
     def outline(self, pose: Pose2D) -> Array:
         """Corners (n, 2) of the base as it stands somewhere."""
@@ -82,6 +83,7 @@ def measured(description: RobotDescription) -> Measures:
         eyes=_eyes(description, kinematics),
         hand=_hand(description, kinematics),
         max_width=0.0 if description.end_effector is None else description.hand.max_width,
+        camera=_camera(description),
     )
 
 
@@ -90,12 +92,18 @@ def _inner_radius(corners: Array) -> float:
     return float(shapely.Polygon(corners).exterior.distance(shapely.Point(0.0, 0.0)))
 
 
-def _eyes(description: RobotDescription, kinematics: KinematicTree) -> tuple[float, ...]:
+def _camera(description: RobotDescription) -> CameraSensor | None:
     try:
-        frame = description.camera()[1].frame
+        return description.camera()[1]
     except KeyError:
+        return None
+
+
+def _eyes(description: RobotDescription, kinematics: KinematicTree) -> tuple[float, ...]:
+    camera = _camera(description)
+    if camera is None:
         return ()
-    heights = []
+    frame, heights = camera.frame, []
     for name in EYES:
         pose = description.named_poses.get(name)
         if pose is not None:

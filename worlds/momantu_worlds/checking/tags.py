@@ -1,4 +1,4 @@
-"""Checks of tags: whether each is visible from a place that the robot can reach."""
+"""Checks of tags: whether each can be read from a place that the robot can reach."""
 
 from __future__ import annotations
 
@@ -7,10 +7,12 @@ from collections import Counter
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
 from momantu_bt.findings import FindingAtKeys
 from momantu_bt.formats.problems import Severity
 from momantu_bt.geometry import Array
+from momantu_worlds.checking.legible import LEAST_CELL, cell_widths, least_light, light_on
 from momantu_worlds.checking.scenario import Scenario
 from momantu_worlds.scenes.geometry.bodies import Body, Picture
 
@@ -35,7 +37,7 @@ GRID = np.array([(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)]) / 2
 
 
 def tags(scenario: Scenario) -> Iterator[FindingAtKeys]:
-    """Check that every tag is completely visible from some reachable point."""
+    """Check that every tag can be read from some reachable point."""
     for body in scenario.bodies:
         if body.category == "tag" and scenario.robot.eyes:
             hidden = _hidden(scenario, body)
@@ -44,7 +46,7 @@ def tags(scenario: Scenario) -> Iterator[FindingAtKeys]:
                 yield FindingAtKeys(
                     Severity.ERROR,
                     "tag-unseen",
-                    f"the camera cannot see {body.name}: {why}",
+                    f"the camera cannot read {body.name}: {why}",
                     cure,
                     scenario.place(body.name),
                     about=(body.name,),
@@ -52,8 +54,8 @@ def tags(scenario: Scenario) -> Iterator[FindingAtKeys]:
 
 
 def _hidden(scenario: Scenario, tag: Body) -> tuple[str, str] | None:
-    """Why a tag is not visible, and what to do; None if it is visible."""
-    points, normal = _points(tag)
+    """Why a tag cannot be read, and what to do; None if it can."""
+    points, normal, edge = _points(tag)
     within = [
         name
         for name, solids in scenario.solids.items()
@@ -66,32 +68,75 @@ def _hidden(scenario: Scenario, tag: Body) -> tuple[str, str] | None:
     if len(stands) == 0:
         near = f" within {RINGS[-1]:g} m of it"
         return f"{scenario.robot.name} cannot get{near}", "move it to where the robot can get"
-    before, blockers = False, Counter[str]()
+    dark = _dark(scenario, middle, normal)
+    if dark is not None:
+        return dark
+    return _from_stands(scenario, tag, points, normal, edge, stands)
+
+
+def _dark(scenario: Scenario, middle: Array, normal: Array) -> tuple[str, str] | None:
+    camera = scenario.robot.camera
+    if camera is None:
+        return None
+    light, least = light_on(scenario.episode, middle, normal), least_light(camera.exposure)
+    if light >= least:
+        return None
+    why = (
+        f"it is too dark there from everywhere: the light on it is {light:.2g}, and"
+        f" {scenario.robot.name}'s camera needs {least:.2g} at its longest exposure"
+    )
+    return (
+        why,
+        "put a lamp near it under `light`, or give the camera a longer exposure or more gain",
+    )
+
+
+def _from_stands(
+    scenario: Scenario, tag: Body, points: Array, normal: Array, edge: float, stands: Array
+) -> tuple[str, str] | None:
+    """As `_hidden`, by looking from each of the stands."""
+    middle, camera = points.mean(axis=0), scenario.robot.camera
+    facing_eyes, small, blockers = 0, 0, Counter[str]()
     for ring in RINGS:
         eyes = _eyes(scenario, stands, middle, ring)
         rays = eyes - middle
-        facing = rays @ normal >= math.cos(SLANT) * np.linalg.norm(rays, axis=1)
-        if facing.any():
-            before = True
-            if _seen(scenario, eyes[facing], points, tag.name, blockers):
-                return None
-    if not before:
+        eyes = eyes[rays @ normal >= math.cos(SLANT) * np.linalg.norm(rays, axis=1)]
+        if len(eyes) == 0:
+            continue
+        facing_eyes += len(eyes)
+        free = eyes[_free(scenario, eyes, points, tag.name, blockers)]
+        if len(free) == 0:
+            continue
+        if camera is None or (cell_widths(camera, free, middle, normal, edge).max() >= LEAST_CELL):
+            return None
+        small += len(free)
+    if facing_eyes == 0:
         return (
             "it faces away from where the robot can get",
             "turn it, or hang it the other way round",
         )
+    hidden = facing_eyes - small
+    if not blockers or small > hidden:
+        many = (
+            f" from all {facing_eyes} points"
+            if not hidden
+            else (f" from {small} of {facing_eyes} points, and hidden from the others")
+        )
+        return f"it is too small{many} that the robot can look from", "print it larger"
     blocker = min(blockers, key=lambda name: (-blockers[name], name))
-    return f"{blocker} hides it", f"move the tag or {blocker}"
+    many = f", and from {small} of {facing_eyes} points it is too small" if small else ""
+    return f"{blocker} hides it{many}", f"move the tag or {blocker}"
 
 
-def _points(tag: Body) -> tuple[Array, Array]:
-    """Points (9, 3) just before a tag's paper, and the direction that it faces, map."""
+def _points(tag: Body) -> tuple[Array, Array, float]:
+    """Points (9, 3) just before a tag's paper, the direction that it faces, map, and its edge."""
     part = next(part for part in tag.parts if isinstance(part.geometry, Picture))
     assert isinstance(part.geometry, Picture)
     map_from_paper = tag.map_from_body @ part.body_from_part
     flat = INSIDE * GRID * part.geometry.size
     own = np.column_stack([flat, np.full(len(flat), PAPER)])
-    return map_from_paper.apply(own), map_from_paper.rotation[:, 2]
+    edge = min(part.geometry.size)
+    return map_from_paper.apply(own), map_from_paper.rotation[:, 2], edge
 
 
 def _eyes(scenario: Scenario, stands: Array, middle: Array, ring: float) -> Array:
@@ -109,10 +154,12 @@ def _eyes(scenario: Scenario, stands: Array, middle: Array, ring: float) -> Arra
     )
 
 
-def _seen(scenario: Scenario, eyes: Array, points: Array, tag: str, blockers: Counter[str]) -> bool:
-    """Whether one of the eyes has a free line to all points; counts the bodies in the way."""
+def _free(
+    scenario: Scenario, eyes: Array, points: Array, tag: str, blockers: Counter[str]
+) -> NDArray[np.bool_]:
+    """Which eyes (n,) have a free line to all points; counts the bodies in the way."""
     origins = np.repeat(eyes, len(points), axis=0)
     rays = np.tile(points, (len(eyes), 1)) - origins
     at, which = scenario.hit(origins, rays, frozenset({tag}))
     blockers.update(name for name in which if name)
-    return bool(np.isinf(at).reshape(len(eyes), len(points)).all(axis=1).any())
+    return np.asarray(np.isinf(at).reshape(len(eyes), len(points)).all(axis=1))
