@@ -39,12 +39,28 @@ class Joint:
     child: str
     parent_from_joint: Transform
     axis: tuple[float, float, float]
+    mimic: urdf.Mimic | None = None
+    """The joint that it follows, if there is one."""
 
     @classmethod
     def of_urdf(cls, joint: urdf.Joint) -> Joint:
         """Make a joint from a joint of a URDF file."""
         parent_from_joint = Transform.from_rpy(joint.xyz, joint.rpy)
-        return cls(joint.name, joint.kind, joint.parent, joint.child, parent_from_joint, joint.axis)
+        return cls(
+            joint.name,
+            joint.kind,
+            joint.parent,
+            joint.child,
+            parent_from_joint,
+            joint.axis,
+            joint.mimic,
+        )
+
+    def position(self, positions: Mapping[str, float]) -> float:
+        """Its position among those of joints: its own, its leader's as it follows it, or 0."""
+        if self.name in positions or self.mimic is None:
+            return positions.get(self.name, 0.0)
+        return self.mimic.multiplier * positions.get(self.mimic.leader, 0.0) + self.mimic.offset
 
     def transform(self, position: float) -> Array:
         """`parent_from_child` as a matrix (4, 4) at `position`, rad or m."""
@@ -105,7 +121,7 @@ class KinematicTree:
         """
         matrix = np.eye(4)
         for joint in self.chain(frame):
-            matrix = matrix @ joint.transform(positions.get(joint.name, 0.0))
+            matrix = matrix @ joint.transform(joint.position(positions))
         return Transform.from_matrix(matrix)
 
     def chain(self, frame: str) -> tuple[Joint, ...]:

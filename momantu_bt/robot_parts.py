@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from enum import StrEnum
 from itertools import pairwise
@@ -24,6 +25,7 @@ from momantu_bt.descriptions.quantities import (
     Size,
     Time,
 )
+from momantu_bt.geometry import Pose2D
 
 Count: TypeAlias = Annotated[int, Field(gt=0, le=100_000)]
 Range: TypeAlias = Annotated[Length, Field(ge=0)]
@@ -329,6 +331,18 @@ class Working(Part):
     """Distance to a surface's edge from which the robot looks at the surface."""
     reach: tuple[Size, Size, Size] | None = None
     """Nearest, best and farthest distance of an object to reach; of a robot with an arm."""
+    heading: Angle = 0.0
+    """Direction in which the arm reaches, from straight ahead; counter-clockwise."""
+    lateral: Length = 0.0
+    """How far to the left of the base's middle the line lies along which the arm reaches."""
+    breadth: Range | None = None
+    """How far beside that line an object may stand, m; not given: as far as stands have it."""
+
+    @property
+    def base_from_reach(self) -> Pose2D:
+        """The line of reach: its x points along it, and distances count from its origin."""
+        c, s = math.cos(self.heading), math.sin(self.heading)
+        return Pose2D(-s * self.lateral, c * self.lateral, self.heading)
 
     @property
     def reached(self) -> tuple[float, float, float]:

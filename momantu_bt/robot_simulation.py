@@ -90,6 +90,9 @@ class Contacts(Part):
     """Friction of the pads."""
     convex_cells: dict[str, Cuts] = {}
     """Links whose collision mesh is cut, each cell a convex hull; others are one hull."""
+    ignored_collisions: tuple[tuple[str, str], ...] = ()
+    """Pairs of links that only a simulator ignores: it takes links for hulls, which may meet where
+    the links do not."""
     linkages: dict[str, Linkage] = {}
     """Finger joints that another finger joint's motor moves too."""
 

@@ -257,6 +257,10 @@ class _Checks:
             yield from self._every(getattr(contacts, key), self._links, "link", ("simulation", key))
         for link in contacts.convex_cells:
             yield from self._in(link, self._links, "link", ("simulation", "convex_cells", link))
+        for i, pair in enumerate(contacts.ignored_collisions):
+            for k, link in enumerate(pair):
+                at: KeyPath = ("simulation", "ignored_collisions", i, k)
+                yield from self._in(link, self._links, "link", at)
         effector = self._robot.end_effector
         hand = None if effector is None else self._robot.actuators.get(effector.actuator)
         fingers = () if hand is None else hand.joints

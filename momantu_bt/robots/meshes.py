@@ -99,7 +99,7 @@ def write_paths(part: LoadedPart, found: Mapping[str, Path]) -> None:
     for mesh in part.root.findall("link/*/geometry/mesh"):
         mesh.set("filename", str(found[str(mesh.get("filename", ""))]))
     for texture in textures(part):
-        path = part.packages.mesh(str(texture.get("filename")))
+        path = part.packages.file(str(texture.get("filename")))
         above = texture.getparent()
         if path is None and above is not None:
             above.remove(texture)

@@ -11,6 +11,8 @@ from pathlib import Path
 
 MANIFEST = "package.xml"
 """The file in the root of a ROS package; it has the package's name."""
+MESH_SUFFIXES = (".stl", ".obj", ".dae", ".glb", ".gltf", ".ply")
+"""Suffixes of mesh files."""
 UP = 3
 """Folders above a file's own package in which its neighbours are looked for."""
 _NAME = re.compile(r"<name>\s*([\w.-]+)\s*</name>")
@@ -37,7 +39,19 @@ class Packages:
         return self._found[name]
 
     def mesh(self, address: str) -> Path | None:
-        """The file that a mesh's address means; None if there is none."""
+        """The file that a mesh's address means; None if there is none.
+
+        Where the address ends in no suffix of meshes, a mesh of the same name beside it is meant.
+        """
+        found = self.file(address)
+        if found is not None or Path(address).suffix.lower() in MESH_SUFFIXES:
+            return found
+        named = (each for each in self.mesh_candidates(address) if each.name)
+        beside = (each.with_suffix(suffix) for each in named for suffix in MESH_SUFFIXES)
+        return next((each for each in beside if each.is_file()), None)
+
+    def file(self, address: str) -> Path | None:
+        """The file that an address of a URDF means; None if there is none."""
         return next((each for each in self.mesh_candidates(address) if each.is_file()), None)
 
     def mesh_candidates(self, address: str) -> Iterator[Path]:

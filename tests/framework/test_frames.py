@@ -116,3 +116,14 @@ def test_a_broken_urdf_is_named(tmp_path: Path) -> None:
     path.write_text("<robot><link name='a'/></robot>")
     with pytest.raises(ValueError, match="no link 'b'; links: a"):
         KinematicTree.from_urdf(path, "b")
+
+
+def test_a_joint_that_follows_another_is_where_its_leader_puts_it(tmp_path: Path) -> None:
+    follows = '<mimic joint="turn" multiplier="0.5" offset="0.1"/></joint>\n<joint name="glue"'
+    path = tmp_path / "r.urdf"
+    path.write_text(URDF.replace('</joint>\n<joint name="glue"', follows))
+    tree = KinematicTree.from_urdf(path, "base")
+    assert tree.base_from_frame("slide", {"turn": 0.4}).position[2] == pytest.approx(1.3)
+    assert tree.base_from_frame("slide", {"turn": 0.4, "lift": 0.2}).position[2] == pytest.approx(
+        1.2
+    )

@@ -38,6 +38,10 @@ AROUND = 0.08
 """How far from the centre between the pads the grasped object may extend, m beyond half the widest
 opening."""
 
+SWING = 0.4
+"""How far the hand of an arm with few joints may turn about the vertical on a straight line, rad:
+such an arm leaves its plane only with a turn."""
+
 
 class Arm:
     """State and motions shared by the skills that move the arm. `service` is the planning scene."""
@@ -203,8 +207,18 @@ class Arm:
         targets = straight_line(
             self.group.tip_matrix(start), base_from_tip.matrix, self.hand.linear_step
         )
-        path, reached = self.group.trace(targets, start)
+        if self.group.few:
+            axis = self._upright_axis(start)
+            path, reached = self.group.trace_upright(targets, start, axis, SWING)
+        else:
+            path, reached = self.group.trace(targets, start)
         return np.vstack([start, path]) if reached == len(targets) else None
+
+    def _upright_axis(self, q: Array) -> Array:
+        """tip_from_axis (4, 4): z is vertical at joints (n,), through where the hand grasps."""
+        base_from_tip = Transform.from_matrix(self.group.tip_matrix(q))
+        place = base_from_tip @ self.scene.model.tip_from_grasp
+        return (base_from_tip.inverse() @ Transform(place.position)).matrix
 
     def back_off(self, distance: float) -> Generator[str, None, None]:
         """Retreat the hand along its fingers from its current position, where possible.

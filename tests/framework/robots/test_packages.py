@@ -77,6 +77,14 @@ def test_a_mesh_is_found_beside_the_urdf_or_in_a_folder_above(tmp_path: Path, na
         assert packages.mesh(asked.replace("x.stl", "y.stl")) is None
 
 
+def test_a_mesh_with_a_misspelt_suffix_is_found_by_its_name(tmp_path: Path) -> None:
+    (tmp_path / "torso.stl").touch()
+    packages = Packages(tmp_path / "r.urdf", tmp_path)
+    assert packages.mesh("torso.std") == tmp_path / "torso.stl"
+    assert packages.mesh("torso.dae") is None
+    assert packages.file("torso.std") is None
+
+
 ROBOT = """momantu_robot: 1
 name: wall
 parts: {{wall: {{xacro: {arm}, args: {{mesh: package://base_description/x.stl}}}}}}

@@ -137,3 +137,58 @@ def test_the_palm_is_what_does_not_move_against_the_hand() -> None:
     assert fetch_model.palm == pytest.approx(fetch_model.hulls["gripper_link"])
     assert small.palm[:, 0].max() == pytest.approx(-0.05, abs=1e-9)
     assert small.palm[:, 0].min() == pytest.approx(-0.16, abs=1e-9)
+
+
+def planar() -> Group:
+    """A lift, three hinges that turn the hand in a vertical plane, and a roll: five joints."""
+    origins = np.tile(np.eye(4), (5, 1, 1))
+    origins[1, :3, 3] = (0.1, 0.08, 0.4)
+    origins[2, 0, 3] = origins[3, 0, 3] = 0.3
+    tip = np.eye(4)
+    tip[0, 3] = 0.2
+    return Group(
+        names=("lift", "shoulder", "elbow", "wrist", "roll"),
+        lower=np.array([0.0, -2.0, -2.5, -2.0, -3.0]),
+        upper=np.array([0.6, 2.0, 2.5, 2.0, 3.0]),
+        velocity=np.ones(5),
+        acceleration=np.ones(5),
+        origins=origins,
+        axes=np.array([[0.0, 0, 1], [0, 1, 0], [0, 1, 0], [0, 1, 0], [1, 0, 0]]),
+        slides=np.array([True, False, False, False, False]),
+        tip=tip,
+    )
+
+
+def test_the_freedoms_of_an_arm_are_counted() -> None:
+    assert planar().freedoms == 4
+    assert planar().few
+    assert GROUP.freedoms == 6
+    assert not GROUP.few
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.integers(0, 10_000), st.floats(-3.0, 3.0))
+def test_an_arm_with_few_joints_reaches_a_pose_but_for_a_turn(seed: int, turn: float) -> None:
+    group = planar()
+    reached = group.tip_matrix(some_joints(seed, group))
+    about = reached[:3, 3] + reached[:3, :3] @ (0.03, 0.0, 0.0)
+    turned = about_vertical(about, turn) @ reached
+    seeds = np.array([some_joints(seed + 1 + i, group) for i in range(30)])
+    found, good = group.solve_upright(turned[None], about, seeds, math.inf)
+    assert good.any()
+    for q in found[0][good[0]]:
+        pose = group.tip_matrix(q)
+        local = np.linalg.inv(turned)[:3] @ np.append(about, 1.0)
+        assert pose[:3] @ np.append(local, 1.0) == pytest.approx(about, abs=1e-3)
+        assert pose[2, :3] == pytest.approx(turned[2, :3], abs=5e-3)
+    if abs(turn) > 0.2:
+        assert not group.solve_upright(turned[None], about, seeds, 0.1)[1].any()
+
+
+def about_vertical(point: np.ndarray, turn: float) -> np.ndarray:
+    """A turn (4, 4) about the vertical through a point (3,)."""
+    c, s = math.cos(turn), math.sin(turn)
+    made = np.eye(4)
+    made[:2, :2] = [[c, -s], [s, c]]
+    made[:3, 3] = point - made[:3, :3] @ point
+    return made

@@ -142,3 +142,19 @@ def test_stands_before_a_round_table_keep_off_its_edge(surface: Surface) -> None
     for stand in before_surface(surface, WORKING):
         own = surface.map_from_surface.inverse() @ stand.pose
         assert math.hypot(own.x, own.y) >= surface.size[0] / 2 + WORKING.look_off - 1e-6
+
+
+@given(SURFACES, POSES, st.floats(-3.1, 3.1), st.floats(-0.3, 0.3))
+def test_an_arm_that_reaches_aside_gets_the_point_onto_its_line(
+    surface: Surface, base: Pose2D, heading: float, lateral: float
+) -> None:
+    own = WORKING.model_copy(update={"heading": heading, "lateral": lateral, "breadth": 0.05})
+    middle = surface.map_from_surface
+    stands = within_reach((middle.x, middle.y), [surface], base, own)
+    assert stands
+    for stand in stands:
+        seen = stand.pose.inverse() @ middle
+        c, s = math.cos(heading), math.sin(heading)
+        along, beside = c * seen.x + s * seen.y, -s * seen.x + c * seen.y
+        assert along > 0.0
+        assert abs(beside - lateral) <= 0.05 + 1e-9

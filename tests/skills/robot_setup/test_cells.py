@@ -12,6 +12,7 @@ from momantu_skills.robot_setup.find.proposal import propose
 from momantu_skills.robot_setup.urdf.body import Body
 from momantu_skills.robot_setup.urdf.cells import cuts_of, swallowed
 from momantu_skills.robot_setup.urdf.prepare import Placed, prepare
+from momantu_skills.robot_setup.urdf.simulated import pressing
 from momantu_worlds.robots import fetch
 from scipy.spatial import ConvexHull
 
@@ -84,3 +85,10 @@ def test_fetch_gets_what_a_person_found_by_hand() -> None:
     assert {frozenset(pair) for pair in found.matrix.ignored} <= known
     assert by_hand.simulation is not None
     assert set(found.cells) <= set(by_hand.simulation.convex_cells)
+
+
+def test_hulls_press_where_the_links_are_apart_until_the_mesh_is_cut(body: Body) -> None:
+    pair = ("c", "block")
+    assert pressing(body, [pair], {}, [{}]) == (pair,)
+    assert pressing(body, [pair], {"c": cuts_of(body, "c")}, [{}]) == ()
+    assert pressing(body, [pair], {"c": {"z": (0.12, 0.88)}}, []) == ()

@@ -127,7 +127,12 @@ def _postures(
             penalties.append(SPOT_PENALTY * rank)
     above = Transform((0.0, 0.0, arm.hand.above))
     targets = [(base_from_odom @ above @ pose @ object_from_tip).matrix for pose in poses]
-    found, good = group.solve(np.array(targets), arm.seeds(start, SEEDS))
+    seeds = arm.seeds(start, SEEDS)
+    if group.few:
+        centres = np.array([(base_from_odom @ pose).position for pose in poses])
+        found, good = group.solve_upright(np.array(targets), centres, seeds, math.pi / YAWS)
+    else:
+        found, good = group.solve(np.array(targets), seeds)
     ranked: list[tuple[float, int, Array]] = []
     for i, penalty in enumerate(penalties):
         solved = group.nearest_turn(found[i][good[i]], start)
@@ -136,7 +141,13 @@ def _postures(
             ranked.append((float(costs[j]), i, solved[j]))
     ranked.sort(key=lambda item: (item[0], item[1]))
     for cost, i, q in ranked:
-        yield poses[i], q, cost
+        yield poses[i] if not group.few else _as_held(arm, object_from_tip, q), q, cost
+
+
+def _as_held(arm: Arm, object_from_tip: Transform, q: Array) -> Transform:
+    """odom_from_object on the spot above which the arm holds it at joints (n,)."""
+    above = Transform((0.0, 0.0, -arm.hand.above))
+    return arm.state.odom_from_base @ above @ arm.group.tip_pose(q) @ object_from_tip.inverse()
 
 
 def _standing(spot: Pose, held: HeldObject, yaw: float) -> Transform:

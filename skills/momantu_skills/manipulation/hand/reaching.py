@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -34,6 +35,10 @@ CUT = (0.025, 0.025, 0.03)
 diagonal."""
 BESIDE = 0.003
 """Clearance between open hand and object until it closes, m: less than the palm's."""
+SQUARE = 0.05
+"""How far an arm with few joints may turn a hand that grasps flat faces, rad."""
+ALIKE = 0.05
+"""Postures of an arm with few joints within this are the same, rad or m."""
 SKIN = 0.004
 """Clearance between hand and object on the way to it, m."""
 
@@ -134,6 +139,9 @@ def _postures(
     ahead = [float(pose.rotation[:2, 0] @ away) > FROM_BEHIND for pose in poses]
     grasps = [grasp for grasp, keep in zip(grasps, ahead, strict=True) if keep]
     targets = [(p @ grasp_from_tip).matrix for p, keep in zip(poses, ahead, strict=True) if keep]
+    if group.few:
+        yield from _upright_postures(arm, thing, grasps, np.array(targets))
+        return
     found, good = group.solve(np.array(targets), arm.seeds(start, SEEDS))
     ranked: list[tuple[float, int, Array]] = []
     for i, grasp in enumerate(grasps):
@@ -146,6 +154,36 @@ def _postures(
     ranked.sort(key=lambda item: (item[0], item[1]))
     for cost, i, q in ranked:
         yield grasps[i], q, cost
+
+
+def _upright_postures(
+    arm: Arm, thing: DetectedObject, grasps: Sequence[Grasp], targets: Array
+) -> Iterator[tuple[Grasp, Array, float]]:
+    """The same for an arm with few joints: the hand's turn about the object is what they leave.
+
+    targets: base_from_tip (m, 4, 4) of the grasps. Each grasp is given as the arm takes it.
+    """
+    start, group = arm.joints, arm.group
+    object_from_base = (arm.state.odom_from_base.inverse() @ thing.pose.transform).inverse()
+    limit = math.inf if thing.shape == "cylinder" else SQUARE
+    centre = object_from_base.inverse().position
+    found, good = group.solve_upright(targets, centre, arm.seeds(start, SEEDS), limit)
+    ranked: list[tuple[float, int, Grasp, Array]] = []
+    known: set[tuple[int, ...]] = set()
+    for i, grasp in enumerate(grasps):
+        for q in group.nearest_turn(found[i][good[i]], start):
+            key = tuple(int(c) for c in np.rint(q / ALIKE))
+            if key in known:
+                continue
+            known.add(key)
+            place = object_from_base @ group.tip_pose(q) @ arm.scene.model.tip_from_grasp
+            own = Grasp(place, grasp.width, grasp.penalty)
+            cost = float(np.max(np.abs(q - start) / group.velocity)) + grasp.penalty
+            cost += arm.carry_penalty(place.inverse()) + arm.blind_penalty(place)
+            ranked.append((cost, i, own, q))
+    ranked.sort(key=lambda item: item[:2])
+    for cost, _, own, q in ranked:
+        yield own, q, cost
 
 
 class _Check:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -11,6 +11,7 @@ import pinocchio as pin
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
+from momantu_bt.formats.urdf import read_urdf
 from momantu_bt.frames import Joint, KinematicTree
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.messages import RobotState
@@ -24,6 +25,10 @@ PACE = 1.5
 JUMP = 0.25
 """Largest joint motion between two solutions 1 cm apart on a straight line, rad; more means another
 arm configuration."""
+RANKED = 8
+"""Random postures in which the freedoms of a chain are counted."""
+SINGULAR = 1e-3
+"""Least singular value of a Jacobian, m or rad per rad or m, that counts as a freedom."""
 NEAR, TURN = 5e-4, 3e-3
 """Tolerances of inverse kinematics, m and rad: well below calibration errors."""
 
@@ -99,6 +104,67 @@ class Group:
         )
         return path[:reached], int(reached)
 
+    @cached_property
+    def freedoms(self) -> int:
+        """In how many of its six directions and turns the chain moves its tip."""
+        lower = np.where(self.endless, -np.pi, self.lower)
+        upper = np.where(self.endless, np.pi, self.upper)
+        draws = np.random.default_rng(0).uniform(lower, upper, (RANKED, len(lower)))
+        return max(int(np.linalg.matrix_rank(self.jacobian(q), tol=SINGULAR)) for q in draws)
+
+    @property
+    def few(self) -> bool:
+        """Whether it has too few joints to choose the turn of the hand about the vertical."""
+        return self.freedoms < 6
+
+    def turning(self, tip_from_axis: Array, limit: float) -> Group:
+        """Return the chain with one more joint, a turn of the tip about z of a frame on it.
+
+        A pose that this chain reaches is one of this group's but for such a turn. tip_from_axis:
+        (4, 4). limit: rad, infinite for a free turn.
+        """
+        return replace(
+            self,
+            names=(*self.names, "turn"),
+            lower=np.append(self.lower, -limit),
+            upper=np.append(self.upper, limit),
+            velocity=np.append(self.velocity, self.velocity.max()),
+            acceleration=np.append(self.acceleration, 1.0),
+            origins=np.concatenate([self.origins, (self.tip @ tip_from_axis)[None]]),
+            axes=np.vstack([self.axes, (0.0, 0.0, 1.0)]),
+            slides=np.append(self.slides, False),
+            tip=np.asarray(np.linalg.inv(tip_from_axis), dtype=np.float64),
+        )
+
+    def solve_upright(
+        self, targets: Array, centres: Array, seeds: Array, limit: float, rounds: int = 60
+    ) -> tuple[Array, Array]:
+        """Inverse kinematics of poses (m, 4, 4) but for a turn about the vertical.
+
+        centres: (m, 3) points in base, or (3,), through which the axes of the turns go. limit: of
+        the turns, rad. Returns joints (m, s, n) and success (m, s), as `solve` does.
+        """
+        found = np.zeros((len(targets), *seeds.shape))
+        good = np.zeros(found.shape[:2], dtype=np.bool_)
+        starts = np.column_stack([seeds, np.zeros(len(seeds))])
+        for i, (target, centre) in enumerate(
+            zip(targets, np.broadcast_to(centres, (len(targets), 3)), strict=True)
+        ):
+            base_from_axis = np.eye(4)
+            base_from_axis[:3, 3] = centre
+            group = self.turning(np.linalg.inv(target) @ base_from_axis, limit)
+            joints, good[i : i + 1] = group.solve(target[None], starts, rounds)
+            found[i] = joints[0, :, :-1]
+        return found, good
+
+    def trace_upright(
+        self, targets: Array, start: Array, tip_from_axis: Array, limit: float
+    ) -> tuple[Array, int]:
+        """As `trace`, but each pose may be turned by up to `limit` rad about an axis of the tip."""
+        group = self.turning(tip_from_axis, limit)
+        path, reached = group.trace(targets, np.append(start, 0.0))
+        return path[:, :-1], reached
+
     def poses(self, postures: Array) -> Array:
         """base_from_tip (m, 4, 4) at each of joints (m, n)."""
         return np.asarray(kin.poses(self.chain, postures))
@@ -138,6 +204,12 @@ class ArmModel:
             name: int(self.pin.joints[self.pin.getJointId(name)].idx_q)
             for name in list(self.pin.names)[1:]
         }
+        self._followers = [
+            (self._index[joint.name], self._index[joint.mimic.leader], joint.mimic)
+            for joint in read_urdf(description.urdf).joints
+            if joint.mimic and joint.name in self._index and joint.mimic.leader in self._index
+            if effector is None or joint.name not in effector.opening
+        ]
         self.frame_ids = {
             link: int(self.pin.getFrameId(link, pin.FrameType.BODY)) for link in (*self.hulls, *tip)
         }
@@ -179,6 +251,12 @@ class ArmModel:
         if self.description.end_effector is not None:
             for finger, value in self.description.hand.positions(max(0.0, width)).items():
                 q[self._index[finger]] = value
+        return self.follow(q)
+
+    def follow(self, q: Array) -> Array:
+        """All joints (nq,) with those that follow others where they follow; changed in place."""
+        for own, leader, mimic in self._followers:
+            q[own] = mimic.multiplier * q[leader] + mimic.offset
         return q
 
     def link_poses(self, q: Array) -> dict[str, Array]:

@@ -169,6 +169,7 @@ class CollisionWorld:
         """Whether the robot touches nothing at joints (n,) of the planning group."""
         self.checks += 1
         self._q[self._index] = q
+        self.body.model.follow(self._q)
         return not pin.computeCollisions(self._pin, self._data, self._manager, self._q, True)
 
     def path_free(self, path: Array) -> bool:
@@ -178,6 +179,7 @@ class CollisionWorld:
     def touching(self, q: Array) -> list[tuple[str, str]]:
         """Names of all touching pairs at joints (n,), for messages and tests."""
         self._q[self._index] = q
+        self.body.model.follow(self._q)
         pin.computeCollisions(self._pin, self._data, self._geometry, self._shapes, self._q, False)
         objects = self._geometry.geometryObjects
         return [

@@ -18,31 +18,23 @@ torso with shoulders and neck would include the arm folded in front of it. Check
 slower, but few."""
 
 
-class BodyShapes:
-    """One hull per link, or the meshes of long links, placed in a pinocchio model.
+class LinkShapes:
+    """Shapes of links, placed in a pinocchio model.
 
     geometry: all shapes. links: indices of each link's shapes in it.
     """
 
-    def __init__(
-        self, model: pin.Model, hulls: Mapping[str, Array], parts: Iterable[CollisionPart]
-    ) -> None:
-        """hulls: corners (k, 3) in the link's frame. parts: the collision parts of each link."""
+    def __init__(self, model: pin.Model, links: Iterable[str]) -> None:
+        """links: their names; shapes are added one by one."""
         self.geometry = pin.GeometryModel()
-        self.links: dict[str, list[int]] = {link: [] for link in hulls}
+        self.links: dict[str, list[int]] = {link: [] for link in links}
         self._pin = model
-        self._frames = {link: int(model.getFrameId(link, pin.FrameType.BODY)) for link in hulls}
-        every = tuple(parts)
-        for link, corners in hulls.items():
-            if float((corners.max(axis=0) - corners.min(axis=0)).max()) < LONGEST_HULL:
-                self._add(link, convex(corners), Transform())
-                continue
-            for part in (part for part in every if part.link == link):
-                shape = load_mesh(part) if part.kind == "mesh" else convex(part_points(part))
-                place = part.link_from_part if part.kind == "mesh" else Transform()
-                self._add(link, shape, place)
+        self._frames = {
+            link: int(model.getFrameId(link, pin.FrameType.BODY)) for link in self.links
+        }
 
-    def _add(self, link: str, shape: coal.CollisionGeometry, link_from_shape: Transform) -> None:
+    def add(self, link: str, shape: coal.CollisionGeometry, link_from_shape: Transform) -> None:
+        """Add a shape of a link."""
         identity = self._frames[link]
         frame = self._pin.frames[identity]
         place = frame.placement * pin.SE3(link_from_shape.matrix)
@@ -63,3 +55,22 @@ class BodyShapes:
         a, b = self.joint(one), self.joint(other)
         parents = self._pin.parents
         return a == b or int(parents[a]) == b or int(parents[b]) == a
+
+
+class BodyShapes(LinkShapes):
+    """One hull per link, or the meshes of long links."""
+
+    def __init__(
+        self, model: pin.Model, hulls: Mapping[str, Array], parts: Iterable[CollisionPart]
+    ) -> None:
+        """hulls: corners (k, 3) in the link's frame. parts: the collision parts of each link."""
+        super().__init__(model, hulls)
+        every = tuple(parts)
+        for link, corners in hulls.items():
+            if float((corners.max(axis=0) - corners.min(axis=0)).max()) < LONGEST_HULL:
+                self.add(link, convex(corners), Transform())
+                continue
+            for part in (part for part in every if part.link == link):
+                shape = load_mesh(part) if part.kind == "mesh" else convex(part_points(part))
+                place = part.link_from_part if part.kind == "mesh" else Transform()
+                self.add(link, shape, place)

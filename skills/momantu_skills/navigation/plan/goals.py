@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from momantu_bt.geometry import Pose2D, wrap_angle
 from momantu_bt.robot import Working
@@ -92,7 +92,23 @@ def within_reach(
     If the point lies on a surface, the stands face that surface squarely; otherwise they lie around
     the point. `base` is where the robot stands: a shorter drive is better. If the point is too far
     from all edges of its surface, the stands are as near as the surface allows.
+
+    An arm that reaches to the side, or beside the base's middle, stands so that the point lies on
+    its line of reach.
     """
+    line = working.base_from_reach
+    if line == Pose2D(0.0, 0.0, 0.0):
+        return _before(target, surfaces, base, working)
+    stands = _before(target, surfaces, base @ line, working)
+    return [replace(stand, pose=stand.pose @ line.inverse()) for stand in stands]
+
+
+def _before(
+    target: tuple[float, float],
+    surfaces: Iterable[Surface],
+    base: Pose2D,
+    working: Working,
+) -> list[Stand]:
     stands: list[Stand] = []
     surface = surface_at(target, surfaces)
     if surface is not None:
@@ -137,7 +153,9 @@ def _square_stands(
         closest = max(edge - out + working.stand_off, nearest)
         ahead = surface.map_from_surface.inverse() @ base
         straight = -s * ahead.x + c * ahead.y - along
-        shifts = (*SHIFTS, straight) if abs(straight) <= STRAIGHT else SHIFTS
+        shifts: tuple[float, ...] = (*SHIFTS, straight) if abs(straight) <= STRAIGHT else SHIFTS
+        if working.breadth is not None:
+            shifts = tuple(shift for shift in shifts if abs(shift) <= working.breadth)
         for index, shift in enumerate(shifts):
             for back in BACK:
                 away = max(closest + back, min(best, closest + 0.05))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -175,13 +176,14 @@ def _widths(
 def check_stand_off(description: RobotDescription) -> Iterator[FindingAtKeys]:
     """A distance from tables at which the base is in the table."""
     working = description.working
-    front = max(x for x, _ in description.footprint)
+    c, s = math.cos(working.heading), math.sin(working.heading)
+    front = max(c * x + s * y for x, y in description.footprint)
     if working.stand_off < front:
         yield FindingAtKeys(
             Severity.ERROR,
             "stands-in-table",
-            f"at a stand-off of {working.stand_off:g} m the footprint, {front:g} m long ahead, "
-            "reaches over the table's edge",
+            f"at a stand-off of {working.stand_off:g} m the footprint, {front:.3g} m long that "
+            "way, reaches over the table's edge",
             f"write at least `stand_off: {front + 0.05:.2f}`",
             ("working", "stand_off"),
         )
@@ -198,7 +200,8 @@ def check_reach(description: RobotDescription, stand: Stand) -> Iterator[Finding
         Transform((effector.grasp_offset, 0.0, 0.0)),
         seed=0,
     )
-    _, heights = reached(solver, np.array(working.reached), stand.floor)
+    line = (working.heading, working.lateral)
+    _, heights = reached(solver, np.array(working.reached), stand.floor, *line)
     for which, distance, share in zip(
         ("nearest", "best", "farthest"), working.reached, heights, strict=True
     ):

@@ -67,8 +67,9 @@ def _camera(
     covered = [pose for pose, share in shares.items() if share > COVERED]
     if covered:
         most = max(shares[pose] for pose in covered)
+        blind, first = shares.get(LOOKING, most) > BLIND, description.camera()[0]
         yield FindingAtKeys(
-            Severity.ERROR if shares.get(LOOKING, most) > BLIND else Severity.WARNING,
+            Severity.ERROR if blind and name == first else Severity.WARNING,
             "camera-sees-itself",
             f"the robot covers up to {most:.0%} of the picture of {name} in {in_poses(covered)}",
             "turn the camera or move the arm out of the picture in that pose",

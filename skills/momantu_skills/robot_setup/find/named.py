@@ -30,6 +30,8 @@ from momantu_skills.robot_setup.urdf.body import Body
 
 RAISED = (0.3, 0.5, 0.7)
 """Shares of a lift's range that are tried where the arm cannot be folded with it down."""
+FAR_OUT = 0.1
+"""How far out of the footprint a folded arm may reach before a raised lift is tried, m."""
 DIGITS = 3
 """Decimals of a pose: a thousandth of a radian or a millimetre is enough for a draft."""
 
@@ -49,8 +51,8 @@ def find_poses(
     closed = {**finder.still, **posed(finder.arm.hand, 1.0)}
     home = _folded_low(finder, closed, ahead)
     if camera is None:
-        ready = _raised(finder, home, table) or _fold(finder, _at_work(finder, closed), table)
-        around = _raised(finder, home, far) or _fold(finder, _at_work(finder, closed), far)
+        ready = _raised_or_folded(finder, home, closed, table)
+        around = _raised_or_folded(finder, home, closed, far)
     else:
         ready = _view(finder, camera, closed, table, 0.9) or home
         around = _view(finder, camera, closed, far, 1.2) or home
@@ -82,10 +84,13 @@ def fold_others(
 def _folded_low(finder: PoseFinder, closed: dict[str, float], ahead: np.ndarray) -> FoundPose:
     """Folded with the arm's lift as low as it can be without a collision."""
     low = _fold(finder, {**closed, **finder.lifted(LOW)}, ahead)
-    if low.clear is not None or not finder.lifted(LOW):
+    if not finder.lifted(LOW) or (low.clear is not None and low.outside < FAR_OUT):
         return low
     higher = (_fold(finder, {**closed, **finder.lifted(share)}, ahead) for share in RAISED)
-    return next((pose for pose in higher if pose.clear is not None), low)
+    if low.clear is None:
+        return next((pose for pose in higher if pose.clear is not None), low)
+    best = min((p for p in higher if p.clear is not None), key=lambda p: p.outside, default=low)
+    return best if best.outside < low.outside - FAR_OUT / 2 else low
 
 
 def _on_its_side(finder: PoseFinder, side: float, posture: Mapping[str, float]) -> float:
@@ -110,13 +115,25 @@ def _fold(finder: PoseFinder, fixed: dict[str, float], target: np.ndarray) -> Fo
     return _pose(finder, posture, margin, notes)
 
 
-def _at_work(finder: PoseFinder, closed: dict[str, float]) -> dict[str, float]:
-    return {**closed, **finder.lifted(HIGH)}
+def _raised_or_folded(
+    finder: PoseFinder, home: FoundPose, closed: dict[str, float], target: np.ndarray
+) -> FoundPose:
+    """The arm out of the picture, its lift as high as it can be without a collision."""
+    shares = (HIGH, *reversed(RAISED)) if finder.lifted(HIGH) else (HIGH,)
+    for share in shares:
+        raised = _raised(finder, home, target, share)
+        if raised is not None:
+            return raised
+    folded = (_fold(finder, {**closed, **finder.lifted(share)}, target) for share in shares)
+    first = next(folded)
+    return first if first.clear is not None else next((p for p in folded if p.clear), first)
 
 
-def _raised(finder: PoseFinder, home: FoundPose, target: np.ndarray) -> FoundPose | None:
+def _raised(
+    finder: PoseFinder, home: FoundPose, target: np.ndarray, share: float
+) -> FoundPose | None:
     """The arm folded as in `home` but raised, with the head turned to a point; None if not free."""
-    posture = finder.aimed({**home.joints, **finder.lifted(HIGH)}, target)
+    posture = finder.aimed({**home.joints, **finder.lifted(share)}, target)
     if home.clear is None or not finder.clear(posture, home.clear):
         return None
     if finder.covered(posture, finder.corners(posture)) > 0:

@@ -27,6 +27,8 @@ ROUNDS = 300
 """Small changes that improve the best one."""
 MARGINS = (0.03, 0.015, 0.005)
 """Clearances between links, m, tried in turn."""
+CLOSE = (0.005, 0.002, 0.0)
+"""Clearances of pairs that are always nearer than a margin, m: the largest that they can keep."""
 OPENINGS = (1.0, 0.0, 0.5)
 """How far the hands are closed, as shares, where a posture must be clear."""
 PARTING = 60
@@ -111,9 +113,10 @@ class PoseFinder:
         self.links = tuple(link for link in skeleton.subtree(first) if link in body.hulls)
         hands = [limb.hand for limb in (limbs.arm, *limbs.others) if limb.hand is not None]
         own = [set(hand.links) for hand in hands]  # how near its parts are depends on no arm
-        moved = [pair for pair in pairs if set(pair) & set(self.links)]
+        carried = set(skeleton.subtree(skeleton.joints[self.arm.joints[0]].child))
+        moved = [pair for pair in pairs if set(pair) & carried]
         moved = [pair for pair in moved if not any(set(pair) <= links for links in own)]
-        self._contacts = {m: Contacts(body, _parting(body, moved, m), m) for m in MARGINS}
+        self._contacts = {m: Contacts(body, moved, m, _close(body, moved, m)) for m in MARGINS}
         self._outline = _half_planes(stand.footprint)
         self._openings = [
             {name: q for hand in hands for name, q in hand.posture(share).items()}
@@ -219,6 +222,10 @@ class PoseFinder:
         names = [n for n in self._turning() if n not in fixed]
         ranges = np.array([self.body.skeleton.joints[n].range for n in names])
         draws = self.random.uniform(ranges[:, 0], ranges[:, 1], (SAMPLES, len(names)))
+        rest = self.body.rest()
+        for k, name in enumerate(names):
+            if self.body.skeleton.joints[name].kind == "prismatic":
+                draws[::2, k] = rest[name]
         tried = [{**fixed, **dict(zip(names, map(float, q), strict=True))} for q in draws]
         tried = sorted(tried, key=cost)
         for some in (tried[: 4 * BEST], tried[4 * BEST :]):
@@ -304,12 +311,17 @@ def _outside(outline: Array, corners: Array, around: float) -> float:
     return max(0.0, float(beyond.max()) + around)
 
 
-def _parting(body: Body, pairs: list[tuple[str, str]], margin: float) -> list[tuple[str, str]]:
-    """The pairs that can keep a margin: not those that are nearer in nearly every posture."""
-    contacts = Contacts(body, pairs, margin)
+def _close(body: Body, pairs: list[tuple[str, str]], margin: float) -> dict[tuple[str, str], float]:
+    """The pairs that cannot keep a margin, in nearly every posture, and what they can keep, m."""
     draws = body.random_configurations(PARTING, seed=1)
-    near = np.mean([contacts.meeting(q) for q in draws], axis=0) if pairs else np.zeros(0)
-    return [pair for pair, share in zip(pairs, near, strict=True) if share < ALWAYS]
+    close: dict[tuple[str, str], float] = {}
+    tried = (margin, *(m for m in CLOSE if m < margin))
+    for clearance, less in zip(tried, (*tried[1:], 0.0), strict=True):
+        contacts = Contacts(body, pairs, clearance)
+        near = np.mean([contacts.meeting(q) for q in draws], axis=0) if pairs else np.zeros(0)
+        pairs = [pair for pair, share in zip(pairs, near, strict=True) if share >= ALWAYS]
+        close |= dict.fromkeys(pairs, less)
+    return close
 
 
 def posed(hand: Hand | None, share: float) -> dict[str, float]:

@@ -17,7 +17,7 @@ from momantu_skills.robot_setup.find.grasp import Grasp, find_grasp
 from momantu_skills.robot_setup.find.limits import FoundLimit, find_limits, plain_limits
 from momantu_skills.robot_setup.find.matrix import SAMPLES, CollisionMatrix, Why, sample_matrix
 from momantu_skills.robot_setup.find.named import find_poses, fold_others
-from momantu_skills.robot_setup.find.poses import VIEW, Eye, FoundPose, PoseFinder
+from momantu_skills.robot_setup.find.poses import OPENINGS, VIEW, Eye, FoundPose, PoseFinder
 from momantu_skills.robot_setup.find.reach import Reach, find_reach
 from momantu_skills.robot_setup.find.sensors import FoundSensor, find_sensors
 from momantu_skills.robot_setup.find.wheels import Driving, find_driving
@@ -25,6 +25,7 @@ from momantu_skills.robot_setup.urdf.arm_ik import LimbSolver
 from momantu_skills.robot_setup.urdf.body import Body
 from momantu_skills.robot_setup.urdf.cells import cuts_of, swallowed
 from momantu_skills.robot_setup.urdf.prepare import Given, Placed, Prepared, prepare
+from momantu_skills.robot_setup.urdf.simulated import pressing
 
 OPTICAL_FROM_LINK = Transform.from_rpy((0.0, 0.0, 0.0), (-math.pi / 2, 0.0, -math.pi / 2))
 """An optical frame on a link whose x looks ahead and whose z is up."""
@@ -36,7 +37,8 @@ TALLEST = 0.05
 class Proposal:
     """What a robot file is written from. grasp: of the arm's hand. poses: empty without an arm.
 
-    grasps: of further arms' hands. notes: what was left out of the URDF or decided, and why.
+    grasps: of further arms' hands. cells: cuts of meshes. pressing: pairs that only a simulator
+    ignores. notes: what was left out of the URDF or decided, and why.
     """
 
     name: str
@@ -56,6 +58,7 @@ class Proposal:
     reach: Reach
     height: float
     cells: dict[str, dict[str, tuple[float, ...]]]
+    pressing: tuple[tuple[str, str], ...]
     notes: tuple[str, ...]
 
 
@@ -96,6 +99,7 @@ def _propose(prepared: Prepared, samples: int, seed: int) -> Proposal:
     solver = _hand_solver(prepared, base, limbs, grasps.get("arm"), limits, seed)
     poses = _poses(prepared, base, body, stand, limbs, camera, limits, matrix, solver, seed)
     virtual = planar(skeleton, base.virtual)
+    cells = _cells(body, poses, matrix)
     return Proposal(
         robot_name(prepared),
         prepared,
@@ -113,7 +117,8 @@ def _propose(prepared: Prepared, samples: int, seed: int) -> Proposal:
         poses,
         find_reach(solver, stand),
         _height(body, stand, poses),
-        _cells(body, poses, matrix),
+        cells,
+        _pressing(body, limbs, poses, matrix, cells),
         (*prepared.notes, *limbs.notes),
     )
 
@@ -189,7 +194,7 @@ def _poses(
         if in_hand:
             tree = KinematicTree.from_urdf(prepared.urdf, base.frame)
             joints, known = limbs.arm.joints, plain_limits(limits)
-            view = LimbSolver(tree, joints, known, camera.link, place, seed)
+            view = LimbSolver(tree, joints, known, camera.link, place, seed, upright=False)
     pairs = matrix.pairs(Why.SOMETIMES, Why.NEVER)
     folded = fold_others(body, limbs, stand, pairs, seed)
     finder = PoseFinder(body, limbs, stand, pairs, eye, seed, folded)
@@ -203,6 +208,23 @@ def _cells(
     postures = {name: pose.joints for name, pose in poses.items()}
     found = swallowed(body, postures, matrix.ignored)
     return {link: cuts_of(body, link) for link in dict.fromkeys(long for _, _, long in found)}
+
+
+def _pressing(
+    body: Body,
+    limbs: Limbs,
+    poses: dict[str, FoundPose],
+    matrix: CollisionMatrix,
+    cells: dict[str, dict[str, tuple[float, ...]]],
+) -> tuple[tuple[str, str], ...]:
+    """Pairs that only a simulator is to ignore: their hulls meet where the links do not."""
+    hands = [limb.hand for limb in (limbs.arm, *limbs.others) if limb is not None and limb.hand]
+    postures = [
+        {**pose.joints, **{name: q for hand in hands for name, q in hand.posture(share).items()}}
+        for pose in poses.values()
+        for share in OPENINGS
+    ]
+    return pressing(body, matrix.pairs(Why.SOMETIMES, Why.NEVER), cells, postures)
 
 
 def _height(body: Body, stand: Stand, poses: dict[str, FoundPose]) -> float:

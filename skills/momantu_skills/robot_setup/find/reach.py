@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array, Transform
+from momantu_bt.robot import Working
 from momantu_skills.robot_setup.find.base import Stand
 from momantu_skills.robot_setup.urdf.arm_ik import LimbSolver
 
@@ -27,8 +30,12 @@ SEEDS = 8
 """Start postures of the inverse kinematics per pose."""
 GOOD = 0.8
 """Share of the heights that must be reached for a distance to count."""
-SIDES = {"to its right": -math.pi / 2, "to its left": math.pi / 2, "behind it": math.pi}
-"""Directions in which an arm may reach that does not reach ahead, rad."""
+HEADINGS = (0.0, -math.pi / 2, math.pi / 2, math.pi)
+"""Directions in which an arm may reach, rad."""
+LATERALS = tuple(round(0.03 * k, 2) for k in range(-8, 9))
+"""Offsets of the line of reach from the base's middle that are tried, m to the left."""
+BREADTHS = (0.01, 0.02, 0.03, 0.05, 0.07, 0.1)
+"""Offsets from the line of reach that are tried, m."""
 ROOM = 0.13
 """Distance between the footprint and a table's edge, m."""
 BESIDE = 0.08
@@ -50,8 +57,12 @@ class Reach:
     look_off: float
     reach: tuple[float, float, float]
     measured: bool
-    aside: str = ""
-    """Where the hand reaches such grasps instead, if it reaches none ahead; empty: nowhere."""
+    heading: float = 0.0
+    """Direction in which the arm reaches, rad from straight ahead."""
+    lateral: float = 0.0
+    """How far to the left of the base's middle its line of reach lies, m."""
+    breadth: float | None = None
+    """How far beside that line an arm with few joints reaches, m; None: of other arms."""
     freedoms: int = 6
     """In how many of its six directions and turns the arm moves the hand."""
 
@@ -62,49 +73,104 @@ def find_reach(solver: LimbSolver | None, stand: Stand) -> Reach:
     shares, heights = np.zeros(len(distances)), np.zeros(len(distances))
     if solver is not None:
         shares, heights = reached(solver, distances, stand.floor)
-    stand_off = math.ceil((stand.front + ROOM) * 100) / 100
-    least = stand_off + BESIDE
-    good = np.flatnonzero((heights >= GOOD) & (distances >= least - 1e-9))
+    stand_off = _stand_off(stand, 0.0)
+    good = _useful(heights, distances, stand_off)
+    look_off = round(stand_off + LOOK_BACK, 2)
+    if solver is not None and (solver.group.few or not len(good)):
+        aside = _beside(solver, distances, stand)
+        if aside is not None:
+            return aside
     if not len(good):
+        least = stand_off + BESIDE
         fallback = (least, least + 0.2, least + 0.4)
-        aside = "" if solver is None else _aside(solver, distances, stand.floor)
-        freedoms = 0 if solver is None else _freedoms(solver)
-        off = stand_off + LOOK_BACK
-        return Reach(distances, shares, stand_off, off, _cm(fallback), False, aside, freedoms)
+        freedoms = 0 if solver is None else solver.group.freedoms
+        return Reach(
+            distances, shares, stand_off, look_off, _cm(fallback), False, freedoms=freedoms
+        )
+    return Reach(distances, shares, stand_off, look_off, _span(distances, shares, good), True)
+
+
+def _stand_off(stand: Stand, heading: float) -> float:
+    """Least distance to a table's edge in a direction, m."""
+    front = stand.front
+    if heading and stand.footprint is not None:
+        front = float((stand.footprint @ (math.cos(heading), math.sin(heading))).max())
+    return math.ceil((front + ROOM) * 100) / 100
+
+
+def _useful(heights: Array, distances: Array, stand_off: float) -> NDArray[np.int64]:
+    """Indices of the distances at which objects on tables of nearly every height are reached."""
+    return np.asarray(np.flatnonzero((heights >= GOOD) & (distances >= stand_off + BESIDE - 1e-9)))
+
+
+def _span(distances: Array, shares: Array, good: NDArray[np.int64]) -> tuple[float, float, float]:
+    """Nearest, best and farthest of the good distances, m."""
     near, far = float(distances[good[0]]), float(distances[good[-1]])
     strong = good[shares[good] >= 0.8 * shares[good].max()]
     best = float(distances[strong].mean())
+    return _cm((near, best, far))
+
+
+def _beside(solver: LimbSolver, distances: Array, stand: Stand) -> Reach | None:
+    """The line of reach of an arm that reaches nothing straight ahead of the base's middle."""
+    best: tuple[float, float, float] | None = None
+    for heading in HEADINGS:
+        for lateral in LATERALS:
+            shares, heights = reached(solver, distances[1::3], stand.floor, heading, lateral)
+            good = _useful(heights, distances[1::3], _stand_off(stand, heading))
+            worth = float(shares[good].sum())
+            if worth > (best[0] if best else 0.0):
+                best = (worth, heading, lateral)
+    if best is None:
+        return None
+    _, heading, lateral = best
+    shares, heights = reached(solver, distances, stand.floor, heading, lateral)
+    stand_off = _stand_off(stand, heading)
+    good = _useful(heights, distances, stand_off)
+    if not len(good):
+        return None
+    span = _span(distances, shares, good)
     return Reach(
-        distances, shares, stand_off, round(stand_off + LOOK_BACK, 2), _cm((near, best, far)), True
+        distances,
+        shares,
+        stand_off,
+        round(stand_off + LOOK_BACK, 2),
+        span,
+        True,
+        heading,
+        lateral,
+        _breadth(solver, span[1], stand.floor, heading, lateral) if solver.group.few else None,
+        solver.group.freedoms,
     )
 
 
-def _freedoms(solver: LimbSolver) -> int:
-    """The largest rank of the hand's Jacobian in some postures."""
-    ranks = [
-        np.linalg.matrix_rank(solver.group.jacobian(q), tol=1e-4) for q in solver.starts(SEEDS)
-    ]
-    return int(max(ranks))
-
-
-def _aside(solver: LimbSolver, distances: Array, floor: float) -> str:
-    """The side on which the hand reaches grasps on most heights of tables; empty if none."""
-    for side, turned in SIDES.items():
-        _, heights = reached(solver, distances, floor, turned)
-        if heights.max() >= GOOD:
-            return side
-    return ""
+def _breadth(
+    solver: LimbSolver, distance: float, floor: float, heading: float, lateral: float
+) -> float:
+    """How far to either side of its line the arm reaches tables at the best distance, m."""
+    far = 0.0
+    for offset in BREADTHS:
+        sides = (lateral - offset, lateral + offset)
+        heights = [reached(solver, np.array([distance]), floor, heading, y)[1][0] for y in sides]
+        if min(heights) < GOOD:
+            break
+        far = offset
+    return far
 
 
 def reached(
-    solver: LimbSolver, distances: Array, floor: float, turned: float = 0.0
+    solver: LimbSolver, distances: Array, floor: float, heading: float = 0.0, lateral: float = 0.0
 ) -> tuple[Array, Array]:
-    """What is reached at distances (k,), m, straight ahead or in a direction `turned` rad from it.
+    """What is reached at distances (k,), m, straight ahead, or along another line of reach.
+
+    heading: of the line, rad. lateral: how far to the left of the base's middle it lies, m.
 
     Returns the share of grasps (k,), and the share of the tables' heights with one of them (k,).
     """
-    turn = Transform.from_rpy((0.0, 0.0, 0.0), (0.0, 0.0, turned)).matrix
-    targets = np.array([turn @ _poses(distance, floor) for distance in distances])
+    line = Working(stand_off=1.0, look_off=1.0, heading=heading, lateral=lateral).base_from_reach
+    turn = Transform.from_rpy((line.x, line.y, 0.0), (0.0, 0.0, line.yaw)).matrix
+    yaws = (0.0,) if solver.group.few else YAWS
+    targets = np.array([turn @ _poses(distance, floor, yaws) for distance in distances])
     flat = solver.reaches(targets.reshape(-1, 4, 4), SEEDS)
     good = flat.reshape(len(distances), len(HEIGHTS), -1)
     return good.mean(axis=(1, 2)), good.any(axis=2).mean(axis=1)
@@ -115,9 +181,9 @@ def _cm(values: tuple[float, float, float]) -> tuple[float, float, float]:
     return a, b, c
 
 
-def _poses(distance: float, floor: float) -> Array:
-    """base_from_grasp (heights, ways, 4, 4) straight ahead: level from five sides, or pitched."""
-    ways = [(0.0, yaw) for yaw in YAWS] + [(pitch, 0.0) for pitch in PITCHES[1:]]
+def _poses(distance: float, floor: float, yaws: Sequence[float]) -> Array:
+    """base_from_grasp (heights, ways, 4, 4) straight ahead: level at some yaws, or pitched."""
+    ways = [(0.0, yaw) for yaw in yaws] + [(pitch, 0.0) for pitch in PITCHES[1:]]
     return np.array(
         [
             [

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -24,15 +25,21 @@ class LimbSolver:
         link: str,
         link_from_frame: Transform,
         seed: int,
+        *,
+        upright: bool = True,
     ) -> None:
-        """joints: of the limb. link_from_frame: what is brought to poses, on a link."""
+        """joints: of the limb. link_from_frame: what is brought to poses, on a link.
+
+        upright: whether a limb with few joints may turn the frame about the vertical, as a hand.
+        """
+        self.upright = upright
         group = chain_group(kinematics, joints, link, limits)
         self.group: Group = dataclasses.replace(group, tip=group.tip @ link_from_frame.matrix)
         self.random = np.random.default_rng(seed)
 
     def solve(self, base_from_frame: Transform, seeds: int) -> list[dict[str, float]]:
         """Different joints that reach a pose, from so many random starts."""
-        found, good = self.group.solve(base_from_frame.matrix[None], self.starts(seeds))
+        found, good = self._solve(base_from_frame.matrix[None], self.starts(seeds))
         postures: list[Array] = []
         for q in found[0][good[0]]:
             if not any(np.abs(q - other).max() < 0.05 for other in postures):
@@ -41,7 +48,12 @@ class LimbSolver:
 
     def reaches(self, poses: Array, seeds: int) -> Array:
         """(m,) which of poses (m, 4, 4) are reached from any of so many random starts."""
-        return np.asarray(self.group.solve(poses, self.starts(seeds))[1].any(axis=1))
+        return np.asarray(self._solve(poses, self.starts(seeds))[1].any(axis=1))
+
+    def _solve(self, poses: Array, starts: Array) -> tuple[Array, Array]:
+        if self.upright and self.group.few:
+            return self.group.solve_upright(poses, poses[:, :3, 3], starts, math.inf)
+        return self.group.solve(poses, starts)
 
     def starts(self, count: int) -> Array:
         """Random joints (count, n) within the limits."""

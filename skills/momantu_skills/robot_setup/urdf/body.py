@@ -12,7 +12,7 @@ from scipy.spatial import QhullError
 
 from momantu_bt.geometry import Array
 from momantu_skills.manipulation.model.hulls import convex, link_hulls, part_points
-from momantu_skills.manipulation.model.shapes import BodyShapes
+from momantu_skills.manipulation.model.shapes import BodyShapes, LinkShapes
 from momantu_skills.manipulation.model.urdf import UrdfSource, base_urdf
 from momantu_skills.robot_setup.urdf.skeleton import SetupError, Skeleton
 
@@ -132,18 +132,30 @@ class Body:
 class Contacts:
     """Which of some pairs of links meet, and how far apart they are."""
 
-    def __init__(self, body: Body, pairs: Iterable[tuple[str, str]], margin: float = 0.0) -> None:
-        """margin: pairs nearer than this count as meeting, m."""
+    def __init__(
+        self,
+        body: Body,
+        pairs: Iterable[tuple[str, str]],
+        margin: float = 0.0,
+        close: Mapping[tuple[str, str], float] | None = None,
+        shapes: LinkShapes | None = None,
+    ) -> None:
+        """margin: pairs nearer than this count as meeting, m; `close` have a margin of their own.
+
+        shapes: what the links are taken for; default: what planning takes them for.
+        """
         self.body, self.pairs = body, tuple(pairs)
-        self._geometry = body.shapes.geometry.copy()
+        own: LinkShapes = body.shapes if shapes is None else shapes
+        self._geometry = own.geometry.copy()
         self._owner: list[int] = []
         for number, (one, other) in enumerate(self.pairs):
-            for a, b in body.shapes.pairs(one, other):
+            for a, b in own.pairs(one, other):
                 self._geometry.addCollisionPair(pin.CollisionPair(a, b))
                 self._owner.append(number)
         self._shapes, self._data = self._geometry.createData(), body.pin.createData()
-        for index in range(len(self._owner)):
-            self._shapes.collisionRequests[index].security_margin = margin
+        for index, owner in enumerate(self._owner):
+            own_margin = (close or {}).get(self.pairs[owner], margin)
+            self._shapes.collisionRequests[index].security_margin = own_margin
 
     def meeting(self, q: Array) -> NDArray[np.bool_]:
         """(n,) which of the pairs meet at joints (nq,)."""

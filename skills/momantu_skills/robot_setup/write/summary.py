@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -61,7 +62,9 @@ def _reach(proposal: Proposal) -> Iterator[str]:
     near, best, far = reach.reach
     sure = "" if reach.measured else " (guessed: nothing was reached)"
     off = f"stands {reach.stand_off:g} m off"
-    yield f"reach        {near:g} to {far:g} m, best {best:g}; {off}{sure}"
+    turned = f", {math.degrees(reach.heading):.0f} deg from ahead" if reach.heading else ""
+    beside = f", {reach.lateral:g} m to the left" if reach.lateral else ""
+    yield f"reach        {near:g} to {far:g} m{turned}{beside}, best {best:g}; {off}{sure}"
 
 
 def plain(proposal: Proposal) -> dict[str, Any]:

@@ -88,13 +88,11 @@ def _no_reach(reach: Reach) -> str:
     if reach.freedoms < 6:
         why = (
             f": it moves the hand in {reach.freedoms} of the six directions and turns that a grasp "
-            "has, and the base does not help it"
+            "has, and where the base stands chooses no more than one of them"
         )
-    elif reach.aside:
-        why = f", but {reach.aside}, and skills stand with a table ahead"
     return (
-        "no reach: the arm brings the hand to no grasp on a table straight ahead"
-        f"{why}. Trees that pick or place fail"
+        f"no reach: the arm brings the hand to no grasp on a table, on no side{why}. Trees that "
+        "pick or place fail"
     )
 
 
@@ -228,6 +226,13 @@ def _working(proposal: Proposal) -> Iterator[str]:
     yield f"  stand_off: {number(reach.stand_off)}    # the footprint's front and 13 cm"
     yield f"  look_off: {number(reach.look_off)}"
     yield f"  reach: [{', '.join(number(v) for v in reach.reach)}]"
+    if reach.heading or reach.lateral:
+        yield "  # The line along which the arm reaches: its direction, and how far left it lies."
+        yield f"  heading: {number(reach.heading)}"
+        yield f"  lateral: {number(reach.lateral)}"
+    if reach.breadth is not None:
+        yield "  # The arm has few joints: the base brings what is grasped onto that line."
+        yield f"  breadth: {number(reach.breadth)}"
 
 
 def _base(proposal: Proposal) -> Iterator[str]:
@@ -293,3 +298,7 @@ def _simulation(proposal: Proposal) -> Iterator[str]:
         for link, cuts in proposal.cells.items():
             inside = ", ".join(f"{n}: [{', '.join(map(number, at))}]" for n, at in cuts.items())
             yield f"    {scalar(link)}: {{{inside}}}"
+    if proposal.pressing:
+        yield "  # Measured: the hulls that a simulator takes for links meet, the links do not."
+        yield "  ignored_collisions:"
+        yield from (f"    - {listed(pair)}" for pair in proposal.pressing)

@@ -109,7 +109,7 @@ def test_a_tip_takes_the_travel_that_its_finger_cannot(closing: float) -> None:
     motor, tip = FakeJoint(), FakeJoint()
     gains = Gains(4.0, 0.2, 0.0, 0.0)
     linkage = Linkage(motor="finger", ratio=4.0, share=0.25, preload=0.03)
-    finger = Finger(motor, gains, 0.05, closing, 1.3)
+    finger = Finger(motor, gains, 0.05, closing, 1.3, 0.0)
     tips = Tips({"tip": linkage}, {"finger": finger}, {"tip": tip}, {"tip": gains}, {"finger": 1})
     for left, wanted in ((0.0, 0.0), (0.02, 0.0), (0.13, 0.4), (2.0, 1.2), (-0.5, 0.0)):
         tips.follow({"finger": 0.5 + closing * left}, np.array([9.0, 0.5]))

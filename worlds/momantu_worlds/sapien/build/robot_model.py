@@ -108,6 +108,8 @@ def _parse(
         loader.set_link_material(link, friction, friction, 0.0)
     articulations, _, _ = loader.parse(str(simulation.urdf or description.urdf), srdf_file="")
     builder = articulations[0]
+    own = () if description.end_effector is None else description.hand.opening
+    builder.mimic_joint_records = [m for m in builder.mimic_joint_records if m.joint not in own]
     links = {link.name: link for link in builder.link_builders}
     for link in builder.link_builders:
         if link.name in simulation.no_collision_links:
@@ -115,7 +117,7 @@ def _parse(
         _unwrap(link.joint_record, simulation)
     for name in simulation.floor_links:
         links[name].collision_groups[2] |= FLOOR_BIT
-    _ignore_pairs(links, description.ignored_collisions)
+    _ignore_pairs(links, (*description.ignored_collisions, *simulation.ignored_collisions))
     return builder
 
 

@@ -27,6 +27,7 @@ class Finger:
 
     lever: force at the pads along the closing direction is torque / lever; m, or 1 if it slides.
     closing: sign of its motion when the gripper closes. span: its travel from open to closed.
+    closed: its position when the gripper is closed, rad or m.
     """
 
     joint: Any
@@ -34,6 +35,7 @@ class Finger:
     lever: float
     closing: float
     span: float
+    closed: float
 
 
 def fingers_of(
@@ -69,7 +71,8 @@ def fingers_of(
         )
         gains = with_own(simulation.drives.get(name), usual)
         way = rows[0][1] - rows[-1][1]
-        found[name] = Finger(joints[name], gains, lever, math.copysign(1.0, way), abs(way))
+        sign = math.copysign(1.0, way)
+        found[name] = Finger(joints[name], gains, lever, sign, abs(way), rows[0][1])
     return found
 
 
@@ -100,6 +103,7 @@ def couple(articulation: Any, fingers: Mapping[str, Finger], physics: Physics) -
     for other in others:
         links = [first.joint.parent_link, first.joint.child_link, other.joint.child_link]
         if other.joint.parent_link is not links[0]:
+            _level(articulation, other, fingers, physics)
             continue
         share = -first.closing * other.closing * first.span / other.span
         articulation.create_fixed_tendon(
@@ -111,6 +115,24 @@ def couple(articulation: Any, fingers: Mapping[str, Finger], physics: Physics) -
             stiffness=physics.tendon_stiffness * first.lever**2,
             damping=physics.tendon_damping * first.lever**2,
         )
+
+
+def _level(articulation: Any, tip: Finger, fingers: Mapping[str, Finger], physics: Physics) -> None:
+    """Make a tip that hangs on another finger turn with it, as the bars of a parallel jaw do."""
+    link = tip.joint.parent_link
+    knuckle = next((each for each in fingers.values() if each.joint.child_link is link), None)
+    if knuckle is None:
+        return
+    ratio = tip.closing * tip.span / (knuckle.closing * knuckle.span)
+    articulation.create_fixed_tendon(
+        [knuckle.joint.parent_link, link, tip.joint.child_link],
+        [0, -ratio, 1],
+        [0, -1 / ratio, 1],
+        rest_length=tip.closed - ratio * knuckle.closed,
+        offset=0,
+        stiffness=physics.tendon_stiffness * knuckle.lever**2,
+        damping=physics.tendon_damping * knuckle.lever**2,
+    )
 
 
 def torques(fingers: Mapping[str, Finger], force: float) -> dict[str, float]:
